@@ -1,0 +1,249 @@
+//! Errors by who must act on them: the author of a file, the author of a model, or the keeper of the disk.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A text that was read, kept so that messages can point into it.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Source {
+    /// The file's name as the user gave it.
+    pub name: String,
+    /// The file's content.
+    pub text: String,
+}
+
+impl Source {
+    /// One-based line of a byte offset.
+    pub fn line(&self, offset: usize) -> usize {
+        1 + self
+            .text
+            .bytes()
+            .take(offset)
+            .filter(|byte| *byte == b'\n')
+            .count()
+    }
+}
+
+/// Whether a finding stops the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The work goes on.
+    Warning,
+    /// The work cannot begin.
+    Error,
+}
+
+/// One finding about an input: where it is, what is wrong, and what to do about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// Whether this finding stops the program.
+    pub severity: Severity,
+    /// The text and the bytes in it that the finding is about.
+    pub place: Option<(Arc<Source>, Range<usize>)>,
+    /// The key's full path, such as `plate.length`.
+    pub key: String,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub hint: Option<String>,
+}
+
+impl Diagnostic {
+    /// A finding that stops the program.
+    pub fn error(key: impl Into<String>, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            place: None,
+            key: key.into(),
+            message: message.into(),
+            hint: None,
+        }
+    }
+
+    /// A finding that does not stop the program.
+    pub fn warning(key: impl Into<String>, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(key, message)
+        }
+    }
+
+    /// Says what to do.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// Says where.
+    #[must_use]
+    pub fn at(mut self, source: &Arc<Source>, span: Range<usize>) -> Self {
+        let end = source.text.len();
+        self.place = Some((Arc::clone(source), span.start.min(end)..span.end.min(end)));
+        self
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    /// One line: `file:line: key: message (hint)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some((source, span)) = &self.place {
+            write!(f, "{}:{}: ", source.name, source.line(span.start))?;
+        }
+        if !self.key.is_empty() {
+            write!(f, "{}: ", self.key)?;
+        }
+        write!(f, "{}", self.message)?;
+        match &self.hint {
+            Some(hint) => write!(f, " ({hint})"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Why a solver did not reach a solution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SolveFault {
+    /// An element has turned inside out or shrunk to nothing.
+    #[error("{element} is inverted or collapsed and no shorter step avoids it")]
+    Inverted {
+        /// The element, named with its place, as in `cell 80 near (150.0, 0.0) mm`.
+        element: String,
+    },
+    /// The tangent has a direction of no or negative stiffness.
+    #[error("the tangent stiffness is not positive definite: a loss of stability")]
+    NotPositiveDefinite,
+    /// The tangent cannot be factorised at all.
+    #[error(
+        "the system of equations is singular: the supports leave a free motion, or conditions depend on each other"
+    )]
+    Singular,
+    /// The iteration ended without reaching its tolerance.
+    #[error(
+        "no convergence in {iterations} iterations: the residual is {residual:.2e} of its scale, wanted {tolerance:.0e}"
+    )]
+    Stalled {
+        /// Iterations done.
+        iterations: usize,
+        /// Residual relative to its scale.
+        residual: f64,
+        /// The tolerance that was asked for.
+        tolerance: f64,
+    },
+    /// A number is not finite, so nothing computed from it means anything.
+    #[error("{0} is not a finite number")]
+    NotFinite(String),
+}
+
+impl SolveFault {
+    /// What a user can try.
+    pub fn advice(&self) -> &'static str {
+        match self {
+            Self::Inverted { .. } => {
+                "add smaller stretches before this one to `load.stretches`, or refine `plate.cells`"
+            }
+            Self::NotPositiveDefinite => {
+                "look at the card's stable range with `gelbench materials show`, or take smaller load steps"
+            }
+            Self::Singular => "look at the supports and the corrector's conditions",
+            Self::Stalled { .. } => {
+                "add smaller stretches before this one to `load.stretches`, or raise the iteration limit"
+            }
+            Self::NotFinite(_) => "look at the material's parameters and the load",
+        }
+    }
+}
+
+/// Everything that can end a run early.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The input is wrong; all of its faults at once.
+    #[error("{}", list(.0))]
+    Input(Vec<Diagnostic>),
+    /// A model has no solution that could be found.
+    #[error("{model} at {step}: {fault}")]
+    Solve {
+        /// The model, such as `finite elements (Q2, 120 × 40)`.
+        model: String,
+        /// The load step, such as `50 % stretch`.
+        step: String,
+        /// What happened.
+        fault: SolveFault,
+    },
+    /// A file could not be written.
+    #[error("cannot write {}: {cause}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        cause: String,
+    },
+}
+
+fn list(diagnostics: &[Diagnostic]) -> String {
+    diagnostics
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+impl Error {
+    /// A write error for `path`.
+    pub fn write(path: impl Into<PathBuf>, cause: impl fmt::Display) -> Self {
+        Self::Write {
+            path: path.into(),
+            cause: cause.to_string(),
+        }
+    }
+
+    /// The command's exit code: 2 input, 3 no solution, 4 cannot write.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input(_) => 2,
+            Self::Solve { .. } => 3,
+            Self::Write { .. } => 4,
+        }
+    }
+}
+
+/// The name in `known` that is nearest to `name`, when it is near enough to be a typing error.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
+        .filter(|(distance, candidate)| *distance <= 1 + candidate.len() / 4)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_diagnostic_names_file_line_key_and_remedy() {
+        let source = Arc::new(Source {
+            name: "a.toml".into(),
+            text: "x = 1\ny = 2\n".into(),
+        });
+        let diagnostic = Diagnostic::error("y", "must be below 2")
+            .hint("write 1")
+            .at(&source, 10..11);
+        assert_eq!(
+            diagnostic.to_string(),
+            "a.toml:2: y: must be below 2 (write 1)"
+        );
+    }
+
+    #[test]
+    fn the_nearest_name_is_found_only_when_near() {
+        assert_eq!(
+            nearest("thicknes", ["length", "thickness"]),
+            Some("thickness")
+        );
+        assert_eq!(nearest("colour", ["length", "thickness"]), None);
+    }
+}

@@ -1,0 +1,8 @@
+//! Soft-tissue and hydrogel workbench: mass-spring plates corrected to the accuracy of hyperelastic
+//! finite elements.
+#![warn(missing_docs)]
+
+pub mod document;
+pub mod error;
+pub mod material;
+pub mod units;

@@ -1,0 +1,229 @@
+//! Material cards: a law, its parameters with units, and where they come from.
+
+use std::path::Path;
+
+use super::law::HyperelasticLaw;
+use super::parameters::{OffsetTreatment, Parameters, StrainMeasure, StressMeasure};
+use super::registry::{CARDS, LAWS};
+use crate::document::{Bound, Document, Faults};
+use crate::error::{Diagnostic, Error, nearest};
+use crate::units::Dimension;
+
+/// A material: law, parameters and provenance.
+#[derive(Debug)]
+pub struct Card {
+    /// The name it was asked for by.
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// The law's name in the registry.
+    pub law_name: &'static str,
+    /// The law's formula.
+    pub formula: &'static str,
+    /// The law with its parameters.
+    pub law: Box<dyn HyperelasticLaw>,
+    /// The parameters in internal units: key, value, unit.
+    pub parameters: Vec<(&'static str, f64, &'static str)>,
+    /// The stress that the curve behind the card gives.
+    pub stress_measure: StressMeasure,
+    /// The strain that the curve behind the card takes.
+    pub strain_measure: StrainMeasure,
+    /// What is done with a stress at rest.
+    pub offset: OffsetTreatment,
+    /// The kind of test behind the card.
+    pub test: String,
+    /// The stretches within which the card was calibrated.
+    pub stretch_range: [f64; 2],
+    /// Full citation.
+    pub citation: String,
+    /// DOI; empty when the source has none.
+    pub doi: String,
+    /// What was tested.
+    pub specimen: String,
+    /// Anything a user must know; may be empty.
+    pub note: String,
+    /// The card's text as it was read.
+    pub text: String,
+}
+
+impl Card {
+    /// Finds a card by the name of a shipped one, or by the path of a file ending in `.toml`,
+    /// relative to `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault of the card.
+    pub fn load(name: &str, folder: &Path) -> Result<Self, Error> {
+        if let Some((_, text)) = CARDS.iter().find(|(known, _)| *known == name) {
+            return Self::parse(name, &format!("materials/{name}.toml"), text);
+        }
+        if !Path::new(name)
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+        {
+            return Err(Error::Input(vec![unknown_card(name)]));
+        }
+        let path = folder.join(name);
+        let text = std::fs::read_to_string(&path).map_err(|cause| {
+            let fault = Diagnostic::error(
+                "",
+                format!("cannot read the card {}: {cause}", path.display()),
+            );
+            Error::Input(vec![
+                fault.hint("a card's path is relative to the study file"),
+            ])
+        })?;
+        Self::parse(name, &path.display().to_string(), &text)
+    }
+
+    /// Reads a card's text.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault of the card.
+    pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, Error> {
+        let faults = Faults::default();
+        let document = Document::parse(file, text, &faults);
+        let root = document.root(None, &faults);
+        let title = root.text("title");
+        let laws: Vec<_> = LAWS.iter().map(|law| (law.0, law)).collect();
+        let law = root.choice("law", &laws);
+
+        let data = root.section("data");
+        let stress_measure = data
+            .choice("stress_measure", &StressMeasure::NAMES)
+            .unwrap_or(StressMeasure::Nominal);
+        let strain_measure = data
+            .choice("strain_measure", &StrainMeasure::NAMES)
+            .unwrap_or(StrainMeasure::Nominal);
+        let offset = data
+            .choice("offset", &OffsetTreatment::NAMES)
+            .unwrap_or(OffsetTreatment::Subtract);
+        let test = data.text("test");
+        let range = data.quantities("stretch_range", Dimension::Ratio, Bound::Positive);
+        let stretch_range = match range[..] {
+            [low, high] if low < high => [low, high],
+            _ => {
+                data.fault(
+                    "stretch_range",
+                    "must be two increasing stretches",
+                    "such as [1.0, 2.0]",
+                );
+                [1.0, 1.0]
+            }
+        };
+        data.finish();
+
+        let source = root.section("source");
+        let citation = source.text("citation");
+        let doi = source
+            .has("doi")
+            .then(|| source.text("doi"))
+            .unwrap_or_default();
+        let specimen = source.text("specimen");
+        let note = source
+            .has("note")
+            .then(|| source.text("note"))
+            .unwrap_or_default();
+        source.finish();
+        let parameters = root.section("parameters");
+        root.finish();
+        let Some(&(law_name, formula, read_law)) = law else {
+            faults.finish()?;
+            unreachable!("an unknown law is a fault");
+        };
+        let parameters = Parameters::new(parameters, stress_measure, strain_measure);
+        let law = read_law(&parameters);
+        let parameters = parameters.finish();
+        faults.finish()?;
+        Ok(Self {
+            name: name.to_owned(),
+            title,
+            law_name,
+            formula,
+            law,
+            parameters,
+            stress_measure,
+            strain_measure,
+            offset,
+            test,
+            stretch_range,
+            citation,
+            doi,
+            specimen,
+            note,
+            text: text.to_owned(),
+        })
+    }
+
+    /// The value of a parameter in internal units.
+    pub fn parameter(&self, key: &str) -> Option<f64> {
+        self.parameters
+            .iter()
+            .find(|(known, ..)| *known == key)
+            .map(|(_, value, _)| *value)
+    }
+
+    /// Whether the card may be used at the stretch `lambda`.
+    pub fn covers(&self, lambda: f64) -> bool {
+        (self.stretch_range[0]..=self.stretch_range[1] * (1.0 + 1e-12)).contains(&lambda)
+    }
+}
+
+fn unknown_card(name: &str) -> Diagnostic {
+    let known: Vec<_> = CARDS.iter().map(|(known, _)| *known).collect();
+    let hint = match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!(
+            "shipped cards: {}; a card of your own is given as a path ending in .toml",
+            known.join(", ")
+        ),
+    };
+    Diagnostic::error("material.card", format!("there is no card `{name}`")).hint(hint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shipped_card_loads() {
+        for (name, _) in CARDS {
+            let card = Card::load(name, Path::new(".")).unwrap();
+            assert!(card.law.youngs_modulus() > 0.0, "{name}");
+            assert!(
+                !card.citation.is_empty() && !card.specimen.is_empty(),
+                "{name}"
+            );
+        }
+    }
+
+    #[test]
+    fn all_faults_of_a_card_are_told_at_once() {
+        let text = CARDS[0]
+            .1
+            .replace("0.0611 MPa", "0.0611")
+            .replace("exponent =", "exponant =");
+        let Err(Error::Input(faults)) = Card::parse("x", "x.toml", &text) else {
+            panic!("accepted")
+        };
+        let told: Vec<_> = faults.iter().map(ToString::to_string).collect();
+        assert_eq!(told.len(), 3, "{told:#?}");
+        assert!(
+            told.iter().any(|line| line.contains("has no unit")),
+            "{told:#?}"
+        );
+        assert!(
+            told.iter()
+                .any(|line| line.contains("did you mean `exponent`")),
+            "{told:#?}"
+        );
+    }
+
+    #[test]
+    fn an_unknown_card_is_answered_with_the_nearest_name() {
+        let fault = Card::load("pva10", Path::new(".")).unwrap_err();
+        assert!(
+            fault.to_string().contains("did you mean `pva-10`"),
+            "{fault}"
+        );
+    }
+}

@@ -1,0 +1,181 @@
+//! The response of an incompressible thin sheet in plane stress, for every law.
+//!
+//! ```text
+//! F = I + H  (2×2),   C = FᵀF,   J = det F > 0,   λ₃ = 1/J                        [–]
+//! I₁ = tr C + 1/J²,   I₂ = J² + tr C/J²
+//! P = ∂Ψ/∂F = Ψ₁ ∂I₁/∂F + Ψ₂ ∂I₂/∂F                                             [MPa]
+//! ∂I₁/∂F = 2 (F − J⁻³ cof F),   ∂I₂/∂F = 2 (J⁻² F + (J − tr C/J³) cof F)
+//! ```
+//!
+//! The pressure is eliminated by the free surface, σ₃₃ = 0, so the sheet behaves in its plane as an
+//! ordinary compressible 2-D body: nothing locks. Ψ is even in J, so a state with J ≤ 0 may have a
+//! perfect residual and yet be turned inside out: it is refused here.
+//!
+//! Everything is computed from the displacement gradient H, in a form in which no term cancels at
+//! first order, so that stress and tangent keep their digits at strains of 1e-8.
+//!
+//! Components are ordered 11, 12, 21, 22 in all vectors and matrices.
+
+use nalgebra::{Matrix4, Vector4};
+
+use super::law::{HyperelasticLaw, Invariants};
+
+/// Displacement gradient components H₁₁, H₁₂, H₂₁, H₂₂ where Hᵢⱼ = ∂uᵢ/∂Xⱼ.
+pub type Gradient = Vector4<f64>;
+
+/// A sheet whose in-plane area ratio J is not positive, or not a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inadmissible;
+
+/// Strain measures of the sheet that follow from the displacement gradient alone.
+#[derive(Clone, Copy, Debug)]
+pub struct Kinematics {
+    /// I₁ − 3 and I₂ − 3.
+    pub invariants: Invariants,
+    /// F.
+    pub deformation_gradient: Gradient,
+    /// J − 1.
+    area_change: f64,
+    /// ½ ∂I₁/∂F.
+    half_d1: Gradient,
+    /// ½ ∂I₂/∂F.
+    half_d2: Gradient,
+}
+
+/// Energy, stress and tangent of the sheet.
+#[derive(Clone, Copy, Debug)]
+pub struct SheetResponse {
+    /// Ψ per reference volume in mJ/mm³.
+    pub energy: f64,
+    /// First Piola–Kirchhoff stress P = ∂Ψ/∂F in MPa; the nominal stress is its transpose.
+    pub first_piola_kirchhoff_stress: Gradient,
+    /// ∂P/∂F in MPa, symmetric.
+    pub tangent: Matrix4<f64>,
+}
+
+impl Kinematics {
+    /// Kinematics of the displacement gradient `h`.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] when J is not positive.
+    pub fn new(h: &Gradient) -> Result<Self, Inadmissible> {
+        let [h11, h12, h21, h22] = [h[0], h[1], h[2], h[3]];
+        let j = h11 + h22 + (h11 * h22 - h12 * h21); // J − 1
+        let jacobian = 1.0 + j;
+        if !(jacobian > 0.0 && jacobian.is_finite()) {
+            return Err(Inadmissible);
+        }
+        let cofactor_h = Vector4::new(h22, -h21, -h12, h11);
+        let f = identity() + h;
+        let cofactor = identity() + cofactor_h;
+        // C − I
+        let e11 = 2.0 * h11 + h11 * h11 + h21 * h21;
+        let e22 = 2.0 * h22 + h12 * h12 + h22 * h22;
+        let e12 = h12 + h21 + h11 * h12 + h21 * h22;
+        let a = e11 + e22; // tr C − 2
+        let determinant = e11 * e22 - e12 * e12;
+        let d = j * (2.0 + j); // det C − 1
+        let s = j * (3.0 + j * (3.0 + j)) / jacobian.powi(3); // 1 − J⁻³
+        let q = d / (1.0 + d); // 1 − J⁻²
+        let m = j - a + s * (2.0 + a); // 1 + J − tr C/J³
+        let skew = h - cofactor_h;
+        Ok(Self {
+            invariants: Invariants {
+                i1_minus_3: (a * d - determinant) / (1.0 + d),
+                i2_minus_3: (d * d - determinant) / (1.0 + d),
+            },
+            deformation_gradient: f,
+            area_change: j,
+            half_d1: skew + s * cofactor,
+            half_d2: skew - q * f + m * cofactor,
+        })
+    }
+
+    /// J = det F, the in-plane area ratio.
+    pub fn area_ratio(&self) -> f64 {
+        1.0 + self.area_change
+    }
+
+    /// In-plane principal stretches, the larger first, and the thickness stretch 1/J.
+    pub fn principal_stretches(&self) -> [f64; 3] {
+        let f = &self.deformation_gradient;
+        // Singular values of a 2×2 matrix by its rotation-invariant halves.
+        let sum = (f[0] + f[3]).hypot(f[2] - f[1]) / 2.0;
+        let difference = (f[0] - f[3]).hypot(f[1] + f[2]) / 2.0;
+        [sum + difference, sum - difference, 1.0 / self.area_ratio()]
+    }
+
+    /// Cauchy stress σ = P Fᵀ / det F₃ with det F₃ = 1, in MPa: components 11, 12, 22.
+    pub fn cauchy_stress(&self, first_piola_kirchhoff: &Gradient) -> [f64; 3] {
+        let (p, f) = (first_piola_kirchhoff, &self.deformation_gradient);
+        [
+            p[0] * f[0] + p[1] * f[1],
+            p[0] * f[2] + p[1] * f[3],
+            p[2] * f[2] + p[3] * f[3],
+        ]
+    }
+
+    /// Energy and stress.
+    pub fn stress(&self, law: &dyn HyperelasticLaw) -> (f64, Gradient) {
+        let w = law.evaluate(self.invariants);
+        (w.energy, 2.0 * (w.d1 * self.half_d1 + w.d2 * self.half_d2))
+    }
+
+    /// Energy, stress and consistent tangent.
+    pub fn response(&self, law: &dyn HyperelasticLaw) -> SheetResponse {
+        let w = law.evaluate(self.invariants);
+        let (g1, g2) = (&self.half_d1, &self.half_d2);
+        let mixed = g1 * g2.transpose();
+        let mut tangent = 4.0
+            * (w.d11 * g1 * g1.transpose()
+                + w.d12 * (mixed + mixed.transpose())
+                + w.d22 * g2 * g2.transpose());
+        tangent += 2.0 * (w.d1 * self.second_derivative_1());
+        if w.d2 != 0.0 {
+            tangent += 2.0 * (w.d2 * self.second_derivative_2());
+        }
+        SheetResponse {
+            energy: w.energy,
+            first_piola_kirchhoff_stress: 2.0 * (w.d1 * g1 + w.d2 * g2),
+            tangent,
+        }
+    }
+
+    /// ½ ∂²I₁/∂F² = 𝟙 + 3 J⁻⁴ cof F ⊗ cof F − J⁻³ 𝔼, where 𝔼 = ∂ cof F/∂F.
+    fn second_derivative_1(&self) -> Matrix4<f64> {
+        let jacobian = self.area_ratio();
+        let cofactor = cofactor(&self.deformation_gradient);
+        let outer = cofactor * cofactor.transpose();
+        Matrix4::identity() + outer * (3.0 / jacobian.powi(4))
+            - cofactor_derivative() / jacobian.powi(3)
+    }
+
+    /// ½ ∂²I₂/∂F² from ½ ∂I₂/∂F = J⁻² F + k cof F with k = J − tr C/J³.
+    fn second_derivative_2(&self) -> Matrix4<f64> {
+        let f = &self.deformation_gradient;
+        let jacobian = self.area_ratio();
+        let cofactor = cofactor(f);
+        let trace = f.norm_squared();
+        let k = jacobian - trace / jacobian.powi(3);
+        let mixed = f * cofactor.transpose();
+        Matrix4::identity() / jacobian.powi(2)
+            - (mixed + mixed.transpose()) * (2.0 / jacobian.powi(3))
+            + cofactor * cofactor.transpose() * (1.0 + 3.0 * trace / jacobian.powi(4))
+            + cofactor_derivative() * k
+    }
+}
+
+fn identity() -> Gradient {
+    Vector4::new(1.0, 0.0, 0.0, 1.0)
+}
+
+fn cofactor(f: &Gradient) -> Gradient {
+    Vector4::new(f[3], -f[2], -f[1], f[0])
+}
+
+/// 𝔼 = ∂ cof F/∂F = ∂²J/∂F².
+pub fn cofactor_derivative() -> Matrix4<f64> {
+    let mut e = Matrix4::zeros();
+    (e[(0, 3)], e[(3, 0)], e[(1, 2)], e[(2, 1)]) = (1.0, 1.0, -1.0, -1.0);
+    e
+}

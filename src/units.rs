@@ -1,0 +1,215 @@
+//! Physical quantities as text with a unit, turned into gelbench's internal units at the door.
+//!
+//! Inside the program every length is in mm, force in N, stress in MPa, energy in mJ, time in s and
+//! mass in tonne. These units are consistent: 1 N = 1 tonne·mm/s², 1 MPa = 1 N/mm², 1 mJ = 1 N·mm.
+
+use std::fmt;
+
+/// The kind of a physical quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Internal unit mm.
+    Length,
+    /// Internal unit N.
+    Force,
+    /// Internal unit MPa = N/mm².
+    Stress,
+    /// Internal unit tonne/mm³.
+    Density,
+    /// Internal unit s.
+    Time,
+    /// A ratio, written as a bare number or in percent.
+    Ratio,
+}
+
+/// `(symbol, dimension, factor to the internal unit)`; the first symbol of a dimension is the
+/// one that error messages suggest.
+const UNITS: &[(&str, Dimension, f64)] = &[
+    ("mm", Dimension::Length, 1.0),
+    ("cm", Dimension::Length, 10.0),
+    ("m", Dimension::Length, 1e3),
+    ("um", Dimension::Length, 1e-3),
+    ("µm", Dimension::Length, 1e-3),
+    ("in", Dimension::Length, 25.4),
+    ("N", Dimension::Force, 1.0),
+    ("mN", Dimension::Force, 1e-3),
+    ("kN", Dimension::Force, 1e3),
+    ("gf", Dimension::Force, 9.80665e-3),
+    ("lbf", Dimension::Force, 4.448_221_615_260_5),
+    ("MPa", Dimension::Stress, 1.0),
+    ("kPa", Dimension::Stress, 1e-3),
+    ("Pa", Dimension::Stress, 1e-6),
+    ("GPa", Dimension::Stress, 1e3),
+    ("N/mm^2", Dimension::Stress, 1.0),
+    ("N/m^2", Dimension::Stress, 1e-6),
+    ("bar", Dimension::Stress, 0.1),
+    ("mmHg", Dimension::Stress, 133.322_387_415e-6),
+    ("psi", Dimension::Stress, 6.894_757_293_168e-3),
+    ("kg/m^3", Dimension::Density, 1e-12),
+    ("g/cm^3", Dimension::Density, 1e-9),
+    ("tonne/mm^3", Dimension::Density, 1.0),
+    ("s", Dimension::Time, 1.0),
+    ("ms", Dimension::Time, 1e-3),
+    ("min", Dimension::Time, 60.0),
+    ("h", Dimension::Time, 3600.0),
+    ("%", Dimension::Ratio, 1e-2),
+];
+
+impl Dimension {
+    /// The quantity's name as it stands in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Length => "length",
+            Self::Force => "force",
+            Self::Stress => "stress",
+            Self::Density => "density",
+            Self::Time => "time",
+            Self::Ratio => "ratio",
+        }
+    }
+
+    /// The units that are understood for this dimension.
+    pub fn units(self) -> impl Iterator<Item = &'static str> {
+        UNITS
+            .iter()
+            .filter(move |(_, dimension, _)| *dimension == self)
+            .map(|(symbol, ..)| *symbol)
+    }
+
+    /// An example of a well-formed quantity, for hints.
+    pub fn example(self) -> &'static str {
+        match self {
+            Self::Length => "\"2 mm\"",
+            Self::Force => "\"1.5 N\"",
+            Self::Stress => "\"0.0611 MPa\"",
+            Self::Density => "\"1020 kg/m^3\"",
+            Self::Time => "\"10 s\"",
+            Self::Ratio => "0.5 or \"50 %\"",
+        }
+    }
+}
+
+/// Why a text is not a quantity of the wanted dimension.
+#[derive(Clone, Debug, PartialEq)]
+pub enum QuantityFault {
+    /// The text does not begin with a finite decimal number.
+    NotANumber,
+    /// A number without a unit.
+    MissingUnit,
+    /// A unit that the table does not hold.
+    UnknownUnit(String),
+    /// A unit of another dimension.
+    WrongDimension {
+        /// The unit as written.
+        unit: String,
+        /// What that unit measures.
+        found: Dimension,
+    },
+}
+
+impl fmt::Display for QuantityFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotANumber => write!(f, "does not begin with a finite number"),
+            Self::MissingUnit => write!(f, "has no unit"),
+            Self::UnknownUnit(unit) => write!(f, "has the unknown unit `{unit}`"),
+            Self::WrongDimension { unit, found } => {
+                write!(f, "has the unit `{unit}`, which measures {}", found.name())
+            }
+        }
+    }
+}
+
+/// Reads text such as `"15 cm"` and returns its value in the internal unit of `dimension`.
+///
+/// # Errors
+/// A [`QuantityFault`] when the number or the unit is missing, unknown or of another dimension.
+pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
+    let text = text.trim();
+    let split = number_length(text);
+    let number: f64 = text[..split]
+        .parse()
+        .map_err(|_| QuantityFault::NotANumber)?;
+    if !number.is_finite() {
+        return Err(QuantityFault::NotANumber);
+    }
+    let unit = text[split..].trim();
+    if unit.is_empty() {
+        return match dimension {
+            Dimension::Ratio => Ok(number),
+            _ => Err(QuantityFault::MissingUnit),
+        };
+    }
+    let normalised = unit.replace('³', "^3").replace('²', "^2").replace('μ', "µ");
+    match UNITS.iter().find(|(symbol, ..)| *symbol == normalised) {
+        Some((_, found, factor)) if *found == dimension => Ok(number * factor),
+        Some((_, found, _)) => Err(QuantityFault::WrongDimension {
+            unit: unit.to_owned(),
+            found: *found,
+        }),
+        None => Err(QuantityFault::UnknownUnit(unit.to_owned())),
+    }
+}
+
+/// Length in bytes of the decimal number at the beginning of `text`.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut end = 0;
+    while end < bytes.len() {
+        let exponent_sign = end > 0 && matches!(bytes[end - 1], b'e' | b'E');
+        let exponent = matches!(bytes[end], b'e' | b'E')
+            && bytes
+                .get(end + 1)
+                .is_some_and(|next| next.is_ascii_digit() || b"+-".contains(next));
+        let sign = matches!(bytes[end], b'+' | b'-') && (end == 0 || exponent_sign);
+        if !(bytes[end].is_ascii_digit() || bytes[end] == b'.' || sign || exponent) {
+            break;
+        }
+        end += 1;
+    }
+    end
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_are_converted_to_internal_units() {
+        assert_eq!(parse("15 cm", Dimension::Length), Ok(150.0));
+        assert_eq!(parse("2mm", Dimension::Length), Ok(2.0));
+        assert_eq!(parse("-1.5e-1 m", Dimension::Length), Ok(-150.0));
+        assert_eq!(parse("61.1 kPa", Dimension::Stress), Ok(61.1 * 1e-3));
+        assert_eq!(parse("1020 kg/m³", Dimension::Density), Ok(1020.0 * 1e-12));
+        assert_eq!(parse("50 %", Dimension::Ratio), Ok(0.5));
+        assert_eq!(parse("0.5", Dimension::Ratio), Ok(0.5));
+    }
+
+    #[test]
+    fn faults_are_told_apart() {
+        assert_eq!(
+            parse("15", Dimension::Length),
+            Err(QuantityFault::MissingUnit)
+        );
+        assert_eq!(
+            parse("cm", Dimension::Length),
+            Err(QuantityFault::NotANumber)
+        );
+        assert_eq!(parse("", Dimension::Length), Err(QuantityFault::NotANumber));
+        assert_eq!(
+            parse("1e999 mm", Dimension::Length),
+            Err(QuantityFault::NotANumber)
+        );
+        assert_eq!(
+            parse("15 furlong", Dimension::Length),
+            Err(QuantityFault::UnknownUnit("furlong".into()))
+        );
+        assert_eq!(
+            parse("15 MPa", Dimension::Length),
+            Err(QuantityFault::WrongDimension {
+                unit: "MPa".into(),
+                found: Dimension::Stress
+            })
+        );
+    }
+}
