@@ -176,6 +176,15 @@ impl<'a> Section<'a> {
         .unwrap_or_default()
     }
 
+    /// A text that may be missing, and is empty then.
+    pub fn optional_text(&self, key: &'static str) -> String {
+        if self.has(key) {
+            self.text(key)
+        } else {
+            String::new()
+        }
+    }
+
     /// A truth value.
     pub fn flag(&self, key: &'static str) -> bool {
         self.read(key, "true or false", |value| match value {

@@ -56,9 +56,9 @@ impl Card {
         if let Some((_, text)) = CARDS.iter().find(|(known, _)| *known == name) {
             return Self::parse(name, &format!("materials/{name}.toml"), text);
         }
-        if !Path::new(name)
+        if Path::new(name)
             .extension()
-            .is_some_and(|extension| extension == "toml")
+            .is_none_or(|extension| extension != "toml")
         {
             return Err(Error::Input(vec![unknown_card(name)]));
         }
@@ -114,21 +114,14 @@ impl Card {
 
         let source = root.section("source");
         let citation = source.text("citation");
-        let doi = source
-            .has("doi")
-            .then(|| source.text("doi"))
-            .unwrap_or_default();
+        let doi = source.optional_text("doi");
         let specimen = source.text("specimen");
-        let note = source
-            .has("note")
-            .then(|| source.text("note"))
-            .unwrap_or_default();
+        let note = source.optional_text("note");
         source.finish();
         let parameters = root.section("parameters");
         root.finish();
         let Some(&(law_name, formula, read_law)) = law else {
-            faults.finish()?;
-            unreachable!("an unknown law is a fault");
+            return Err(faults.finish().expect_err("an unknown law is a fault"));
         };
         let parameters = Parameters::new(parameters, stress_measure, strain_measure);
         let law = read_law(&parameters);
