@@ -5,4 +5,5 @@
 pub mod document;
 pub mod error;
 pub mod material;
+pub mod solve;
 pub mod units;

@@ -1,0 +1,11 @@
+//! Sums of element energies, their minimum by Newton's method, and the sparse linear algebra below.
+//!
+//! Nothing here knows any mechanics: an unknown is a number in a vector, an element is a term of a sum.
+
+pub mod newton;
+pub mod potential;
+pub mod sparse;
+
+pub use newton::{Convergence, Newton, NewtonSettings};
+pub use potential::{Assembly, Inadmissible, Local, Potential};
+pub use sparse::{Cholesky, NotPositiveDefinite, SparseRows, SymmetricPattern};

@@ -1,0 +1,209 @@
+//! Newton's method for the minimum of a potential, with a line search that keeps every element admissible.
+
+use super::potential::{Assembly, Inadmissible, Potential};
+use super::sparse::{Cholesky, NotPositiveDefinite, largest};
+use crate::error::SolveFault;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug)]
+pub struct NewtonSettings {
+    /// Largest residual of a free unknown relative to the largest reaction.
+    pub tolerance: f64,
+    /// Iterations allowed.
+    pub max_iterations: usize,
+}
+
+/// How a solution was reached.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Convergence {
+    /// Relative residual before each iteration and after the last.
+    pub residuals: Vec<f64>,
+    /// Iterations in which the full step was cut.
+    pub cut_steps: usize,
+    /// Iterations in which the tangent was not positive definite and was shifted.
+    pub shifted_steps: usize,
+}
+
+impl Convergence {
+    /// Number of iterations.
+    pub fn iterations(&self) -> usize {
+        self.residuals.len().saturating_sub(1)
+    }
+}
+
+/// A minimisation prepared for one potential and one set of held unknowns.
+pub struct Newton {
+    assembly: Assembly,
+    cholesky: Cholesky,
+}
+
+/// Relative residual at which a stagnating iteration counts as converged by rounding.
+const ROUNDING_FLOOR: f64 = 1e-11;
+
+impl Newton {
+    /// Analyses the pattern of `potential` with the unknowns marked in `fixed` held.
+    ///
+    /// # Errors
+    /// [`SolveFault::Singular`] when the pattern cannot be analysed.
+    pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Result<Self, SolveFault> {
+        let assembly = Assembly::new(potential, fixed);
+        let cholesky =
+            Cholesky::analyse(assembly.pattern().clone()).map_err(|_| SolveFault::Singular)?;
+        Ok(Self { assembly, cholesky })
+    }
+
+    /// Moves the free entries of `u` to a minimum of the potential near by. On return `residual` holds
+    /// ∂Π/∂u at all unknowns: nothing at free ones, the reactions at held ones.
+    ///
+    /// `describe` names an element for messages.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when a step cannot be made admissible, the tangent is not positive definite at
+    /// the solution, or the iteration stalls.
+    pub fn solve(
+        &mut self,
+        potential: &dyn Potential,
+        u: &mut [f64],
+        residual: &mut [f64],
+        settings: NewtonSettings,
+        describe: &dyn Fn(usize) -> String,
+    ) -> Result<Convergence, SolveFault> {
+        let inverted = |fault: Inadmissible| SolveFault::Inverted {
+            element: describe(fault.element),
+        };
+        let mut log = Convergence::default();
+        let mut stiffness = Vec::new();
+        loop {
+            let energy = self
+                .assembly
+                .linearise(potential, u, residual, &mut stiffness)
+                .map_err(inverted)?;
+            let relative = self.relative_residual(residual);
+            if !relative.is_finite() {
+                return Err(SolveFault::NotFinite("the residual".into()));
+            }
+            let stagnant = log
+                .residuals
+                .last()
+                .is_some_and(|last| relative > 0.5 * last);
+            log.residuals.push(relative);
+            let converged =
+                relative <= settings.tolerance || (stagnant && relative < ROUNDING_FLOOR);
+            let shifted = self.factorise(&mut stiffness)?;
+            if converged {
+                return if shifted {
+                    Err(SolveFault::NotPositiveDefinite)
+                } else {
+                    Ok(log)
+                };
+            }
+            if log.iterations() >= settings.max_iterations {
+                return Err(SolveFault::Stalled {
+                    iterations: log.iterations(),
+                    residual: relative,
+                    tolerance: settings.tolerance,
+                });
+            }
+            log.shifted_steps += usize::from(shifted);
+            let step = self.step(residual)?;
+            let length = self
+                .search(potential, u, residual, energy, &step)
+                .map_err(inverted)?;
+            log.cut_steps += usize::from(length < 1.0);
+        }
+    }
+
+    /// Largest residual of a free unknown relative to the largest of all, reactions included.
+    fn relative_residual(&self, residual: &[f64]) -> f64 {
+        let free = self
+            .assembly
+            .free()
+            .iter()
+            .fold(0.0, |worst: f64, i| worst.max(residual[*i].abs()));
+        if residual.iter().any(|r| !r.is_finite()) {
+            return f64::NAN;
+        }
+        if free == 0.0 {
+            0.0
+        } else {
+            free / largest(residual)
+        }
+    }
+
+    /// Factorises the stiffness, shifted along its diagonal where it is not positive definite; says
+    /// whether it had to be shifted.
+    fn factorise(&mut self, stiffness: &mut [f64]) -> Result<bool, SolveFault> {
+        let diagonal = self.cholesky.pattern().diagonal().to_vec();
+        let scale = diagonal
+            .iter()
+            .map(|place| stiffness[*place].abs())
+            .sum::<f64>()
+            / diagonal.len().max(1) as f64;
+        let mut shift = 0.0;
+        while let Err(NotPositiveDefinite) = self.cholesky.factorise(stiffness) {
+            let next = if shift == 0.0 {
+                1e-4 * scale
+            } else {
+                4.0 * shift
+            };
+            if !(next < 1e3 * scale) {
+                return Err(SolveFault::Singular);
+            }
+            diagonal
+                .iter()
+                .for_each(|place| stiffness[*place] += next - shift);
+            shift = next;
+        }
+        Ok(shift > 0.0)
+    }
+
+    fn step(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
+        let negative: Vec<f64> = self.assembly.free().iter().map(|i| -residual[*i]).collect();
+        self.cholesky
+            .solve(&negative)
+            .map_err(|_| SolveFault::Singular)
+    }
+
+    /// Goes along `step` as far as the energy falls (Armijo) and all elements stay admissible.
+    ///
+    /// Where the energy no longer resolves the step, a falling residual is taken instead.
+    fn search(
+        &self,
+        potential: &dyn Potential,
+        u: &mut [f64],
+        residual: &mut [f64],
+        energy: f64,
+        step: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        const SHORTEST: f64 = 1e-6;
+        let free = self.assembly.free();
+        let start: Vec<f64> = free.iter().map(|i| u[*i]).collect();
+        let slope: f64 = free
+            .iter()
+            .zip(step)
+            .map(|(i, step)| residual[*i] * step)
+            .sum();
+        let before = free
+            .iter()
+            .fold(0.0, |worst: f64, i| worst.max(residual[*i].abs()));
+        let mut length = 1.0;
+        loop {
+            for ((i, start), step) in free.iter().zip(&start).zip(step) {
+                u[*i] = start + length * step;
+            }
+            let outcome = Assembly::residual(potential, u, residual);
+            if let Ok(moved) = outcome {
+                let after = free
+                    .iter()
+                    .fold(0.0, |worst: f64, i| worst.max(residual[*i].abs()));
+                let falls = moved <= energy + 1e-4 * length * slope;
+                if moved.is_finite() && (falls || after < before || length < SHORTEST) {
+                    return Ok(length);
+                }
+            } else if length < SHORTEST {
+                return outcome.map(|_| length);
+            }
+            length *= 0.5;
+        }
+    }
+}

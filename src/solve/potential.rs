@@ -1,0 +1,243 @@
+//! A potential energy that is a sum over elements, and its assembly.
+
+use super::sparse::SymmetricPattern;
+
+/// An element that has turned inside out, collapsed, or left the range of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inadmissible {
+    /// The element's index.
+    pub element: usize,
+}
+
+/// Where an element writes its derivatives: residual rᵢ = ∂Π/∂uᵢ and stiffness Kᵢₖ = ∂²Π/∂uᵢ∂uₖ,
+/// row by row, both set to zero before the call. Without `stiffness` only the residual is wanted.
+#[derive(Debug)]
+pub struct Local<'a> {
+    /// Residual, one number for each of the element's unknowns.
+    pub residual: &'a mut [f64],
+    /// Stiffness, symmetric, row by row.
+    pub stiffness: Option<&'a mut [f64]>,
+}
+
+/// A potential energy Π(u) = Σ Πₑ(u), one term an element.
+///
+/// Mass-spring lattices, finite elements and the corrector's difference scheme are all of this kind,
+/// so that one assembly, one Newton method and one derivative check serve them all.
+pub trait Potential: Sync {
+    /// Length of u.
+    fn unknowns(&self) -> usize;
+
+    /// Number of elements.
+    fn elements(&self) -> usize;
+
+    /// The unknowns that element `element` depends on.
+    fn element_unknowns(&self, element: usize) -> &[usize];
+
+    /// Πₑ, and its derivatives into `local`, at the element's own unknowns `u`.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] when the element is inverted.
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible>;
+}
+
+/// The sum of element contributions into a sparse matrix over the free unknowns.
+#[derive(Debug)]
+pub struct Assembly {
+    /// Position of each unknown among the free ones.
+    free_index: Vec<Option<usize>>,
+    /// The free unknowns, ascending.
+    free: Vec<usize>,
+    pattern: SymmetricPattern,
+    /// For each element, for each entry of its lower triangle, where it is added; `usize::MAX` for none.
+    scatter: Vec<usize>,
+    scatter_starts: Vec<usize>,
+}
+
+const NOWHERE: usize = usize::MAX;
+
+impl Assembly {
+    /// Prepares the assembly of `potential` with the unknowns marked in `fixed` held.
+    pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Self {
+        let free: Vec<usize> = (0..fixed.len()).filter(|i| !fixed[*i]).collect();
+        let mut free_index = vec![None; fixed.len()];
+        free.iter()
+            .enumerate()
+            .for_each(|(index, unknown)| free_index[*unknown] = Some(index));
+        let mut neighbours = vec![Vec::new(); free.len()];
+        for element in 0..potential.elements() {
+            let indices = || {
+                potential
+                    .element_unknowns(element)
+                    .iter()
+                    .filter_map(|i| free_index[*i])
+            };
+            for column in indices() {
+                neighbours[column].extend(indices().filter(|row| *row > column));
+            }
+        }
+        let pattern = SymmetricPattern::new(neighbours.into_iter());
+        let (mut scatter, mut scatter_starts) = (Vec::new(), vec![0]);
+        for element in 0..potential.elements() {
+            let unknowns = potential.element_unknowns(element);
+            for (local, row) in unknowns.iter().enumerate() {
+                for column in &unknowns[..=local] {
+                    let place = free_index[*row].zip(free_index[*column]);
+                    let place = place.and_then(|(row, column)| pattern.position(row, column));
+                    scatter.push(place.unwrap_or(NOWHERE));
+                }
+            }
+            scatter_starts.push(scatter.len());
+        }
+        Self {
+            free_index,
+            free,
+            pattern,
+            scatter,
+            scatter_starts,
+        }
+    }
+
+    /// The free unknowns, ascending.
+    pub fn free(&self) -> &[usize] {
+        &self.free
+    }
+
+    /// Position of an unknown among the free ones.
+    pub fn free_index(&self, unknown: usize) -> Option<usize> {
+        self.free_index[unknown]
+    }
+
+    /// Pattern of the stiffness over the free unknowns.
+    pub fn pattern(&self) -> &SymmetricPattern {
+        &self.pattern
+    }
+
+    /// Energy and full residual (fixed unknowns too: there it is the reaction).
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with the first inverted element.
+    pub fn residual(
+        potential: &dyn Potential,
+        u: &[f64],
+        residual: &mut [f64],
+    ) -> Result<f64, Inadmissible> {
+        residual.fill(0.0);
+        let (mut values, mut local) = (Vec::new(), Vec::new());
+        let mut energy = 0.0;
+        for element in 0..potential.elements() {
+            let unknowns = potential.element_unknowns(element);
+            gather(unknowns, u, &mut values);
+            local.clear();
+            local.resize(unknowns.len(), 0.0);
+            energy += potential.evaluate_element(
+                element,
+                &values,
+                Local {
+                    residual: &mut local,
+                    stiffness: None,
+                },
+            )?;
+            unknowns
+                .iter()
+                .zip(&local)
+                .for_each(|(unknown, r)| residual[*unknown] += r);
+        }
+        Ok(energy)
+    }
+
+    /// Energy, full residual and the stiffness of the free unknowns.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with the first inverted element.
+    pub fn linearise(
+        &self,
+        potential: &dyn Potential,
+        u: &[f64],
+        residual: &mut [f64],
+        stiffness: &mut Vec<f64>,
+    ) -> Result<f64, Inadmissible> {
+        residual.fill(0.0);
+        stiffness.clear();
+        stiffness.resize(self.pattern.entries(), 0.0);
+        let (mut values, mut local, mut matrix) = (Vec::new(), Vec::new(), Vec::new());
+        let mut energy = 0.0;
+        for element in 0..potential.elements() {
+            let unknowns = potential.element_unknowns(element);
+            let size = unknowns.len();
+            gather(unknowns, u, &mut values);
+            local.clear();
+            local.resize(size, 0.0);
+            matrix.clear();
+            matrix.resize(size * size, 0.0);
+            energy += potential.evaluate_element(
+                element,
+                &values,
+                Local {
+                    residual: &mut local,
+                    stiffness: Some(&mut matrix),
+                },
+            )?;
+            unknowns
+                .iter()
+                .zip(&local)
+                .for_each(|(unknown, r)| residual[*unknown] += r);
+            let mut places = self.scatter[self.scatter_starts[element]..].iter();
+            for row in 0..size {
+                for (value, place) in matrix[row * size..=row * size + row]
+                    .iter()
+                    .zip(&mut places)
+                {
+                    if *place != NOWHERE {
+                        stiffness[*place] += value;
+                    }
+                }
+            }
+        }
+        Ok(energy)
+    }
+}
+
+fn gather(unknowns: &[usize], u: &[f64], values: &mut Vec<f64>) {
+    values.clear();
+    values.extend(unknowns.iter().map(|unknown| u[*unknown]));
+}
+
+/// Checks ∂Π/∂u and ∂²Π/∂u² against central differences along a direction; returns the smallest
+/// relative errors over the step sizes (each error is V-shaped in the step).
+pub fn derivative_errors(potential: &dyn Potential, u: &[f64], direction: &[f64]) -> [f64; 2] {
+    let size = potential.unknowns();
+    let assembly = Assembly::new(potential, &vec![false; size]);
+    let (mut residual, mut stiffness) = (vec![0.0; size], Vec::new());
+    let moved =
+        |step: f64| -> Vec<f64> { u.iter().zip(direction).map(|(u, d)| u + step * d).collect() };
+    let at = |step: f64| {
+        let mut residual = vec![0.0; size];
+        let energy =
+            Assembly::residual(potential, &moved(step), &mut residual).expect("admissible");
+        (energy, residual)
+    };
+    assembly
+        .linearise(potential, u, &mut residual, &mut stiffness)
+        .expect("admissible");
+    let slope: f64 = residual.iter().zip(direction).map(|(r, d)| r * d).sum();
+    let product = assembly.pattern.multiply(&stiffness, direction);
+    let mut best = [f64::INFINITY; 2];
+    for step in (1..8).map(|power| 10f64.powi(-power)) {
+        let ((up_energy, up), (down_energy, down)) = (at(step), at(-step));
+        let energy_error = ((up_energy - down_energy) / (2.0 * step) - slope).abs() / slope.abs();
+        let difference: Vec<f64> = up
+            .iter()
+            .zip(&down)
+            .zip(&product)
+            .map(|((u, d), p)| (u - d) / (2.0 * step) - p)
+            .collect();
+        let residual_error = super::sparse::norm(&difference) / super::sparse::norm(&product);
+        best = [best[0].min(energy_error), best[1].min(residual_error)];
+    }
+    best
+}

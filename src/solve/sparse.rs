@@ -1,0 +1,375 @@
+//! Sparse matrices and their factorisation. The only file that names faer.
+
+use std::collections::BTreeMap;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side};
+
+/// The places of the entries of a symmetric matrix: lower triangle by columns, rows ascending.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SymmetricPattern {
+    column_starts: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+impl SymmetricPattern {
+    /// Pattern from the rows of each column; rows above the diagonal are ignored, the diagonal is
+    /// always present.
+    pub fn new(columns: impl Iterator<Item = Vec<usize>>) -> Self {
+        let (mut column_starts, mut rows) = (vec![0], Vec::new());
+        for (column, mut entries) in columns.enumerate() {
+            entries.retain(|row| *row >= column);
+            entries.push(column);
+            entries.sort_unstable();
+            entries.dedup();
+            rows.extend_from_slice(&entries);
+            column_starts.push(rows.len());
+        }
+        Self {
+            column_starts,
+            rows,
+        }
+    }
+
+    /// Number of rows, which is the number of columns.
+    pub fn size(&self) -> usize {
+        self.column_starts.len() - 1
+    }
+
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Where the entry (row, column) of either triangle is stored.
+    pub fn position(&self, row: usize, column: usize) -> Option<usize> {
+        let (row, column) = (row.max(column), row.min(column));
+        let start = self.column_starts[column];
+        let column_rows = &self.rows[start..self.column_starts[column + 1]];
+        column_rows
+            .binary_search(&row)
+            .ok()
+            .map(|place| start + place)
+    }
+
+    /// Where the diagonal entries are stored.
+    pub fn diagonal(&self) -> &[usize] {
+        &self.column_starts[..self.size()]
+    }
+
+    /// y = A x for the matrix with these `values`.
+    pub fn multiply(&self, values: &[f64], x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        for column in 0..self.size() {
+            let mut sum = 0.0;
+            for place in self.column_starts[column]..self.column_starts[column + 1] {
+                let row = self.rows[place];
+                sum += values[place] * x[row];
+                if row != column {
+                    y[row] += values[place] * x[column];
+                }
+            }
+            y[column] += sum;
+        }
+        y
+    }
+}
+
+/// A matrix that is not positive definite, or not finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotPositiveDefinite;
+
+/// A sparse Cholesky factor A = L Lᵀ. The symbolic analysis is done once for a pattern; every new set
+/// of values is factorised into the same memory.
+pub struct Cholesky {
+    pattern: SymmetricPattern,
+    symbolic: SymbolicCholesky<usize>,
+    factor: Vec<f64>,
+    values: Vec<f64>,
+    workspace: MemBuffer,
+}
+
+impl Cholesky {
+    /// Analyses a pattern.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when the pattern cannot be analysed, which means out of memory.
+    pub fn analyse(pattern: SymmetricPattern) -> Result<Self, NotPositiveDefinite> {
+        let size = pattern.size();
+        let symbolic = factorize_symbolic_cholesky(
+            SymbolicSparseColMatRef::new_checked(
+                size,
+                size,
+                &pattern.column_starts,
+                None,
+                &pattern.rows,
+            ),
+            Side::Lower,
+            SymmetricOrdering::Amd,
+            CholeskySymbolicParams::default(),
+        )
+        .map_err(|_| NotPositiveDefinite)?;
+        let scratch = symbolic
+            .factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::Spec::default())
+            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        Ok(Self {
+            factor: vec![0.0; symbolic.len_val()],
+            workspace: MemBuffer::new(scratch),
+            values: Vec::new(),
+            pattern,
+            symbolic,
+        })
+    }
+
+    /// The pattern that was analysed.
+    pub fn pattern(&self) -> &SymmetricPattern {
+        &self.pattern
+    }
+
+    /// Factorises the matrix with these `values`.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when a pivot is not positive.
+    pub fn factorise(&mut self, values: &[f64]) -> Result<(), NotPositiveDefinite> {
+        if values.iter().any(|value| !value.is_finite()) {
+            return Err(NotPositiveDefinite);
+        }
+        let size = self.pattern.size();
+        let structure = SymbolicSparseColMatRef::new_checked(
+            size,
+            size,
+            &self.pattern.column_starts,
+            None,
+            &self.pattern.rows,
+        );
+        self.symbolic
+            .factorize_numeric_llt(
+                &mut self.factor,
+                SparseColMatRef::new(structure, values),
+                Side::Lower,
+                LltRegularization::default(),
+                Par::Seq,
+                MemStack::new(&mut self.workspace),
+                faer::Spec::default(),
+            )
+            .map_err(|_| NotPositiveDefinite)?;
+        self.values.clear();
+        self.values.extend_from_slice(values);
+        Ok(())
+    }
+
+    /// Solves A x = b with one step of iterative refinement, which also proves the factor right.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when the residual shows that A is singular to working precision.
+    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, NotPositiveDefinite> {
+        let mut x = b.to_vec();
+        self.substitute(&mut x);
+        let mut correction = self.defect(b, &x);
+        self.substitute(&mut correction);
+        x.iter_mut()
+            .zip(&correction)
+            .for_each(|(x, correction)| *x += correction);
+        let scale = norm(b).max(f64::MIN_POSITIVE);
+        let defect = norm(&self.defect(b, &x)) / scale;
+        if defect < 1e-6 {
+            Ok(x)
+        } else {
+            Err(NotPositiveDefinite)
+        }
+    }
+
+    fn defect(&self, b: &[f64], x: &[f64]) -> Vec<f64> {
+        let product = self.pattern.multiply(&self.values, x);
+        b.iter()
+            .zip(product)
+            .map(|(b, product)| b - product)
+            .collect()
+    }
+
+    fn substitute(&mut self, x: &mut [f64]) {
+        let size = x.len();
+        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(x, size, 1),
+            Par::Seq,
+            MemStack::new(&mut self.workspace),
+        );
+    }
+}
+
+/// A sparse matrix by rows, of any shape.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SparseRows {
+    columns: usize,
+    rows: Vec<Vec<(usize, f64)>>,
+}
+
+impl SparseRows {
+    /// A matrix without rows that multiplies vectors of length `columns`.
+    pub fn new(columns: usize) -> Self {
+        Self {
+            columns,
+            rows: Vec::new(),
+        }
+    }
+
+    /// Appends a row of (column, value); entries of the same column are added up.
+    pub fn push(&mut self, row: impl IntoIterator<Item = (usize, f64)>) {
+        let mut merged = BTreeMap::new();
+        for (column, value) in row {
+            *merged.entry(column).or_insert(0.0) += value;
+        }
+        self.rows.push(merged.into_iter().collect());
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// The entries of one row: (column, value), columns ascending.
+    pub fn row(&self, row: usize) -> &[(usize, f64)] {
+        &self.rows[row]
+    }
+
+    /// B x.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        let product =
+            |row: &Vec<(usize, f64)>| row.iter().map(|(column, value)| value * x[*column]).sum();
+        self.rows.iter().map(product).collect()
+    }
+
+    /// Bᵀ y.
+    pub fn multiply_transposed(&self, y: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.columns];
+        for (row, y) in self.rows.iter().zip(y) {
+            for (column, value) in row {
+                product[*column] += value * y;
+            }
+        }
+        product
+    }
+
+    /// B W⁻¹ Bᵀ as a symmetric sparse matrix, with the diagonal W given by `weights`.
+    pub fn normal_matrix(&self, weights: &[f64]) -> (SymmetricPattern, Vec<f64>) {
+        let mut by_column = vec![Vec::new(); self.columns];
+        for (index, row) in self.rows.iter().enumerate() {
+            for (column, value) in row {
+                by_column[*column].push((index, *value));
+            }
+        }
+        let products: Vec<BTreeMap<usize, f64>> = self
+            .rows
+            .iter()
+            .enumerate()
+            .map(|(index, row)| {
+                let mut sums = BTreeMap::from([(index, 0.0)]);
+                for (column, value) in row {
+                    for (other, other_value) in &by_column[*column] {
+                        if *other >= index {
+                            *sums.entry(*other).or_insert(0.0) +=
+                                value * other_value / weights[*column];
+                        }
+                    }
+                }
+                sums
+            })
+            .collect();
+        let pattern =
+            SymmetricPattern::new(products.iter().map(|sums| sums.keys().copied().collect()));
+        (
+            pattern,
+            products
+                .into_iter()
+                .flat_map(BTreeMap::into_values)
+                .collect(),
+        )
+    }
+}
+
+/// Euclidean norm.
+pub fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The largest magnitude.
+pub fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laplacian(n: usize) -> (SymmetricPattern, Vec<f64>) {
+        let pattern = SymmetricPattern::new(
+            (0..n).map(|i| vec![i, i + 1].into_iter().filter(|r| *r < n).collect()),
+        );
+        let mut values = vec![-1.0; pattern.entries()];
+        pattern
+            .diagonal()
+            .iter()
+            .for_each(|place| values[*place] = 2.0);
+        (pattern, values)
+    }
+
+    #[test]
+    fn a_system_is_solved_and_refactorised_in_the_same_memory() {
+        let (pattern, mut values) = laplacian(50);
+        let exact: Vec<f64> = (0..50).map(|i| f64::from(i).sin()).collect();
+        let mut cholesky = Cholesky::analyse(pattern.clone()).unwrap();
+        for _ in 0..2 {
+            let b = pattern.multiply(&values, &exact);
+            cholesky.factorise(&values).unwrap();
+            let x = cholesky.solve(&b).unwrap();
+            assert!(
+                x.iter()
+                    .zip(&exact)
+                    .all(|(x, exact)| (x - exact).abs() < 1e-12)
+            );
+            values.iter_mut().for_each(|value| *value *= 3.0);
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_reported() {
+        let (pattern, mut values) = laplacian(20);
+        values[pattern.diagonal()[7]] = -1.0;
+        let mut cholesky = Cholesky::analyse(pattern).unwrap();
+        assert_eq!(cholesky.factorise(&values), Err(NotPositiveDefinite));
+        values[0] = f64::NAN;
+        assert_eq!(cholesky.factorise(&values), Err(NotPositiveDefinite));
+    }
+
+    #[test]
+    fn the_normal_matrix_is_b_w_inverse_b_transposed() {
+        let mut b = SparseRows::new(4);
+        b.push([(0, 1.0), (2, -2.0)]);
+        b.push([(2, 3.0), (1, 1.0), (2, 1.0)]);
+        b.push([(3, 5.0)]);
+        let (pattern, values) = b.normal_matrix(&[1.0, 2.0, 4.0, 1.0]);
+        let entry = |row, column| pattern.position(row, column).map(|place| values[place]);
+        assert_eq!(entry(0, 0), Some(2.0));
+        assert_eq!(entry(0, 1), Some(-2.0));
+        assert_eq!(entry(1, 1), Some(4.5));
+        assert_eq!(entry(2, 2), Some(25.0));
+        assert_eq!(entry(0, 2), None);
+    }
+}
