@@ -4,6 +4,10 @@
 
 pub mod document;
 pub mod error;
+pub mod finite_element;
 pub mod material;
+pub mod mesh;
+pub mod problem;
+pub mod sheet_energy;
 pub mod solve;
 pub mod units;

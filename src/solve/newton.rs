@@ -18,6 +18,8 @@ pub struct NewtonSettings {
 pub struct Convergence {
     /// Relative residual before each iteration and after the last.
     pub residuals: Vec<f64>,
+    /// The potential at the solution.
+    pub energy: f64,
     /// Iterations in which the full step was cut.
     pub cut_steps: usize,
     /// Iterations in which the tangent was not positive definite and was shifted.
@@ -82,6 +84,7 @@ impl Newton {
             if !relative.is_finite() {
                 return Err(SolveFault::NotFinite("the residual".into()));
             }
+            log.energy = energy;
             let stagnant = log
                 .residuals
                 .last()

@@ -1,0 +1,147 @@
+//! The mechanical problem: a sheet, its material, how it is held and how far it is stretched.
+
+use std::sync::Arc;
+
+use crate::error::{Error, SolveFault};
+use crate::material::HyperelasticLaw;
+use crate::mesh::{Mesh, Side};
+use crate::solve::{Convergence, Newton, NewtonSettings, Potential};
+
+/// A rectangular plate between two rigid grips that clamp its short sides.
+///
+/// The left grip rests, the right one moves along X; the long sides are free. Free of any
+/// discretisation: every model meshes it for itself.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// Length between the grips and width in mm.
+    pub size: [f64; 2],
+    /// Thickness in mm.
+    pub thickness: f64,
+    /// The material.
+    pub law: Arc<dyn HyperelasticLaw>,
+    /// Grip displacements divided by the length, ascending: 0.5 is a stretch to 150 %.
+    pub stretches: Vec<f64>,
+}
+
+/// A model's equilibrium at one stretch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Grip displacement divided by the length.
+    pub stretch: f64,
+    /// ux, uy of node after node in mm.
+    pub displacement: Vec<f64>,
+    /// Residual ∂Π/∂u in N: reactions at held unknowns.
+    pub residual: Vec<f64>,
+    /// Force on the moving grip in N.
+    pub force: f64,
+    /// Strain energy in mJ.
+    pub energy: f64,
+    /// Width at mid length in mm.
+    pub mid_width: f64,
+    /// How it was reached.
+    pub convergence: Convergence,
+}
+
+impl Problem {
+    /// Marks the unknowns of `mesh` that the grips hold.
+    pub fn held(&self, mesh: &Mesh) -> Vec<bool> {
+        (0..2 * mesh.nodes.len())
+            .map(|unknown| mesh.on_grip(unknown / 2))
+            .collect()
+    }
+
+    /// The displacement that the grips impose on a node, if they hold it.
+    pub fn grip_displacement(&self, mesh: &Mesh, node: usize, stretch: f64) -> Option<[f64; 2]> {
+        if mesh.on(Side::Left, node) {
+            Some([0.0, 0.0])
+        } else {
+            mesh.on(Side::Right, node)
+                .then_some([stretch * self.size[0], 0.0])
+        }
+    }
+
+    /// The affine stretch: ux = stretch · X, uy = 0.
+    pub fn affine(&self, mesh: &Mesh, stretch: f64) -> Vec<f64> {
+        mesh.nodes
+            .iter()
+            .flat_map(|[x, _]| [stretch * x, 0.0])
+            .collect()
+    }
+
+    /// A first guess for `stretch`: the previous solution scaled with the grips' motion, or the affine
+    /// stretch. The grips' displacements are exact in it.
+    pub fn first_guess(&self, mesh: &Mesh, stretch: f64, previous: Option<&Solution>) -> Vec<f64> {
+        let mut guess = match previous {
+            Some(previous) => {
+                let ratio = stretch / previous.stretch;
+                previous.displacement.iter().map(|u| ratio * u).collect()
+            }
+            None => self.affine(mesh, stretch),
+        };
+        for node in 0..mesh.nodes.len() {
+            if let Some(held) = self.grip_displacement(mesh, node, stretch) {
+                guess[2 * node..2 * node + 2].copy_from_slice(&held);
+            }
+        }
+        guess
+    }
+
+    /// Force on the moving grip: the sum of its reactions along X, in N.
+    pub fn grip_force(&self, mesh: &Mesh, residual: &[f64]) -> f64 {
+        let on_right = (0..mesh.nodes.len()).filter(|node| mesh.on(Side::Right, *node));
+        on_right.map(|node| residual[2 * node]).sum()
+    }
+
+    /// Solves all stretches, one after the other, with any potential on a mesh of the plate.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] with the stretch at which no solution was found.
+    pub fn follow(
+        &self,
+        mesh: &Mesh,
+        potential: &dyn Potential,
+        model: &str,
+        settings: NewtonSettings,
+        progress: &dyn Fn(f64),
+    ) -> Result<Vec<Solution>, Error> {
+        let fault = |stretch: f64, fault: SolveFault| Error::Solve {
+            model: model.to_owned(),
+            step: Problem::describe_step(stretch),
+            fault,
+        };
+        let mut newton = Newton::new(potential, &self.held(mesh))
+            .map_err(|cause| fault(self.stretches[0], cause))?;
+        let mut solutions: Vec<Solution> = Vec::new();
+        for &stretch in &self.stretches {
+            let mut displacement = self.first_guess(mesh, stretch, solutions.last());
+            let mut residual = vec![0.0; displacement.len()];
+            let describe = |cell: usize| mesh.describe_cell(cell);
+            let convergence = newton
+                .solve(
+                    potential,
+                    &mut displacement,
+                    &mut residual,
+                    settings,
+                    &describe,
+                )
+                .map_err(|cause| fault(stretch, cause))?;
+            let energy = convergence.energy;
+            solutions.push(Solution {
+                stretch,
+                force: self.grip_force(mesh, &residual),
+                mid_width: mesh.mid_width(&displacement),
+                displacement,
+                residual,
+                energy,
+                convergence,
+            });
+            progress(stretch);
+        }
+        Ok(solutions)
+    }
+
+    /// `50 % stretch`, for messages.
+    pub fn describe_step(stretch: f64) -> String {
+        format!("{:.4} % stretch", 100.0 * stretch).replace(".0000", "")
+    }
+}

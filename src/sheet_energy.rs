@@ -1,0 +1,138 @@
+//! The strain energy of a sheet as a sum over sampling points: the common ground of the finite elements
+//! and of the corrector's difference scheme, which differ in the points and in the gradients alone.
+
+use std::sync::Arc;
+
+use crate::material::HyperelasticLaw;
+use crate::material::sheet::{Gradient, Kinematics};
+use crate::solve::{Inadmissible, Local, Potential};
+
+/// Where the energy is sampled: the displacement gradient there as a combination of nodal values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SamplingPoint {
+    /// ∂u/∂X = Σ uₐ ⊗ gₐ with one gₐ in 1/mm for each node of the cell.
+    pub gradients: Vec<[f64; 2]>,
+    /// Share of the sheet's reference volume in mm³.
+    pub volume: f64,
+}
+
+/// Π(u) = Σ V Ψ(H(u)) over the sampling points of all cells, in mJ.
+#[derive(Clone, Debug)]
+pub struct SheetEnergy {
+    law: Arc<dyn HyperelasticLaw>,
+    unknowns: usize,
+    nodes_per_cell: usize,
+    /// ux, uy of node after node for each cell.
+    cell_unknowns: Vec<usize>,
+    points_per_cell: usize,
+    points: Vec<SamplingPoint>,
+}
+
+impl SheetEnergy {
+    /// The energy of cells that all have the same number of nodes and sampling points.
+    ///
+    /// `cells` gives each cell's nodes and points.
+    pub fn new<'a>(
+        law: Arc<dyn HyperelasticLaw>,
+        nodes: usize,
+        cells: impl Iterator<Item = (&'a [usize], Vec<SamplingPoint>)>,
+    ) -> Self {
+        let mut energy = Self {
+            law,
+            unknowns: 2 * nodes,
+            nodes_per_cell: 1,
+            cell_unknowns: Vec::new(),
+            points_per_cell: 1,
+            points: Vec::new(),
+        };
+        for (nodes, points) in cells {
+            energy.nodes_per_cell = nodes.len();
+            energy.points_per_cell = points.len();
+            energy
+                .cell_unknowns
+                .extend(nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]));
+            energy.points.extend(points);
+        }
+        energy
+    }
+
+    /// The sampling points of a cell.
+    pub fn cell_points(&self, cell: usize) -> &[SamplingPoint] {
+        &self.points[cell * self.points_per_cell..(cell + 1) * self.points_per_cell]
+    }
+
+    /// Kinematics at a sampling point of a cell with the nodal displacements `u`.
+    fn kinematics(point: &SamplingPoint, u: &[f64]) -> Result<Kinematics, ()> {
+        let mut h = Gradient::zeros();
+        for (g, u) in point.gradients.iter().zip(u.chunks_exact(2)) {
+            h[0] += u[0] * g[0];
+            h[1] += u[0] * g[1];
+            h[2] += u[1] * g[0];
+            h[3] += u[1] * g[1];
+        }
+        Kinematics::new(&h).map_err(|_| ())
+    }
+}
+
+impl Potential for SheetEnergy {
+    fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    fn elements(&self) -> usize {
+        self.cell_unknowns.len() / (2 * self.nodes_per_cell)
+    }
+
+    fn element_unknowns(&self, element: usize) -> &[usize] {
+        let size = 2 * self.nodes_per_cell;
+        &self.cell_unknowns[element * size..(element + 1) * size]
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        mut local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        let mut energy = 0.0;
+        for point in self.cell_points(element) {
+            let kinematics = Self::kinematics(point, u).map_err(|()| Inadmissible { element })?;
+            let (density, stress) = match &mut local.stiffness {
+                None => kinematics.stress(&*self.law),
+                Some(stiffness) => {
+                    let response = kinematics.response(&*self.law);
+                    let tangent = response.tangent * point.volume;
+                    add_stiffness(stiffness, &point.gradients, tangent.as_slice());
+                    (response.energy, response.first_piola_kirchhoff_stress)
+                }
+            };
+            energy += point.volume * density;
+            let traction = stress * point.volume;
+            for (r, g) in local.residual.chunks_exact_mut(2).zip(&point.gradients) {
+                r[0] += traction[0] * g[0] + traction[1] * g[1];
+                r[1] += traction[2] * g[0] + traction[3] * g[1];
+            }
+        }
+        if energy.is_finite() {
+            Ok(energy)
+        } else {
+            Err(Inadmissible { element })
+        }
+    }
+}
+
+/// K_(a i)(b k) += gₐ_J A_(i J)(k L) g_b_L over the lower triangle; `a` is symmetric, 4 × 4.
+fn add_stiffness(stiffness: &mut [f64], gradients: &[[f64; 2]], a: &[f64]) {
+    let size = 2 * gradients.len();
+    for (b, g) in gradients.iter().enumerate() {
+        for k in 0..2 {
+            let column: [f64; 4] =
+                std::array::from_fn(|row| a[row + 8 * k] * g[0] + a[row + 8 * k + 4] * g[1]);
+            for (node, g) in gradients.iter().enumerate().skip(b) {
+                let row = 2 * node;
+                stiffness[row * size + 2 * b + k] += g[0] * column[0] + g[1] * column[1];
+                stiffness[(row + 1) * size + 2 * b + k] += g[0] * column[2] + g[1] * column[3];
+            }
+        }
+    }
+}
