@@ -5,6 +5,7 @@
 pub mod document;
 pub mod error;
 pub mod finite_element;
+pub mod mass_spring;
 pub mod material;
 pub mod mesh;
 pub mod problem;

@@ -1,0 +1,487 @@
+//! The mass-spring plate: springs along the edges and both diagonals of every cell.
+//!
+//! ```text
+//! T = K(·) (|x| − x₀) = a P(λ),   λ = |x|/x₀                                          [N]
+//! ```
+//!
+//! P is the card's uniaxial nominal stress and a the cross-section that the spring stands for, so that
+//! K(·) = a P(λ)/(x₀ (λ − 1)) follows the card's curve. The cross-sections make the lattice isotropic
+//! at small strain. With hx, hy the sides of a cell, d its diagonal, t the thickness and s = 1:
+//!
+//! ```text
+//! diagonal      k = s 3/16 E t d²/(hx hy)                 (square cells: 3/8 E t)
+//! edge along X  k = s E t (9/8 hy/hx − 3/8 hx/hy)         (square cells: 3/4 E t; half on the border)
+//! ```
+//!
+//! A lattice of springs alone has C₁₁₂₂ = C₁₂₁₂ (Cauchy's relation), hence ν = ⅓ whatever the
+//! stiffnesses: this is the regular model. With s = 8/9 and an area term ½ κ A₀ (A/A₀ − 1)² in each cell,
+//! κ = ⅓ E t, the lattice has ν = ½ at small strain, as the incompressible sheet has.
+//!
+//! # References
+//! A. Van Gelder, J. Graph. Tools 3(2), 21 (1998), doi:10.1080/10867651.1998.10487490
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::error::Error;
+use crate::material::{HyperelasticLaw, uniaxial};
+use crate::mesh::{CellShape, Mesh};
+use crate::problem::{Problem, Solution};
+use crate::solve::{Inadmissible, Local, NewtonSettings, Potential};
+
+/// One spring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// The nodes at its ends.
+    pub nodes: [usize; 2],
+    /// Rest length x₀ in mm.
+    pub rest_length: f64,
+    /// Cross-section a in mm².
+    pub area: f64,
+}
+
+/// A spring in a deformed lattice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringState {
+    /// λ = |x|/x₀.
+    pub stretch: f64,
+    /// T in N, positive in tension.
+    pub force: f64,
+}
+
+/// What the lattice consists of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LatticeSettings {
+    /// Whether each cell has the area term that gives ν = ½ at small strain.
+    pub area_term: bool,
+}
+
+/// A mass-spring lattice on the cells of a plate.
+#[derive(Clone, Debug)]
+pub struct MassSpring {
+    /// Nodes and cells of the lattice.
+    pub mesh: Mesh,
+    /// Edge springs and diagonal springs.
+    pub springs: Vec<Spring>,
+    lattice: Lattice,
+}
+
+#[derive(Clone, Debug)]
+struct Lattice {
+    law: Arc<dyn HyperelasticLaw>,
+    unknowns: usize,
+    /// Unknowns of the springs, four each, then of the cells, eight each.
+    element_unknowns: Vec<usize>,
+    springs: Vec<(f64, f64)>,
+    /// Reference components of each spring's direction, as for `springs`.
+    directions: Vec<[f64; 2]>,
+    corners: Vec<[[f64; 2]; 4]>,
+    /// κ in N/mm.
+    area_stiffness: f64,
+}
+
+/// The largest ratio of a cell's sides for which all springs pull: √3.
+pub const LARGEST_ASPECT: f64 = 1.732;
+
+impl MassSpring {
+    /// Builds the lattice of a problem on `cells` cells.
+    ///
+    /// The ratio of a cell's sides must not exceed [`LARGEST_ASPECT`]; beyond it, an isotropic lattice
+    /// would need edges of negative stiffness.
+    pub fn new(problem: &Problem, cells: [usize; 2], settings: LatticeSettings) -> Self {
+        let mesh = Mesh::plate(problem.size, cells, CellShape::Quad4);
+        let scale = if settings.area_term { 8.0 / 9.0 } else { 1.0 };
+        let [hx, hy] = mesh.cell_size();
+        let diagonal = hx.hypot(hy);
+        let edge =
+            |along: f64, across: f64| 9.0 / 8.0 * across / along - 3.0 / 8.0 * along / across;
+        // Stiffness over E t times rest length and thickness is the cross-section; half for each cell.
+        let along_x = 0.5 * scale * problem.thickness * hx * edge(hx, hy);
+        let along_y = 0.5 * scale * problem.thickness * hy * edge(hy, hx);
+        let across =
+            scale * problem.thickness * diagonal * 3.0 / 16.0 * diagonal * diagonal / (hx * hy);
+        let mut areas = BTreeMap::new();
+        for cell in 0..mesh.cell_count() {
+            let [a, b, c, d] = mesh.cell(cell) else {
+                unreachable!("four nodes")
+            };
+            let sides = [
+                (a, b, along_x),
+                (d, c, along_x),
+                (a, d, along_y),
+                (b, c, along_y),
+            ];
+            for (from, to, area) in sides.into_iter().chain([(a, c, across), (d, b, across)]) {
+                *areas.entry([*from.min(to), *from.max(to)]).or_insert(0.0) += area;
+            }
+        }
+        let springs: Vec<Spring> = areas
+            .into_iter()
+            .map(|(nodes, area)| {
+                let [from, to] = nodes.map(|node| mesh.nodes[node]);
+                Spring {
+                    nodes,
+                    rest_length: (to[0] - from[0]).hypot(to[1] - from[1]),
+                    area,
+                }
+            })
+            .collect();
+        let modulus = if settings.area_term {
+            problem.law.youngs_modulus() / 3.0
+        } else {
+            0.0
+        };
+        let lattice = Lattice::new(problem, &mesh, &springs, modulus * problem.thickness);
+        Self {
+            mesh,
+            springs,
+            lattice,
+        }
+    }
+
+    /// The lattice's energy as a potential of the nodal displacements.
+    pub fn potential(&self) -> &dyn Potential {
+        &self.lattice
+    }
+
+    /// Stretch and force of every spring.
+    pub fn spring_states(&self, displacement: &[f64]) -> Vec<SpringState> {
+        let state = |(index, spring): (usize, &Spring)| {
+            let [from, to] = spring.nodes;
+            let relative =
+                [0, 1].map(|axis| displacement[2 * to + axis] - displacement[2 * from + axis]);
+            let strain = strain(self.lattice.directions[index], relative);
+            let stress = uniaxial::uniaxial(&*self.lattice.law, strain).nominal_stress;
+            SpringState {
+                stretch: 1.0 + strain,
+                force: spring.area * stress,
+            }
+        };
+        self.springs.iter().enumerate().map(state).collect()
+    }
+
+    /// Solves all stretches of the problem.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] with the stretch at which no equilibrium was found.
+    pub fn solve(
+        &self,
+        problem: &Problem,
+        settings: NewtonSettings,
+        progress: &dyn Fn(f64),
+    ) -> Result<Vec<Solution>, Error> {
+        let [nx, ny] = self.mesh.cells;
+        let model = format!("mass-spring ({nx} × {ny} cells)");
+        problem.follow(&self.mesh, &self.lattice, &model, settings, progress)
+    }
+}
+
+/// λ − 1 of a spring with direction n x₀ = `direction` over x₀², whose ends move by `relative`,
+/// without cancellation at small displacements.
+///
+/// `direction` is the reference vector divided by the squared rest length.
+fn strain(direction: [f64; 2], relative: [f64; 2]) -> f64 {
+    let inverse = direction[0].hypot(direction[1]); // 1/x₀
+    let linear = 2.0 * (direction[0] * relative[0] + direction[1] * relative[1]);
+    let quadratic = (relative[0].powi(2) + relative[1].powi(2)) * inverse * inverse;
+    let square = linear + quadratic; // λ² − 1
+    square / (1.0 + (1.0 + square).max(0.0).sqrt())
+}
+
+impl Lattice {
+    fn new(problem: &Problem, mesh: &Mesh, springs: &[Spring], area_stiffness: f64) -> Self {
+        let pair = |node: &usize| [2 * node, 2 * node + 1];
+        let mut element_unknowns: Vec<usize> = springs
+            .iter()
+            .flat_map(|spring| spring.nodes.iter().flat_map(pair))
+            .collect();
+        let mut corners = Vec::new();
+        for cell in 0..mesh.cell_count() {
+            element_unknowns.extend(mesh.cell(cell).iter().flat_map(pair));
+            corners.push(std::array::from_fn(|corner| {
+                mesh.nodes[mesh.cell(cell)[corner]]
+            }));
+        }
+        let direction = |spring: &Spring| {
+            let [from, to] = spring.nodes.map(|node| mesh.nodes[node]);
+            [0, 1].map(|axis| (to[axis] - from[axis]) / spring.rest_length.powi(2))
+        };
+        Self {
+            law: Arc::clone(&problem.law),
+            unknowns: 2 * mesh.nodes.len(),
+            element_unknowns,
+            directions: springs.iter().map(direction).collect(),
+            springs: springs
+                .iter()
+                .map(|spring| (spring.rest_length, spring.area))
+                .collect(),
+            corners,
+            area_stiffness,
+        }
+    }
+
+    /// Energy a x₀ Ψ(λ), force a P and stiffness of one spring.
+    fn evaluate_spring(&self, index: usize, u: &[f64], local: Local<'_>) -> f64 {
+        let (rest_length, area) = self.springs[index];
+        let direction = self.directions[index];
+        let relative = [u[2] - u[0], u[3] - u[1]];
+        let strain = strain(direction, relative);
+        let response = uniaxial::uniaxial(&*self.law, strain);
+        let current =
+            [0, 1].map(|axis| direction[axis] * rest_length + relative[axis] / rest_length);
+        let stretch = 1.0 + strain;
+        let unit = current.map(|component| component / stretch);
+        let force = area * response.nominal_stress;
+        for axis in 0..2 {
+            local.residual[axis] -= force * unit[axis];
+            local.residual[2 + axis] += force * unit[axis];
+        }
+        if let Some(stiffness) = local.stiffness {
+            let along = area * response.slope / rest_length;
+            let across = force / (stretch * rest_length);
+            for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let identity = if i == k { 1.0 } else { 0.0 };
+                let value = (along - across) * unit[i] * unit[k] + across * identity;
+                stiffness[4 * i + k] += value;
+                stiffness[4 * i + 2 + k] -= value;
+                stiffness[4 * (2 + i) + k] -= value;
+                stiffness[4 * (2 + i) + 2 + k] += value;
+            }
+        }
+        area * rest_length * response.energy
+    }
+
+    /// Energy ½ κ A₀ (A/A₀ − 1)² of one cell; refuses a cell that has no positive area.
+    fn evaluate_cell(&self, cell: usize, u: &[f64], local: Local<'_>) -> Option<f64> {
+        let corners = &self.corners[cell];
+        let [diagonal_1, diagonal_2] = [[2, 0], [3, 1]].map(|[to, from]: [usize; 2]| {
+            [0, 1].map(|axis| {
+                let reference = corners[to][axis] - corners[from][axis];
+                [reference, reference + u[2 * to + axis] - u[2 * from + axis]]
+            })
+        });
+        let area = |which: usize| {
+            0.5 * (diagonal_1[0][which] * diagonal_2[1][which]
+                - diagonal_1[1][which] * diagonal_2[0][which])
+        };
+        let (rest, current) = (area(0), area(1));
+        if !(current > 0.0) {
+            return None;
+        }
+        if self.area_stiffness == 0.0 {
+            return Some(0.0);
+        }
+        let change = current / rest - 1.0;
+        // ∂A/∂u of the corners: half the opposite diagonal, turned by a right angle.
+        let [d1, d2] = [diagonal_1, diagonal_2].map(|d| [d[0][1], d[1][1]]);
+        let slope =
+            [-d2[1], d2[0], d1[1], -d1[0], d2[1], -d2[0], -d1[1], d1[0]].map(|value| 0.5 * value);
+        local
+            .residual
+            .iter_mut()
+            .zip(slope)
+            .for_each(|(r, slope)| *r += self.area_stiffness * change * slope);
+        if let Some(stiffness) = local.stiffness {
+            for (i, k) in (0..64).map(|n| (n / 8, n % 8)) {
+                stiffness[n(i, k)] += self.area_stiffness / rest * slope[i] * slope[k];
+            }
+            for (a, b, sign) in SECOND_AREA_DERIVATIVE {
+                stiffness[n(a, b)] += 0.5 * sign * self.area_stiffness * change;
+                stiffness[n(b, a)] += 0.5 * sign * self.area_stiffness * change;
+            }
+        }
+        Some(0.5 * self.area_stiffness * rest * change * change)
+    }
+}
+
+fn n(row: usize, column: usize) -> usize {
+    8 * row + column
+}
+
+/// 2 ∂²A/∂uₐ∂u_b of a quadrilateral, one triangle.
+const SECOND_AREA_DERIVATIVE: [(usize, usize, f64); 8] = [
+    (0, 3, 1.0),
+    (0, 7, -1.0),
+    (1, 2, -1.0),
+    (1, 6, 1.0),
+    (2, 5, 1.0),
+    (3, 4, -1.0),
+    (4, 7, 1.0),
+    (5, 6, -1.0),
+];
+
+impl Potential for Lattice {
+    fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    fn elements(&self) -> usize {
+        self.springs.len() + self.corners.len()
+    }
+
+    fn element_unknowns(&self, element: usize) -> &[usize] {
+        match element.checked_sub(self.springs.len()) {
+            None => &self.element_unknowns[4 * element..4 * element + 4],
+            Some(cell) => {
+                let start = 4 * self.springs.len() + 8 * cell;
+                &self.element_unknowns[start..start + 8]
+            }
+        }
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        let energy = match element.checked_sub(self.springs.len()) {
+            None => Some(self.evaluate_spring(element, u, local)),
+            Some(cell) => self.evaluate_cell(cell, u, local),
+        };
+        energy
+            .filter(|energy| energy.is_finite())
+            .ok_or(Inadmissible { element })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::material::Card;
+    use crate::solve::potential::derivative_errors;
+
+    fn problem(card: &str) -> Problem {
+        let law = Card::load(card, Path::new(".")).unwrap().law.into();
+        Problem {
+            size: [30.0, 20.0],
+            thickness: 2.0,
+            law,
+            stretches: vec![0.5],
+        }
+    }
+
+    /// A smooth displacement of the nodes, of size `scale` times the plate.
+    fn field(mesh: &Mesh, scale: f64) -> Vec<f64> {
+        let value = |[x, y]: &[f64; 2]| {
+            [
+                scale * (x + 0.1 * x * y / 20.0),
+                scale * (2.0 * (x / 9.0).sin() - 0.4 * y),
+            ]
+        };
+        mesh.nodes.iter().flat_map(value).collect()
+    }
+
+    #[test]
+    fn residual_and_stiffness_are_derivatives_of_the_energy() {
+        for area_term in [false, true] {
+            let plate = MassSpring::new(&problem("pva-10"), [6, 3], LatticeSettings { area_term });
+            let u = field(&plate.mesh, 0.4);
+            let direction: Vec<f64> = (0..u.len()).map(|i| (i as f64 * 1.7).sin()).collect();
+            let [residual, stiffness] = derivative_errors(plate.potential(), &u, &direction);
+            assert!(
+                residual < 1e-8 && stiffness < 1e-8,
+                "{area_term}: {residual:.1e} {stiffness:.1e}"
+            );
+        }
+    }
+
+    /// The small-strain energy of a homogeneous strain, per area and E t, against ½ C ε ε.
+    #[test]
+    fn the_lattice_is_isotropic_with_the_stated_poisson_ratio() {
+        for (area_term, nu) in [(false, 1.0 / 3.0), (true, 0.5)] {
+            let problem = problem("neo-hooke");
+            let scale = problem.law.youngs_modulus() * problem.thickness;
+            for cells in [[6, 4], [6, 3], [5, 4]] {
+                let plate = MassSpring::new(&problem, cells, LatticeSettings { area_term });
+                for [exx, eyy, gxy] in [
+                    [1.0, 0.0, 0.0],
+                    [0.0, 1.0, 0.0],
+                    [1.0, 0.7, 0.0],
+                    [0.0, 0.0, 1.0],
+                    [1.0, -1.0, 2.0],
+                ] {
+                    let small = 1e-6;
+                    let u: Vec<f64> = plate
+                        .mesh
+                        .nodes
+                        .iter()
+                        .flat_map(|[x, y]| {
+                            [
+                                small * (exx * x + 0.5 * gxy * y),
+                                small * (0.5 * gxy * x + eyy * y),
+                            ]
+                        })
+                        .collect();
+                    let mut residual = vec![0.0; u.len()];
+                    let energy =
+                        crate::solve::Assembly::residual(plate.potential(), &u, &mut residual)
+                            .unwrap();
+                    let density = energy / (600.0 * scale * small * small);
+                    let shear = (1.0 - nu) / 2.0 * gxy * gxy;
+                    let expected = (exx * exx + eyy * eyy + 2.0 * nu * exx * eyy + shear)
+                        / (2.0 * (1.0 - nu * nu));
+                    assert!(
+                        (density / expected - 1.0).abs() < 1e-5,
+                        "{cells:?} {area_term}: {density} {expected}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn internal_forces_balance_and_a_rigid_motion_is_free() {
+        let plate = MassSpring::new(
+            &problem("pva-10"),
+            [6, 4],
+            LatticeSettings { area_term: true },
+        );
+        let u = field(&plate.mesh, 0.3);
+        let mut residual = vec![0.0; u.len()];
+        crate::solve::Assembly::residual(plate.potential(), &u, &mut residual).unwrap();
+        let size = crate::solve::sparse::norm(&residual);
+        for axis in 0..2 {
+            assert!(residual.iter().skip(axis).step_by(2).sum::<f64>().abs() < 1e-12 * size);
+        }
+        let moment: f64 = plate
+            .mesh
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(node, x)| {
+                let (x, y) = (x[0] + u[2 * node], x[1] + u[2 * node + 1]);
+                x * residual[2 * node + 1] - y * residual[2 * node]
+            })
+            .sum();
+        assert!(moment.abs() < 1e-10 * size, "{moment:.1e}");
+        let (sin, cos) = 0.8_f64.sin_cos();
+        let turned: Vec<f64> = plate
+            .mesh
+            .nodes
+            .iter()
+            .flat_map(|[x, y]| [cos * x - sin * y - x + 3.0, sin * x + cos * y - y])
+            .collect();
+        let energy =
+            crate::solve::Assembly::residual(plate.potential(), &turned, &mut residual).unwrap();
+        assert!(
+            energy.abs() < 1e-20 && crate::solve::sparse::norm(&residual) < 1e-10,
+            "{energy:.1e}"
+        );
+    }
+
+    #[test]
+    fn an_inverted_cell_is_refused() {
+        let plate = MassSpring::new(
+            &problem("pva-10"),
+            [3, 2],
+            LatticeSettings { area_term: false },
+        );
+        let mut u = vec![0.0; 2 * plate.mesh.nodes.len()];
+        u[2 * plate.mesh.cell(0)[0]] = 40.0;
+        let mut residual = u.clone();
+        assert!(crate::solve::Assembly::residual(plate.potential(), &u, &mut residual).is_err());
+    }
+}
