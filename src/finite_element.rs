@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use crate::error::Error;
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::{Problem, Solution};
+use crate::problem::{Model, Problem, Solution};
 use crate::sheet_energy::{SamplingPoint, SheetEnergy};
-use crate::solve::{NewtonSettings, Potential};
+use crate::solve::NewtonSettings;
 
 pub mod convergence;
 
@@ -88,9 +88,10 @@ impl FiniteElements {
         }
     }
 
-    /// The strain energy as a potential of the nodal displacements.
-    pub fn potential(&self) -> &dyn Potential {
-        &self.energy
+    /// The model as the solver sees it.
+    pub fn model(&self) -> Model<'_> {
+        let name = format!("finite elements ({})", self.describe());
+        Model { name, mesh: &self.mesh, potential: &self.energy, first_cell: 0 }
     }
 
     /// `Q2, 120 × 40 cells`.
@@ -109,8 +110,7 @@ impl FiniteElements {
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<Solution>, Error> {
-        let model = format!("finite elements ({})", self.describe());
-        problem.follow(&self.mesh, &self.energy, &model, settings, progress)
+        problem.follow(&self.model(), settings, progress)
     }
 }
 

@@ -26,7 +26,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::material::{HyperelasticLaw, uniaxial};
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::{Problem, Solution};
+use crate::problem::{Model, Problem, Solution};
 use crate::solve::{Inadmissible, Local, NewtonSettings, Potential};
 
 /// One spring.
@@ -144,6 +144,13 @@ impl MassSpring {
         &self.lattice
     }
 
+    /// The model as the solver sees it.
+    pub fn model(&self) -> Model<'_> {
+        let [nx, ny] = self.mesh.cells;
+        let name = format!("mass-spring ({nx} × {ny} cells)");
+        Model { name, mesh: &self.mesh, potential: &self.lattice, first_cell: self.springs.len() }
+    }
+
     /// Stretch and force of every spring.
     pub fn spring_states(&self, displacement: &[f64]) -> Vec<SpringState> {
         let state = |(index, spring): (usize, &Spring)| {
@@ -170,9 +177,7 @@ impl MassSpring {
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<Solution>, Error> {
-        let [nx, ny] = self.mesh.cells;
-        let model = format!("mass-spring ({nx} × {ny} cells)");
-        problem.follow(&self.mesh, &self.lattice, &model, settings, progress)
+        problem.follow(&self.model(), settings, progress)
     }
 }
 

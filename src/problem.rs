@@ -23,6 +23,18 @@ pub struct Problem {
     pub stretches: Vec<f64>,
 }
 
+/// A discretised plate, as the solver sees it.
+pub struct Model<'a> {
+    /// The model's name for messages, such as `mass-spring (60 × 20 cells)`.
+    pub name: String,
+    /// Its mesh.
+    pub mesh: &'a Mesh,
+    /// Its strain energy.
+    pub potential: &'a dyn Potential,
+    /// Index of the potential's element that belongs to the first cell of the mesh.
+    pub first_cell: usize,
+}
+
 /// A model's equilibrium at one stretch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
@@ -40,6 +52,16 @@ pub struct Solution {
     pub mid_width: f64,
     /// How it was reached.
     pub convergence: Convergence,
+}
+
+impl Model<'_> {
+    /// Names an element of the potential, for messages.
+    pub fn describe_element(&self, element: usize) -> String {
+        match element.checked_sub(self.first_cell) {
+            Some(cell) => self.mesh.describe_cell(cell),
+            None => format!("spring {element}"),
+        }
+    }
 }
 
 impl Problem {
@@ -92,20 +114,19 @@ impl Problem {
         on_right.map(|node| residual[2 * node]).sum()
     }
 
-    /// Solves all stretches, one after the other, with any potential on a mesh of the plate.
+    /// Solves all stretches, one after the other, with any model of the plate.
     ///
     /// # Errors
     /// [`Error::Solve`] with the stretch at which no solution was found.
     pub fn follow(
         &self,
-        mesh: &Mesh,
-        potential: &dyn Potential,
-        model: &str,
+        model: &Model,
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<Solution>, Error> {
+        let (mesh, potential) = (model.mesh, model.potential);
         let fault = |stretch: f64, fault: SolveFault| Error::Solve {
-            model: model.to_owned(),
+            model: model.name.clone(),
             step: Problem::describe_step(stretch),
             fault,
         };
@@ -115,7 +136,7 @@ impl Problem {
         for &stretch in &self.stretches {
             let mut displacement = self.first_guess(mesh, stretch, solutions.last());
             let mut residual = vec![0.0; displacement.len()];
-            let describe = |cell: usize| mesh.describe_cell(cell);
+            let describe = |element: usize| model.describe_element(element);
             let convergence = newton
                 .solve(
                     potential,
