@@ -91,7 +91,12 @@ impl FiniteElements {
     /// The model as the solver sees it.
     pub fn model(&self) -> Model<'_> {
         let name = format!("finite elements ({})", self.describe());
-        Model { name, mesh: &self.mesh, potential: &self.energy, first_cell: 0 }
+        Model {
+            name,
+            mesh: &self.mesh,
+            potential: &self.energy,
+            first_cell: 0,
+        }
     }
 
     /// `Q2, 120 × 40 cells`.

@@ -148,7 +148,12 @@ impl MassSpring {
     pub fn model(&self) -> Model<'_> {
         let [nx, ny] = self.mesh.cells;
         let name = format!("mass-spring ({nx} × {ny} cells)");
-        Model { name, mesh: &self.mesh, potential: &self.lattice, first_cell: self.springs.len() }
+        Model {
+            name,
+            mesh: &self.mesh,
+            potential: &self.lattice,
+            first_cell: self.springs.len(),
+        }
     }
 
     /// Stretch and force of every spring.
