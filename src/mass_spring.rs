@@ -242,9 +242,10 @@ impl Lattice {
         let stretch = 1.0 + strain;
         let unit = current.map(|component| component / stretch);
         let force = area * response.nominal_stress;
-        for axis in 0..2 {
-            local.residual[axis] -= force * unit[axis];
-            local.residual[2 + axis] += force * unit[axis];
+        let (near, far) = local.residual.split_at_mut(2);
+        for (axis, direction) in unit.iter().enumerate() {
+            near[axis] -= force * direction;
+            far[axis] += force * direction;
         }
         if let Some(stiffness) = local.stiffness {
             let along = area * response.slope / rest_length;
@@ -275,7 +276,7 @@ impl Lattice {
                 - diagonal_1[1][which] * diagonal_2[0][which])
         };
         let (rest, current) = (area(0), area(1));
-        if !(current > 0.0) {
+        if current.is_nan() || current <= 0.0 {
             return None;
         }
         if self.area_stiffness == 0.0 {

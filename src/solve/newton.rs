@@ -149,7 +149,7 @@ impl Newton {
             } else {
                 4.0 * shift
             };
-            if !(next < 1e3 * scale) {
+            if scale.is_nan() || next >= 1e3 * scale {
                 return Err(SolveFault::Singular);
             }
             diagonal

@@ -63,21 +63,40 @@ impl SymmetricPattern {
         &self.column_starts[..self.size()]
     }
 
+    /// The stored entries with their values: (row, column, value), row ≥ column.
+    fn triplets<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+        (0..self.size()).flat_map(move |column| {
+            let places = self.column_starts[column]..self.column_starts[column + 1];
+            let entries = self.rows[places.clone()].iter().zip(&values[places]);
+            entries.map(move |(row, value)| (*row, column, *value))
+        })
+    }
+
     /// y = A x for the matrix with these `values`.
     pub fn multiply(&self, values: &[f64], x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
-        for column in 0..self.size() {
-            let mut sum = 0.0;
-            for place in self.column_starts[column]..self.column_starts[column + 1] {
-                let row = self.rows[place];
-                sum += values[place] * x[row];
-                if row != column {
-                    y[row] += values[place] * x[column];
-                }
+        for (row, column, value) in self.triplets(values) {
+            y[row] += value * x[column];
+            if row != column {
+                y[column] += value * x[row];
             }
-            y[column] += sum;
         }
         y
+    }
+
+    /// Both triangles by rows: for each row its (column, value), columns ascending.
+    pub fn full_rows(&self, values: &[f64]) -> Vec<Vec<(usize, f64)>> {
+        let mut rows = vec![Vec::new(); self.size()];
+        for (row, column, value) in self.triplets(values) {
+            rows[row].push((column, value));
+        }
+        for (row, column, value) in self
+            .triplets(values)
+            .filter(|(row, column, _)| row != column)
+        {
+            rows[column].push((row, value));
+        }
+        rows
     }
 }
 
