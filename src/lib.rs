@@ -2,6 +2,7 @@
 //! finite elements.
 #![warn(missing_docs)]
 
+pub mod corrector;
 pub mod document;
 pub mod error;
 pub mod finite_element;

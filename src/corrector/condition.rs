@@ -16,9 +16,6 @@ pub trait Condition {
     /// The group's name, such as `grips`.
     fn name(&self) -> &str;
 
-    /// Number of rows.
-    fn rows(&self) -> usize;
-
     /// Values and Jacobian at `u`.
     ///
     /// # Errors
@@ -33,36 +30,29 @@ pub trait Condition {
         Ok(self.linearise(u)?.values)
     }
 
-    /// The unknown that each row belongs to, where there is one for each.
+    /// The unknown that each row belongs to: the one it prescribes, or the one in whose direction it is
+    /// a balance of forces. Where all conditions together name every unknown exactly once, the system
+    /// is square.
     fn unknowns(&self) -> &[usize];
-
-    /// How the rows can be written: see [`Kind`].
-    fn kind(&self) -> Kind;
 }
 
-/// What kind of rows a condition has; the solver takes a shorter way for the first two.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// uᵢ − gᵢ = 0.
-    Prescribed,
-    /// ∂Π/∂uᵢ = 0 of one potential, so that B is a part of a symmetric matrix.
-    Equilibrium,
-}
-
-/// Known displacements: uᵢ = gᵢ.
+/// Known displacements: uᵢ − gᵢ = 0, in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prescribed {
     name: String,
     unknowns: Vec<usize>,
     values: Vec<f64>,
-    size: usize,
 }
 
 impl Prescribed {
-    /// Prescribes (unknown, value) pairs of a field with `size` unknowns.
-    pub fn new(name: &str, size: usize, known: impl IntoIterator<Item = (usize, f64)>) -> Self {
+    /// Prescribes (unknown, value) pairs.
+    pub fn new(name: &str, known: impl IntoIterator<Item = (usize, f64)>) -> Self {
         let (unknowns, values) = known.into_iter().unzip();
-        Self { name: name.to_owned(), unknowns, values, size }
+        Self {
+            name: name.to_owned(),
+            unknowns,
+            values,
+        }
     }
 }
 
@@ -71,35 +61,30 @@ impl Condition for Prescribed {
         &self.name
     }
 
-    fn rows(&self) -> usize {
-        self.unknowns.len()
-    }
-
     fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
-        let mut jacobian = SparseRows::new(self.size);
-        self.unknowns.iter().for_each(|unknown| jacobian.push([(*unknown, 1.0)]));
-        let values = self.unknowns.iter().zip(&self.values).map(|(i, g)| u[*i] - g).collect();
+        let mut jacobian = SparseRows::new(u.len());
+        for unknown in &self.unknowns {
+            jacobian.push([(*unknown, 1.0)]);
+        }
+        let known = self.unknowns.iter().zip(&self.values);
+        let values = known.map(|(unknown, value)| u[*unknown] - value).collect();
         Ok(Linearised { values, jacobian })
     }
 
     fn unknowns(&self) -> &[usize] {
         &self.unknowns
     }
-
-    fn kind(&self) -> Kind {
-        Kind::Prescribed
-    }
 }
 
-/// Equilibrium without external force: ∂Π/∂uᵢ = 0 at the chosen unknowns.
+/// Equilibrium without external force: ∂Π/∂uᵢ = 0 at the chosen unknowns, in N.
 ///
 /// At inner nodes this is the governing equation F(u) = 0; at the nodes of an edge, the half cells on the
 /// inner side alone contribute, which is the edge's condition that no traction acts on it.
 pub struct Equilibrium<'a> {
     name: String,
     potential: &'a dyn Potential,
-    unknowns: Vec<usize>,
     assembly: &'a Assembly,
+    unknowns: Vec<usize>,
 }
 
 impl<'a> Equilibrium<'a> {
@@ -110,7 +95,12 @@ impl<'a> Equilibrium<'a> {
         assembly: &'a Assembly,
         unknowns: Vec<usize>,
     ) -> Self {
-        Self { name: name.to_owned(), potential, unknowns, assembly }
+        Self {
+            name: name.to_owned(),
+            potential,
+            assembly,
+            unknowns,
+        }
     }
 }
 
@@ -119,31 +109,26 @@ impl Condition for Equilibrium<'_> {
         &self.name
     }
 
-    fn rows(&self) -> usize {
-        self.unknowns.len()
-    }
-
     fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
         let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
-        self.assembly.linearise(self.potential, u, &mut residual, &mut stiffness)?;
+        self.assembly
+            .linearise(self.potential, u, &mut residual, &mut stiffness)?;
         let full = self.assembly.pattern().full_rows(&stiffness);
         let mut jacobian = SparseRows::new(u.len());
-        self.unknowns.iter().for_each(|unknown| jacobian.push(full[*unknown].iter().copied()));
-        let values = self.unknowns.iter().map(|unknown| residual[*unknown]).collect();
+        for unknown in &self.unknowns {
+            jacobian.push(full[*unknown].iter().copied());
+        }
+        let values = self.unknowns.iter().map(|i| residual[*i]).collect();
         Ok(Linearised { values, jacobian })
     }
 
     fn values(&self, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
         let mut residual = vec![0.0; u.len()];
         Assembly::residual(self.potential, u, &mut residual)?;
-        Ok(self.unknowns.iter().map(|unknown| residual[*unknown]).collect())
+        Ok(self.unknowns.iter().map(|i| residual[*i]).collect())
     }
 
     fn unknowns(&self) -> &[usize] {
         &self.unknowns
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Equilibrium
     }
 }

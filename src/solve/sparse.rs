@@ -268,6 +268,25 @@ impl SparseRows {
         &self.rows[row]
     }
 
+    /// D B with the diagonal D given by `scales`, one number a row.
+    pub fn scaled(&self, scales: &[f64]) -> Self {
+        let rows = self.rows.iter().zip(scales);
+        let scale = |(row, scale): (&Vec<(usize, f64)>, &f64)| {
+            row.iter()
+                .map(|(column, value)| (*column, value * scale))
+                .collect()
+        };
+        Self {
+            columns: self.columns,
+            rows: rows.map(scale).collect(),
+        }
+    }
+
+    /// Appends all rows of another matrix with the same number of columns.
+    pub fn append(&mut self, other: Self) {
+        self.rows.extend(other.rows);
+    }
+
     /// B x.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         let product =

@@ -1,0 +1,160 @@
+//! The corrector of a clamped plate: which equations hold where.
+//!
+//! | condition | nodes | rows | multiplier |
+//! |---|---|---|---|
+//! | F: equilibrium | inside | balance of forces in N | ζ in mm²/N |
+//! | T: grips | on the short sides | known displacement in mm | η in mm |
+//! | T: traction-free edges | on the long sides, without corners | balance of forces in N | η in mm²/N |
+
+use super::condition::{Condition, Equilibrium, Prescribed};
+use super::{Correction, Corrector, CorrectorSettings, DifferenceScheme};
+use crate::error::Error;
+use crate::mesh::{Mesh, Side};
+use crate::problem::{Problem, Solution};
+use crate::sheet_energy::SheetEnergy;
+use crate::solve::{Assembly, Convergence};
+
+/// Name of the condition F.
+pub const EQUILIBRIUM: &str = "equilibrium";
+/// Name of the condition T at the grips.
+pub const GRIPS: &str = "grips";
+/// Name of the condition T at the free edges.
+pub const FREE_EDGES: &str = "traction-free edges";
+
+/// Which of the known conditions T are imposed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KnownConditions {
+    /// The displacement of the grips.
+    pub grips: bool,
+    /// That no traction acts on the long sides.
+    pub free_edges: bool,
+}
+
+impl KnownConditions {
+    /// Everything that is known about the plate.
+    pub const ALL: Self = Self {
+        grips: true,
+        free_edges: true,
+    };
+}
+
+/// A corrected plate at one stretch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CorrectedState {
+    /// The corrected field and what follows from it; its residual is that of the difference scheme.
+    pub solution: Solution,
+    /// How it was reached, with the multipliers.
+    pub correction: Correction,
+}
+
+/// The difference scheme of a plate on the nodes of a lattice, ready to correct fields on them.
+pub struct PlateCorrector<'a> {
+    problem: &'a Problem,
+    mesh: &'a Mesh,
+    energy: SheetEnergy,
+    assembly: Assembly,
+    settings: CorrectorSettings,
+}
+
+impl<'a> PlateCorrector<'a> {
+    /// Prepares the corrector on a mesh of four-node cells.
+    pub fn new(
+        problem: &'a Problem,
+        mesh: &'a Mesh,
+        scheme: DifferenceScheme,
+        settings: CorrectorSettings,
+    ) -> Self {
+        let energy = scheme.energy(problem, mesh);
+        let assembly = Assembly::new(&energy, &vec![false; 2 * mesh.nodes.len()]);
+        Self {
+            problem,
+            mesh,
+            energy,
+            assembly,
+            settings,
+        }
+    }
+
+    /// The difference scheme's energy.
+    pub fn energy(&self) -> &SheetEnergy {
+        &self.energy
+    }
+
+    /// Corrects a displacement field at one stretch, beginning at the field itself.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when no corrected field was found.
+    pub fn correct(
+        &self,
+        data: &[f64],
+        stretch: f64,
+        known: KnownConditions,
+    ) -> Result<CorrectedState, Error> {
+        let fault = |fault| Error::Solve {
+            model: "corrector".into(),
+            step: Problem::describe_step(stretch),
+            fault,
+        };
+        let weights = vec![1.0; data.len()];
+        let corrector = Corrector::new(self.conditions(stretch, known), weights, self.settings);
+        let describe = |cell: usize| self.mesh.describe_cell(cell);
+        let correction = corrector.correct(data, data, &describe).map_err(fault)?;
+        Ok(CorrectedState {
+            solution: self.solution(&correction, stretch),
+            correction,
+        })
+    }
+
+    /// F and the known part of T at one stretch.
+    pub fn conditions(&self, stretch: f64, known: KnownConditions) -> Vec<Box<dyn Condition + '_>> {
+        let mesh = self.mesh;
+        let on_edge = |node: &usize| mesh.on(Side::Bottom, *node) || mesh.on(Side::Top, *node);
+        let nodes = || 0..mesh.nodes.len();
+        let balance = |name, nodes: Vec<usize>| -> Box<dyn Condition + '_> {
+            let unknowns = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
+            Box::new(Equilibrium::new(
+                name,
+                &self.energy,
+                &self.assembly,
+                unknowns.collect(),
+            ))
+        };
+        let off_grips = nodes().filter(|node| !mesh.on_grip(*node));
+        let (edge, inside): (Vec<_>, Vec<_>) = off_grips.partition(on_edge);
+        let mut conditions = vec![balance(EQUILIBRIUM, inside)];
+        if known.grips {
+            let imposed = nodes().filter_map(|node| {
+                let held = self.problem.grip_displacement(mesh, node, stretch)?;
+                Some([(2 * node, held[0]), (2 * node + 1, held[1])])
+            });
+            conditions.push(Box::new(Prescribed::new(GRIPS, imposed.flatten())));
+        }
+        if known.free_edges {
+            conditions.push(balance(FREE_EDGES, edge));
+        }
+        conditions
+    }
+
+    fn solution(&self, correction: &Correction, stretch: f64) -> Solution {
+        let displacement = correction.displacement().to_vec();
+        let mut residual = vec![0.0; displacement.len()];
+        let energy = Assembly::residual(&self.energy, &displacement, &mut residual)
+            .expect("a corrected field is admissible");
+        let steps = &correction.steps;
+        let convergence = Convergence {
+            residuals: steps.iter().map(|step| step.residual).collect(),
+            energy,
+            cut_steps: steps.iter().filter(|step| step.length < 1.0).count(),
+            shifted_steps: 0,
+        };
+        Solution {
+            stretch,
+            force: self.problem.grip_force(self.mesh, &residual),
+            mid_width: self.mesh.mid_width(&displacement),
+            displacement,
+            residual,
+            energy,
+            convergence,
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! The corrector's properties, on a small plate.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::*;
+use crate::mass_spring::{LatticeSettings, MassSpring};
+use crate::material::Card;
+use crate::mesh::Mesh;
+use crate::problem::{Problem, Solution};
+use crate::solve::{Newton, NewtonSettings};
+use plate::KnownConditions;
+
+const SETTINGS: CorrectorSettings = CorrectorSettings {
+    tolerance: 1e-11,
+    max_steps: 60,
+};
+const STRETCH: f64 = 0.5;
+
+fn problem() -> Problem {
+    Problem {
+        size: [30.0, 20.0],
+        thickness: 2.0,
+        law: Arc::from(Card::load("pva-10", Path::new(".")).unwrap().law),
+        stretches: vec![STRETCH],
+    }
+}
+
+fn lattice(problem: &Problem) -> (MassSpring, Solution) {
+    let plate = MassSpring::new(problem, [9, 6], LatticeSettings { area_term: false });
+    let newton = NewtonSettings {
+        tolerance: 1e-10,
+        max_iterations: 30,
+    };
+    let solution = plate.solve(problem, newton, &|_| ()).unwrap().remove(0);
+    (plate, solution)
+}
+
+/// Deterministic numbers in −1…1.
+fn noise(size: usize) -> Vec<f64> {
+    (0..size)
+        .map(|i| (12.9898 * (i + 1) as f64).sin() * 43_758.545_3)
+        .map(|x| 2.0 * (x - x.floor()) - 1.0)
+        .collect()
+}
+
+fn plate_corrector<'a>(problem: &'a Problem, mesh: &'a Mesh) -> PlateCorrector<'a> {
+    PlateCorrector::new(problem, mesh, DifferenceScheme::Gauss, SETTINGS)
+}
+
+fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    largest(&difference(a, b))
+}
+
+/// Grips unknown: fewer conditions than unknowns.
+const FREE_GRIPS: KnownConditions = KnownConditions {
+    grips: false,
+    free_edges: true,
+};
+
+#[test]
+fn without_conditions_the_field_stays_as_it_is() {
+    let data = noise(20);
+    let corrector = Corrector::new(Vec::new(), vec![1.0; 20], SETTINGS);
+    let correction = corrector.correct(&data, &data, &|_| String::new()).unwrap();
+    assert_eq!(correction.displacement(), data);
+}
+
+#[test]
+fn a_linear_correction_is_the_orthogonal_projection() {
+    // u₀ = 2 with weights 1, 4: the other entries stay, the multiplier is W (ū − u).
+    let known = Prescribed::new("known", [(0, 2.0), (2, -1.0)]);
+    let corrector = Corrector::new(vec![Box::new(known)], vec![1.0, 4.0, 4.0], SETTINGS);
+    let data = [3.0, 7.0, 1.0];
+    let correction = corrector.correct(&data, &data, &|_| String::new()).unwrap();
+    assert!(largest_difference(correction.displacement(), &[2.0, 7.0, -1.0]) < 1e-14);
+    assert!(largest_difference(&correction.multipliers[0].values, &[1.0, 8.0]) < 1e-13);
+}
+
+#[test]
+fn the_corrected_plate_is_the_equilibrium_of_the_difference_scheme() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let corrector = plate_corrector(&problem, &springs.mesh);
+    let data = &uncorrected.displacement;
+    let corrected = corrector
+        .correct(data, STRETCH, KnownConditions::ALL)
+        .unwrap();
+    let mut newton = Newton::new(corrector.energy(), &problem.held(&springs.mesh)).unwrap();
+    let mut affine = problem.affine(&springs.mesh, STRETCH);
+    let mut residual = vec![0.0; affine.len()];
+    let settings = NewtonSettings {
+        tolerance: 1e-12,
+        max_iterations: 30,
+    };
+    newton
+        .solve(
+            corrector.energy(),
+            &mut affine,
+            &mut residual,
+            settings,
+            &|_| String::new(),
+        )
+        .unwrap();
+    assert!(largest_difference(&corrected.solution.displacement, &affine) < 1e-9);
+    assert!(
+        largest_difference(data, &affine) > 0.1,
+        "the springs were wrong"
+    );
+
+    let again = corrector
+        .correct(
+            &corrected.solution.displacement,
+            STRETCH,
+            KnownConditions::ALL,
+        )
+        .unwrap();
+    assert_eq!(again.correction.steps.len(), 1, "idempotent");
+    assert!(largest_difference(&again.solution.displacement, &affine) < 1e-9);
+}
+
+#[test]
+fn with_fewer_conditions_the_change_is_orthogonal_to_what_they_allow() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let corrector = plate_corrector(&problem, &springs.mesh);
+    let start = &uncorrected.displacement;
+    let noise = noise(start.len());
+    let data: Vec<f64> = start.iter().zip(&noise).map(|(u, n)| u + 0.3 * n).collect();
+    let general = Corrector::new(
+        corrector.conditions(STRETCH, FREE_GRIPS),
+        vec![1.0; data.len()],
+        SETTINGS,
+    );
+    let correction = general.correct(&data, start, &|_| String::new()).unwrap();
+    let field = correction.displacement();
+    // A feasible direction: the change of the corrected field that other data would bring.
+    let other: Vec<f64> = data
+        .iter()
+        .enumerate()
+        .map(|(i, u)| u + 1e-5 * (i as f64).cos())
+        .collect();
+    let moved = general.correct(&other, field, &|_| String::new()).unwrap();
+    let direction = difference(moved.displacement(), field);
+    let change = difference(&data, field);
+    let product: f64 = direction.iter().zip(&change).map(|(a, b)| a * b).sum();
+    let size = crate::solve::sparse::norm(&direction) * crate::solve::sparse::norm(&change);
+    assert!((product / size).abs() < 1e-5, "{:.1e}", product / size);
+}
+
+#[test]
+fn multipliers_are_derivatives_of_the_minimum_by_the_right_hand_side() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let corrector = plate_corrector(&problem, &springs.mesh);
+    let data = &uncorrected.displacement;
+    for known in [KnownConditions::ALL, FREE_GRIPS] {
+        let minimum = |offset: f64| {
+            let mut conditions = corrector.conditions(STRETCH, known);
+            let inner = conditions.remove(0);
+            let row = inner.unknowns().len() / 2;
+            conditions.insert(0, Box::new(Offset { inner, row, offset }));
+            let general = Corrector::new(conditions, vec![1.0; data.len()], SETTINGS);
+            let found = general.correct(data, data, &|_| String::new()).unwrap();
+            let distance = difference(found.displacement(), data);
+            let square: f64 = distance.iter().map(|d| d * d).sum();
+            (0.5 * square, found.multipliers[0].values[row])
+        };
+        let (step, (_, multiplier)) = (1e-4, minimum(0.0));
+        let slope = (minimum(step).0 - minimum(-step).0) / (2.0 * step);
+        assert!(
+            (slope + multiplier).abs() < 1e-5 * multiplier.abs(),
+            "{known:?}: {slope} {multiplier}"
+        );
+    }
+}
+
+/// A condition with the right-hand side of one row moved: c(u) = b.
+struct Offset<'a> {
+    inner: Box<dyn Condition + 'a>,
+    row: usize,
+    offset: f64,
+}
+
+impl Condition for Offset<'_> {
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+        let mut linearised = self.inner.linearise(u)?;
+        linearised.values[self.row] -= self.offset;
+        Ok(linearised)
+    }
+
+    fn unknowns(&self) -> &[usize] {
+        self.inner.unknowns()
+    }
+}
+
+#[test]
+fn both_forms_of_the_projection_agree() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let corrector = plate_corrector(&problem, &springs.mesh);
+    let field = &uncorrected.displacement;
+    let weights: Vec<f64> = noise(field.len()).iter().map(|n| 1.5 + n).collect();
+    let all = Corrector::new(
+        corrector.conditions(STRETCH, KnownConditions::ALL),
+        weights,
+        SETTINGS,
+    );
+    let system = all.linearise(field).unwrap();
+    let pull = noise(field.len());
+    let unknowns = all.unknowns();
+    let (b, c) = (&system.jacobian, &system.values);
+    let general = projection::general(b, c, &pull, &all.weights).unwrap();
+    let symmetric = projection::symmetric(b, c, &pull, &all.weights, &unknowns).unwrap();
+    let step = largest_difference(&general.step, &symmetric.step) / largest(&symmetric.step);
+    let multipliers = largest_difference(&general.multipliers, &symmetric.multipliers);
+    let multipliers = multipliers / largest(&symmetric.multipliers);
+    assert!(
+        step < 1e-9 && multipliers < 1e-9,
+        "{step:.1e} {multipliers:.1e}"
+    );
+}
+
+/// The known conditions decide: without the free edges the transverse error hardly falls.
+#[test]
+fn the_free_edges_are_needed() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let corrector = plate_corrector(&problem, &springs.mesh);
+    let data = &uncorrected.displacement;
+    let correct = |known| {
+        corrector
+            .correct(data, STRETCH, known)
+            .unwrap()
+            .solution
+            .displacement
+    };
+    let exact = correct(KnownConditions::ALL);
+    let without = correct(KnownConditions {
+        grips: true,
+        free_edges: false,
+    });
+    let error = |field: &[f64]| crate::solve::sparse::norm(&difference(field, &exact));
+    assert!(
+        error(&without) > 0.7 * error(data),
+        "{} {}",
+        error(&without),
+        error(data)
+    );
+}
+
+#[test]
+fn conditions_that_depend_on_each_other_are_refused() {
+    let twice = Prescribed::new("twice", [(0, 1.0), (0, 1.0)]);
+    let corrector = Corrector::new(vec![Box::new(twice)], vec![1.0; 2], SETTINGS);
+    let fault = corrector.correct(&[0.0; 2], &[0.0; 2], &|_| String::new());
+    assert_eq!(fault, Err(SolveFault::Singular));
+}
+
+#[test]
+fn an_inverted_start_is_refused_by_name() {
+    let problem = problem();
+    let (springs, mut uncorrected) = lattice(&problem);
+    uncorrected.displacement[2 * springs.mesh.cell(0)[2]] = -40.0;
+    let corrector = plate_corrector(&problem, &springs.mesh);
+    let fault = corrector.correct(&uncorrected.displacement, STRETCH, KnownConditions::ALL);
+    assert!(fault.unwrap_err().to_string().contains("cell 0 near"));
+}
