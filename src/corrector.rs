@@ -274,12 +274,16 @@ impl<'a> Corrector<'a> {
 
     fn by_condition(&self, values: &[f64]) -> Vec<Multipliers> {
         let mut values = values.iter().copied();
-        let name = |condition: &Box<dyn Condition + 'a>| Multipliers {
-            name: condition.name().to_owned(),
-            unknowns: condition.unknowns().to_vec(),
-            values: values.by_ref().take(condition.unknowns().len()).collect(),
-        };
-        self.conditions.iter().map(name).collect()
+        let mut all = Vec::new();
+        for condition in &self.conditions {
+            let unknowns = condition.unknowns().to_vec();
+            all.push(Multipliers {
+                name: condition.name().to_owned(),
+                values: values.by_ref().take(unknowns.len()).collect(),
+                unknowns,
+            });
+        }
+        all
     }
 }
 

@@ -2,6 +2,7 @@
 //! finite elements.
 #![warn(missing_docs)]
 
+pub mod compare;
 pub mod corrector;
 pub mod document;
 pub mod error;

@@ -1,0 +1,273 @@
+//! How far a field on the lattice is from the converged finite elements, in percent.
+//!
+//! All sums run over the nodes of the lattice with the area A that belongs to each; v is the reference
+//! field interpolated at the node and a the affine stretch:
+//!
+//! ```text
+//! displacement            100 √(Σ A |u − v|² / Σ A |v|²)                            [%]
+//! departure from affine   100 √(Σ A |u − v|² / Σ A |v − a|²)                        [%]
+//! largest difference      max |u − v|                                              [mm]
+//! nominal stress          100 √(Σ A |P(u) − P(v)|² / Σ A |P(v)|²)                   [%]
+//! ```
+//!
+//! The affine stretch is a large part of any stretched plate and is right in every model: the departure
+//! from it is the strict measure. Nominal stresses are those of the material at the fields' gradients, at
+//! the centres of the cells that lie more than a fifth of the plate's width away from the corners, where
+//! the stress is singular. The nominal stress is the transpose of P and has the same norm.
+
+use nalgebra::Vector4;
+
+use crate::finite_element::FiniteElements;
+use crate::finite_element::convergence::{Richardson, richardson};
+use crate::material::sheet::Kinematics;
+use crate::mesh::{Mesh, Side};
+use crate::problem::{Problem, Solution};
+
+/// Deviation of one field from the reference at one stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Displacement in relative L2, in %.
+    pub displacement_percent: f64,
+    /// Departure from the affine stretch in relative L2, in %.
+    pub departure_percent: f64,
+    /// Largest difference of a node's displacement in mm.
+    pub max_difference: f64,
+    /// Grip force, signed, in %.
+    pub force_percent: f64,
+    /// Width at mid length, signed, in %.
+    pub width_percent: f64,
+    /// Nominal stress away from the corners in relative L2, in %.
+    pub nominal_stress_percent: f64,
+}
+
+/// The finite elements' own error at one stretch, from three meshes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelfConvergence {
+    /// Of the grip force.
+    pub force: Richardson,
+    /// Of the width at mid length.
+    pub width: Richardson,
+    /// Of the displacement in relative L2, in %: the difference of the two finer meshes over 2ᵖ − 1.
+    pub displacement_percent: f64,
+    /// Observed order p of the displacement.
+    pub displacement_order: f64,
+}
+
+/// One stretch, compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepComparison {
+    /// Grip displacement divided by the length.
+    pub stretch: f64,
+    /// Before the correction.
+    pub mass_spring: Deviation,
+    /// After it.
+    pub corrected: Deviation,
+    /// The reference's own error.
+    pub reference: SelfConvergence,
+}
+
+impl StepComparison {
+    /// 100 (1 − e_corrected/e_mass-spring) of one measure, in %.
+    pub fn correction_percent(&self, measure: impl Fn(&Deviation) -> f64) -> f64 {
+        100.0 * (1.0 - measure(&self.corrected).abs() / measure(&self.mass_spring).abs())
+    }
+}
+
+/// Converged finite elements: the same problem on three meshes, each twice as fine as the one before.
+pub struct Reference<'a> {
+    problem: &'a Problem,
+    meshes: [(&'a Mesh, &'a [Solution]); 3],
+}
+
+impl<'a> Reference<'a> {
+    /// The reference from three meshes, coarse to fine, and their solutions at all stretches.
+    pub fn new(problem: &'a Problem, meshes: [(&'a FiniteElements, &'a [Solution]); 3]) -> Self {
+        Self {
+            problem,
+            meshes: meshes.map(|(model, solutions)| (&model.mesh, solutions)),
+        }
+    }
+
+    /// Compares a field on `mesh` with the finest mesh at stretch number `step`.
+    pub fn deviation(&self, mesh: &Mesh, solution: &Solution, step: usize) -> Deviation {
+        let (fine, solutions) = self.meshes[2];
+        let reference = &solutions[step];
+        let expected = interpolate(fine, &reference.displacement, mesh);
+        let affine = self.problem.affine(mesh, solution.stretch);
+        let areas = nodal_areas(mesh);
+        let error = distance(&areas, &solution.displacement, &expected);
+        let zero = vec![0.0; expected.len()];
+        let percent = |value: f64, expected: f64| 100.0 * (value / expected - 1.0);
+        Deviation {
+            displacement_percent: 100.0 * error / distance(&areas, &expected, &zero),
+            departure_percent: 100.0 * error / distance(&areas, &expected, &affine),
+            max_difference: largest_distance(&solution.displacement, &expected),
+            force_percent: percent(solution.force, reference.force),
+            width_percent: percent(solution.mid_width, reference.mid_width),
+            nominal_stress_percent: self.stress_deviation(mesh, &solution.displacement, step),
+        }
+    }
+
+    /// The reference displacement at the nodes of `mesh` in mm.
+    pub fn displacement_on(&self, mesh: &Mesh, step: usize) -> Vec<f64> {
+        let (fine, solutions) = self.meshes[2];
+        interpolate(fine, &solutions[step].displacement, mesh)
+    }
+
+    /// The reference's own error at stretch number `step`.
+    pub fn self_convergence(&self, step: usize) -> SelfConvergence {
+        let of = |value: fn(&Solution) -> f64| {
+            richardson(self.meshes.map(|(_, solutions)| value(&solutions[step])))
+        };
+        let coarse = self.meshes[0].0;
+        let [first, second, third] = self
+            .meshes
+            .map(|(mesh, solutions)| interpolate(mesh, &solutions[step].displacement, coarse));
+        let areas = nodal_areas(coarse);
+        let (before, last) = (
+            distance(&areas, &first, &second),
+            distance(&areas, &second, &third),
+        );
+        let size = distance(&areas, &third, &vec![0.0; third.len()]);
+        let ratio = before / last;
+        let converges = ratio > 1.0 && ratio.is_finite();
+        let divisor = if converges { ratio - 1.0 } else { 1.0 };
+        SelfConvergence {
+            force: of(|solution| solution.force),
+            width: of(|solution| solution.mid_width),
+            displacement_percent: 100.0 * last / divisor / size,
+            displacement_order: if converges { ratio.log2() } else { f64::NAN },
+        }
+    }
+
+    fn stress_deviation(&self, mesh: &Mesh, displacement: &[f64], step: usize) -> f64 {
+        let (fine, solutions) = self.meshes[2];
+        let (mut error, mut size) = (0.0, 0.0);
+        for cell in 0..mesh.cell_count() {
+            let centre = mesh.centre(cell);
+            if near_corner(self.problem.size, centre) {
+                continue;
+            }
+            let (there, local) = fine.locate(centre);
+            let expected = fine.gradient_at(&solutions[step].displacement, there, local);
+            let expected = self.stress(expected);
+            let found = self.stress(mesh.gradient_at(displacement, cell, [0.0, 0.0]));
+            error += (found - expected).norm_squared();
+            size += expected.norm_squared();
+        }
+        100.0 * (error / size).sqrt()
+    }
+
+    /// First Piola–Kirchhoff stress in MPa; not a number where the field is inverted.
+    fn stress(&self, gradient: [f64; 4]) -> Vector4<f64> {
+        match Kinematics::new(&Vector4::from(gradient)) {
+            Ok(kinematics) => kinematics.stress(&*self.problem.law).1,
+            Err(_) => Vector4::repeat(f64::NAN),
+        }
+    }
+}
+
+/// Whether a point lies within a fifth of the width of a corner.
+fn near_corner(size: [f64; 2], point: [f64; 2]) -> bool {
+    let [x, y] = [0, 1].map(|axis| point[axis].min(size[axis] - point[axis]));
+    x.hypot(y) < size[1] / 5.0
+}
+
+fn interpolate(from: &Mesh, displacement: &[f64], to: &Mesh) -> Vec<f64> {
+    let nodes = to.nodes.iter();
+    nodes
+        .flat_map(|node| from.displacement_at(displacement, *node))
+        .collect()
+}
+
+/// The share of the plate's area in mm² that belongs to each node of its regular grid: halved on each side.
+fn nodal_areas(mesh: &Mesh) -> Vec<f64> {
+    let sides = [Side::Left, Side::Right, Side::Bottom, Side::Top];
+    let share = |node| -> f64 {
+        let halvings = sides.iter().filter(|side| mesh.on(**side, node)).count();
+        0.5_f64.powi(halvings as i32)
+    };
+    let shares: Vec<f64> = (0..mesh.nodes.len()).map(share).collect();
+    let whole = mesh.size[0] * mesh.size[1] / shares.iter().sum::<f64>();
+    shares.into_iter().map(|share| share * whole).collect()
+}
+
+/// √(Σ A |u − v|²).
+fn distance(areas: &[f64], u: &[f64], v: &[f64]) -> f64 {
+    let pairs = u.chunks_exact(2).zip(v.chunks_exact(2)).zip(areas);
+    pairs
+        .map(|((u, v), area)| area * ((u[0] - v[0]).powi(2) + (u[1] - v[1]).powi(2)))
+        .sum::<f64>()
+        .sqrt()
+}
+
+fn largest_distance(u: &[f64], v: &[f64]) -> f64 {
+    let pairs = u.chunks_exact(2).zip(v.chunks_exact(2));
+    pairs.fold(0.0, |most: f64, (u, v)| {
+        most.max((u[0] - v[0]).hypot(u[1] - v[1]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::finite_element::Element;
+    use crate::material::Card;
+    use crate::mesh::CellShape;
+    use crate::solve::NewtonSettings;
+
+    #[test]
+    fn a_known_deviation_is_measured_as_stated() {
+        let problem = Problem {
+            size: [30.0, 20.0],
+            thickness: 2.0,
+            law: Arc::from(Card::load("neo-hooke", Path::new(".")).unwrap().law),
+            stretches: vec![0.2],
+        };
+        let settings = NewtonSettings {
+            tolerance: 1e-10,
+            max_iterations: 20,
+        };
+        let solve = |cells| {
+            let model = FiniteElements::new(&problem, cells, Element::Q2);
+            let solutions = model.solve(&problem, settings, &|_| ()).unwrap();
+            (model, solutions)
+        };
+        let [coarse, middle, fine] = [[3, 2], [6, 4], [12, 8]].map(solve);
+        let meshes = [&coarse, &middle, &fine].map(|(model, found)| (model, &found[..]));
+        let reference = Reference::new(&problem, meshes);
+
+        let lattice = Mesh::plate(problem.size, [12, 8], CellShape::Quad4);
+        let exact = reference.displacement_on(&lattice, 0);
+        let same = Solution {
+            displacement: exact.clone(),
+            ..fine.1[0].clone()
+        };
+        let zero = reference.deviation(&lattice, &same, 0);
+        assert_eq!(zero.displacement_percent, 0.0);
+        assert_eq!((zero.max_difference, zero.force_percent), (0.0, 0.0));
+
+        // Everything 1 % larger: 1 % in displacement and force, more in the departure from affine.
+        let larger = Solution {
+            displacement: exact.iter().map(|u| 1.01 * u).collect(),
+            force: 1.01 * same.force,
+            ..same
+        };
+        let found = reference.deviation(&lattice, &larger, 0);
+        assert!((found.displacement_percent - 1.0).abs() < 1e-10);
+        assert!((found.force_percent - 1.0).abs() < 1e-10);
+        assert!((found.max_difference - 0.06).abs() < 1e-12);
+        assert!(found.departure_percent > 3.0);
+        assert!(found.nominal_stress_percent > 0.5 && found.nominal_stress_percent < 2.0);
+
+        let own = reference.self_convergence(0);
+        assert!(
+            own.force.order > 1.0 && own.displacement_order > 1.0,
+            "{own:?}"
+        );
+        assert!(own.displacement_percent < 0.1, "{own:?}");
+    }
+}
