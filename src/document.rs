@@ -368,7 +368,7 @@ impl<'a> Section<'a> {
     }
 
     /// Reports every key of the table that was never asked for.
-    pub fn finish(self) {
+    pub fn unknown_keys(&self) {
         let known = self.known.borrow();
         for (name, value) in self.table.into_iter().flat_map(|table| table.iter()) {
             let key = name.get_ref().as_ref();

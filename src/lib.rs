@@ -13,4 +13,5 @@ pub mod mesh;
 pub mod problem;
 pub mod sheet_energy;
 pub mod solve;
+pub mod study;
 pub mod units;

@@ -365,7 +365,7 @@ mod tests {
     use crate::solve::potential::derivative_errors;
 
     fn problem(card: &str) -> Problem {
-        let law = Card::load(card, Path::new(".")).unwrap().law.into();
+        let law = Card::load(card, Path::new(".")).unwrap().law;
         Problem {
             size: [30.0, 20.0],
             thickness: 2.0,

@@ -17,7 +17,7 @@ fn plate(material: &str) -> Problem {
         "nh" => "neo-hooke",
         _ => "pva-10",
     };
-    let law: Arc<dyn HyperelasticLaw> = Card::load(card, ".".as_ref()).unwrap().law.into();
+    let law: Arc<dyn HyperelasticLaw> = Card::load(card, ".".as_ref()).unwrap().law;
     Problem {
         size: [150.0, 50.0],
         thickness: 2.0,

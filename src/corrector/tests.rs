@@ -1,7 +1,6 @@
 //! The corrector's properties, on a small plate.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use super::*;
 use crate::mass_spring::{LatticeSettings, MassSpring};
@@ -21,7 +20,7 @@ fn problem() -> Problem {
     Problem {
         size: [30.0, 20.0],
         thickness: 2.0,
-        law: Arc::from(Card::load("pva-10", Path::new(".")).unwrap().law),
+        law: Card::load("pva-10", Path::new(".")).unwrap().law,
         stretches: vec![STRETCH],
     }
 }

@@ -1,6 +1,7 @@
 //! Material cards: a law, its parameters with units, and where they come from.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::law::HyperelasticLaw;
 use super::parameters::{OffsetTreatment, Parameters, StrainMeasure, StressMeasure};
@@ -21,7 +22,7 @@ pub struct Card {
     /// The law's formula.
     pub formula: &'static str,
     /// The law with its parameters.
-    pub law: Box<dyn HyperelasticLaw>,
+    pub law: Arc<dyn HyperelasticLaw>,
     /// The parameters in internal units: key, value, unit.
     pub parameters: Vec<(&'static str, f64, &'static str)>,
     /// The stress that the curve behind the card gives.
@@ -110,21 +111,21 @@ impl Card {
                 [1.0, 1.0]
             }
         };
-        data.finish();
+        data.unknown_keys();
 
         let source = root.section("source");
         let citation = source.text("citation");
         let doi = source.optional_text("doi");
         let specimen = source.text("specimen");
         let note = source.optional_text("note");
-        source.finish();
+        source.unknown_keys();
         let parameters = root.section("parameters");
-        root.finish();
+        root.unknown_keys();
         let Some(&(law_name, formula, read_law)) = law else {
             return Err(faults.finish().expect_err("an unknown law is a fault"));
         };
         let parameters = Parameters::new(parameters, stress_measure, strain_measure);
-        let law = read_law(&parameters);
+        let law: Arc<dyn HyperelasticLaw> = read_law(&parameters).into();
         let parameters = parameters.finish();
         faults.finish()?;
         Ok(Self {

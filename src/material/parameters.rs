@@ -92,7 +92,7 @@ impl<'a> Parameters<'a> {
 
     /// Reports unknown keys and returns what was read: (key, value, unit).
     pub fn finish(self) -> Vec<(&'static str, f64, &'static str)> {
-        self.section.finish();
+        self.section.unknown_keys();
         self.values.into_inner()
     }
 }

@@ -1,0 +1,416 @@
+//! The study file: read, checked, and turned into a problem and the settings of the models.
+//!
+//! Every default stands in `study/default.toml`, which is also what `gelbench new` writes.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::corrector::{CorrectorSettings, DifferenceScheme};
+use crate::document::{Bound, Document, Faults, Section};
+use crate::error::{Diagnostic, Error};
+use crate::finite_element::Element;
+use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings};
+use crate::material::parameters::OffsetTreatment;
+use crate::material::{Card, HyperelasticLaw, NeoHooke};
+use crate::problem::Problem;
+use crate::solve::NewtonSettings;
+use crate::units::Dimension;
+
+/// The study that `gelbench new` writes: every key with its default.
+pub const DEFAULT: &str = include_str!("study/default.toml");
+
+/// Most cells of a mesh in one direction.
+const MOST_CELLS: usize = 2000;
+
+/// A study, checked.
+#[derive(Debug)]
+pub struct Study {
+    /// The file's name without its ending.
+    pub name: String,
+    /// The heading of the report.
+    pub title: String,
+    /// What is solved.
+    pub problem: Problem,
+    /// Where its material comes from.
+    pub card: Card,
+    /// Cells of the lattice.
+    pub cells: [usize; 2],
+    /// What the lattice consists of.
+    pub lattice: LatticeSettings,
+    /// How the lattice is solved.
+    pub mass_spring: NewtonSettings,
+    /// The corrector's finite differences.
+    pub scheme: DifferenceScheme,
+    /// When the corrector stops.
+    pub corrector: CorrectorSettings,
+    /// The element of the reference.
+    pub element: Element,
+    /// Cells of the reference's finest mesh.
+    pub reference_cells: [usize; 2],
+    /// How the reference is solved.
+    pub finite_element: NewtonSettings,
+    /// What the corrected field has to reach.
+    pub tolerances: Tolerances,
+    /// What is written, and where.
+    pub output: OutputSettings,
+    /// The file's text.
+    pub text: String,
+    /// What deserves attention but does not stop the work.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What the corrected field has to reach at every stretch, in percent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Largest deviation in displacement.
+    pub displacement_percent: f64,
+    /// Largest deviation in the departure from affine.
+    pub departure_percent: f64,
+    /// Largest deviation in force.
+    pub force_percent: f64,
+    /// Smallest correction of the departure from affine.
+    pub correction_percent: f64,
+}
+
+/// What is written, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputSettings {
+    /// The folder that receives everything.
+    pub folder: PathBuf,
+    /// Whether `.vtu` and `.pvd` files are written.
+    pub vtk: bool,
+    /// Whether pictures are written.
+    pub plots: bool,
+    /// Whether reports are written.
+    pub report: bool,
+}
+
+impl Study {
+    /// Reads the study in `path`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault of the study and of its card.
+    pub fn load(path: &Path) -> Result<Self, Error> {
+        let text = std::fs::read_to_string(path).map_err(|cause| {
+            let fault = Diagnostic::error("", format!("cannot read {}: {cause}", path.display()));
+            Error::Input(vec![
+                fault.hint("`gelbench new NAME` writes a study to start from"),
+            ])
+        })?;
+        let name = path
+            .file_stem()
+            .map_or_else(String::new, |stem| stem.to_string_lossy().into());
+        let folder = path.parent().unwrap_or(Path::new("."));
+        Self::parse(&name, &path.display().to_string(), folder, text)
+    }
+
+    /// Reads a study's text; a card given by a path is looked for relative to `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault of the study and of its card.
+    pub fn parse(name: &str, file: &str, folder: &Path, text: String) -> Result<Self, Error> {
+        let faults = Faults::default();
+        let study = {
+            let defaults = Document::parse("default.toml", DEFAULT, &faults);
+            let document = Document::parse(file, &text, &faults);
+            let root = document.root(Some(&defaults), &faults);
+            read(name, folder, root, &faults)
+        };
+        let warnings = faults.finish()?;
+        let study = study.expect("a study without a card has a fault");
+        Ok(Self {
+            text,
+            warnings,
+            ..study
+        })
+    }
+
+    /// Cells of the three meshes of the reference, coarse to fine.
+    pub fn reference_meshes(&self) -> [[usize; 2]; 3] {
+        [4, 2, 1].map(|coarser| self.reference_cells.map(|cells| cells / coarser))
+    }
+}
+
+/// Reads all sections; nothing when there is no card to work with, which is recorded as a fault.
+fn read(name: &str, folder: &Path, root: Section<'_>, faults: &Faults) -> Option<Study> {
+    let title = root.text("title");
+    let card = read_card(&root.section("material"), folder, faults);
+    let law: Arc<dyn HyperelasticLaw> = match &card {
+        Some(card) => Arc::clone(&card.law),
+        None => Arc::new(NeoHooke { c10: 1.0 }),
+    };
+    let (problem, cells) = read_plate(&root.section("plate"), law);
+    let stretches = read_stretches(&root.section("load"), card.as_ref());
+
+    let section = root.section("mass_spring");
+    let lattice = LatticeSettings {
+        area_term: section.flag("area_term"),
+    };
+    let mass_spring = read_newton(&section);
+    section.unknown_keys();
+
+    let section = root.section("corrector");
+    let scheme = section.choice("scheme", &DifferenceScheme::NAMES);
+    let corrector = CorrectorSettings {
+        tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
+        max_steps: section.count("max_steps", 1, 1000),
+    };
+    section.unknown_keys();
+
+    let section = root.section("finite_element");
+    let element = section.choice("element", &Element::NAMES);
+    let reference_cells = read_reference_cells(&section);
+    let finite_element = read_newton(&section);
+    section.unknown_keys();
+
+    let tolerances = read_tolerances(&root.section("tolerances"));
+    let output = read_output(&root.section("output"), name);
+    root.unknown_keys();
+    Some(Study {
+        name: name.to_owned(),
+        title,
+        problem: Problem {
+            stretches,
+            ..problem
+        },
+        card: card?,
+        cells,
+        lattice,
+        mass_spring,
+        scheme: scheme?,
+        corrector,
+        element: element?,
+        reference_cells,
+        finite_element,
+        tolerances,
+        output,
+        text: String::new(),
+        warnings: Vec::new(),
+    })
+}
+
+fn read_card(section: &Section<'_>, folder: &Path, faults: &Faults) -> Option<Card> {
+    const KEY: &str = "card";
+    let name = section.text(KEY);
+    section.unknown_keys();
+    match Card::load(&name, folder) {
+        Ok(card) if card.offset == OffsetTreatment::Keep => {
+            section.fault(
+                KEY,
+                "this card keeps a stress at rest and cannot drive a model",
+                "set `offset = \"subtract\"` in the card",
+            );
+            Some(card)
+        }
+        Ok(card) => Some(card),
+        Err(Error::Input(found)) => {
+            for fault in found {
+                match fault.place {
+                    Some(_) => faults.push(fault),
+                    None => section.fault(KEY, &fault.message, fault.hint.as_deref().unwrap_or("")),
+                }
+            }
+            None
+        }
+        Err(other) => {
+            section.fault(KEY, &other.to_string(), "choose another card");
+            None
+        }
+    }
+}
+
+fn read_plate(section: &Section<'_>, law: Arc<dyn HyperelasticLaw>) -> (Problem, [usize; 2]) {
+    let length = |key| section.quantity(key, Dimension::Length, Bound::Positive);
+    let size = [length("length"), length("width")];
+    let thickness = length("thickness");
+    let cells = section.count_pair("cells", 1, MOST_CELLS);
+    section.unknown_keys();
+    let sides = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
+    let aspect = (sides[0] / sides[1]).max(sides[1] / sides[0]);
+    if aspect > LARGEST_ASPECT {
+        let across = (size[1] * cells[0] as f64 / size[0]).round().max(1.0);
+        section.fault(
+            "cells",
+            &format!("the sides of a cell have the ratio {aspect:.2}; springs need less than √3"),
+            &format!(
+                "with {} cells along the plate take {across} across it",
+                cells[0]
+            ),
+        );
+    }
+    let problem = Problem {
+        size,
+        thickness,
+        law,
+        stretches: Vec::new(),
+    };
+    (problem, cells)
+}
+
+fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
+    const KEY: &str = "stretches";
+    let stretches = section.quantities(KEY, Dimension::Ratio, Bound::Positive);
+    section.unknown_keys();
+    if stretches.is_empty() {
+        section.fault(
+            KEY,
+            "needs at least one stretch",
+            "such as [\"15 %\", \"30 %\"]",
+        );
+    }
+    if stretches.windows(2).any(|pair| pair[1] <= pair[0]) {
+        section.fault(KEY, "must ascend", "sort them and leave out repetitions");
+    }
+    for stretch in &stretches {
+        let lambda = 1.0 + stretch;
+        if let Some(card) = card.filter(|card| !card.covers(lambda)) {
+            let [low, high] = card.stretch_range.map(|lambda| 100.0 * (lambda - 1.0));
+            section.warning(
+                KEY,
+                &format!(
+                    "{} is outside the range of the card `{}`",
+                    Problem::describe_step(*stretch),
+                    card.name
+                ),
+                &format!("it was calibrated from {low:.0} to {high:.0} % stretch"),
+            );
+        }
+    }
+    stretches
+}
+
+fn read_newton(section: &Section<'_>) -> NewtonSettings {
+    NewtonSettings {
+        tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
+        max_iterations: section.count("max_iterations", 1, 1000),
+    }
+}
+
+fn read_reference_cells(section: &Section<'_>) -> [usize; 2] {
+    let cells = section.count_pair("cells", 4, MOST_CELLS);
+    if cells.iter().any(|cells| cells % 4 != 0) {
+        let [x, y] = cells.map(|cells| cells.next_multiple_of(4));
+        section.fault(
+            "cells",
+            "must be multiples of 4: the error is estimated on meshes with half and a quarter as many",
+            &format!("the next are [{x}, {y}]"),
+        );
+    }
+    cells
+}
+
+fn read_tolerances(section: &Section<'_>) -> Tolerances {
+    let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
+    let tolerances = Tolerances {
+        displacement_percent: percent("displacement"),
+        departure_percent: percent("departure"),
+        force_percent: percent("force"),
+        correction_percent: percent("correction"),
+    };
+    section.unknown_keys();
+    tolerances
+}
+
+fn read_output(section: &Section<'_>, name: &str) -> OutputSettings {
+    let folder = section.text("folder");
+    let settings = OutputSettings {
+        folder: if folder.is_empty() {
+            Path::new("output").join(name)
+        } else {
+            PathBuf::from(folder)
+        },
+        vtk: section.flag("vtk"),
+        plots: section.flag("plots"),
+        report: section.flag("report"),
+    };
+    section.unknown_keys();
+    settings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Study, Error> {
+        Study::parse("plate", "plate.toml", Path::new("."), text.to_owned())
+    }
+
+    fn faults(text: &str) -> Vec<String> {
+        match parse(text) {
+            Err(Error::Input(faults)) => faults.iter().map(ToString::to_string).collect(),
+            other => panic!("accepted: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn an_empty_study_is_the_default_one() {
+        let (empty, full) = (parse("").unwrap(), parse(DEFAULT).unwrap());
+        assert_eq!(empty.problem.size, [150.0, 50.0]);
+        assert_eq!(empty.problem.thickness, 2.0);
+        assert_eq!(empty.problem.stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
+        assert_eq!(empty.cells, [60, 20]);
+        assert_eq!(empty.reference_meshes(), [[30, 10], [60, 20], [120, 40]]);
+        assert_eq!(empty.output.folder, Path::new("output/plate"));
+        assert_eq!(empty.tolerances, full.tolerances);
+        assert!(full.warnings.is_empty());
+    }
+
+    #[test]
+    fn all_faults_are_told_at_once_with_line_key_and_hint() {
+        let text = "[plate]\nlenght = \"15 cm\"\nwidth = 50\nthickness = \"-2 mm\"\ncells = [60, 0]\n\
+                    [material]\ncard = \"pva10\"\n[load]\nstretches = [\"15 mm\"]\n";
+        let told = faults(text);
+        let expected = [
+            (
+                "plate.toml:2: plate.lenght: unknown key",
+                "did you mean `length`?",
+            ),
+            (
+                "plate.toml:3: plate.width: a length needs a unit",
+                "\"2 mm\"",
+            ),
+            (
+                "plate.toml:4: plate.thickness: must be greater than zero",
+                "-2 mm",
+            ),
+            (
+                "plate.toml:5: plate.cells: must be two whole numbers",
+                "[60, 0]",
+            ),
+            (
+                "plate.toml:7: material.card: there is no card `pva10`",
+                "did you mean `pva-10`?",
+            ),
+            ("plate.toml:9: load.stretches: \"15 mm\"", "%"),
+        ];
+        assert_eq!(told.len(), expected.len(), "{told:#?}");
+        for (line, (start, hint)) in told.iter().zip(expected) {
+            assert!(line.starts_with(start) && line.contains(hint), "{line}");
+        }
+    }
+
+    #[test]
+    fn settings_that_contradict_each_other_are_refused() {
+        assert!(faults("[plate]\ncells = [60, 10]\n")[0].contains("take 20 across"));
+        assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
+        assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));
+        assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("ascend"));
+        assert!(faults("[corrector]\nscheme = \"gaus\"\n")[0].contains("did you mean \"gauss\""));
+        assert!(
+            faults("[plate\n")
+                .iter()
+                .any(|line| line.contains("TOML syntax"))
+        );
+    }
+
+    #[test]
+    fn a_stretch_outside_the_range_of_the_card_is_a_warning() {
+        let study = parse("[load]\nstretches = [0.5, 1.2]\n").unwrap();
+        assert_eq!(study.warnings.len(), 1);
+        let told = study.warnings[0].to_string();
+        assert!(
+            told.contains("120 % stretch") && told.contains("0 to 100 %"),
+            "{told}"
+        );
+    }
+}
