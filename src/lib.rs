@@ -2,6 +2,7 @@
 //! finite elements.
 #![warn(missing_docs)]
 
+pub mod command;
 pub mod compare;
 pub mod corrector;
 pub mod document;
@@ -10,7 +11,10 @@ pub mod finite_element;
 pub mod mass_spring;
 pub mod material;
 pub mod mesh;
+pub mod output;
 pub mod problem;
+pub mod results;
+pub mod run;
 pub mod sheet_energy;
 pub mod solve;
 pub mod study;

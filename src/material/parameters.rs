@@ -34,6 +34,11 @@ impl StressMeasure {
     /// The names that cards use.
     pub const NAMES: [(&'static str, Self); 2] =
         [("nominal", Self::Nominal), ("cauchy", Self::Cauchy)];
+
+    /// The name that cards use.
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, self)
+    }
 }
 
 impl StrainMeasure {
@@ -42,12 +47,28 @@ impl StrainMeasure {
         ("nominal", Self::Nominal),
         ("logarithmic", Self::Logarithmic),
     ];
+
+    /// The name that cards use.
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, self)
+    }
 }
 
 impl OffsetTreatment {
     /// The names that cards use.
     pub const NAMES: [(&'static str, Self); 2] =
         [("subtract", Self::Subtract), ("keep", Self::Keep)];
+
+    /// The name that cards use.
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, self)
+    }
+}
+
+/// The name of a choice that a list of names holds.
+fn name_of<T: PartialEq>(names: &[(&'static str, T)], choice: T) -> &'static str {
+    let found = names.iter().find(|(_, known)| *known == choice);
+    found.map_or("", |(name, _)| name)
 }
 
 /// The `[parameters]` table of a card together with the measures that it is to be read in.

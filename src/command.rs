@@ -1,0 +1,213 @@
+//! The command line. Nothing else prints or decides on an exit code.
+//!
+//! | code | meaning |
+//! |---|---|
+//! | 0 | done, and every requirement of the study is met |
+//! | 1 | done, but a requirement is not met |
+//! | 2 | the study, a card or the command line is wrong |
+//! | 3 | a model has no solution that could be found |
+//! | 4 | a file could not be written |
+
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::error::{Diagnostic, Error};
+use crate::material::Card;
+use crate::material::registry::CARDS;
+use crate::problem::Problem;
+use crate::study::{DEFAULT, Study};
+use crate::{output, run};
+
+mod message;
+
+const SAMPLES: &str = "\
+Samples:
+  gelbench new my_plate                      write my_plate.toml, a commented study
+  gelbench check my_plate.toml               read it and tell every fault
+  gelbench run my_plate.toml                 compute it and write output/my_plate/
+  gelbench materials list                    the cards that come along
+  gelbench materials show pva-10             one card with its moduli and its source
+
+Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write.";
+
+#[derive(Parser)]
+#[command(version, about, after_help = SAMPLES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Compute a study and write VTK files, pictures and reports
+    #[command(after_help = "Sample: gelbench run examples/pva_plate.toml --output /tmp/plate")]
+    Run {
+        /// The study file
+        study: PathBuf,
+        /// Write into this folder instead of the one that the study names
+        #[arg(long, value_name = "FOLDER")]
+        output: Option<PathBuf>,
+    },
+    /// Read a study and its card and tell every fault, without computing
+    #[command(after_help = "Sample: gelbench check examples/pva_plate.toml")]
+    Check {
+        /// The study file
+        study: PathBuf,
+    },
+    /// Write a commented study to start from
+    #[command(after_help = "Sample: gelbench new my_plate    writes my_plate.toml")]
+    New {
+        /// Name of the study; `.toml` is added where it is missing
+        name: PathBuf,
+    },
+    /// Look at material cards
+    Materials {
+        #[command(subcommand)]
+        command: Materials,
+    },
+}
+
+#[derive(Subcommand)]
+enum Materials {
+    /// List the cards that come along
+    List,
+    /// Show one card: law, parameters, moduli, range, source
+    #[command(after_help = "Sample: gelbench materials show pva-10")]
+    Show {
+        /// Name of a card that comes along, or path of one ending in .toml
+        card: String,
+    },
+}
+
+/// Runs the command with the arguments of the process.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(usage) => {
+            let code = u8::try_from(usage.exit_code()).unwrap_or(2);
+            // A closed pipe is no reason to complain about a help text.
+            let _ = usage.print();
+            return ExitCode::from(code);
+        }
+    };
+    let outcome = match arguments.command {
+        Command::Run { study, output } => run_study(&study, output),
+        Command::Check { study } => check(&study),
+        Command::New { name } => new_study(name),
+        Command::Materials { command } => match command {
+            Materials::List => list_cards(),
+            Materials::Show { card } => show_card(&card),
+        },
+    };
+    match outcome {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            complain(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+type Outcome = Result<u8, Error>;
+
+fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
+    let study = Study::load(path)?;
+    warn(&study.warnings);
+    let folder = folder.unwrap_or_else(|| study.output.folder.clone());
+    output::prepare(&folder)?;
+
+    let bar = ProgressBar::new(run::progress_steps(&study) as u64);
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {wide_msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let progress = |model: &str, stretch: f64| {
+        bar.set_message(format!("{model}, {}", Problem::describe_step(stretch)));
+        bar.inc(1);
+    };
+    let results = run::run(&study, &progress);
+    bar.finish_and_clear();
+    let results = results?;
+
+    let files = output::write(&study, &results, &folder)?;
+    let requirements = results.requirements(&study.tolerances);
+    let passed = requirements.iter().all(|requirement| requirement.passed);
+    print(&format!(
+        "{}\n{} files in {}\n",
+        message::summary(&results, &requirements),
+        files.len(),
+        folder.display()
+    ))?;
+    Ok(u8::from(!passed))
+}
+
+fn check(path: &Path) -> Outcome {
+    let study = Study::load(path)?;
+    warn(&study.warnings);
+    print(&format!("{}\n", message::study(path, &study)))?;
+    Ok(0)
+}
+
+fn new_study(name: PathBuf) -> Outcome {
+    let path = match name.extension() {
+        Some(extension) if extension == "toml" => name,
+        _ => PathBuf::from(format!("{}.toml", name.display())),
+    };
+    if path.exists() {
+        let cause = "it exists already; choose another name or remove it first";
+        return Err(Error::write(path, cause));
+    }
+    output::save(&path, DEFAULT.as_bytes())?;
+    let shown = path.display();
+    print(&format!(
+        "{shown} written; compute it with: gelbench run {shown}\n"
+    ))?;
+    Ok(0)
+}
+
+fn list_cards() -> Outcome {
+    let mut text = String::new();
+    for (name, _) in CARDS {
+        text += &message::card_line(&Card::load(name, Path::new("."))?);
+    }
+    print(&text)?;
+    Ok(0)
+}
+
+fn show_card(name: &str) -> Outcome {
+    print(&message::card(&Card::load(name, Path::new("."))?))?;
+    Ok(0)
+}
+
+/// Prints to standard output; a reader that has gone away is no error.
+fn print(text: &str) -> Result<(), Error> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Error::write("standard output", cause))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn warn(warnings: &[Diagnostic]) {
+    let coloured = io::stderr().is_terminal();
+    for warning in warnings {
+        let _ = write!(io::stderr(), "{}", message::diagnostic(warning, coloured));
+    }
+}
+
+fn complain(error: &Error) {
+    let coloured = io::stderr().is_terminal();
+    let text = match error {
+        Error::Input(faults) => faults
+            .iter()
+            .map(|fault| message::diagnostic(fault, coloured))
+            .collect(),
+        Error::Solve { fault, .. } => format!("error: {error}\n  try: {}\n", fault.advice()),
+        Error::Write { .. } => format!("error: {error}\n"),
+    };
+    let _ = write!(io::stderr(), "{text}");
+}

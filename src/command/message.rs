@@ -1,0 +1,141 @@
+//! The texts that the command prints.
+
+use std::path::Path;
+
+use miette::{
+    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report,
+};
+
+use crate::error::{Diagnostic, Severity};
+use crate::material::Card;
+use crate::results::{Requirement, Results};
+use crate::study::Study;
+
+/// A finding with the lines of the file that it is about.
+pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
+    let message = match finding.key.as_str() {
+        "" => finding.message.clone(),
+        key => format!("{key}: {}", finding.message),
+    };
+    let severity = match finding.severity {
+        Severity::Warning => miette::Severity::Warning,
+        Severity::Error => miette::Severity::Error,
+    };
+    let mut report = MietteDiagnostic::new(message).with_severity(severity);
+    if let Some(hint) = &finding.hint {
+        report = report.with_help(hint.clone());
+    }
+    let report = match &finding.place {
+        None => Report::new(report),
+        Some((source, span)) => {
+            let label = LabeledSpan::new(None, span.start, span.len());
+            let source = NamedSource::new(&source.name, source.text.clone());
+            Report::new(report.with_label(label)).with_source_code(source)
+        }
+    };
+    let theme = if coloured {
+        GraphicalTheme::unicode()
+    } else {
+        GraphicalTheme::unicode_nocolor()
+    };
+    let mut text = String::new();
+    let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(0);
+    match handler.render_report(&mut text, report.as_ref()) {
+        Ok(()) => text,
+        Err(_) => format!("{finding}\n"),
+    }
+}
+
+/// What a checked study will compute.
+pub fn study(path: &Path, study: &Study) -> String {
+    let [nx, ny] = study.cells;
+    let [fx, fy] = study.reference_cells;
+    format!(
+        "{}: no faults; {} stretches, {nx} × {ny} cells, card {}, finite elements {} with {fx} × {fy} cells, output in {}",
+        path.display(),
+        study.problem.stretches.len(),
+        study.card.name,
+        study.element.name(),
+        study.output.folder.display()
+    )
+}
+
+/// The headline figures of a run.
+pub fn summary(results: &Results, requirements: &[Requirement]) -> String {
+    let mut text = String::from(
+        "deviation from the finite elements [%]\n\
+         \x20            mass-spring                       corrected\n\
+         stretch  displacement  departure  force   displacement  departure  force\n",
+    );
+    for step in &results.comparison {
+        let (before, after) = (&step.mass_spring, &step.corrected);
+        text += &format!(
+            "{:>5.4} %  {:>12.3}  {:>9.2}  {:>5.2}   {:>12.4}  {:>9.3}  {:>5.3}\n",
+            format!("{}", 100.0 * step.stretch),
+            before.displacement_percent,
+            before.departure_percent,
+            before.force_percent.abs(),
+            after.displacement_percent,
+            after.departure_percent,
+            after.force_percent.abs()
+        );
+    }
+    for requirement in requirements {
+        text += &format!(
+            "{} {}: {:.3} % ({} {} %)\n",
+            if requirement.passed { "pass" } else { "FAIL" },
+            requirement.name,
+            requirement.worst,
+            if requirement.at_most {
+                "at most"
+            } else {
+                "at least"
+            },
+            requirement.limit
+        );
+    }
+    text
+}
+
+/// One line of the list of cards.
+pub fn card_line(card: &Card) -> String {
+    let [low, high] = card.stretch_range;
+    format!(
+        "{:<16} {:<20} λ {low} … {high}   {}\n",
+        card.name, card.law_name, card.title
+    )
+}
+
+/// Everything about a card.
+pub fn card(card: &Card) -> String {
+    let [low, high] = card.stretch_range;
+    let mut text = format!(
+        "{}\n\n  law        {}: {}\n",
+        card.title, card.law_name, card.formula
+    );
+    for (key, value, unit) in &card.parameters {
+        text += &format!("  parameter  {key} = {value} {unit}\n");
+    }
+    text += &format!(
+        "  moduli     E₀ = {:.6} MPa, μ₀ = {:.6} MPa\n",
+        card.law.youngs_modulus(),
+        card.law.shear_modulus()
+    );
+    text += &format!(
+        "  measures   {} stress, {} strain, offset {}\n",
+        card.stress_measure.name(),
+        card.strain_measure.name(),
+        card.offset.name()
+    );
+    text += &format!("  range      λ = {low} … {high} ({} test)\n", card.test);
+    text += &format!(
+        "  specimen   {}\n  source     {}\n",
+        card.specimen, card.citation
+    );
+    for (label, value) in [("doi", &card.doi), ("note", &card.note)] {
+        if !value.is_empty() {
+            text += &format!("  {label:<10} {value}\n");
+        }
+    }
+    text
+}

@@ -1,0 +1,305 @@
+//! The pictures of a run.
+
+use super::picture::Scale;
+use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel};
+use super::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::compare::Deviation;
+use crate::material::{Card, uniaxial};
+use crate::mesh::Mesh;
+use crate::problem::{Problem, Solution};
+use crate::results::Results;
+use crate::study::Study;
+
+/// A picture of a run.
+pub struct Figure {
+    /// File name.
+    pub name: String,
+    /// What it shows, in one sentence.
+    pub caption: String,
+    /// The picture.
+    pub png: Vec<u8>,
+}
+
+const MASS_SPRING: [u8; 3] = [213, 94, 0];
+const CORRECTED: [u8; 3] = [0, 114, 178];
+const FINITE_ELEMENT: [u8; 3] = [30, 30, 30];
+const SECOND: [u8; 3] = [0, 158, 115];
+const THIRD: [u8; 3] = [204, 121, 167];
+
+/// All pictures of a run, in the order of the report.
+pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
+    let mut all = vec![figure(
+        "material.png",
+        "The material: nominal stress over stretch.",
+        material(&study.card).png(),
+    )];
+    for (step, stretch) in study.problem.stretches.iter().enumerate() {
+        let at = Problem::describe_step(*stretch);
+        let plates = plates(results, step, &at).png();
+        let name = format!("plates_{:03}.png", step + 1);
+        all.push(figure(
+            &name,
+            &format!("The plate at {at} in all three models, on one colour scale."),
+            plates,
+        ));
+        let error = error_map(results, step, &at).png();
+        let name = format!("error_{:03}.png", step + 1);
+        all.push(figure(
+            &name,
+            &format!("Distance to the finite elements at {at}, before and after the correction."),
+            error,
+        ));
+    }
+    all.extend([
+        figure(
+            "errors.png",
+            "Deviation from the finite elements over stretch.",
+            errors(results).png(),
+        ),
+        figure(
+            "force.png",
+            "Grip force over stretch.",
+            force(results).png(),
+        ),
+        figure(
+            "residuals.png",
+            "Residual over iteration, at the largest stretch.",
+            residuals(results).png(),
+        ),
+    ]);
+    all
+}
+
+fn figure(name: &str, caption: &str, png: Vec<u8>) -> Figure {
+    Figure {
+        name: name.to_owned(),
+        caption: caption.to_owned(),
+        png,
+    }
+}
+
+/// The curves of a card in the three usual tests.
+pub fn material(card: &Card) -> LineChart {
+    let [low, high] = card.stretch_range;
+    let (from, to) = (low.min(1.0), high.max(1.0));
+    let samples = |nominal_stress: &dyn Fn(f64) -> f64| -> Vec<[f64; 2]> {
+        let stretch = |i: i32| from + (to - from) * 1.1 * f64::from(i) / 110.0;
+        (0..=110)
+            .map(|i| [stretch(i), nominal_stress(stretch(i))])
+            .collect()
+    };
+    let law = &*card.law;
+    let line = |label: &str, colour, stroke, points| Line {
+        label: label.to_owned(),
+        points,
+        colour,
+        stroke,
+    };
+    LineChart {
+        title: card.title.clone(),
+        x: Axis::linear("stretch λ [–]"),
+        y: Axis::linear("nominal stress [MPa]"),
+        lines: vec![
+            line(
+                "uniaxial",
+                CORRECTED,
+                Stroke::Solid,
+                samples(&|stretch| uniaxial::uniaxial(law, stretch - 1.0).nominal_stress),
+            ),
+            line(
+                "planar",
+                SECOND,
+                Stroke::Dashed,
+                samples(&|stretch| uniaxial::planar(law, stretch)),
+            ),
+            line(
+                "equibiaxial",
+                THIRD,
+                Stroke::Dashed,
+                samples(&|stretch| uniaxial::equibiaxial(law, stretch)),
+            ),
+        ],
+        band: Some(([low, high], "range of the card".to_owned())),
+    }
+}
+
+fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
+    let transverse = |mesh: &Mesh, solution: &Solution| {
+        let u = &solution.displacement;
+        cells(mesh, u, &|node| u[2 * node + 1])
+    };
+    let lattice = &results.springs.mesh;
+    let finest = results.finest();
+    FieldFigure {
+        title: format!("Plate at {at}"),
+        quantity: "transverse displacement [mm]".into(),
+        scale: Scale::Linear,
+        colours: Colours::Diverging,
+        panels: vec![
+            Panel {
+                label: "mass-spring".into(),
+                cells: transverse(lattice, &results.uncorrected[step]),
+            },
+            Panel {
+                label: "corrected".into(),
+                cells: transverse(lattice, &results.corrected[step].solution),
+            },
+            Panel {
+                label: format!("finite elements ({})", finest.model.describe()),
+                cells: transverse(&finest.model.mesh, &finest.solutions[step]),
+            },
+        ],
+    }
+}
+
+fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
+    let mesh = &results.springs.mesh;
+    let reference = &results.reference_on_lattice[step];
+    let distance = |label: &str, solution: &Solution| {
+        let u = &solution.displacement;
+        let distance = |node: usize| {
+            (u[2 * node] - reference[2 * node]).hypot(u[2 * node + 1] - reference[2 * node + 1])
+        };
+        Panel {
+            label: label.to_owned(),
+            cells: cells(mesh, u, &distance),
+        }
+    };
+    FieldFigure {
+        title: format!("Distance to the finite elements at {at}"),
+        quantity: "distance [mm]".into(),
+        scale: Scale::Logarithmic,
+        colours: Colours::Sequential,
+        panels: vec![
+            distance("mass-spring", &results.uncorrected[step]),
+            distance("corrected", &results.corrected[step].solution),
+        ],
+    }
+}
+
+/// Deformed cells with the mean of their corners' values.
+fn cells(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec<FieldCell> {
+    let place =
+        |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + displacement[2 * node + axis]);
+    let cell = |cell: usize| {
+        let corners: [usize; 4] = std::array::from_fn(|corner| mesh.cell(cell)[corner]);
+        (
+            corners.map(place),
+            corners.map(value).iter().sum::<f64>() / 4.0,
+        )
+    };
+    (0..mesh.cell_count()).map(cell).collect()
+}
+
+fn errors(results: &Results) -> LineChart {
+    let mut lines = Vec::new();
+    let measures: [(&str, fn(&Deviation) -> f64, Stroke); 2] = [
+        (
+            "departure from affine",
+            |deviation| deviation.departure_percent,
+            Stroke::Marked,
+        ),
+        (
+            "displacement",
+            |deviation| deviation.displacement_percent,
+            Stroke::Dashed,
+        ),
+    ];
+    for (model, colour) in [("mass-spring", MASS_SPRING), ("corrected", CORRECTED)] {
+        for (name, measure, stroke) in measures {
+            let steps = results.comparison.iter();
+            let points = steps.map(|step| {
+                let deviation = if model == "corrected" {
+                    &step.corrected
+                } else {
+                    &step.mass_spring
+                };
+                [100.0 * step.stretch, measure(deviation)]
+            });
+            lines.push(Line {
+                label: format!("{model}: {name}"),
+                points: points.collect(),
+                colour,
+                stroke,
+            });
+        }
+    }
+    LineChart {
+        title: "Deviation from the finite elements".into(),
+        x: Axis::linear("stretch of the plate [%]"),
+        y: Axis::logarithmic("deviation, relative L2 [%]"),
+        lines,
+        band: None,
+    }
+}
+
+fn force(results: &Results) -> LineChart {
+    let line = |label: &str, colour, stroke, solutions: &mut dyn Iterator<Item = &Solution>| Line {
+        label: label.to_owned(),
+        points: std::iter::once([0.0, 0.0])
+            .chain(solutions.map(|solution| [100.0 * solution.stretch, solution.force]))
+            .collect(),
+        colour,
+        stroke,
+    };
+    LineChart {
+        title: "Grip force".into(),
+        x: Axis::linear("stretch of the plate [%]"),
+        y: Axis::linear("force [N]"),
+        lines: vec![
+            line(
+                "finite elements",
+                FINITE_ELEMENT,
+                Stroke::Solid,
+                &mut results.finest().solutions.iter(),
+            ),
+            line(
+                "mass-spring",
+                MASS_SPRING,
+                Stroke::Marked,
+                &mut results.uncorrected.iter(),
+            ),
+            line(
+                "corrected",
+                CORRECTED,
+                Stroke::Points,
+                &mut results.corrected.iter().map(|state| &state.solution),
+            ),
+        ],
+        band: None,
+    }
+}
+
+fn residuals(results: &Results) -> LineChart {
+    let line = |label: &str, colour, solution: &Solution| Line {
+        label: label.to_owned(),
+        points: solution
+            .convergence
+            .residuals
+            .iter()
+            .enumerate()
+            .map(|(i, r)| [i as f64, *r])
+            .collect(),
+        colour,
+        stroke: Stroke::Marked,
+    };
+    let last = results.uncorrected.len() - 1;
+    LineChart {
+        title: format!(
+            "Residual at {}",
+            Problem::describe_step(results.uncorrected[last].stretch)
+        ),
+        x: Axis::linear("iteration"),
+        y: Axis::logarithmic("relative residual [–]"),
+        lines: vec![
+            line("mass-spring", MASS_SPRING, &results.uncorrected[last]),
+            line("corrector", CORRECTED, &results.corrected[last].solution),
+            line(
+                "finite elements",
+                FINITE_ELEMENT,
+                &results.finest().solutions[last],
+            ),
+        ],
+        band: None,
+    }
+}

@@ -1,0 +1,187 @@
+//! Line charts.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{INK, PALE, Scale, bold, render, text};
+
+/// One axis.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// What is shown, with its unit.
+    pub label: String,
+    /// How numbers lie on it.
+    pub scale: Scale,
+}
+
+impl Axis {
+    /// An even axis.
+    pub fn linear(label: &str) -> Self {
+        Self {
+            label: label.to_owned(),
+            scale: Scale::Linear,
+        }
+    }
+
+    /// A logarithmic axis.
+    pub fn logarithmic(label: &str) -> Self {
+        Self {
+            label: label.to_owned(),
+            scale: Scale::Logarithmic,
+        }
+    }
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    /// A line with a marker at each point.
+    Marked,
+    /// A line.
+    Solid,
+    /// A broken line.
+    Dashed,
+    /// Markers alone.
+    Points,
+}
+
+/// One line of a chart.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Its name in the legend; an empty one is left out there.
+    pub label: String,
+    /// Its points.
+    pub points: Vec<[f64; 2]>,
+    /// Its colour as red, green, blue.
+    pub colour: [u8; 3],
+    /// How it is drawn.
+    pub stroke: Stroke,
+}
+
+/// A line chart.
+#[derive(Clone, Debug)]
+pub struct LineChart {
+    /// Heading.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// The lines; later ones lie above.
+    pub lines: Vec<Line>,
+    /// A band along x that is shaded, with its name.
+    pub band: Option<([f64; 2], String)>,
+}
+
+const SIZE: (u32, u32) = (860, 480);
+const LEGEND_WIDTH: u32 = 250;
+
+impl LineChart {
+    /// The chart as a PNG.
+    pub fn png(&self) -> Vec<u8> {
+        render(SIZE, |area| {
+            let (chart_area, legend) = area.split_horizontally(SIZE.0 - LEGEND_WIDTH);
+            let positions = |axis: usize| {
+                let scale = [self.x.scale, self.y.scale][axis];
+                let points = self.lines.iter().flat_map(|line| &line.points);
+                points.filter_map(move |point| scale.position(point[axis]))
+            };
+            let (left, right) = self.x.scale.limits(positions(0));
+            let (bottom, top) = self.y.scale.limits(positions(1));
+            let mut chart = ChartBuilder::on(&chart_area)
+                .caption(&self.title, bold(17))
+                .margin(14)
+                .x_label_area_size(48)
+                .y_label_area_size(74)
+                .build_cartesian_2d(left..right, bottom..top)?;
+            if let Some(([from, to], _)) = &self.band {
+                let corners = [(from.max(left), bottom), (to.min(right), top)];
+                chart.draw_series([Rectangle::new(corners, RGBColor(236, 242, 248).filled())])?;
+            }
+            let decades = |low: f64, high: f64| (high - low) as usize + 1;
+            let mut mesh = chart.configure_mesh();
+            mesh.x_desc(&self.x.label)
+                .y_desc(&self.y.label)
+                .axis_desc_style(text(14))
+                .label_style(text(13))
+                .axis_style(INK)
+                .bold_line_style(PALE)
+                .light_line_style(TRANSPARENT)
+                .x_labels(8)
+                .y_labels(match self.y.scale {
+                    Scale::Linear => 7,
+                    Scale::Logarithmic => decades(bottom, top).min(12),
+                });
+            mesh.x_label_formatter(&|x| self.x.scale.label(*x))
+                .y_label_formatter(&|y| self.y.scale.label(*y))
+                .draw()?;
+            for line in &self.lines {
+                let position = |[x, y]: &[f64; 2]| {
+                    Some((self.x.scale.position(*x)?, self.y.scale.position(*y)?))
+                };
+                let points: Vec<_> = line.points.iter().filter_map(position).collect();
+                let colour = line.rgb();
+                let stroke = colour.stroke_width(2);
+                match line.stroke {
+                    Stroke::Dashed => {
+                        chart.draw_series(DashedLineSeries::new(points.clone(), 7, 5, stroke))?;
+                    }
+                    Stroke::Points => {}
+                    Stroke::Solid | Stroke::Marked => {
+                        chart.draw_series(LineSeries::new(points.clone(), stroke))?;
+                    }
+                }
+                if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
+                    let markers = points
+                        .iter()
+                        .map(|point| Circle::new(*point, 4, colour.filled()));
+                    chart.draw_series(markers)?;
+                }
+            }
+            self.draw_legend(&legend)
+        })
+    }
+
+    fn draw_legend(
+        &self,
+        area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
+    ) -> super::DrawResult<()> {
+        let style = text(13).pos(Pos::new(HPos::Left, VPos::Center));
+        let mut y = 62;
+        for line in self.lines.iter().filter(|line| !line.label.is_empty()) {
+            let colour = line.rgb();
+            let stroke = colour.stroke_width(2);
+            let sample = [(4, y), (34, y)];
+            match line.stroke {
+                Stroke::Dashed => {
+                    for x in [4, 16, 28] {
+                        area.draw(&PathElement::new(vec![(x, y), (x + 6, y)], stroke))?;
+                    }
+                }
+                Stroke::Points => {}
+                Stroke::Solid | Stroke::Marked => area.draw(&PathElement::new(sample, stroke))?,
+            }
+            if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
+                area.draw(&Circle::new((19, y), 4, colour.filled()))?;
+            }
+            area.draw(&Text::new(line.label.clone(), (42, y), style.clone()))?;
+            y += 24;
+        }
+        if let Some((_, name)) = &self.band {
+            let box_corners = [(4, y - 7), (34, y + 7)];
+            area.draw(&Rectangle::new(
+                box_corners,
+                RGBColor(220, 230, 241).filled(),
+            ))?;
+            area.draw(&Text::new(name.clone(), (42, y), style))?;
+        }
+        Ok(())
+    }
+}
+
+impl Line {
+    fn rgb(&self) -> RGBColor {
+        let [red, green, blue] = self.colour;
+        RGBColor(red, green, blue)
+    }
+}

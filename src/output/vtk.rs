@@ -1,0 +1,285 @@
+//! VTK files: one `.vtu` a stretch and model, and a `.pvd` a model that plays the stretches.
+//!
+//! Units are part of the arrays' names. Stresses and what belongs to them are those of the material at
+//! the field's gradient in the centre of each cell; tensors have nine components, row by row, and the
+//! nominal stress is Pᵀ: its first index is the reference direction.
+
+use nalgebra::Vector4;
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, Event};
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
+    UnstructuredGridPiece, Version, VertexNumbers, Vtk,
+};
+
+use crate::corrector::Multipliers;
+use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
+use crate::material::sheet::Kinematics;
+use crate::mesh::{CellShape, Mesh};
+use crate::problem::Problem;
+use crate::results::Results;
+use crate::study::Study;
+
+/// All VTK files of a run: name and content, one after the other.
+pub fn files(study: &Study, results: &Results) -> impl Iterator<Item = (String, Vec<u8>)> {
+    let steps = 0..study.problem.stretches.len();
+    let model = move |model: Model| {
+        let grids = steps.clone().map(move |step| {
+            let grid = model.grid(study, results, step);
+            (model.file_name(step), encode(&study.title, grid))
+        });
+        let collection = collection(model, &study.problem.stretches);
+        grids.chain([(format!("{}.pvd", model.name()), collection)])
+    };
+    Model::ALL.into_iter().flat_map(model)
+}
+
+#[derive(Clone, Copy)]
+enum Model {
+    MassSpring,
+    Springs,
+    Corrected,
+    FiniteElement,
+}
+
+impl Model {
+    const ALL: [Self; 4] = [
+        Self::MassSpring,
+        Self::Springs,
+        Self::Corrected,
+        Self::FiniteElement,
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::MassSpring => "mass_spring",
+            Self::Springs => "springs",
+            Self::Corrected => "corrected",
+            Self::FiniteElement => "finite_element",
+        }
+    }
+
+    fn file_name(self, step: usize) -> String {
+        format!("{}_{:03}.vtu", self.name(), step + 1)
+    }
+
+    fn grid(self, study: &Study, results: &Results, step: usize) -> UnstructuredGridPiece {
+        let problem = &study.problem;
+        let lattice = &results.springs.mesh;
+        let reference = &results.reference_on_lattice[step];
+        let difference = |u: &[f64]| {
+            let pairs = u.iter().zip(reference);
+            let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
+            planar_vectors("difference_to_finite_elements_mm", &difference)
+        };
+        match self {
+            Self::MassSpring => {
+                let u = &results.uncorrected[step].displacement;
+                plate(problem, lattice, u, vec![difference(u)])
+            }
+            Self::Corrected => {
+                let state = &results.corrected[step];
+                let u = &state.solution.displacement;
+                let multipliers = state.correction.multipliers.iter();
+                let size = u.len();
+                let arrays = multipliers.filter_map(|group| multiplier_array(group, size));
+                plate(
+                    problem,
+                    lattice,
+                    u,
+                    [difference(u)].into_iter().chain(arrays).collect(),
+                )
+            }
+            Self::FiniteElement => {
+                let finest = results.finest();
+                plate(
+                    problem,
+                    &finest.model.mesh,
+                    &finest.solutions[step].displacement,
+                    Vec::new(),
+                )
+            }
+            Self::Springs => springs(results, step),
+        }
+    }
+}
+
+/// A plate's cells with the fields that follow from its displacement.
+fn plate(
+    problem: &Problem,
+    mesh: &Mesh,
+    displacement: &[f64],
+    more_point_data: Vec<Attribute>,
+) -> UnstructuredGridPiece {
+    let cells: Vec<&[usize]> = (0..mesh.cell_count()).map(|cell| mesh.cell(cell)).collect();
+    let kind = match mesh.shape {
+        CellShape::Quad4 => CellType::Quad,
+        CellShape::Quad9 => CellType::BiquadraticQuad,
+    };
+    let mut point = vec![planar_vectors("displacement_mm", displacement)];
+    point.extend(more_point_data);
+    UnstructuredGridPiece {
+        points: points(mesh),
+        cells: connect(&cells, kind),
+        data: Attributes {
+            point,
+            cell: material_state(problem, mesh, displacement),
+        },
+    }
+}
+
+fn material_state(problem: &Problem, mesh: &Mesh, displacement: &[f64]) -> Vec<Attribute> {
+    let (mut nominal, mut cauchy, mut stretches) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut i1, mut thickness, mut energy) = (Vec::new(), Vec::new(), Vec::new());
+    for cell in 0..mesh.cell_count() {
+        let gradient = mesh.gradient_at(displacement, cell, [0.0, 0.0]);
+        let kinematics = Kinematics::new(&Vector4::from(gradient))
+            .expect("cells with positive corners have a positive centre");
+        let (density, p) = kinematics.stress(&*problem.law);
+        nominal.extend([p[0], p[2], 0.0, p[1], p[3], 0.0, 0.0, 0.0, 0.0]);
+        let [s11, s12, s22] = kinematics.cauchy_stress(&p);
+        cauchy.extend([s11, s12, 0.0, s12, s22, 0.0, 0.0, 0.0, 0.0]);
+        stretches.extend(kinematics.principal_stretches());
+        i1.push(3.0 + kinematics.invariants.i1_minus_3);
+        thickness.push(problem.thickness / kinematics.area_ratio());
+        energy.push(density);
+    }
+    vec![
+        array("nominal_stress_MPa", ElementType::Tensors, nominal),
+        array("cauchy_stress_MPa", ElementType::Tensors, cauchy),
+        array("principal_stretches_1", ElementType::Vectors, stretches),
+        array("first_invariant_I1_1", scalars(), i1),
+        array("thickness_mm", scalars(), thickness),
+        array("energy_density_mJ_per_mm3", scalars(), energy),
+    ]
+}
+
+fn springs(results: &Results, step: usize) -> UnstructuredGridPiece {
+    let model = &results.springs;
+    let displacement = &results.uncorrected[step].displacement;
+    let cells: Vec<&[usize]> = model
+        .springs
+        .iter()
+        .map(|spring| &spring.nodes[..])
+        .collect();
+    let states = model.spring_states(displacement);
+    let of =
+        |value: fn(&crate::mass_spring::SpringState) -> f64| states.iter().map(value).collect();
+    UnstructuredGridPiece {
+        points: points(&model.mesh),
+        cells: connect(&cells, CellType::Line),
+        data: Attributes {
+            point: vec![planar_vectors("displacement_mm", displacement)],
+            cell: vec![
+                array("force_N", scalars(), of(|state| state.force)),
+                array("stretch_1", scalars(), of(|state| state.stretch)),
+            ],
+        },
+    }
+}
+
+/// The multipliers of a condition at the nodes; zero where the condition does not hold.
+fn multiplier_array(group: &Multipliers, size: usize) -> Option<Attribute> {
+    let name = match group.name.as_str() {
+        EQUILIBRIUM => "multiplier_zeta_equilibrium_mm2_per_N",
+        GRIPS => "multiplier_eta_grips_mm",
+        FREE_EDGES => "multiplier_eta_free_edges_mm2_per_N",
+        _ => return None,
+    };
+    let mut values = vec![0.0; size];
+    for (unknown, value) in group.unknowns.iter().zip(&group.values) {
+        values[*unknown] = *value;
+    }
+    Some(planar_vectors(name, &values))
+}
+
+fn points(mesh: &Mesh) -> IOBuffer {
+    let nodes = mesh.nodes.iter();
+    IOBuffer::F64(nodes.flat_map(|[x, y]| [*x, *y, 0.0]).collect())
+}
+
+fn connect(cells: &[&[usize]], kind: CellType) -> Cells {
+    let ends = cells.iter().scan(0, |end, cell| {
+        *end += cell.len() as u64;
+        Some(*end)
+    });
+    Cells {
+        types: vec![kind; cells.len()],
+        cell_verts: VertexNumbers::XML {
+            connectivity: cells
+                .iter()
+                .flat_map(|cell| cell.iter().map(|node| *node as u64))
+                .collect(),
+            offsets: ends.collect(),
+        },
+    }
+}
+
+fn scalars() -> ElementType {
+    ElementType::Scalars {
+        num_comp: 1,
+        lookup_table: None,
+    }
+}
+
+/// x, y of node after node as vectors with z = 0.
+fn planar_vectors(name: &str, values: &[f64]) -> Attribute {
+    let vectors = values.chunks_exact(2).flat_map(|v| [v[0], v[1], 0.0]);
+    array(name, ElementType::Vectors, vectors.collect())
+}
+
+fn array(name: &str, elem: ElementType, values: Vec<f64>) -> Attribute {
+    Attribute::DataArray(DataArray {
+        name: name.to_owned(),
+        elem,
+        data: IOBuffer::F64(values),
+    })
+}
+
+fn encode(title: &str, grid: UnstructuredGridPiece) -> Vec<u8> {
+    let file = Vtk {
+        version: Version::new_xml(1, 0),
+        title: title.to_owned(),
+        byte_order: ByteOrder::LittleEndian,
+        data: DataSet::inline(grid),
+        file_path: None,
+    };
+    let mut bytes = Vec::new();
+    file.write_xml(&mut bytes)
+        .expect("a grid with matching arrays can be written to memory");
+    bytes
+}
+
+/// ParaView's collection of a model's files, with the stretch as its time.
+fn collection(model: Model, stretches: &[f64]) -> Vec<u8> {
+    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
+    let steps = stretches.iter().enumerate();
+    let data_set = |writer: &mut Writer<Vec<u8>>, (step, stretch): (usize, &f64)| {
+        let (time, file) = (stretch.to_string(), model.file_name(step));
+        let attributes = [
+            ("timestep", time.as_str()),
+            ("part", "0"),
+            ("file", file.as_str()),
+        ];
+        writer
+            .create_element("DataSet")
+            .with_attributes(attributes)
+            .write_empty()
+            .map(|_| ())
+    };
+    let document = |writer: &mut Writer<Vec<u8>>| {
+        writer.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
+        let attributes = [("type", "Collection"), ("version", "0.1")];
+        let file = writer.create_element("VTKFile").with_attributes(attributes);
+        file.write_inner_content(|writer| {
+            let collection = writer.create_element("Collection");
+            collection.write_inner_content(|writer| {
+                steps.clone().try_for_each(|step| data_set(writer, step))
+            })?;
+            Ok(())
+        })?;
+        Ok::<(), std::io::Error>(())
+    };
+    document(&mut writer).expect("writing to memory does not fail");
+    writer.into_inner()
+}
