@@ -8,7 +8,11 @@ use crate::results::Results;
 use crate::study::Study;
 
 mod figures;
+mod html;
+mod json;
+mod markdown;
 pub mod picture;
+mod report;
 mod vtk;
 
 /// Writes everything a study asks for into its folder and returns the files in the order of writing.
@@ -22,9 +26,26 @@ pub fn write(study: &Study, results: &Results, folder: &Path) -> Result<Vec<Path
             written.push(save(&folder.join("vtk").join(name), &bytes)?);
         }
     }
-    let figures = figures::figures(study, results);
-    for figure in figures.iter().filter(|_| study.output.plots) {
+    let figures = if study.output.plots {
+        figures::figures(study, results)
+    } else {
+        Vec::new()
+    };
+    for figure in &figures {
         written.push(save(&folder.join(&figure.name), &figure.png)?);
+    }
+    if study.output.report {
+        let blocks = report::report(study, results, &figures);
+        let json = json::json(study, results);
+        let page = html::html(&study.title, &blocks, &figures);
+        let reports = [
+            ("report.json", format!("{json:#}\n")),
+            ("report.html", page),
+            ("report.md", markdown::markdown(&blocks, &figures)),
+        ];
+        for (name, text) in reports {
+            written.push(save(&folder.join(name), text.as_bytes())?);
+        }
     }
     Ok(written)
 }

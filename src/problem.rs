@@ -163,6 +163,12 @@ impl Problem {
 
     /// `50 % stretch`, for messages.
     pub fn describe_step(stretch: f64) -> String {
-        format!("{:.4} % stretch", 100.0 * stretch).replace(".0000", "")
+        format!("{} % stretch", Self::percent(stretch))
+    }
+
+    /// A ratio in percent, as short as it can be written.
+    pub fn percent(ratio: f64) -> String {
+        let text = format!("{:.4}", 100.0 * ratio);
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
     }
 }

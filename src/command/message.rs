@@ -8,6 +8,7 @@ use miette::{
 
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
+use crate::problem::Problem;
 use crate::results::{Requirement, Results};
 use crate::study::Study;
 
@@ -70,8 +71,8 @@ pub fn summary(results: &Results, requirements: &[Requirement]) -> String {
     for step in &results.comparison {
         let (before, after) = (&step.mass_spring, &step.corrected);
         text += &format!(
-            "{:>5.4} %  {:>12.3}  {:>9.2}  {:>5.2}   {:>12.4}  {:>9.3}  {:>5.3}\n",
-            format!("{}", 100.0 * step.stretch),
+            "{:>5} %  {:>12.3}  {:>9.2}  {:>5.2}   {:>12.4}  {:>9.3}  {:>5.3}\n",
+            Problem::percent(step.stretch),
             before.displacement_percent,
             before.departure_percent,
             before.force_percent.abs(),

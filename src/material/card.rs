@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::law::HyperelasticLaw;
 use super::parameters::{OffsetTreatment, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS};
+use super::uniaxial::uniaxial;
 use crate::document::{Bound, Document, Faults};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
@@ -156,6 +157,42 @@ impl Card {
             .map(|(_, value, _)| *value)
     }
 
+    /// The published tension curve σ₀ + A e^{b ε} behind the card as nominal stress in MPa, with its
+    /// stress at rest; nothing for cards that are not made from such a curve.
+    pub fn published_nominal_stress(&self, stretch: f64) -> Option<f64> {
+        let [amplitude, exponent, offset] =
+            ["amplitude", "exponent", "offset"].map(|key| self.parameter(key));
+        let strain = match self.strain_measure {
+            StrainMeasure::Nominal => stretch - 1.0,
+            StrainMeasure::Logarithmic => stretch.ln(),
+        };
+        let stress = offset? + amplitude? * (exponent? * strain).exp();
+        Some(match self.stress_measure {
+            StressMeasure::Nominal => stress,
+            StressMeasure::Cauchy => stress / stretch,
+        })
+    }
+
+    /// How far the law's tension curve is from the published one without its stress at rest, over the
+    /// range of the card: largest difference in % of the largest stress.
+    pub fn fit_error_percent(&self) -> Option<f64> {
+        let at_rest = self.published_nominal_stress(1.0)?;
+        let [low, high] = self.stretch_range;
+        let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+        for i in 0..=200 {
+            let stretch = low + (high - low) * f64::from(i) / 200.0;
+            let offset = match self.stress_measure {
+                StressMeasure::Nominal => at_rest,
+                StressMeasure::Cauchy => at_rest / stretch,
+            };
+            let published = self.published_nominal_stress(stretch)? - offset;
+            let law = uniaxial(&*self.law, stretch - 1.0).nominal_stress;
+            worst = worst.max((law - published).abs());
+            largest = largest.max(published.abs());
+        }
+        Some(100.0 * worst / largest)
+    }
+
     /// Whether the card may be used at the stretch `lambda`.
     pub fn covers(&self, lambda: f64) -> bool {
         (self.stretch_range[0]..=self.stretch_range[1] * (1.0 + 1e-12)).contains(&lambda)
@@ -188,6 +225,17 @@ mod tests {
                 "{name}"
             );
         }
+    }
+
+    #[test]
+    fn the_law_reproduces_the_published_curve() {
+        for name in ["pva-10", "pva-10-cauchy"] {
+            let card = Card::load(name, Path::new(".")).unwrap();
+            assert!(card.fit_error_percent().unwrap() < 1e-10, "{name}");
+            assert!((card.published_nominal_stress(1.0).unwrap() - 0.00187).abs() < 1e-12);
+        }
+        let card = Card::load("neo-hooke", Path::new(".")).unwrap();
+        assert_eq!(card.fit_error_percent(), None);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::picture::Scale;
 use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel};
 use super::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::compare::Deviation;
+use crate::compare::StepComparison;
 use crate::material::{Card, uniaxial};
 use crate::mesh::Mesh;
 use crate::problem::{Problem, Solution};
@@ -82,43 +82,56 @@ fn figure(name: &str, caption: &str, png: Vec<u8>) -> Figure {
 pub fn material(card: &Card) -> LineChart {
     let [low, high] = card.stretch_range;
     let (from, to) = (low.min(1.0), high.max(1.0));
+    let law = &*card.law;
     let samples = |nominal_stress: &dyn Fn(f64) -> f64| -> Vec<[f64; 2]> {
         let stretch = |i: i32| from + (to - from) * 1.1 * f64::from(i) / 110.0;
         (0..=110)
             .map(|i| [stretch(i), nominal_stress(stretch(i))])
             .collect()
     };
-    let law = &*card.law;
-    let line = |label: &str, colour, stroke, points| Line {
+    let tension = |stretch: f64| uniaxial::uniaxial(law, stretch - 1.0).nominal_stress;
+    // Equibiaxial tension is much stiffer: its curve ends where it would press the others flat.
+    let highest = samples(&tension)
+        .iter()
+        .fold(0.0, |most: f64, point| most.max(1.6 * point[1]));
+    let line = |label: &str, colour, stroke, points: Vec<[f64; 2]>| Line {
         label: label.to_owned(),
-        points,
+        points: points
+            .into_iter()
+            .filter(|point| point[1].abs() <= highest)
+            .collect(),
         colour,
         stroke,
     };
+    let mut lines = vec![
+        line("uniaxial", CORRECTED, Stroke::Solid, samples(&tension)),
+        line(
+            "planar",
+            SECOND,
+            Stroke::Dashed,
+            samples(&|stretch| uniaxial::planar(law, stretch)),
+        ),
+        line(
+            "equibiaxial",
+            THIRD,
+            Stroke::Dashed,
+            samples(&|stretch| uniaxial::equibiaxial(law, stretch)),
+        ),
+    ];
+    if card.published_nominal_stress(1.0).is_some() {
+        let published = |stretch| card.published_nominal_stress(stretch).unwrap_or(f64::NAN);
+        lines.push(line(
+            "published curve",
+            MASS_SPRING,
+            Stroke::Dashed,
+            samples(&published),
+        ));
+    }
     LineChart {
         title: card.title.clone(),
         x: Axis::linear("stretch λ [–]"),
         y: Axis::linear("nominal stress [MPa]"),
-        lines: vec![
-            line(
-                "uniaxial",
-                CORRECTED,
-                Stroke::Solid,
-                samples(&|stretch| uniaxial::uniaxial(law, stretch - 1.0).nominal_stress),
-            ),
-            line(
-                "planar",
-                SECOND,
-                Stroke::Dashed,
-                samples(&|stretch| uniaxial::planar(law, stretch)),
-            ),
-            line(
-                "equibiaxial",
-                THIRD,
-                Stroke::Dashed,
-                samples(&|stretch| uniaxial::equibiaxial(law, stretch)),
-            ),
-        ],
+        lines,
         band: Some(([low, high], "range of the card".to_owned())),
     }
 }
@@ -193,37 +206,41 @@ fn cells(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec
 
 fn errors(results: &Results) -> LineChart {
     let mut lines = Vec::new();
-    let measures: [(&str, fn(&Deviation) -> f64, Stroke); 2] = [
-        (
-            "departure from affine",
-            |deviation| deviation.departure_percent,
-            Stroke::Marked,
-        ),
-        (
-            "displacement",
-            |deviation| deviation.displacement_percent,
-            Stroke::Dashed,
-        ),
-    ];
-    for (model, colour) in [("mass-spring", MASS_SPRING), ("corrected", CORRECTED)] {
-        for (name, measure, stroke) in measures {
-            let steps = results.comparison.iter();
-            let points = steps.map(|step| {
-                let deviation = if model == "corrected" {
-                    &step.corrected
-                } else {
-                    &step.mass_spring
-                };
-                [100.0 * step.stretch, measure(deviation)]
-            });
-            lines.push(Line {
-                label: format!("{model}: {name}"),
-                points: points.collect(),
-                colour,
-                stroke,
-            });
-        }
-    }
+    let mut add = |label: &str, colour, stroke, value: &dyn Fn(&StepComparison) -> f64| {
+        let steps = results.comparison.iter();
+        lines.push(Line {
+            label: label.to_owned(),
+            points: steps
+                .map(|step| [100.0 * step.stretch, value(step)])
+                .collect(),
+            colour,
+            stroke,
+        });
+    };
+    add(
+        "mass-spring: departure from affine",
+        MASS_SPRING,
+        Stroke::Marked,
+        &|step| step.mass_spring.departure_percent,
+    );
+    add(
+        "mass-spring: displacement",
+        MASS_SPRING,
+        Stroke::Dashed,
+        &|step| step.mass_spring.displacement_percent,
+    );
+    add(
+        "corrected: departure from affine",
+        CORRECTED,
+        Stroke::Marked,
+        &|step| step.corrected.departure_percent,
+    );
+    add(
+        "corrected: displacement",
+        CORRECTED,
+        Stroke::Dashed,
+        &|step| step.corrected.displacement_percent,
+    );
     LineChart {
         title: "Deviation from the finite elements".into(),
         x: Axis::linear("stretch of the plate [%]"),

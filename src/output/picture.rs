@@ -11,8 +11,10 @@ use resvg::{tiny_skia, usvg};
 pub mod fields;
 pub mod lines;
 
-/// Pixels of the picture for each unit of the drawing.
-const SCALE: f32 = 2.0;
+/// Units of the drawing for each point of the design. plotters rounds to whole units: they must be small.
+const FINE: u32 = 8;
+/// Pixels of the picture for each point of the design.
+const PIXELS: f32 = 2.0;
 const REGULAR: &[u8] = include_bytes!("fonts/dejavu-sans-regular.ttf");
 const BOLD: &[u8] = include_bytes!("fonts/dejavu-sans-bold.ttf");
 const FAMILY: &str = "sans-serif";
@@ -38,7 +40,7 @@ static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// Draws on a white area of `size` units and returns a PNG.
+/// Draws on a white area of `size` points and returns a PNG.
 fn render(
     size: (u32, u32),
     draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> DrawResult<()>,
@@ -46,7 +48,8 @@ fn render(
     let fonts = Arc::clone(&FONTS);
     let mut svg = String::new();
     {
-        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        let area =
+            SVGBackend::with_string(&mut svg, (FINE * size.0, FINE * size.1)).into_drawing_area();
         area.fill(&WHITE).expect("drawing to memory does not fail");
         draw(&area).expect("drawing to memory does not fail");
         area.present().expect("drawing to memory does not fail");
@@ -58,22 +61,35 @@ fn render(
         ..usvg::Options::default()
     };
     let tree = usvg::Tree::from_str(&svg, &options).expect("plotters writes valid SVG");
-    let pixels = |units: u32| (units as f32 * SCALE) as u32;
+    let pixels = |points: u32| (points as f32 * PIXELS) as u32;
     let mut image =
         tiny_skia::Pixmap::new(pixels(size.0), pixels(size.1)).expect("a positive size");
-    let transform = tiny_skia::Transform::from_scale(SCALE, SCALE);
+    let scale = PIXELS / FINE as f32;
+    let transform = tiny_skia::Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut image.as_mut());
     image
         .encode_png()
         .expect("an image can be encoded to memory")
 }
 
+/// Points of the design in units of the drawing.
+fn units(points: i32) -> i32 {
+    points * FINE as i32
+}
+
+/// A line of some width in points.
+fn stroke(colour: RGBColor, width: u32) -> ShapeStyle {
+    colour.stroke_width(FINE * width)
+}
+
 fn text(size: u32) -> TextStyle<'static> {
-    (FAMILY, size).into_font().color(&INK)
+    (FAMILY, FINE * size).into_font().color(&INK)
 }
 
 fn bold(size: u32) -> TextStyle<'static> {
-    (FAMILY, size, FontStyle::Bold).into_font().color(&INK)
+    (FAMILY, FINE * size, FontStyle::Bold)
+        .into_font()
+        .color(&INK)
 }
 
 /// A number as an axis shows it: no trailing zeros, a true minus sign.
@@ -144,14 +160,9 @@ impl Scale {
                 } else {
                     0.5 * high.abs().max(1.0)
                 };
-                (
-                    if low >= 0.0 {
-                        low.min(0.0)
-                    } else {
-                        low - margin
-                    },
-                    high + margin,
-                )
+                // Zero is shown where it is near.
+                let from_zero = low >= 0.0 && low < 0.4 * high;
+                (if from_zero { 0.0 } else { low - margin }, high + margin)
             }
         }
     }

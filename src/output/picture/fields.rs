@@ -1,9 +1,10 @@
 //! Fields on deformed plates, several beside each other on one colour scale.
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{DrawResult, INK, PALE, Scale, bold, render, text};
+use super::{DrawResult, FINE, INK, Scale, bold, render, stroke, text, tick};
 
 /// A cell: its corners in mm and its value.
 pub type FieldCell = ([[f64; 2]; 4], f64);
@@ -41,92 +42,104 @@ pub struct FieldFigure {
     pub panels: Vec<Panel>,
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-
-const WIDTH: u32 = 960;
-const MARGIN: f64 = 56.0;
-const BAR_WIDTH: u32 = 130;
-const TITLE_HEIGHT: u32 = 46;
-const AXIS_HEIGHT: f64 = 46.0;
+const WIDTH: f64 = 960.0;
+const LEFT: f64 = 56.0;
+const RIGHT: f64 = 146.0;
+const TITLE_HEIGHT: f64 = 46.0;
 const LABEL_HEIGHT: f64 = 26.0;
+const AXIS_HEIGHT: f64 = 46.0;
+
+/// Positions of the lowest and the highest colour on the colour bar.
+type Range = (f64, f64);
+
+/// Where the panels lie, in points.
+struct Layout {
+    low: [f64; 2],
+    high: [f64; 2],
+    points_per_mm: f64,
+}
+
+impl Layout {
+    fn panel_height(&self) -> f64 {
+        LABEL_HEIGHT + (self.high[1] - self.low[1]) * self.points_per_mm
+    }
+
+    fn panel_top(&self, index: usize) -> f64 {
+        TITLE_HEIGHT + self.panel_height() * index as f64
+    }
+
+    /// A place on the plate of a panel.
+    fn place(&self, panel: usize, [x, y]: [f64; 2]) -> [f64; 2] {
+        let top = self.panel_top(panel) + LABEL_HEIGHT;
+        [
+            LEFT + (x - self.low[0]) * self.points_per_mm,
+            top + (self.high[1] - y) * self.points_per_mm,
+        ]
+    }
+}
 
 impl FieldFigure {
     /// The figure as a PNG.
     pub fn png(&self) -> Vec<u8> {
-        let [low, high] = self.extent();
-        let plot_width = f64::from(WIDTH - BAR_WIDTH) - MARGIN - 14.0;
-        let pixels_per_mm = plot_width / (high[0] - low[0]);
-        let plot_height = (high[1] - low[1]) * pixels_per_mm;
-        let panel_height = plot_height + LABEL_HEIGHT;
-        let panels_height = panel_height * self.panels.len() as f64;
-        let height = TITLE_HEIGHT + (panels_height + AXIS_HEIGHT) as u32;
+        let layout = self.layout();
         let range = self.range();
-        render((WIDTH, height), |area| {
-            let centre = Pos::new(HPos::Left, VPos::Center);
-            area.draw(&Text::new(
-                self.title.clone(),
-                (MARGIN as i32, 24),
-                bold(17).pos(centre),
-            ))?;
+        let bottom = layout.panel_top(self.panels.len());
+        render((WIDTH as u32, (bottom + AXIS_HEIGHT) as u32), |area| {
+            let pen = Pen(area);
+            pen.write(&self.title, [LEFT, 24.0], bold(17), HPos::Left)?;
+            pen.write(&self.quantity, [WIDTH - 16.0, 24.0], text(13), HPos::Right)?;
             for (index, panel) in self.panels.iter().enumerate() {
-                let top = f64::from(TITLE_HEIGHT) + panel_height * index as f64;
-                let place = |[x, y]: [f64; 2]| {
-                    let x = MARGIN + (x - low[0]) * pixels_per_mm;
-                    let y = top + LABEL_HEIGHT + (high[1] - y) * pixels_per_mm;
-                    (x.round() as i32, y.round() as i32)
-                };
-                let label = (MARGIN as i32, (top + LABEL_HEIGHT / 2.0) as i32);
-                area.draw(&Text::new(panel.label.clone(), label, text(14).pos(centre)))?;
-                self.draw_cells(area, panel, range, &place)?;
-                draw_width_axis(area, low, high, &place)?;
-                if index + 1 == self.panels.len() {
-                    draw_length_axis(area, low, high, &place)?;
+                let label = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
+                pen.write(&panel.label, label, text(14), HPos::Left)?;
+                for (corners, value) in &panel.cells {
+                    let position = self.scale.position(*value).unwrap_or(range.0);
+                    let corners = corners.map(|corner| layout.place(index, corner));
+                    pen.fill(&corners, self.colour(share(position, range)))?;
                 }
+                draw_width_axis(&pen, &layout, index)?;
             }
-            let bar = [
-                TITLE_HEIGHT as i32 + LABEL_HEIGHT as i32,
-                (f64::from(TITLE_HEIGHT) + panels_height) as i32,
-            ];
-            self.draw_bar(area, range, bar)
+            draw_length_axis(&pen, &layout, self.panels.len() - 1)?;
+            self.draw_bar(&pen, range, [TITLE_HEIGHT + LABEL_HEIGHT, bottom])
         })
     }
 
-    /// Smallest and largest coordinates of all plates.
-    fn extent(&self) -> [[f64; 2]; 2] {
-        let corners = self
-            .panels
-            .iter()
-            .flat_map(|panel| &panel.cells)
-            .flat_map(|cell| cell.0);
-        let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        corners.fold(start, |[low, high], [x, y]| {
-            [
-                [low[0].min(x), low[1].min(y)],
-                [high[0].max(x), high[1].max(y)],
-            ]
-        })
-    }
-
-    /// Positions of the smallest and the largest value on the colour bar.
-    fn range(&self) -> (f64, f64) {
-        let values = self.panels.iter().flat_map(|panel| &panel.cells);
-        let positions = values.filter_map(|cell| self.scale.position(cell.1));
-        match self.colours {
-            Colours::Diverging => {
-                let largest = positions.fold(0.0, |most: f64, value| most.max(value.abs()));
-                let largest = if largest > 0.0 { largest } else { 1.0 };
-                (-largest, largest)
-            }
-            Colours::Sequential => {
-                let highest = self.scale.limits(positions.clone()).1;
-                let lowest = positions.fold(highest, f64::min);
-                let shown = match self.scale {
-                    // Four decades tell all; below them lie single nodes that happen to be exact.
-                    Scale::Logarithmic => lowest.floor().max(highest - 5.0),
-                    Scale::Linear => lowest,
+    fn layout(&self) -> Layout {
+        let cells = self.panels.iter().flat_map(|panel| &panel.cells);
+        let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let (low, high) = cells
+            .flat_map(|cell| cell.0)
+            .fold(start, |(low, high), corner| {
+                let both = |pick: fn(f64, f64) -> f64, limit: [f64; 2]| {
+                    [pick(limit[0], corner[0]), pick(limit[1], corner[1])]
                 };
-                (shown, highest)
-            }
+                (both(f64::min, low), both(f64::max, high))
+            });
+        Layout {
+            low,
+            high,
+            points_per_mm: (WIDTH - LEFT - RIGHT) / (high[0] - low[0]),
+        }
+    }
+
+    fn range(&self) -> Range {
+        let cells = self.panels.iter().flat_map(|panel| &panel.cells);
+        let positions = cells.filter_map(|cell| self.scale.position(cell.1));
+        let (mut low, mut high) = positions
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+                (low.min(p), high.max(p))
+            });
+        if self.colours == Colours::Diverging {
+            high = high.abs().max(low.abs());
+            low = -high;
+        }
+        if self.scale == Scale::Logarithmic {
+            // Below four decades lie single nodes that happen to be exact.
+            low = low.max(high - 4.0);
+        }
+        if high > low {
+            (low, high)
+        } else {
+            (high - 0.5, high + 0.5)
         }
     }
 
@@ -135,140 +148,122 @@ impl FieldFigure {
         match self.colours {
             Colours::Sequential => ViridisRGB.get_color(share),
             Colours::Diverging => {
-                let colours = [
+                let blue_to_red = [
                     RGBColor(33, 102, 172),
                     RGBColor(146, 197, 222),
                     RGBColor(247, 247, 247),
                     RGBColor(244, 165, 130),
                     RGBColor(178, 24, 43),
                 ];
-                DerivedColorMap::new(&colours).get_color(share)
+                DerivedColorMap::new(&blue_to_red).get_color(share)
             }
         }
     }
 
-    fn draw_cells(
-        &self,
-        area: &Area<'_>,
-        panel: &Panel,
-        (low, high): (f64, f64),
-        place: &dyn Fn([f64; 2]) -> (i32, i32),
-    ) -> DrawResult<()> {
-        for (corners, value) in &panel.cells {
-            let position = self.scale.position(*value).unwrap_or(low);
-            let colour = self.colour((position - low) / (high - low));
-            area.draw(&Polygon::new(corners.map(place).to_vec(), colour.filled()))?;
+    fn draw_bar(&self, pen: &Pen, range: Range, [top, bottom]: [f64; 2]) -> DrawResult<()> {
+        const BANDS: i32 = 256;
+        let left = WIDTH - RIGHT + 38.0;
+        let right = left + 18.0;
+        let height = |share: f64| bottom + share * (top - bottom);
+        for band in 0..BANDS {
+            let [from, to] =
+                [band, band + 1].map(|edge| height(f64::from(edge) / f64::from(BANDS)));
+            let colour = self.colour((f64::from(band) + 0.5) / f64::from(BANDS));
+            pen.fill(
+                &[[left, from], [right, from], [right, to], [left, to]],
+                colour,
+            )?;
         }
-        Ok(())
-    }
-
-    fn draw_bar(
-        &self,
-        area: &Area<'_>,
-        (low, high): (f64, f64),
-        [top, bottom]: [i32; 2],
-    ) -> DrawResult<()> {
-        let left = (WIDTH - BAR_WIDTH) as i32 + 22;
-        let right = left + 18;
-        for y in top..bottom {
-            let share = f64::from(bottom - 1 - y) / f64::from(bottom - 1 - top);
-            area.draw(&Rectangle::new(
-                [(left, y), (right, y + 1)],
-                self.colour(share).filled(),
-            ))?;
+        let frame = [
+            [left, top],
+            [right, top],
+            [right, bottom],
+            [left, bottom],
+            [left, top],
+        ];
+        pen.line(&frame)?;
+        for position in ticks(range, self.scale) {
+            let y = height(share(position, range));
+            pen.line(&[[right, y], [right + 4.0, y]])?;
+            pen.write(
+                &self.scale.label(position),
+                [right + 8.0, y],
+                text(13),
+                HPos::Left,
+            )?;
         }
-        area.draw(&Rectangle::new(
-            [(left, top), (right, bottom)],
-            INK.stroke_width(1),
-        ))?;
-        let style = text(13).pos(Pos::new(HPos::Left, VPos::Center));
-        for position in ticks(low, high, self.scale) {
-            let share = (position - low) / (high - low);
-            let y = bottom - (share * f64::from(bottom - top)).round() as i32;
-            area.draw(&PathElement::new(vec![(right, y), (right + 4, y)], INK))?;
-            area.draw(&Text::new(
-                self.scale.label(position),
-                (right + 8, y),
-                style.clone(),
-            ))?;
-        }
-        let name = text(13).pos(Pos::new(HPos::Right, VPos::Center));
-        area.draw(&Text::new(
-            self.quantity.clone(),
-            (WIDTH as i32 - 16, 24),
-            name,
-        ))?;
         Ok(())
     }
 }
 
-/// Round positions between `low` and `high`.
-fn ticks(low: f64, high: f64, scale: Scale) -> Vec<f64> {
+fn share(position: f64, (low, high): Range) -> f64 {
+    (position - low) / (high - low)
+}
+
+/// Round positions within a range.
+fn ticks((low, high): Range, scale: Scale) -> Vec<f64> {
+    let raw = (high - low) / 6.0;
+    let decade = 10f64.powf(raw.log10().floor());
+    let nice = [1.0, 2.0, 2.5, 5.0, 10.0].map(|factor| factor * decade);
     let step = match scale {
         Scale::Logarithmic => 1.0,
-        Scale::Linear => {
-            let raw = (high - low) / 6.0;
-            let decade = 10f64.powf(raw.log10().floor());
-            let nice = [1.0, 2.0, 2.5, 5.0, 10.0]
-                .into_iter()
-                .map(|factor| factor * decade);
-            nice.into_iter().find(|step| *step >= raw).unwrap_or(raw)
-        }
+        Scale::Linear => nice.into_iter().find(|step| *step >= raw).unwrap_or(raw),
     };
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
     (first..=last).map(|n| n as f64 * step).collect()
 }
 
-fn draw_width_axis(
-    area: &Area<'_>,
-    low: [f64; 2],
-    high: [f64; 2],
-    place: &dyn Fn([f64; 2]) -> (i32, i32),
-) -> DrawResult<()> {
-    let style = text(12).pos(Pos::new(HPos::Right, VPos::Center));
-    let (x, _) = place(low);
-    for y in [low[1], (low[1] + high[1]) / 2.0, high[1]] {
-        let (_, row) = place([low[0], y]);
-        area.draw(&PathElement::new(vec![(x - 8, row), (x - 3, row)], INK))?;
-        area.draw(&Text::new(
-            super::tick((10.0 * y).round() / 10.0),
-            (x - 11, row),
-            style.clone(),
-        ))?;
+fn draw_width_axis(pen: &Pen, layout: &Layout, panel: usize) -> DrawResult<()> {
+    let [low, high] = [layout.low[1], layout.high[1]];
+    for y in [low, (low + high) / 2.0, high] {
+        let [x, row] = layout.place(panel, [layout.low[0], y]);
+        pen.line(&[[x - 8.0, row], [x - 3.0, row]])?;
+        let number = tick((10.0 * y).round() / 10.0);
+        pen.write(&number, [x - 11.0, row], text(12), HPos::Right)?;
     }
     Ok(())
 }
 
-fn draw_length_axis(
-    area: &Area<'_>,
-    low: [f64; 2],
-    high: [f64; 2],
-    place: &dyn Fn([f64; 2]) -> (i32, i32),
-) -> DrawResult<()> {
-    let style = text(12).pos(Pos::new(HPos::Center, VPos::Top));
-    let (_, bottom) = place(low);
-    area.draw(&PathElement::new(
-        vec![(place(low).0, bottom + 4), (place(high).0, bottom + 4)],
-        PALE,
-    ))?;
-    for x in ticks(low[0], high[0], Scale::Linear) {
-        let (column, _) = place([x, low[1]]);
-        area.draw(&PathElement::new(
-            vec![(column, bottom + 4), (column, bottom + 9)],
-            INK,
-        ))?;
-        area.draw(&Text::new(
-            super::tick(x),
-            (column, bottom + 12),
-            style.clone(),
-        ))?;
+fn draw_length_axis(pen: &Pen, layout: &Layout, panel: usize) -> DrawResult<()> {
+    let [left, bottom] = layout.place(panel, layout.low);
+    let [right, _] = layout.place(panel, layout.high);
+    let y = bottom + 6.0;
+    pen.line(&[[left, y], [right, y]])?;
+    for x in ticks((layout.low[0], layout.high[0]), Scale::Linear) {
+        let [column, _] = layout.place(panel, [x, layout.low[1]]);
+        pen.line(&[[column, y], [column, y + 5.0]])?;
+        pen.write(&tick(x), [column, y + 14.0], text(12), HPos::Center)?;
     }
-    let name = text(12).pos(Pos::new(HPos::Right, VPos::Top));
-    area.draw(&Text::new(
-        "x, y in mm".to_owned(),
-        (place(high).0, bottom + 28),
-        name,
-    ))?;
-    Ok(())
+    pen.write("x, y [mm]", [right + 14.0, y + 14.0], text(12), HPos::Left)
+}
+
+/// Draws at places in points.
+struct Pen<'a, 'b>(&'a DrawingArea<SVGBackend<'b>, Shift>);
+
+impl Pen<'_, '_> {
+    fn at([x, y]: [f64; 2]) -> (i32, i32) {
+        [x, y]
+            .map(|points| (points * f64::from(FINE)).round() as i32)
+            .into()
+    }
+
+    fn write(&self, words: &str, place: [f64; 2], style: TextStyle, align: HPos) -> DrawResult<()> {
+        let style = style.pos(Pos::new(align, VPos::Center));
+        self.0
+            .draw(&Text::new(words.to_owned(), Self::at(place), style))?;
+        Ok(())
+    }
+
+    fn line(&self, places: &[[f64; 2]]) -> DrawResult<()> {
+        let places: Vec<_> = places.iter().copied().map(Self::at).collect();
+        self.0.draw(&PathElement::new(places, stroke(INK, 1)))?;
+        Ok(())
+    }
+
+    fn fill(&self, places: &[[f64; 2]], colour: RGBColor) -> DrawResult<()> {
+        let places: Vec<_> = places.iter().copied().map(Self::at).collect();
+        self.0.draw(&Polygon::new(places, colour.filled()))?;
+        Ok(())
+    }
 }

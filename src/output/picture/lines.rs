@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{INK, PALE, Scale, bold, render, text};
+use super::{FINE, INK, PALE, Scale, bold, render, stroke, text, units};
 
 /// One axis.
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ impl LineChart {
     /// The chart as a PNG.
     pub fn png(&self) -> Vec<u8> {
         render(SIZE, |area| {
-            let (chart_area, legend) = area.split_horizontally(SIZE.0 - LEGEND_WIDTH);
+            let (chart_area, legend) = area.split_horizontally(FINE * (SIZE.0 - LEGEND_WIDTH));
             let positions = |axis: usize| {
                 let scale = [self.x.scale, self.y.scale][axis];
                 let points = self.lines.iter().flat_map(|line| &line.points);
@@ -88,11 +88,14 @@ impl LineChart {
             };
             let (left, right) = self.x.scale.limits(positions(0));
             let (bottom, top) = self.y.scale.limits(positions(1));
+            let title = bold(17).pos(Pos::new(HPos::Left, VPos::Center));
+            let place = (units(88), units(24));
+            area.draw(&Text::new(self.title.clone(), place, title))?;
             let mut chart = ChartBuilder::on(&chart_area)
-                .caption(&self.title, bold(17))
-                .margin(14)
-                .x_label_area_size(48)
-                .y_label_area_size(74)
+                .margin(units(14))
+                .margin_top(units(46))
+                .x_label_area_size(units(48))
+                .y_label_area_size(units(74))
                 .build_cartesian_2d(left..right, bottom..top)?;
             if let Some(([from, to], _)) = &self.band {
                 let corners = [(from.max(left), bottom), (to.min(right), top)];
@@ -104,8 +107,9 @@ impl LineChart {
                 .y_desc(&self.y.label)
                 .axis_desc_style(text(14))
                 .label_style(text(13))
-                .axis_style(INK)
-                .bold_line_style(PALE)
+                .axis_style(stroke(INK, 1))
+                .bold_line_style(stroke(PALE, 1))
+                .set_all_tick_mark_size(units(4))
                 .light_line_style(TRANSPARENT)
                 .x_labels(8)
                 .y_labels(match self.y.scale {
@@ -121,20 +125,25 @@ impl LineChart {
                 };
                 let points: Vec<_> = line.points.iter().filter_map(position).collect();
                 let colour = line.rgb();
-                let stroke = colour.stroke_width(2);
+                let pen = stroke(colour, 2);
                 match line.stroke {
                     Stroke::Dashed => {
-                        chart.draw_series(DashedLineSeries::new(points.clone(), 7, 5, stroke))?;
+                        chart.draw_series(DashedLineSeries::new(
+                            points.clone(),
+                            7 * FINE,
+                            5 * FINE,
+                            pen,
+                        ))?;
                     }
                     Stroke::Points => {}
                     Stroke::Solid | Stroke::Marked => {
-                        chart.draw_series(LineSeries::new(points.clone(), stroke))?;
+                        chart.draw_series(LineSeries::new(points.clone(), pen))?;
                     }
                 }
                 if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
                     let markers = points
                         .iter()
-                        .map(|point| Circle::new(*point, 4, colour.filled()));
+                        .map(|point| Circle::new(*point, units(4), colour.filled()));
                     chart.draw_series(markers)?;
                 }
             }
@@ -147,33 +156,38 @@ impl LineChart {
         area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
     ) -> super::DrawResult<()> {
         let style = text(13).pos(Pos::new(HPos::Left, VPos::Center));
-        let mut y = 62;
+        let (left, right) = (units(4), units(34));
+        let mut y = units(62);
         for line in self.lines.iter().filter(|line| !line.label.is_empty()) {
             let colour = line.rgb();
-            let stroke = colour.stroke_width(2);
-            let sample = [(4, y), (34, y)];
+            let pen = stroke(colour, 2);
+            let sample = [(left, y), (right, y)];
             match line.stroke {
                 Stroke::Dashed => {
-                    for x in [4, 16, 28] {
-                        area.draw(&PathElement::new(vec![(x, y), (x + 6, y)], stroke))?;
+                    for x in [4, 16, 28].map(units) {
+                        area.draw(&PathElement::new(vec![(x, y), (x + units(6), y)], pen))?;
                     }
                 }
                 Stroke::Points => {}
-                Stroke::Solid | Stroke::Marked => area.draw(&PathElement::new(sample, stroke))?,
+                Stroke::Solid | Stroke::Marked => area.draw(&PathElement::new(sample, pen))?,
             }
             if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
-                area.draw(&Circle::new((19, y), 4, colour.filled()))?;
+                area.draw(&Circle::new((units(19), y), units(4), colour.filled()))?;
             }
-            area.draw(&Text::new(line.label.clone(), (42, y), style.clone()))?;
-            y += 24;
+            area.draw(&Text::new(
+                line.label.clone(),
+                (units(42), y),
+                style.clone(),
+            ))?;
+            y += units(24);
         }
         if let Some((_, name)) = &self.band {
-            let box_corners = [(4, y - 7), (34, y + 7)];
+            let box_corners = [(left, y - units(7)), (right, y + units(7))];
             area.draw(&Rectangle::new(
                 box_corners,
                 RGBColor(220, 230, 241).filled(),
             ))?;
-            area.draw(&Text::new(name.clone(), (42, y), style))?;
+            area.draw(&Text::new(name.clone(), (units(42), y), style))?;
         }
         Ok(())
     }

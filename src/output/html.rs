@@ -1,0 +1,76 @@
+//! A report as one HTML page with its pictures inside.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::figures::Figure;
+use super::report::Block;
+
+const STYLE: &str = "
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.7rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .25rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #e2e2e2; }
+th { border-bottom: 2px solid #999; font-weight: 600; }
+td.number { text-align: right; white-space: nowrap; }
+td.pass { color: #176b2c; font-weight: 600; } td.fail { color: #b00020; font-weight: 600; }
+figure { margin: 1.5rem 0; } img { max-width: 100%; border: 1px solid #eee; } figcaption { color: #555; font-size: .9rem; }
+pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; }
+";
+
+/// A page that needs nothing beside it.
+pub fn html(title: &str, blocks: &[Block], figures: &[Figure]) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body { @for block in blocks { (render(block, figures)) } }
+        }
+    };
+    page.into_string()
+}
+
+fn render(block: &Block, figures: &[Figure]) -> Markup {
+    match block {
+        Block::Heading(1, text) => html! { h1 { (text) } },
+        Block::Heading(2, text) => html! { h2 { (text) } },
+        Block::Heading(_, text) => html! { h3 { (text) } },
+        Block::Paragraph(text) => html! { p { (text) } },
+        Block::Code(code) => html! { pre { (code) } },
+        Block::Figure(index, caption) => {
+            let data = STANDARD.encode(&figures[*index].png);
+            html! {
+                figure {
+                    img src={ "data:image/png;base64," (data) } alt=(caption);
+                    figcaption { (caption) }
+                }
+            }
+        }
+        Block::Table(head, rows) => html! {
+            div.wide {
+                table {
+                    @if head.iter().any(|cell| !cell.is_empty()) {
+                        thead { tr { @for cell in head { th { (cell) } } } }
+                    }
+                    tbody { @for row in rows { tr { @for cell in row { td class=(class(cell)) { (cell) } } } } }
+                }
+            }
+        },
+    }
+}
+
+fn class(cell: &str) -> &'static str {
+    match cell {
+        "pass" => "pass",
+        "FAIL" => "fail",
+        number if number.parse::<f64>().is_ok() => "number",
+        _ => "",
+    }
+}

@@ -1,0 +1,379 @@
+//! The report of a run: what is said, in which order. How it looks is left to [`super::markdown`] and
+//! [`super::html`].
+
+use crate::compare::{Deviation, StepComparison};
+use crate::finite_element::convergence::Richardson;
+use crate::material::law::HyperelasticLaw;
+use crate::problem::{Problem, Solution};
+use crate::results::{Requirement, Results};
+use crate::study::Study;
+
+use super::figures::Figure;
+
+/// A part of a report.
+pub enum Block {
+    /// A heading of the given level, 1 to 3.
+    Heading(u8, String),
+    /// Running text.
+    Paragraph(String),
+    /// A table: heads with units, and rows.
+    Table(Vec<String>, Vec<Vec<String>>),
+    /// The picture of this index, with its caption.
+    Figure(usize, String),
+    /// Text shown as it is.
+    Code(String),
+}
+
+/// The report of a run with `figures`.
+pub fn report(study: &Study, results: &Results, figures: &[Figure]) -> Vec<Block> {
+    let mut blocks = vec![Block::Heading(1, study.title.clone())];
+    blocks.extend(verdict(study, results));
+    blocks.extend(deviations(study, results));
+    blocks.extend(forces(results));
+    blocks.extend(error_budget(study, results));
+    blocks.extend(reference(study, results));
+    blocks.extend(convergence(results));
+    blocks.extend(material(study));
+    if !figures.is_empty() {
+        blocks.push(Block::Heading(2, "Pictures".into()));
+    }
+    let pictures = figures.iter().enumerate();
+    blocks.extend(pictures.map(|(index, figure)| Block::Figure(index, figure.caption.clone())));
+    blocks.push(Block::Heading(2, "Study".into()));
+    blocks.extend(
+        study
+            .warnings
+            .iter()
+            .map(|warning| Block::Paragraph(format!("Warning: {warning}"))),
+    );
+    blocks.push(Block::Code(study.text.clone()));
+    blocks.push(Block::Paragraph(format!(
+        "gelbench {}",
+        env!("CARGO_PKG_VERSION")
+    )));
+    blocks.extend(times(results));
+    blocks
+}
+
+fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Block {
+    let head = head.iter().map(|cell| (*cell).to_owned()).collect();
+    Block::Table(head, rows.into_iter().collect())
+}
+
+fn heading(text: &str) -> Block {
+    Block::Heading(2, text.to_owned())
+}
+
+fn verdict(study: &Study, results: &Results) -> Vec<Block> {
+    let [length, width] = study.problem.size;
+    let [nx, ny] = study.cells;
+    let requirements = results.requirements(&study.tolerances);
+    let passed = requirements.iter().all(|requirement| requirement.passed);
+    let what = format!(
+        "A clamped plate of {length} × {width} × {} mm, {}. The mass-spring model on {nx} × {ny} cells, \
+         the corrected field on the same nodes, and the finite elements that both are compared with: {}.",
+        study.problem.thickness,
+        study.card.title,
+        results.finest().model.describe()
+    );
+    let result = if passed { "passed" } else { "failed" };
+    let row = |requirement: &Requirement| {
+        vec![
+            requirement.name.to_owned(),
+            format!("{:.3}", requirement.worst),
+            format!(
+                "{} {}",
+                if requirement.at_most { "≤" } else { "≥" },
+                requirement.limit
+            ),
+            if requirement.passed { "pass" } else { "FAIL" }.to_owned(),
+        ]
+    };
+    vec![
+        Block::Paragraph(what),
+        Block::Paragraph(format!("The corrected field has {result}:")),
+        table(
+            &["requirement", "worst stretch [%]", "wanted [%]", "result"],
+            requirements.iter().map(row),
+        ),
+    ]
+}
+
+fn deviations(study: &Study, results: &Results) -> Vec<Block> {
+    let row = |stretch: f64, model: &str, deviation: &Deviation, correction: String| {
+        vec![
+            Problem::percent(stretch),
+            model.to_owned(),
+            format!("{:.4}", deviation.displacement_percent),
+            format!("{:.3}", deviation.departure_percent),
+            format!("{:.4}", deviation.max_difference),
+            format!("{:+.3}", deviation.force_percent),
+            format!("{:+.4}", deviation.width_percent),
+            format!("{:.3}", deviation.nominal_stress_percent),
+            correction,
+        ]
+    };
+    let rows = |step: &StepComparison| {
+        let correction = step.correction_percent(|deviation| deviation.departure_percent);
+        [
+            row(step.stretch, "mass-spring", &step.mass_spring, "–".into()),
+            row(
+                step.stretch,
+                "corrected",
+                &step.corrected,
+                format!("{correction:.2}"),
+            ),
+        ]
+    };
+    let head = [
+        "stretch [%]",
+        "model",
+        "displacement [%]",
+        "departure from affine [%]",
+        "largest difference [mm]",
+        "force [%]",
+        "width at mid length [%]",
+        "nominal stress [%]",
+        "correction [%]",
+    ];
+    vec![
+        heading("Deviation from the finite elements"),
+        table(&head, results.comparison.iter().flat_map(rows)),
+        Block::Paragraph(format!(
+            "Displacement and departure are relative L2 norms over the plate, weighted by area; the departure \
+             has the affine stretch subtracted from both fields and is the strict measure. The nominal stress \
+             is a relative L2 norm over the cells more than {:.0} mm from the corners, where it is singular; \
+             for the mass-spring model it is the material's stress at the gradient of its field. \
+             Correction is 1 − e(corrected)/e(mass-spring) of the departure.",
+            study.problem.size[1] / 5.0
+        )),
+    ]
+}
+
+fn forces(results: &Results) -> Vec<Block> {
+    let row = |(index, step): (usize, &StepComparison)| {
+        let corrected = &results.corrected[index].solution;
+        let models = [
+            &results.uncorrected[index],
+            corrected,
+            &results.finest().solutions[index],
+        ];
+        let mut cells = vec![Problem::percent(step.stretch)];
+        cells.extend(models.map(|solution| format!("{:.5}", solution.force)));
+        cells.extend(models.map(|solution| format!("{:.5}", solution.mid_width)));
+        cells.extend(models.map(|solution| format!("{:.4}", solution.energy)));
+        cells
+    };
+    let head = [
+        "stretch [%]",
+        "force, mass-spring [N]",
+        "force, corrected [N]",
+        "force, finite elements [N]",
+        "width, mass-spring [mm]",
+        "width, corrected [mm]",
+        "width, finite elements [mm]",
+        "energy, mass-spring [mJ]",
+        "energy, corrected [mJ]",
+        "energy, finite elements [mJ]",
+    ];
+    vec![
+        heading("Force, width at mid length and strain energy"),
+        table(&head, results.comparison.iter().enumerate().map(row)),
+    ]
+}
+
+fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
+    let fit = match study.card.fit_error_percent() {
+        Some(error) => format!("{error:.1e}"),
+        None => "–".into(),
+    };
+    let row = |(index, step): (usize, &StepComparison)| {
+        let residuals = &results.corrected[index].solution.convergence.residuals;
+        vec![
+            Problem::percent(step.stretch),
+            fit.clone(),
+            format!("{:.3}", step.mass_spring.departure_percent),
+            format!(
+                "{:.1e}",
+                100.0 * residuals.last().copied().unwrap_or(f64::NAN)
+            ),
+            format!("{:.3}", step.corrected.departure_percent),
+            format!("{:.4}", step.reference.displacement_percent),
+            format!("{:.4}", step.reference.force.error_percent),
+        ]
+    };
+    let head = [
+        "stretch [%]",
+        "law: distance to the published curve [%]",
+        "lattice: departure before the correction [%]",
+        "corrector: residual left over [%]",
+        "differences: departure after the correction [%]",
+        "finite elements: displacement [%]",
+        "finite elements: force [%]",
+    ];
+    vec![
+        heading("Error budget"),
+        table(&head, results.comparison.iter().enumerate().map(row)),
+        Block::Paragraph(
+            "Each column is one source of error. The lattice's is what the springs cannot do; it is removed by \
+             the correction. What remains is the discretisation error of the corrector's finite differences on \
+             the lattice's nodes, and the finite elements' own discretisation error, estimated from three meshes."
+                .into(),
+        ),
+    ]
+}
+
+fn reference(study: &Study, results: &Results) -> Vec<Block> {
+    let order = |order: f64| {
+        if order.is_nan() {
+            "–".into()
+        } else {
+            format!("{order:.2}")
+        }
+    };
+    let quantity = |value: &Richardson| {
+        [
+            format!("{:.5}", value.extrapolated),
+            order(value.order),
+            format!("{:.5}", value.error_percent),
+        ]
+    };
+    let row = |step: &StepComparison| {
+        let own = &step.reference;
+        let mut cells = vec![Problem::percent(step.stretch)];
+        cells.extend(quantity(&own.force));
+        cells.extend(quantity(&own.width));
+        cells.extend([
+            order(own.displacement_order),
+            format!("{:.5}", own.displacement_percent),
+        ]);
+        cells
+    };
+    let meshes = study.reference_meshes().map(|[x, y]| format!("{x} × {y}"));
+    let head = [
+        "stretch [%]",
+        "force, extrapolated [N]",
+        "order",
+        "error of the finest mesh [%]",
+        "width, extrapolated [mm]",
+        "order",
+        "error of the finest mesh [%]",
+        "displacement: order",
+        "error of the finest mesh [%]",
+    ];
+    vec![
+        heading("The finite elements' own error"),
+        Block::Paragraph(format!(
+            "{} elements on {}, {} and {} cells; Richardson's extrapolation with the observed order. The \
+             clamped corners are singular, which lowers the order.",
+            study.element.name(),
+            meshes[0],
+            meshes[1],
+            meshes[2]
+        )),
+        table(&head, results.comparison.iter().map(row)),
+    ]
+}
+
+fn convergence(results: &Results) -> Vec<Block> {
+    let row = |stretch: f64, model: &str, solution: &Solution| {
+        let log = &solution.convergence;
+        let cell = |residual: Option<&f64>| residual.map_or("–".into(), |r| format!("{r:.1e}"));
+        vec![
+            Problem::percent(stretch),
+            model.to_owned(),
+            log.iterations().to_string(),
+            cell(log.residuals.first()),
+            cell(log.residuals.last()),
+            log.cut_steps.to_string(),
+            log.shifted_steps.to_string(),
+        ]
+    };
+    let mut rows = Vec::new();
+    for (index, step) in results.comparison.iter().enumerate() {
+        rows.push(row(
+            step.stretch,
+            "mass-spring",
+            &results.uncorrected[index],
+        ));
+        rows.push(row(
+            step.stretch,
+            "corrector",
+            &results.corrected[index].solution,
+        ));
+        rows.push(row(
+            step.stretch,
+            "finite elements",
+            &results.finest().solutions[index],
+        ));
+    }
+    let head = [
+        "stretch [%]",
+        "solver",
+        "iterations",
+        "first residual [–]",
+        "last residual [–]",
+        "steps cut",
+        "tangents shifted",
+    ];
+    vec![
+        heading("Convergence"),
+        table(&head, rows),
+        Block::Paragraph(
+            "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: \
+             largest scaled residual over the largest displacement; its equations are as many as its \
+             unknowns, so that each step is a Newton step that starts from the mass-spring field."
+                .into(),
+        ),
+    ]
+}
+
+fn material(study: &Study) -> Vec<Block> {
+    let card = &study.card;
+    let law: &dyn HyperelasticLaw = &*card.law;
+    let [low, high] = card.stretch_range;
+    let row = |key: &str, value: String| vec![key.to_owned(), value];
+    let mut rows = vec![
+        row("card", card.name.clone()),
+        row("law", format!("{}: {}", card.law_name, card.formula)),
+    ];
+    let parameters = card.parameters.iter();
+    rows.extend(parameters.map(|(key, value, unit)| row(key, format!("{value} {unit}"))));
+    rows.extend([
+        row(
+            "initial Young's modulus E₀",
+            format!("{:.6} MPa", law.youngs_modulus()),
+        ),
+        row(
+            "calibrated range",
+            format!("λ = {low} … {high} ({} test)", card.test),
+        ),
+        row(
+            "measures",
+            format!(
+                "{} stress, {} strain; stress at rest: {}",
+                card.stress_measure.name(),
+                card.strain_measure.name(),
+                card.offset.name()
+            ),
+        ),
+        row("specimen", card.specimen.clone()),
+        row("source", card.citation.clone()),
+    ]);
+    for (key, value) in [("DOI", &card.doi), ("note", &card.note)] {
+        rows.extend((!value.is_empty()).then(|| row(key, value.clone())));
+    }
+    vec![heading("Material"), table(&["", ""], rows)]
+}
+
+fn times(results: &Results) -> Vec<Block> {
+    let rows = results.times.iter();
+    let rows = rows.map(|(what, seconds)| vec![(*what).to_owned(), format!("{seconds:.3}")]);
+    vec![
+        heading("Times"),
+        Block::Paragraph(
+            "All stretches one after the other, on one core. Times differ from run to run.".into(),
+        ),
+        table(&["model", "time [s]"], rows),
+    ]
+}
