@@ -99,3 +99,55 @@ fn q2_reproduces_force_width_and_energy_of_other_codes() {
         compare(material, [120, 40], Element::Q2);
     }
 }
+
+/// `validation/plate/displacement_*.csv`: displacements at 31 × 11 material points.
+#[test]
+fn q2_reproduces_the_displacements_of_another_code() {
+    let files = [
+        (
+            "nh",
+            [60, 20],
+            include_str!("../validation/plate/displacement_nh_60x20_Q2.csv"),
+        ),
+        (
+            "nh",
+            [120, 40],
+            include_str!("../validation/plate/displacement_nh_120x40_Q2.csv"),
+        ),
+        (
+            "marlow",
+            [60, 20],
+            include_str!("../validation/plate/displacement_marlow_60x20_Q2.csv"),
+        ),
+        (
+            "marlow",
+            [120, 40],
+            include_str!("../validation/plate/displacement_marlow_120x40_Q2.csv"),
+        ),
+    ];
+    for (material, cells, text) in files {
+        let problem = plate(material);
+        let model = FiniteElements::new(&problem, cells, Element::Q2);
+        let solutions = model.solve(&problem, SETTINGS, &|_| ()).unwrap();
+        let (mut worst, mut rows) = (0.0_f64, 0);
+        for line in text.lines().skip(1) {
+            let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            let [stretch, x, y, ux, uy] = row[..] else {
+                panic!("five columns: {line}")
+            };
+            let solution = solutions
+                .iter()
+                .find(|solution| solution.stretch == stretch)
+                .unwrap();
+            let found = model.mesh.displacement_at(&solution.displacement, [x, y]);
+            let largest = 150.0 * stretch;
+            worst = worst.max((found[0] - ux).abs().max((found[1] - uy).abs()) / largest);
+            rows += 1;
+        }
+        assert_eq!(rows, 5 * 31 * 11);
+        assert!(
+            worst < 1e-6,
+            "{material} {cells:?}: {worst:.1e} of the largest displacement"
+        );
+    }
+}

@@ -29,17 +29,17 @@ pub fn report(study: &Study, results: &Results, figures: &[Figure]) -> Vec<Block
     let mut blocks = vec![Block::Heading(1, study.title.clone())];
     blocks.extend(verdict(study, results));
     blocks.extend(deviations(study, results));
+    if !figures.is_empty() {
+        blocks.push(heading("Pictures"));
+    }
+    let pictures = figures.iter().enumerate();
+    blocks.extend(pictures.map(|(index, figure)| Block::Figure(index, figure.caption.clone())));
     blocks.extend(forces(results));
     blocks.extend(error_budget(study, results));
     blocks.extend(reference(study, results));
     blocks.extend(convergence(results));
     blocks.extend(material(study));
-    if !figures.is_empty() {
-        blocks.push(Block::Heading(2, "Pictures".into()));
-    }
-    let pictures = figures.iter().enumerate();
-    blocks.extend(pictures.map(|(index, figure)| Block::Figure(index, figure.caption.clone())));
-    blocks.push(Block::Heading(2, "Study".into()));
+    blocks.push(heading("Study"));
     blocks.extend(
         study
             .warnings

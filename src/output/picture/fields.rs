@@ -49,6 +49,9 @@ const TITLE_HEIGHT: f64 = 46.0;
 const LABEL_HEIGHT: f64 = 26.0;
 const AXIS_HEIGHT: f64 = 46.0;
 
+/// A plate that is wider than long is drawn no higher than this.
+const HIGHEST_PLATE: f64 = 420.0;
+
 /// Positions of the lowest and the highest colour on the colour bar.
 type Range = (f64, f64);
 
@@ -117,7 +120,8 @@ impl FieldFigure {
         Layout {
             low,
             high,
-            points_per_mm: (WIDTH - LEFT - RIGHT) / (high[0] - low[0]),
+            points_per_mm: ((WIDTH - LEFT - RIGHT) / (high[0] - low[0]))
+                .min(HIGHEST_PLATE / (high[1] - low[1])),
         }
     }
 

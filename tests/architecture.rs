@@ -1,0 +1,123 @@
+//! Imports go downward only.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The modules by layer; a module may name only modules of the layers above it in this list, and itself.
+const LAYERS: &[&[&str]] = &[
+    &["error", "units"],
+    &["document"],
+    &["mesh", "material", "solve"],
+    &["problem", "sheet_energy"],
+    &["mass_spring", "finite_element"],
+    &["corrector"],
+    &["compare"],
+    &["study"],
+    &["results"],
+    &["output"],
+    &["run"],
+    &["command"],
+];
+
+/// Packages that one place alone may know.
+const SINGLE_DOORS: &[(&str, &str)] = &[
+    ("faer::", "src/solve/sparse.rs"),
+    ("vtkio::", "src/output/vtk.rs"),
+    ("plotters::", "src/output/picture"),
+    ("resvg::", "src/output/picture"),
+    ("maud::", "src/output/html.rs"),
+    ("clap::", "src/command.rs"),
+    ("miette::", "src/command"),
+    ("toml::", "src/document.rs"),
+];
+
+fn layer(module: &str) -> Option<usize> {
+    LAYERS.iter().position(|layer| layer.contains(&module))
+}
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut all = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            all.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            all.push(path);
+        }
+    }
+    all.sort();
+    all
+}
+
+/// The module of layer rank that a source file belongs to.
+fn module(path: &Path) -> String {
+    let first = path
+        .strip_prefix("src")
+        .unwrap()
+        .components()
+        .next()
+        .unwrap();
+    let name = first.as_os_str().to_string_lossy();
+    name.trim_end_matches(".rs").to_owned()
+}
+
+fn violations(module: &str, text: &str) -> Vec<String> {
+    let own = layer(module).unwrap_or_else(|| panic!("`{module}` has no layer"));
+    let named = text.split("crate::").skip(1).map(|rest| {
+        let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_');
+        &rest[..end.unwrap_or(rest.len())]
+    });
+    let upward =
+        named.filter(|name| layer(name).is_some_and(|layer| *name != module && layer >= own));
+    upward
+        .map(|name| format!("{module} imports {name}"))
+        .collect()
+}
+
+#[test]
+fn imports_go_downward_only() {
+    let files = sources(Path::new("src"));
+    assert!(files.len() > 30, "run from the root of the repository");
+    let mut found = Vec::new();
+    for file in files {
+        let name = module(&file);
+        if !["lib", "main"].contains(&name.as_str()) {
+            found.extend(violations(&name, &fs::read_to_string(&file).unwrap()));
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn an_upward_import_would_be_seen() {
+    assert_eq!(
+        violations("mesh", "use crate::material::Card;"),
+        ["mesh imports material"]
+    );
+    assert_eq!(
+        violations("corrector", "use crate::compare::Deviation;").len(),
+        1
+    );
+    assert!(
+        violations(
+            "corrector",
+            "use crate::mesh::Mesh; use crate::corrector::plate;"
+        )
+        .is_empty()
+    );
+}
+
+#[test]
+fn packages_have_one_door_each() {
+    for file in sources(Path::new("src")) {
+        let text = fs::read_to_string(&file).unwrap();
+        for (package, door) in SINGLE_DOORS {
+            let uses = text.lines().any(|line| {
+                let line = line.trim_start();
+                line.starts_with(&format!("use {package}")) || line.contains(&format!(" {package}"))
+            });
+            let name = file.to_string_lossy();
+            assert!(!uses || name.starts_with(door), "{name} names {package}");
+        }
+    }
+}

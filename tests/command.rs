@@ -1,0 +1,249 @@
+//! The command as a user meets it: words, files and exit codes.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SMALL: &str = r#"
+[plate]
+cells = [12, 4]
+[load]
+stretches = ["20 %"]
+[finite_element]
+cells = [12, 4]
+[tolerances]
+displacement = "5 %"
+departure = "20 %"
+force = "5 %"
+correction = "10 %"
+"#;
+
+fn gelbench(folder: &Path, arguments: &[&str]) -> Assert {
+    let mut command = Command::cargo_bin("gelbench").unwrap();
+    command.current_dir(folder).args(arguments).assert()
+}
+
+fn words(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn folder_with(study: &str) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("small.toml"), study).unwrap();
+    folder
+}
+
+fn number(value: &Value, path: &[&str]) -> f64 {
+    path.iter()
+        .fold(value, |value, key| &value[*key])
+        .as_f64()
+        .unwrap_or(f64::NAN)
+}
+
+/// The main job: the figures that the README promises, at every stretch.
+#[test]
+fn the_pva_plate_study_reaches_its_accuracy() {
+    let folder = TempDir::new().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let output = folder.path().to_str().unwrap();
+    let done = gelbench(
+        root,
+        &["run", "examples/pva_plate.toml", "--output", output],
+    )
+    .code(0);
+    let printed = words(&done.get_output().stdout);
+    let readme = fs::read_to_string(root.join("README.md")).unwrap();
+    for line in printed.lines().filter(|line| !line.contains("files in")) {
+        assert!(readme.contains(line), "the README does not show: {line}");
+    }
+
+    let text = fs::read_to_string(folder.path().join("report.json")).unwrap();
+    let report: Value = serde_json::from_str(&text).unwrap();
+    let steps = report["steps"].as_array().unwrap();
+    let stretches: Vec<f64> = steps
+        .iter()
+        .map(|step| number(step, &["stretch"]))
+        .collect();
+    assert_eq!(stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
+    // Converged forces and widths of dolfinx, scikit-fem and FElupe.
+    let published = [
+        [2.49239, 46.55659],
+        [5.98013, 43.75464],
+        [12.87459, 40.71896],
+        [27.17571, 37.69968],
+        [52.16485, 35.27206],
+    ];
+    for (step, [force, width]) in steps.iter().zip(published) {
+        assert!(number(step, &["corrected", "displacement_percent"]) <= 0.1);
+        assert!(number(step, &["corrected", "departure_percent"]) <= 1.0);
+        assert!(number(step, &["corrected", "force_percent"]).abs() <= 0.2);
+        assert!(number(step, &["corrected", "correction_percent"]) >= 95.0);
+        assert!(number(step, &["mass_spring", "departure_percent"]) > 20.0);
+        let own = number(step, &["finite_element", "discretisation_percent"]);
+        assert!(own < 0.01, "{own}");
+        let found = number(step, &["finite_element", "extrapolated_force_N"]);
+        assert!((found / force - 1.0).abs() < 1e-5, "{found} {force}");
+        let found = number(step, &["finite_element", "extrapolated_width_mm"]);
+        assert!((found / width - 1.0).abs() < 1e-6, "{found} {width}");
+        for key in ["max_difference_mm", "force_N", "width_mm"] {
+            assert!(
+                number(step, &["mass_spring", key]) > 0.0
+                    && number(step, &["corrected", key]) > 0.0
+            );
+        }
+    }
+    assert!(number(&report, &["times_s", "corrector"]) > 0.0);
+}
+
+#[test]
+fn the_same_study_gives_the_same_bytes() {
+    let folder = folder_with(SMALL);
+    for output in ["first", "second"] {
+        gelbench(folder.path(), &["run", "small.toml", "--output", output]).code(0);
+    }
+    let mut compared = 0;
+    for part in ["", "vtk"] {
+        for entry in fs::read_dir(folder.path().join("first").join(part)).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            assert!(!name.starts_with('.'), "{name} was left behind");
+            // Reports end with a section of times.
+            if path.is_dir() || name.starts_with("report") {
+                continue;
+            }
+            let other = folder.path().join("second").join(part).join(&name);
+            assert_eq!(fs::read(&path).unwrap(), fs::read(other).unwrap(), "{name}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 6 + 8, "pictures and VTK files");
+    let without_times = |output: &str| {
+        let report = fs::read_to_string(folder.path().join(output).join("report.md")).unwrap();
+        report.split("## Times").next().unwrap().to_owned()
+    };
+    assert_eq!(without_times("first"), without_times("second"));
+}
+
+#[test]
+fn pictures_and_vtk_files_are_what_they_claim() {
+    let folder = folder_with(SMALL);
+    gelbench(folder.path(), &["run", "small.toml"]).code(0);
+    let output = folder.path().join("output/small");
+    for name in [
+        "material",
+        "plates_001",
+        "error_001",
+        "errors",
+        "force",
+        "residuals",
+    ] {
+        let bytes = fs::read(output.join(format!("{name}.png"))).unwrap();
+        assert!(
+            bytes.starts_with(b"\x89PNG") && bytes.len() > 5_000,
+            "{name}"
+        );
+    }
+    let page = fs::read_to_string(output.join("report.html")).unwrap();
+    assert_eq!(page.matches("data:image/png;base64,").count(), 6);
+    for model in ["mass_spring", "springs", "corrected", "finite_element"] {
+        let collection = fs::read_to_string(output.join(format!("vtk/{model}.pvd"))).unwrap();
+        assert!(collection.contains(&format!(
+            "timestep=\"0.2\" part=\"0\" file=\"{model}_001.vtu\""
+        )));
+        let grid = fs::read_to_string(output.join(format!("vtk/{model}_001.vtu"))).unwrap();
+        assert!(grid.contains("UnstructuredGrid") && grid.contains("displacement_mm"));
+    }
+}
+
+#[test]
+fn a_requirement_that_is_not_met_ends_with_code_1() {
+    let folder = folder_with(&SMALL.replace("\"5 %\"", "\"0.001 %\""));
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);
+    assert!(words(&done.get_output().stdout).contains("FAIL displacement"));
+    assert!(folder.path().join("output/small/report.html").exists());
+}
+
+#[test]
+fn faults_of_a_study_are_told_at_once_with_code_2() {
+    let study = SMALL.replace(
+        "cells = [12, 4]\n[load]",
+        "cels = [12, 4]\nthickness = 2\n[load]",
+    );
+    let folder = folder_with(&study.replace("[plate]", "[material]\ncard = \"pva10\"\n[plate]"));
+    let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
+    let told = words(&done.get_output().stderr);
+    for expected in [
+        "did you mean `pva-10`",
+        "plate.cels",
+        "did you mean `cells`",
+        "needs a unit",
+        "small.toml:5",
+    ] {
+        assert!(told.contains(expected), "{expected}: {told}");
+    }
+    gelbench(folder.path(), &["run", "small.toml"]).code(2);
+    assert!(!folder.path().join("output").exists(), "nothing is written");
+    gelbench(folder.path(), &["run", "missing.toml"]).code(2);
+    gelbench(folder.path(), &["walk"]).code(2);
+}
+
+#[test]
+fn a_model_without_solution_ends_with_code_3() {
+    let folder = folder_with(&format!("{SMALL}\n[mass_spring]\nmax_iterations = 1\n"));
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
+    let told = words(&done.get_output().stderr);
+    assert!(
+        told.contains("mass-spring (12 × 4 cells) at 20 % stretch") && told.contains("try:"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_folder_that_takes_no_files_ends_with_code_4() {
+    let folder = folder_with(SMALL);
+    let done = gelbench(
+        folder.path(),
+        &["run", "small.toml", "--output", "small.toml/out"],
+    )
+    .code(4);
+    assert!(words(&done.get_output().stderr).contains("cannot write small.toml/out"));
+}
+
+#[test]
+fn a_new_study_is_complete_and_is_not_overwritten() {
+    let folder = TempDir::new().unwrap();
+    gelbench(folder.path(), &["new", "mine"]).code(0);
+    let done = gelbench(folder.path(), &["check", "mine.toml"]).code(0);
+    assert!(words(&done.get_output().stdout).contains("no faults"));
+    let done = gelbench(folder.path(), &["new", "mine.toml"]).code(4);
+    assert!(words(&done.get_output().stderr).contains("exists already"));
+}
+
+#[test]
+fn cards_are_listed_and_shown() {
+    let folder = TempDir::new().unwrap();
+    let done = gelbench(folder.path(), &["materials", "list"]).code(0);
+    assert!(words(&done.get_output().stdout).contains("pva-10-cauchy"));
+    let done = gelbench(folder.path(), &["materials", "show", "pva-10"]).code(0);
+    let shown = words(&done.get_output().stdout);
+    assert!(
+        shown.contains("amplitude = 0.0611 MPa") && shown.contains("10.1002/jbm.b.30543"),
+        "{shown}"
+    );
+    gelbench(folder.path(), &["materials", "show", "pva"]).code(2);
+}
+
+#[test]
+fn a_reader_that_has_gone_away_is_no_error() {
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("gelbench"));
+    command
+        .args(["materials", "list"])
+        .stdout(std::process::Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    drop(child.stdout.take());
+    assert!(child.wait().unwrap().success());
+}

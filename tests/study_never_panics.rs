@@ -1,0 +1,36 @@
+//! No text makes the reading of a study or of a card panic.
+
+use std::path::Path;
+
+use gelbench::material::Card;
+use gelbench::material::registry::CARDS;
+use gelbench::study::{DEFAULT, Study};
+use proptest::prelude::*;
+
+/// `text` with a piece replaced.
+fn damaged(text: &str, at: usize, length: usize, piece: &str) -> String {
+    let mut characters: Vec<char> = text.chars().collect();
+    let start = at % characters.len();
+    let end = (start + length).min(characters.len());
+    characters.splice(start..end, piece.chars());
+    characters.into_iter().collect()
+}
+
+proptest! {
+    #[test]
+    fn studies(at in 0_usize..10_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}|\\PC{0,6}") {
+        let text = damaged(DEFAULT, at, length, &piece);
+        let _ = Study::parse("name", "name.toml", Path::new("/nowhere"), text);
+    }
+
+    #[test]
+    fn numbers(value in prop_oneof!["-?[0-9]{1,30}", "-?[0-9]\\.[0-9]e-?[0-9]{1,4}", "nan|inf|-inf"]) {
+        let text = format!("[plate]\nlength = \"{value} cm\"\ncells = [{value}, 3]\n[load]\nstretches = [{value}]\n");
+        let _ = Study::parse("name", "name.toml", Path::new("/nowhere"), text);
+    }
+
+    #[test]
+    fn cards(card in 0..CARDS.len(), at in 0_usize..10_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}") {
+        let _ = Card::parse("name", "name.toml", &damaged(CARDS[card].1, at, length, &piece));
+    }
+}
