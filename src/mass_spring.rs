@@ -484,6 +484,24 @@ mod tests {
     }
 
     #[test]
+    fn a_stretch_too_large_for_one_go_is_reached_by_halves() {
+        let problem = Problem {
+            size: [150.0, 50.0],
+            stretches: vec![0.5, 1.0, 2.0],
+            ..problem("neo-hooke")
+        };
+        let plate = MassSpring::new(&problem, [60, 20], LatticeSettings { area_term: false });
+        let settings = NewtonSettings {
+            tolerance: 1e-10,
+            max_iterations: 40,
+        };
+        let solutions = plate.solve(&problem, settings, &|_| ()).unwrap();
+        assert_eq!(solutions[0].load_steps, 1);
+        assert!(solutions[2].load_steps > 1 && solutions[2].stretch == 2.0);
+        assert!(solutions[2].convergence.residuals.last().unwrap() < &1e-10);
+    }
+
+    #[test]
     fn an_inverted_cell_is_refused() {
         let plate = MassSpring::new(
             &problem("pva-10"),

@@ -108,7 +108,11 @@ impl Mesh {
         assert!(size.iter().all(|size| *size > 0.0) && cells.iter().all(|cells| *cells > 0));
         let degree = shape.degree();
         let steps = cells.map(|cells| cells * degree);
-        let coordinate = |axis: usize, i: usize| size[axis] * i as f64 / steps[axis] as f64;
+        // The last line of nodes lies on the side to the last digit.
+        let coordinate = |axis: usize, i: usize| match i == steps[axis] {
+            true => size[axis],
+            false => size[axis] * i as f64 / steps[axis] as f64,
+        };
         let nodes = (0..=steps[0])
             .flat_map(|i| (0..=steps[1]).map(move |j| [coordinate(0, i), coordinate(1, j)]))
             .collect();
@@ -244,6 +248,19 @@ mod tests {
                 .all(|(g, e)| (g - e).abs() < 1e-13),
             "{gradient:?}"
         );
+    }
+
+    #[test]
+    fn sides_are_found_whatever_the_size() {
+        for size in [0.015, 0.1, 0.7, 150.0] {
+            let mesh = Mesh::plate([size, size / 3.0], [60, 20], CellShape::Quad9);
+            let on = |side| {
+                (0..mesh.nodes.len())
+                    .filter(|node| mesh.on(side, *node))
+                    .count()
+            };
+            assert_eq!((on(Side::Right), on(Side::Top)), (41, 121), "{size}");
+        }
     }
 
     #[test]

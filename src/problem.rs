@@ -50,9 +50,14 @@ pub struct Solution {
     pub energy: f64,
     /// Width at mid length in mm.
     pub mid_width: f64,
-    /// How it was reached.
+    /// Equilibria on the way from the stretch before, this one included; 1 when it was reached in one go.
+    pub load_steps: usize,
+    /// How the last of them was reached.
     pub convergence: Convergence,
 }
+
+/// How often the way to a stretch is halved before it is given up.
+const HALVINGS: usize = 5;
 
 impl Model<'_> {
     /// Names an element of the potential, for messages.
@@ -114,7 +119,8 @@ impl Problem {
         on_right.map(|node| residual[2 * node]).sum()
     }
 
-    /// Solves all stretches, one after the other, with any model of the plate.
+    /// Solves all stretches, one after the other, with any model of the plate. A stretch that cannot be
+    /// reached from the one before in one go is approached by halves.
     ///
     /// # Errors
     /// [`Error::Solve`] with the stretch at which no solution was found.
@@ -124,41 +130,83 @@ impl Problem {
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<Solution>, Error> {
-        let (mesh, potential) = (model.mesh, model.potential);
         let fault = |stretch: f64, fault: SolveFault| Error::Solve {
             model: model.name.clone(),
             step: Problem::describe_step(stretch),
             fault,
         };
-        let mut newton = Newton::new(potential, &self.held(mesh))
+        let mut newton = Newton::new(model.potential, &self.held(model.mesh))
             .map_err(|cause| fault(self.stretches[0], cause))?;
         let mut solutions: Vec<Solution> = Vec::new();
         for &stretch in &self.stretches {
-            let mut displacement = self.first_guess(mesh, stretch, solutions.last());
-            let mut residual = vec![0.0; displacement.len()];
-            let describe = |element: usize| model.describe_element(element);
-            let convergence = newton
-                .solve(
-                    potential,
-                    &mut displacement,
-                    &mut residual,
+            let solution = self
+                .reach(
+                    model,
+                    &mut newton,
                     settings,
-                    &describe,
+                    solutions.last(),
+                    stretch,
+                    HALVINGS,
                 )
                 .map_err(|cause| fault(stretch, cause))?;
-            let energy = convergence.energy;
-            solutions.push(Solution {
-                stretch,
-                force: self.grip_force(mesh, &residual),
-                mid_width: mesh.mid_width(&displacement),
-                displacement,
-                residual,
-                energy,
-                convergence,
-            });
+            solutions.push(solution);
             progress(stretch);
         }
         Ok(solutions)
+    }
+
+    /// Solves one stretch from the solution before it, through intermediate ones where it must.
+    fn reach(
+        &self,
+        model: &Model,
+        newton: &mut Newton,
+        settings: NewtonSettings,
+        previous: Option<&Solution>,
+        stretch: f64,
+        halvings: usize,
+    ) -> Result<Solution, SolveFault> {
+        let direct = self.solve_at(model, newton, settings, previous, stretch);
+        if direct.is_ok() || halvings == 0 {
+            return direct;
+        }
+        let half = 0.5 * (previous.map_or(0.0, |previous| previous.stretch) + stretch);
+        let half = self.reach(model, newton, settings, previous, half, halvings - 1)?;
+        let solution = self.reach(model, newton, settings, Some(&half), stretch, halvings - 1)?;
+        Ok(Solution {
+            load_steps: half.load_steps + solution.load_steps,
+            ..solution
+        })
+    }
+
+    fn solve_at(
+        &self,
+        model: &Model,
+        newton: &mut Newton,
+        settings: NewtonSettings,
+        previous: Option<&Solution>,
+        stretch: f64,
+    ) -> Result<Solution, SolveFault> {
+        let mesh = model.mesh;
+        let mut displacement = self.first_guess(mesh, stretch, previous);
+        let mut residual = vec![0.0; displacement.len()];
+        let describe = |element: usize| model.describe_element(element);
+        let convergence = newton.solve(
+            model.potential,
+            &mut displacement,
+            &mut residual,
+            settings,
+            &describe,
+        )?;
+        Ok(Solution {
+            stretch,
+            force: self.grip_force(mesh, &residual),
+            energy: convergence.energy,
+            mid_width: mesh.mid_width(&displacement),
+            displacement,
+            residual,
+            load_steps: 1,
+            convergence,
+        })
     }
 
     /// `50 % stretch`, for messages.

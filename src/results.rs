@@ -44,11 +44,8 @@ impl Results {
     /// Every requirement on the corrected field with its worst value over all stretches.
     pub fn requirements(&self, tolerances: &Tolerances) -> Vec<Requirement> {
         let largest = |name, limit: f64, value: fn(&Deviation) -> f64| {
-            let values = self
-                .comparison
-                .iter()
-                .map(|step| value(&step.corrected).abs());
-            let worst = values.fold(0.0, f64::max);
+            let steps = self.comparison.iter();
+            let worst = worst(steps.map(|step| value(&step.corrected).abs()), f64::max);
             Requirement {
                 name,
                 limit,
@@ -57,10 +54,9 @@ impl Results {
                 at_most: true,
             }
         };
-        let corrections = self.comparison.iter();
-        let correction = corrections
-            .map(|step| step.correction_percent(|deviation| deviation.departure_percent))
-            .fold(f64::INFINITY, f64::min);
+        let steps = self.comparison.iter();
+        let corrections = steps.map(|step| step.correction_percent(|d| d.departure_percent));
+        let correction = worst(corrections, f64::min);
         vec![
             largest("displacement", tolerances.displacement_percent, |d| {
                 d.displacement_percent
@@ -93,4 +89,26 @@ pub struct Requirement {
     pub passed: bool,
     /// Whether the limit is the largest value that passes; else it is the smallest.
     pub at_most: bool,
+}
+
+/// The largest or smallest value; not a number when one of them is none.
+fn worst(values: impl Iterator<Item = f64>, pick: fn(f64, f64) -> f64) -> f64 {
+    let either = |a: f64, b: f64| match a.is_nan() || b.is_nan() {
+        true => f64::NAN,
+        false => pick(a, b),
+    };
+    values.reduce(either).unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_is_not_a_number_is_the_worst() {
+        assert_eq!(worst([3.0, 1.0, 2.0].into_iter(), f64::max), 3.0);
+        assert_eq!(worst([3.0, 1.0, 2.0].into_iter(), f64::min), 1.0);
+        assert!(worst([3.0, f64::NAN, 2.0].into_iter(), f64::max).is_nan());
+        assert!(worst([].into_iter(), f64::max).is_nan());
+    }
 }

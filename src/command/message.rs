@@ -40,7 +40,7 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
         GraphicalTheme::unicode_nocolor()
     };
     let mut text = String::new();
-    let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(0);
+    let handler = GraphicalReportHandler::new_themed(theme).with_context_lines(1);
     match handler.render_report(&mut text, report.as_ref()) {
         Ok(()) => text,
         Err(_) => format!("{finding}\n"),
@@ -101,8 +101,9 @@ pub fn summary(results: &Results, requirements: &[Requirement]) -> String {
 /// One line of the list of cards.
 pub fn card_line(card: &Card) -> String {
     let [low, high] = card.stretch_range;
+    let range = format!("λ {low} … {high}");
     format!(
-        "{:<16} {:<20} λ {low} … {high}   {}\n",
+        "{:<16} {:<20} {range:<12} {}\n",
         card.name, card.law_name, card.title
     )
 }

@@ -154,6 +154,7 @@ impl<'a> PlateCorrector<'a> {
             displacement,
             residual,
             energy,
+            load_steps: 1,
             convergence,
         }
     }

@@ -282,6 +282,7 @@ fn convergence(results: &Results) -> Vec<Block> {
         vec![
             Problem::percent(stretch),
             model.to_owned(),
+            solution.load_steps.to_string(),
             log.iterations().to_string(),
             cell(log.residuals.first()),
             cell(log.residuals.last()),
@@ -310,6 +311,7 @@ fn convergence(results: &Results) -> Vec<Block> {
     let head = [
         "stretch [%]",
         "solver",
+        "load steps",
         "iterations",
         "first residual [–]",
         "last residual [–]",

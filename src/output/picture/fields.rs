@@ -140,10 +140,11 @@ impl FieldFigure {
             // Below four decades lie single nodes that happen to be exact.
             low = low.max(high - 4.0);
         }
-        if high > low {
-            (low, high)
-        } else {
-            (high - 0.5, high + 0.5)
+        match high > low {
+            true => (low, high),
+            // All values are the same, or there are none.
+            false if high.is_finite() => (high - 0.5, high + 0.5),
+            false => (-1.0, 0.0),
         }
     }
 
