@@ -6,8 +6,8 @@
 //! L(u, ζ, η) = ½ (u − ū)ᵀ W (u − ū) + ζᵀ F(u) + ηᵀ T(u)
 //! ```
 //!
-//! The conditions are linearised about the current field and the [projection] of ū onto the linearised
-//! conditions is repeated until they hold. ζ and η are the derivatives of the smallest ½ ‖u − ū‖²_W by
+//! The conditions are linearised about the current field and the [projection](factor) of ū onto the
+//! linearised conditions is repeated until they hold. ζ and η are the derivatives of the smallest ½ ‖u − ū‖²_W by
 //! the right-hand sides, with the sign reversed where a condition reads c(u) = b: ∂(minimum)/∂b = −ψ.
 //!
 //! Where F and T together give as many conditions as there are unknowns, ū has no say in the result: each
@@ -23,30 +23,62 @@ use crate::error::SolveFault;
 use crate::solve::sparse::largest;
 use crate::solve::{Inadmissible, NotPositiveDefinite, SparseRows};
 
+mod acceleration;
 pub mod condition;
+mod dependence;
 mod difference_scheme;
+pub mod estimate;
+pub mod factor;
+pub mod matrix;
 pub mod plate;
-pub mod projection;
+pub mod retained;
+mod step;
 
-pub use condition::{Condition, Equilibrium, Linearised, Prescribed};
+pub use condition::{
+    Condition, EnclosedArea, Equilibrium, Function, Linear, Linearised, TotalForce,
+};
 pub use difference_scheme::DifferenceScheme;
+pub use estimate::Estimate;
+pub use factor::{Factor, Projection, Solver};
+pub use matrix::CorrectionMatrix;
 pub use plate::PlateCorrector;
-use projection::Projection;
 
-/// When to stop.
+/// How a correction is computed, and when it is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorrectorSettings {
     /// Largest scaled residual relative to the largest displacement; see [`Step::residual`].
     pub tolerance: f64,
     /// Steps allowed.
     pub max_steps: usize,
+    /// The form of the projection.
+    pub solver: Solver,
 }
 
-/// A field, the weights of its entries and the conditions it has to satisfy.
+/// Names elements and unknowns in messages.
+pub trait Describe {
+    /// An element of a potential.
+    fn element(&self, element: usize) -> String {
+        format!("element {element}")
+    }
+
+    /// An entry of the field.
+    fn unknown(&self, unknown: usize) -> String {
+        format!("unknown {unknown}")
+    }
+}
+
+/// Names by number.
+#[derive(Clone, Copy, Debug)]
+pub struct ByNumber;
+
+impl Describe for ByNumber {}
+
+/// The conditions on a field, the weights of its entries, and the way to correct it.
 pub struct Corrector<'a> {
     conditions: Vec<Box<dyn Condition + 'a>>,
     weights: Vec<f64>,
     settings: CorrectorSettings,
+    names: &'a dyn Describe,
 }
 
 /// The Lagrange multipliers of one condition.
@@ -54,49 +86,55 @@ pub struct Corrector<'a> {
 pub struct Multipliers {
     /// The condition's name.
     pub name: String,
-    /// The unknown of each row.
-    pub unknowns: Vec<usize>,
-    /// One number a row, in mm² over the unit of the row.
+    /// The unknown of each row, where each row belongs to one.
+    pub unknowns: Option<Vec<usize>>,
+    /// One number a row, in the unit of ½ ‖u − ū‖²_W over the unit of the row.
     pub values: Vec<f64>,
 }
 
 /// A field on the way from ū to u.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// The field in mm.
-    pub displacement: Vec<f64>,
+    /// The field.
+    pub field: Vec<f64>,
     /// Largest residual: each row c divided by √(B W⁻¹ Bᵀ) of its gradient B, which makes it a distance
-    /// in mm, over the largest displacement of the field.
+    /// in the unit of the field, over the largest entry of the field.
     pub residual: f64,
     /// Share of the linearised step that was taken to get here; 1 for the start.
     pub length: f64,
+    /// Whether the step came from a factor of another field.
+    pub retained: bool,
 }
 
 /// The result of a correction.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct Correction {
     /// The start and the field after each step; the last one is the result.
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
     pub multipliers: Vec<Multipliers>,
+    /// The conditions at the result, factorised.
+    pub factor: Factor,
 }
 
 impl Correction {
-    /// The corrected field in mm.
-    pub fn displacement(&self) -> &[f64] {
-        &self.steps[self.steps.len() - 1].displacement
+    /// The corrected field.
+    pub fn field(&self) -> &[f64] {
+        &self.steps[self.steps.len() - 1].field
     }
 }
 
 /// All conditions linearised about one field, and 1/√(B W⁻¹ Bᵀ)ᵢᵢ of each row.
 struct System {
+    /// Largest entry of the field.
+    size: f64,
     values: Vec<f64>,
     jacobian: SparseRows,
     scales: Vec<f64>,
 }
 
 impl System {
-    /// Rows as distances in mm.
+    /// Rows as distances.
     fn scaled(&self, values: &[f64]) -> Vec<f64> {
         values
             .iter()
@@ -106,11 +144,9 @@ impl System {
     }
 }
 
-/// The shortest share of a step that is tried.
-const SHORTEST_STEP: f64 = 1e-4;
-
 impl<'a> Corrector<'a> {
-    /// A corrector for fields with one of `weights` (the diagonal of W) an entry.
+    /// A corrector for fields with one of `weights` (the diagonal of W) an entry. An entry with the weight
+    /// zero has no data: it is a parameter of the conditions that is found with the field.
     pub fn new(
         conditions: Vec<Box<dyn Condition + 'a>>,
         weights: Vec<f64>,
@@ -120,147 +156,187 @@ impl<'a> Corrector<'a> {
             conditions,
             weights,
             settings,
+            names: &ByNumber,
         }
+    }
+
+    /// Names elements and unknowns in messages.
+    #[must_use]
+    pub fn named(self, names: &'a dyn Describe) -> Self {
+        Self { names, ..self }
     }
 
     /// Corrects the field `data` (ū), beginning at `start`.
     ///
     /// Never start at noisy data: the conditions are linearised about the start.
-    /// `describe` names an element for messages.
     ///
     /// # Errors
     /// A [`SolveFault`] when the start is inverted, conditions depend on each other, or the steps end
     /// without meeting the tolerance.
-    pub fn correct(
+    pub fn correct(&self, data: &[f64], start: &[f64]) -> Result<Correction, SolveFault> {
+        self.finish(data, start.to_vec(), Vec::new())
+    }
+
+    /// Corrects with a factor of these conditions taken at another field, such as the plate at rest, by
+    /// accelerated steps; takes fresh factors where these stall, and for the exact multipliers at the end.
+    ///
+    /// # Errors
+    /// As [`Self::correct`].
+    pub fn correct_retained(
         &self,
         data: &[f64],
         start: &[f64],
-        describe: &dyn Fn(usize) -> String,
+        factor: &mut Factor,
+    ) -> Result<Correction, SolveFault> {
+        let (field, steps) = acceleration::accelerate(self, data, start, factor)?;
+        self.finish(data, field, steps)
+    }
+
+    /// Factorises the conditions linearised about `field`.
+    ///
+    /// # Errors
+    /// [`SolveFault::Inverted`], or [`SolveFault::Dependent`] with the rows that depend on each other.
+    pub fn factor(&self, field: &[f64]) -> Result<Factor, SolveFault> {
+        let system = self.linearise(field)?;
+        self.factorise(&system)
+    }
+
+    /// Steps with a fresh factor each, until the tolerance is met.
+    fn finish(
+        &self,
+        data: &[f64],
+        mut field: Vec<f64>,
+        mut steps: Vec<Step>,
     ) -> Result<Correction, SolveFault> {
         let CorrectorSettings {
             tolerance,
             max_steps,
+            ..
         } = self.settings;
-        let inverted = |fault: Inadmissible| SolveFault::Inverted {
-            element: describe(fault.element),
-        };
-        let mut steps = Vec::new();
-        let (mut field, mut length) = (start.to_vec(), 1.0);
+        let (mut length, first) = (1.0, steps.len());
         loop {
-            let system = self.linearise(&field).map_err(inverted)?;
-            let size = largest(&field).max(f64::MIN_POSITIVE);
-            let residual = largest(&system.scaled(&system.values)) / size;
-            let projection = self
-                .project(&system, &difference(data, &field))
-                .map_err(|NotPositiveDefinite| SolveFault::Singular)?;
-            let moved = largest(&projection.step) / size;
+            let system = self.linearise(&field)?;
+            let mut factor = self.factorise(&system)?;
+            let projection = factor
+                .project(&system.values, &difference(data, &field))
+                .map_err(|NotPositiveDefinite| self.dependent(&system))?;
+            let residual = largest(&system.scaled(&system.values)) / system.size;
+            let moved = largest(&projection.step) / system.size;
             if !(residual.is_finite() && moved.is_finite()) {
                 return Err(SolveFault::NotFinite("the corrected field".into()));
             }
             let before = field.clone();
             steps.push(Step {
-                displacement: field,
+                field,
                 residual,
                 length,
+                retained: false,
             });
             if residual <= tolerance && moved <= 10.0 * tolerance {
-                let multipliers = self.by_condition(&projection.multipliers);
-                return Ok(Correction { steps, multipliers });
+                return Ok(Correction {
+                    steps,
+                    multipliers: self.by_condition(&projection.multipliers),
+                    factor,
+                });
             }
-            if steps.len() > max_steps {
+            if steps.len() > first + max_steps {
                 return Err(SolveFault::Stalled {
                     iterations: max_steps,
                     residual,
                     tolerance,
                 });
             }
-            (field, length) = self
-                .advance(&system, data, before, &projection)
-                .map_err(inverted)?;
+            (field, length) = self.next(&system, data, &before, &projection)?;
         }
     }
 
-    fn linearise(&self, field: &[f64]) -> Result<System, Inadmissible> {
+    fn inverted(&self, fault: Inadmissible) -> SolveFault {
+        SolveFault::Inverted {
+            element: self.names.element(fault.element),
+        }
+    }
+
+    fn linearise(&self, field: &[f64]) -> Result<System, SolveFault> {
         let mut values = Vec::new();
         let mut jacobian = SparseRows::new(field.len());
         for condition in &self.conditions {
-            let linearised = condition.linearise(field)?;
+            let linearised = condition
+                .linearise(field)
+                .map_err(|fault| self.inverted(fault))?;
             values.extend(linearised.values);
             jacobian.append(linearised.jacobian);
         }
         Ok(System {
-            scales: projection::row_scales(&jacobian, &self.weights),
+            size: largest(field).max(f64::MIN_POSITIVE),
+            scales: factor::row_scales(&jacobian, &self.weights),
             values,
             jacobian,
         })
     }
 
-    fn unknowns(&self) -> Vec<usize> {
-        let all = self.conditions.iter();
-        all.flat_map(|condition| condition.unknowns().iter().copied())
-            .collect()
-    }
-
-    /// Whether every unknown of the field has exactly one row.
-    fn is_square(&self) -> bool {
-        let mut unknowns = self.unknowns();
-        unknowns.sort_unstable();
-        unknowns.into_iter().eq(0..self.weights.len())
-    }
-
-    /// The symmetric form where it applies and the stiffness is positive definite, else the general one.
-    fn project(
-        &self,
-        system: &System,
-        data_minus_field: &[f64],
-    ) -> Result<Projection, NotPositiveDefinite> {
-        let (jacobian, values) = (&system.jacobian, &system.values);
-        if self.is_square() {
-            let unknowns = self.unknowns();
-            let projection =
-                projection::symmetric(jacobian, values, data_minus_field, &self.weights, &unknowns);
-            if projection.is_ok() {
-                return projection;
-            }
-        }
-        projection::general(jacobian, values, data_minus_field, &self.weights)
-    }
-
-    /// Takes the longest share 1, ½, ¼ … of a step that inverts no cell and lessens the exact penalty
-    /// ½ ‖u − ū‖²_W + ρ Σ |cᵢ|/√(B W⁻¹ Bᵀ)ᵢᵢ, or halves its second term.
-    fn advance(
-        &self,
-        system: &System,
-        data: &[f64],
-        before: Vec<f64>,
-        projection: &Projection,
-    ) -> Result<(Vec<f64>, f64), Inadmissible> {
-        let magnitude = |values: &[f64]| system.scaled(values).iter().map(|c| c.abs()).sum::<f64>();
-        let distance = |field: &[f64]| -> f64 {
-            let squares = difference(field, data).into_iter().zip(&self.weights);
-            0.5 * squares.map(|(d, weight)| weight * d * d).sum::<f64>()
-        };
-        let multipliers = projection.multipliers.iter().zip(&system.scales);
-        let penalty = 2.0 * multipliers.fold(0.0, |most: f64, (psi, s)| most.max((psi / s).abs()));
-        let (start_defect, start_distance) = (magnitude(&system.values), distance(&before));
-        let mut length = 1.0;
-        loop {
-            let steps = before.iter().zip(&projection.step);
-            let field: Vec<f64> = steps.map(|(u, step)| u + length * step).collect();
-            let last = length < SHORTEST_STEP;
-            match self.values(&field) {
-                Err(fault) if last => return Err(fault),
-                Ok(values) => {
-                    let defect = magnitude(&values);
-                    let merit =
-                        penalty * (defect - start_defect) + distance(&field) - start_distance;
-                    if last || defect <= 0.5 * start_defect || merit <= 0.0 {
-                        return Ok((field, length));
-                    }
+    fn factorise(&self, system: &System) -> Result<Factor, SolveFault> {
+        let (jacobian, weights) = (system.jacobian.clone(), self.weights.clone());
+        let factor = Factor::new(
+            jacobian,
+            weights,
+            self.square_unknowns(),
+            self.settings.solver,
+        );
+        match factor {
+            // LU may pass over dependent rows and give huge multipliers.
+            Ok(factor) if factor.solver() == Solver::Kkt => {
+                match dependence::find(&system.jacobian, &system.values, system.size) {
+                    None => Ok(factor),
+                    Some(_) => Err(self.dependent(system)),
                 }
-                Err(_) => {}
             }
-            length *= 0.5;
+            Ok(factor) => Ok(factor),
+            Err(NotPositiveDefinite) => Err(self.dependent(system)),
+        }
+    }
+
+    /// The unknown of each row, if every unknown of the field has exactly one.
+    fn square_unknowns(&self) -> Option<Vec<usize>> {
+        let mut unknowns = Vec::new();
+        for condition in &self.conditions {
+            unknowns.extend_from_slice(condition.unknowns()?);
+        }
+        let mut sorted = unknowns.clone();
+        sorted.sort_unstable();
+        sorted
+            .into_iter()
+            .eq(0..self.weights.len())
+            .then_some(unknowns)
+    }
+
+    /// Names the rows that depend on each other.
+    fn dependent(&self, system: &System) -> SolveFault {
+        const MOST_NAMES: usize = 8;
+        let Some(found) = dependence::find(&system.jacobian, &system.values, system.size) else {
+            return SolveFault::Singular;
+        };
+        let mut names = Vec::new();
+        for condition in &self.conditions {
+            let rows = match condition.unknowns() {
+                Some(unknowns) => unknowns.iter().map(|i| Some(*i)).collect(),
+                None => vec![None; condition.rows()],
+            };
+            names.extend(
+                rows.into_iter()
+                    .enumerate()
+                    .map(|(row, unknown)| match unknown {
+                        Some(unknown) => {
+                            format!("{} at {}", condition.name(), self.names.unknown(unknown))
+                        }
+                        None => format!("{}, row {row}", condition.name()),
+                    }),
+            );
+        }
+        let rows = found.rows.iter().take(MOST_NAMES);
+        SolveFault::Dependent {
+            rows: rows.filter_map(|row| names.get(*row).cloned()).collect(),
+            more: found.rows.len().saturating_sub(MOST_NAMES),
+            contradictory: found.contradictory,
         }
     }
 
@@ -276,11 +352,10 @@ impl<'a> Corrector<'a> {
         let mut values = values.iter().copied();
         let mut all = Vec::new();
         for condition in &self.conditions {
-            let unknowns = condition.unknowns().to_vec();
             all.push(Multipliers {
                 name: condition.name().to_owned(),
-                values: values.by_ref().take(unknowns.len()).collect(),
-                unknowns,
+                unknowns: condition.unknowns().map(<[usize]>::to_vec),
+                values: values.by_ref().take(condition.rows()).collect(),
             });
         }
         all

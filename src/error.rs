@@ -120,6 +120,21 @@ pub enum SolveFault {
         "the system of equations is singular: the supports leave a free motion, or conditions depend on each other"
     )]
     Singular,
+    /// Conditions that cannot be imposed together.
+    #[error(
+        "conditions {}: {}{}",
+        if *contradictory { "contradict each other" } else { "depend on each other" },
+        rows.join("; "),
+        if *more > 0 { format!("; and {more} more") } else { String::new() }
+    )]
+    Dependent {
+        /// The rows that take part, named with their condition and their node.
+        rows: Vec<String>,
+        /// How many more take part.
+        more: usize,
+        /// Whether no field satisfies all of them.
+        contradictory: bool,
+    },
     /// The iteration ended without reaching its tolerance.
     #[error(
         "no convergence in {iterations} iterations: the residual is {residual:.2e} of its scale, wanted {tolerance:.0e}"
@@ -147,6 +162,7 @@ impl SolveFault {
             Self::NotPositiveDefinite => {
                 "look at the card's stable range with `gelbench materials show`, or take smaller load steps"
             }
+            Self::Dependent { .. } => "leave out one of the conditions named",
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
                 "add smaller stretches before this one to `load.stretches`, or raise the iteration limit"

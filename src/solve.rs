@@ -8,4 +8,4 @@ pub mod sparse;
 
 pub use newton::{Convergence, Newton, NewtonSettings};
 pub use potential::{Assembly, Inadmissible, Local, Potential};
-pub use sparse::{Cholesky, NotPositiveDefinite, SparseRows, SymmetricPattern};
+pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu, SparseRows, SymmetricPattern};

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::corrector::{CorrectorSettings, DifferenceScheme};
+use crate::corrector::{CorrectorSettings, DifferenceScheme, Solver};
 use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error};
 use crate::finite_element::Element;
@@ -154,6 +154,7 @@ fn read(name: &str, folder: &Path, root: Section<'_>, faults: &Faults) -> Option
     let corrector = CorrectorSettings {
         tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
         max_steps: section.count("max_steps", 1, 1000),
+        solver: Solver::Automatic,
     };
     section.unknown_keys();
 

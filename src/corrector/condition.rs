@@ -1,5 +1,6 @@
 //! Conditions c(u) = 0 that a corrected field has to satisfy.
 
+use crate::solve::sparse::largest;
 use crate::solve::{Assembly, Inadmissible, Potential, SparseRows};
 
 /// The rows of a condition, linearised: c(u + δ) ≈ c(u) + B δ.
@@ -16,6 +17,9 @@ pub trait Condition {
     /// The group's name, such as `grips`.
     fn name(&self) -> &str;
 
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
     /// Values and Jacobian at `u`.
     ///
     /// # Errors
@@ -30,65 +34,127 @@ pub trait Condition {
         Ok(self.linearise(u)?.values)
     }
 
-    /// The unknown that each row belongs to: the one it prescribes, or the one in whose direction it is
-    /// a balance of forces. Where all conditions together name every unknown exactly once, the system
-    /// is square.
-    fn unknowns(&self) -> &[usize];
-}
+    /// Σ ψᵢ ∂²cᵢ/∂u∂u at `u`: symmetric, one row an unknown; nothing for linear conditions.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] when a cell is inverted.
+    fn curvature(
+        &self,
+        _u: &[f64],
+        _multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        Ok(None)
+    }
 
-/// Known displacements: uᵢ − gᵢ = 0, in mm.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Prescribed {
-    name: String,
-    unknowns: Vec<usize>,
-    values: Vec<f64>,
-}
-
-impl Prescribed {
-    /// Prescribes (unknown, value) pairs.
-    pub fn new(name: &str, known: impl IntoIterator<Item = (usize, f64)>) -> Self {
-        let (unknowns, values) = known.into_iter().unzip();
-        Self {
-            name: name.to_owned(),
-            unknowns,
-            values,
-        }
+    /// The unknown that each row belongs to, where each belongs to one: the unknown it prescribes, or the
+    /// one in whose direction it is a balance of forces. Where all conditions together name every unknown
+    /// of the field exactly once, the system is square.
+    fn unknowns(&self) -> Option<&[usize]> {
+        None
     }
 }
 
-impl Condition for Prescribed {
+/// Linear conditions B u − b = 0 with any number of entries a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    name: String,
+    rows: SparseRows,
+    right_hand_side: Vec<f64>,
+    unknowns: Option<Vec<usize>>,
+}
+
+impl Linear {
+    /// The conditions `rows` · u = `right_hand_side`.
+    pub fn new(name: &str, rows: SparseRows, right_hand_side: Vec<f64>) -> Self {
+        assert_eq!(
+            rows.len(),
+            right_hand_side.len(),
+            "one right-hand side a row"
+        );
+        Self {
+            name: name.to_owned(),
+            rows,
+            right_hand_side,
+            unknowns: None,
+        }
+    }
+
+    /// Known values: uᵢ = gᵢ for (i, gᵢ) in `known`, of a field with `size` unknowns. Supports, grips,
+    /// symmetry and initial values are of this kind.
+    pub fn prescribed(
+        name: &str,
+        size: usize,
+        known: impl IntoIterator<Item = (usize, f64)>,
+    ) -> Self {
+        let (unknowns, values): (Vec<usize>, Vec<f64>) = known.into_iter().unzip();
+        let mut rows = SparseRows::new(size);
+        for unknown in &unknowns {
+            rows.push([(*unknown, 1.0)]);
+        }
+        Self {
+            unknowns: Some(unknowns),
+            ..Self::new(name, rows, values)
+        }
+    }
+
+    /// Unknowns that move together by an unknown amount: uᵢ − u₀ = 0, for each group of unknowns. A rigid
+    /// grip that does not turn is one group for each direction.
+    pub fn together(name: &str, size: usize, groups: &[Vec<usize>]) -> Self {
+        let mut rows = SparseRows::new(size);
+        for (first, unknown) in groups
+            .iter()
+            .flat_map(|group| group.iter().skip(1).map(|i| (group[0], *i)))
+        {
+            rows.push([(unknown, 1.0), (first, -1.0)]);
+        }
+        let zeros = vec![0.0; rows.len()];
+        Self::new(name, rows, zeros)
+    }
+}
+
+impl Condition for Linear {
     fn name(&self) -> &str {
         &self.name
     }
 
-    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
-        let mut jacobian = SparseRows::new(u.len());
-        for unknown in &self.unknowns {
-            jacobian.push([(*unknown, 1.0)]);
-        }
-        let known = self.unknowns.iter().zip(&self.values);
-        let values = known.map(|(unknown, value)| u[*unknown] - value).collect();
-        Ok(Linearised { values, jacobian })
+    fn rows(&self) -> usize {
+        self.right_hand_side.len()
     }
 
-    fn unknowns(&self) -> &[usize] {
-        &self.unknowns
+    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+        Ok(Linearised {
+            values: self.values(u)?,
+            jacobian: self.rows.clone(),
+        })
+    }
+
+    fn values(&self, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
+        let products = self.rows.multiply(u).into_iter();
+        Ok(products
+            .zip(&self.right_hand_side)
+            .map(|(product, b)| product - b)
+            .collect())
+    }
+
+    fn unknowns(&self) -> Option<&[usize]> {
+        self.unknowns.as_deref()
     }
 }
 
-/// Equilibrium without external force: ∂Π/∂uᵢ = 0 at the chosen unknowns, in N.
+/// Balance of forces ∂Π/∂uᵢ − fᵢ = 0 at the chosen unknowns, in N.
 ///
 /// At inner nodes this is the governing equation F(u) = 0; at the nodes of an edge, the half cells on the
-/// inner side alone contribute, which is the edge's condition that no traction acts on it.
+/// inner side alone contribute, which is the edge's condition that the traction f, or none, acts on it.
 pub struct Equilibrium<'a> {
     name: String,
     potential: &'a dyn Potential,
     assembly: &'a Assembly,
     unknowns: Vec<usize>,
+    loads: Vec<f64>,
 }
 
 impl<'a> Equilibrium<'a> {
-    /// Equilibrium of `potential` at `unknowns`; `assembly` must hold no unknown fixed.
+    /// Equilibrium of `potential` at `unknowns` without loads; `assembly` must hold no unknown fixed.
     pub fn new(
         name: &str,
         potential: &'a dyn Potential,
@@ -99,8 +165,22 @@ impl<'a> Equilibrium<'a> {
             name: name.to_owned(),
             potential,
             assembly,
+            loads: vec![0.0; unknowns.len()],
             unknowns,
         }
+    }
+
+    /// Adds external forces in N, one a row.
+    #[must_use]
+    pub fn with_loads(self, loads: Vec<f64>) -> Self {
+        assert_eq!(loads.len(), self.unknowns.len(), "one load a row");
+        Self { loads, ..self }
+    }
+
+    fn unbalanced(&self, residual: &[f64]) -> Vec<f64> {
+        let rows = self.unknowns.iter().zip(&self.loads);
+        rows.map(|(unknown, load)| residual[*unknown] - load)
+            .collect()
     }
 }
 
@@ -109,26 +189,280 @@ impl Condition for Equilibrium<'_> {
         &self.name
     }
 
+    fn rows(&self) -> usize {
+        self.unknowns.len()
+    }
+
     fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
-        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
-        self.assembly
-            .linearise(self.potential, u, &mut residual, &mut stiffness)?;
-        let full = self.assembly.pattern().full_rows(&stiffness);
+        let (residual, full) = internal_forces(self.potential, self.assembly, u)?;
         let mut jacobian = SparseRows::new(u.len());
         for unknown in &self.unknowns {
             jacobian.push(full[*unknown].iter().copied());
         }
-        let values = self.unknowns.iter().map(|i| residual[*i]).collect();
-        Ok(Linearised { values, jacobian })
+        Ok(Linearised {
+            values: self.unbalanced(&residual),
+            jacobian,
+        })
     }
 
     fn values(&self, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
         let mut residual = vec![0.0; u.len()];
         Assembly::residual(self.potential, u, &mut residual)?;
-        Ok(self.unknowns.iter().map(|i| residual[*i]).collect())
+        Ok(self.unbalanced(&residual))
     }
 
-    fn unknowns(&self) -> &[usize] {
-        &self.unknowns
+    fn curvature(
+        &self,
+        u: &[f64],
+        multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        let mut direction = vec![0.0; u.len()];
+        for (unknown, psi) in self.unknowns.iter().zip(multipliers) {
+            direction[*unknown] += psi;
+        }
+        stiffness_change(self.potential, self.assembly, u, &direction).map(Some)
+    }
+
+    fn unknowns(&self) -> Option<&[usize]> {
+        Some(&self.unknowns)
+    }
+}
+
+/// A known total force: Σ ∂Π/∂uᵢ − f = 0 over some unknowns, in N; one row.
+pub struct TotalForce<'a> {
+    name: String,
+    potential: &'a dyn Potential,
+    assembly: &'a Assembly,
+    unknowns: Vec<usize>,
+    force: f64,
+}
+
+impl<'a> TotalForce<'a> {
+    /// The forces of `potential` at `unknowns` sum up to `force`; `assembly` must hold no unknown fixed.
+    pub fn new(
+        name: &str,
+        potential: &'a dyn Potential,
+        assembly: &'a Assembly,
+        unknowns: Vec<usize>,
+        force: f64,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            potential,
+            assembly,
+            unknowns,
+            force,
+        }
+    }
+}
+
+impl Condition for TotalForce<'_> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn rows(&self) -> usize {
+        1
+    }
+
+    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+        let (residual, full) = internal_forces(self.potential, self.assembly, u)?;
+        let mut jacobian = SparseRows::new(u.len());
+        jacobian.push(
+            self.unknowns
+                .iter()
+                .flat_map(|unknown| full[*unknown].iter().copied()),
+        );
+        let sum: f64 = self.unknowns.iter().map(|unknown| residual[*unknown]).sum();
+        Ok(Linearised {
+            values: vec![sum - self.force],
+            jacobian,
+        })
+    }
+
+    fn curvature(
+        &self,
+        u: &[f64],
+        multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        let mut direction = vec![0.0; u.len()];
+        for (unknown, psi) in self.unknowns.iter().zip(std::iter::repeat(&multipliers[0])) {
+            direction[*unknown] += psi;
+        }
+        stiffness_change(self.potential, self.assembly, u, &direction).map(Some)
+    }
+}
+
+/// The rows of a full tangent: (column, value).
+type Rows = Vec<Vec<(usize, f64)>>;
+
+/// Residual and full tangent, row by row.
+fn internal_forces(
+    potential: &dyn Potential,
+    assembly: &Assembly,
+    u: &[f64],
+) -> Result<(Vec<f64>, Rows), Inadmissible> {
+    let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+    assembly.linearise(potential, u, &mut residual, &mut stiffness)?;
+    Ok((residual, assembly.pattern().full_rows(&stiffness)))
+}
+
+/// ∂K/∂u · d by central differences: the curvature of the residual, weighted by d.
+fn stiffness_change(
+    potential: &dyn Potential,
+    assembly: &Assembly,
+    u: &[f64],
+    direction: &[f64],
+) -> Result<SparseRows, Inadmissible> {
+    const SHARE: f64 = 1e-5;
+    let most = largest(direction);
+    let step = match most > 0.0 {
+        true => SHARE * largest(u) / most,
+        false => 1.0,
+    };
+    let at = |step: f64| {
+        let moved: Vec<f64> = u.iter().zip(direction).map(|(u, d)| u + step * d).collect();
+        internal_forces(potential, assembly, &moved)
+    };
+    let ((_, up), (_, down)) = (at(step)?, at(-step)?);
+    let mut change = SparseRows::new(u.len());
+    for (up, down) in up.iter().zip(&down) {
+        let entries = up.iter().zip(down);
+        change.push(entries.map(|((column, up), (_, down))| (*column, (up - down) / (2.0 * step))));
+    }
+    Ok(change)
+}
+
+/// A known area inside a closed line of nodes, in mm²; one row. Times a thickness it is a known volume.
+///
+/// ```text
+/// A(u) = ½ Σ (xₐ y_b − x_b yₐ),   x = X + u, over the sides (a, b) of the line, counter-clockwise
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnclosedArea {
+    name: String,
+    /// Nodes of the line with their reference places.
+    line: Vec<(usize, [f64; 2])>,
+    area: f64,
+}
+
+impl EnclosedArea {
+    /// The line through `line` (node and place in mm, counter-clockwise) encloses `area`.
+    pub fn new(name: &str, line: Vec<(usize, [f64; 2])>, area: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            line,
+            area,
+        }
+    }
+}
+
+impl Condition for EnclosedArea {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn rows(&self) -> usize {
+        1
+    }
+
+    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+        let place =
+            |(node, [x, y]): &(usize, [f64; 2])| (*node, [x + u[2 * node], y + u[2 * node + 1]]);
+        let places: Vec<_> = self.line.iter().map(place).collect();
+        let mut area = 0.0;
+        let mut row = Vec::new();
+        for (index, (a, [xa, ya])) in places.iter().enumerate() {
+            let (b, [xb, yb]) = &places[(index + 1) % places.len()];
+            area += 0.5 * (xa * yb - xb * ya);
+            row.extend([(2 * a, 0.5 * yb), (2 * b + 1, 0.5 * xa)]);
+            row.extend([(2 * b, -0.5 * ya), (2 * a + 1, -0.5 * xb)]);
+        }
+        let mut jacobian = SparseRows::new(u.len());
+        jacobian.push(row);
+        Ok(Linearised {
+            values: vec![area - self.area],
+            jacobian,
+        })
+    }
+
+    fn curvature(
+        &self,
+        u: &[f64],
+        multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        let half = 0.5 * multipliers[0];
+        let mut rows = vec![Vec::new(); u.len()];
+        let mut both = |row: usize, column: usize, value: f64| {
+            rows[row].push((column, value));
+            rows[column].push((row, value));
+        };
+        for (index, (a, _)) in self.line.iter().enumerate() {
+            let (b, _) = self.line[(index + 1) % self.line.len()];
+            both(2 * a, 2 * b + 1, half);
+            both(2 * b, 2 * a + 1, -half);
+        }
+        let mut curvature = SparseRows::new(u.len());
+        rows.into_iter().for_each(|row| curvature.push(row));
+        Ok(Some(curvature))
+    }
+}
+
+/// Σ ψᵢ ∂²cᵢ/∂u∂u from a field and multipliers.
+type Curvature = dyn Fn(&[f64], &[f64]) -> SparseRows;
+
+/// Conditions given as a function of the field.
+pub struct Function<F> {
+    name: String,
+    rows: usize,
+    function: F,
+    curvature: Option<Box<Curvature>>,
+}
+
+impl<F: Fn(&[f64]) -> Linearised> Function<F> {
+    /// The conditions that `function` returns, always as many `rows`, linearised at any field.
+    pub fn new(name: &str, rows: usize, function: F) -> Self {
+        Self {
+            name: name.to_owned(),
+            rows,
+            function,
+            curvature: None,
+        }
+    }
+
+    /// Gives the curvature Σ ψᵢ ∂²cᵢ/∂u∂u from a field and multipliers; without it the conditions are
+    /// taken as linear near the solution, which costs steps.
+    #[must_use]
+    pub fn with_curvature(
+        self,
+        curvature: impl Fn(&[f64], &[f64]) -> SparseRows + 'static,
+    ) -> Self {
+        Self {
+            curvature: Some(Box::new(curvature)),
+            ..self
+        }
+    }
+}
+
+impl<F: Fn(&[f64]) -> Linearised> Condition for Function<F> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+        Ok((self.function)(u))
+    }
+
+    fn curvature(
+        &self,
+        u: &[f64],
+        multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        let curvature = self.curvature.as_ref();
+        Ok(curvature.map(|curvature| curvature(u, multipliers)))
     }
 }

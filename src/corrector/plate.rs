@@ -6,8 +6,8 @@
 //! | T: grips | on the short sides | known displacement in mm | η in mm |
 //! | T: traction-free edges | on the long sides, without corners | balance of forces in N | η in mm²/N |
 
-use super::condition::{Condition, Equilibrium, Prescribed};
-use super::{Correction, Corrector, CorrectorSettings, DifferenceScheme};
+use super::condition::{Condition, Equilibrium, Linear};
+use super::{Correction, Corrector, CorrectorSettings, Describe, DifferenceScheme};
 use crate::error::Error;
 use crate::mesh::{Mesh, Side};
 use crate::problem::{Problem, Solution};
@@ -39,7 +39,7 @@ impl KnownConditions {
 }
 
 /// A corrected plate at one stretch.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct CorrectedState {
     /// The corrected field and what follows from it; its residual is that of the difference scheme.
     pub solution: Solution,
@@ -54,6 +54,22 @@ pub struct PlateCorrector<'a> {
     energy: SheetEnergy,
     assembly: Assembly,
     settings: CorrectorSettings,
+    names: PlateNames<'a>,
+}
+
+/// Cells and nodes of a plate by their places.
+struct PlateNames<'a>(&'a Mesh);
+
+impl Describe for PlateNames<'_> {
+    fn element(&self, element: usize) -> String {
+        self.0.describe_cell(element)
+    }
+
+    fn unknown(&self, unknown: usize) -> String {
+        let [x, y] = self.0.nodes[unknown / 2];
+        let axis = ["x", "y"][unknown % 2];
+        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
+    }
 }
 
 impl<'a> PlateCorrector<'a> {
@@ -72,6 +88,7 @@ impl<'a> PlateCorrector<'a> {
             energy,
             assembly,
             settings,
+            names: PlateNames(mesh),
         }
     }
 
@@ -95,14 +112,25 @@ impl<'a> PlateCorrector<'a> {
             step: Problem::describe_step(stretch),
             fault,
         };
-        let weights = vec![1.0; data.len()];
-        let corrector = Corrector::new(self.conditions(stretch, known), weights, self.settings);
-        let describe = |cell: usize| self.mesh.describe_cell(cell);
-        let correction = corrector.correct(data, data, &describe).map_err(fault)?;
+        let correction = self
+            .corrector(stretch, known)
+            .correct(data, data)
+            .map_err(fault)?;
         Ok(CorrectedState {
             solution: self.solution(&correction, stretch),
             correction,
         })
+    }
+
+    /// Names of the plate's cells and nodes, for messages.
+    pub fn names(&self) -> &dyn Describe {
+        &self.names
+    }
+
+    /// The corrector of fields at one stretch, all nodes with the weight 1.
+    pub fn corrector(&self, stretch: f64, known: KnownConditions) -> Corrector<'_> {
+        let weights = vec![1.0; 2 * self.mesh.nodes.len()];
+        Corrector::new(self.conditions(stretch, known), weights, self.settings).named(&self.names)
     }
 
     /// F and the known part of T at one stretch.
@@ -127,7 +155,8 @@ impl<'a> PlateCorrector<'a> {
                 let held = self.problem.grip_displacement(mesh, node, stretch)?;
                 Some([(2 * node, held[0]), (2 * node + 1, held[1])])
             });
-            conditions.push(Box::new(Prescribed::new(GRIPS, imposed.flatten())));
+            let size = 2 * mesh.nodes.len();
+            conditions.push(Box::new(Linear::prescribed(GRIPS, size, imposed.flatten())));
         }
         if known.free_edges {
             conditions.push(balance(FREE_EDGES, edge));
@@ -136,7 +165,7 @@ impl<'a> PlateCorrector<'a> {
     }
 
     fn solution(&self, correction: &Correction, stretch: f64) -> Solution {
-        let displacement = correction.displacement().to_vec();
+        let displacement = correction.field().to_vec();
         let mut residual = vec![0.0; displacement.len()];
         let energy = Assembly::residual(&self.energy, &displacement, &mut residual)
             .expect("a corrected field is admissible");

@@ -187,7 +187,7 @@ fn multiplier_array(group: &Multipliers, size: usize) -> Option<Attribute> {
         _ => return None,
     };
     let mut values = vec![0.0; size];
-    for (unknown, value) in group.unknowns.iter().zip(&group.values) {
+    for (unknown, value) in group.unknowns.iter().flatten().zip(&group.values) {
         values[*unknown] = *value;
     }
     Some(planar_vectors(name, &values))

@@ -2,13 +2,18 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::sparse::linalg::solvers::Lu;
+use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMatRef, Triplet};
 use faer::{Conj, MatMut, Par, Side};
 
 /// The places of the entries of a symmetric matrix: lower triangle by columns, rows ascending.
@@ -151,6 +156,27 @@ impl Cholesky {
         &self.pattern
     }
 
+    /// The values of the factorised matrix and of its factor.
+    pub fn parts(&self) -> (&[f64], &[f64]) {
+        (&self.values, &self.factor)
+    }
+
+    /// Puts a factor that was kept elsewhere in place of a factorisation.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when the parts do not belong to this pattern.
+    pub fn restore(
+        &mut self,
+        values: Vec<f64>,
+        factor: Vec<f64>,
+    ) -> Result<(), NotPositiveDefinite> {
+        if values.len() != self.pattern.entries() || factor.len() != self.factor.len() {
+            return Err(NotPositiveDefinite);
+        }
+        (self.values, self.factor) = (values, factor);
+        Ok(())
+    }
+
     /// Factorises the matrix with these `values`.
     ///
     /// # Errors
@@ -223,8 +249,63 @@ impl Cholesky {
     }
 }
 
+/// A sparse LU factor with row pivoting, for square matrices of any kind.
+pub struct SparseLu {
+    matrix: SparseRows,
+    factor: Lu<usize, f64>,
+}
+
+impl SparseLu {
+    /// Factorises a square matrix.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when the matrix is singular by its structure.
+    pub fn new(matrix: SparseRows) -> Result<Self, NotPositiveDefinite> {
+        let size = matrix.columns();
+        let rows = (0..matrix.len()).flat_map(|row| {
+            let entries = matrix.row(row).iter();
+            entries.map(move |(column, value)| Triplet::new(row, *column, *value))
+        });
+        let entries: Vec<_> = rows.collect();
+        if matrix.len() != size || entries.iter().any(|entry| !entry.val.is_finite()) {
+            return Err(NotPositiveDefinite);
+        }
+        // More threads than free cores are ruinous, and one gives the same bits every time.
+        faer::set_global_parallelism(Par::Seq);
+        let sparse = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries);
+        let factor = sparse.map_err(|_| NotPositiveDefinite)?.sp_lu();
+        Ok(Self {
+            factor: factor.map_err(|_| NotPositiveDefinite)?,
+            matrix,
+        })
+    }
+
+    /// Solves A x = b, with two steps of refinement.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when x does not solve the system: the matrix is singular.
+    pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>, NotPositiveDefinite> {
+        let mut x = vec![0.0; b.len()];
+        let mut defect = b.to_vec();
+        for _ in 0..3 {
+            let size = defect.len();
+            let right = MatMut::from_column_major_slice_mut(&mut defect, size, 1);
+            self.factor.solve_in_place_with_conj(Conj::No, right);
+            x.iter_mut().zip(&defect).for_each(|(x, step)| *x += step);
+            let product = self.matrix.multiply(&x);
+            defect = b.iter().zip(product).map(|(b, p)| b - p).collect();
+        }
+        let scale = norm(b).max(f64::MIN_POSITIVE);
+        if norm(&defect) < 1e-6 * scale {
+            Ok(x)
+        } else {
+            Err(NotPositiveDefinite)
+        }
+    }
+}
+
 /// A sparse matrix by rows, of any shape.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SparseRows {
     columns: usize,
     rows: Vec<Vec<(usize, f64)>>,
@@ -285,6 +366,17 @@ impl SparseRows {
     /// Appends all rows of another matrix with the same number of columns.
     pub fn append(&mut self, other: Self) {
         self.rows.extend(other.rows);
+    }
+
+    /// The matrix with all its zeros.
+    pub fn to_dense(&self) -> DMatrix<f64> {
+        let mut dense = DMatrix::zeros(self.rows.len(), self.columns);
+        for (index, row) in self.rows.iter().enumerate() {
+            for (column, value) in row {
+                dense[(index, *column)] = *value;
+            }
+        }
+        dense
     }
 
     /// B x.
@@ -394,6 +486,28 @@ mod tests {
         assert_eq!(cholesky.factorise(&values), Err(NotPositiveDefinite));
         values[0] = f64::NAN;
         assert_eq!(cholesky.factorise(&values), Err(NotPositiveDefinite));
+    }
+
+    #[test]
+    fn an_unsymmetric_matrix_is_solved_and_a_singular_one_is_reported() {
+        let mut a = SparseRows::new(3);
+        a.push([(1, 2.0)]);
+        a.push([(0, 1.0), (2, -1.0)]);
+        a.push([(0, 1.0), (1, 1.0), (2, 1.0)]);
+        let x = SparseLu::new(a.clone())
+            .unwrap()
+            .solve(&[4.0, 1.0, 5.0])
+            .unwrap();
+        assert!(
+            x.iter()
+                .zip([2.0, 2.0, 1.0])
+                .all(|(x, exact)| (x - exact).abs() < 1e-14)
+        );
+        let mut singular = SparseRows::new(2);
+        singular.push([(0, 1.0), (1, 2.0)]);
+        singular.push([(0, 2.0), (1, 4.0)]);
+        let outcome = SparseLu::new(singular).and_then(|lu| lu.solve(&[1.0, 0.0]));
+        assert_eq!(outcome, Err(NotPositiveDefinite));
     }
 
     #[test]

@@ -1,0 +1,63 @@
+//! How well the corrected field and its parameters are known.
+//!
+//! With data of equal but unknown precision, ū = u + noise of variance s²/w, the corrected field is the
+//! estimate of largest likelihood and
+//!
+//! ```text
+//! s² = ‖u − ū‖²_W / (m − q)                   m conditions, q unknowns without data
+//! Cov(u) = s² Z (Zᵀ W Z)⁻¹ Zᵀ                 the columns of Z span what the conditions allow
+//! ```
+//!
+//! to first order in the noise. The interval uses Student's distribution with m − q degrees of freedom.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::{Correction, Corrector, difference};
+use crate::error::SolveFault;
+
+/// An estimated value with its uncertainty, in the unit of the value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// The 95 % confidence interval.
+    pub interval: [f64; 2],
+}
+
+impl Corrector<'_> {
+    /// The uncertainty of one unknown of a corrected field: an entry of the field, or a parameter.
+    ///
+    /// # Errors
+    /// [`SolveFault::Singular`] when the conditions do not determine the unknown, or leave no degree of
+    /// freedom to estimate the noise from.
+    pub fn estimate(
+        &self,
+        data: &[f64],
+        correction: &Correction,
+        unknown: usize,
+    ) -> Result<Estimate, SolveFault> {
+        let parameters = self.weights.iter().filter(|weight| **weight == 0.0).count();
+        let rows = correction.factor.jacobian().len();
+        if rows <= parameters {
+            return Err(SolveFault::Singular);
+        }
+        let freedom = (rows - parameters) as f64;
+        let changes = difference(correction.field(), data)
+            .into_iter()
+            .zip(&self.weights);
+        let variance = changes.map(|(d, weight)| weight * d * d).sum::<f64>() / freedom;
+        let column = correction.factor.covariance_column(unknown);
+        let column = column.map_err(|_| SolveFault::Singular)?;
+        let standard_error = (variance * column[unknown].max(0.0)).sqrt();
+        let value = correction.field()[unknown];
+        let student = StudentsT::new(0.0, 1.0, freedom).map_err(|_| SolveFault::Singular)?;
+        let reach = student.inverse_cdf(0.975) * standard_error;
+        Ok(Estimate {
+            value,
+            standard_error,
+            interval: [value - reach, value + reach],
+        })
+    }
+}

@@ -1,0 +1,80 @@
+//! The correction matrix of a small linear system, as the publication keeps it.
+
+use nalgebra::DMatrix;
+
+use crate::solve::{NotPositiveDefinite, SparseRows};
+
+/// ψ, S and Y of linear conditions B u = b with i unknowns, dense.
+///
+/// ```text
+/// S = (B W⁻¹ Bᵀ)⁻¹,   Y = I − W⁻¹ Bᵀ S B,   u = Y ū + W⁻¹ Bᵀ S b,   ψ = S (B ū − b)
+/// ```
+///
+/// Y² = Y, B Y = 0, and for W = I also Y = Yᵀ. The rank of Y is i less the number of rows: when B is square
+/// Y is zero, and the data have no say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CorrectionMatrix {
+    jacobian: DMatrix<f64>,
+    weights: Vec<f64>,
+    /// Orthonormal columns that span the rows of B W^(−½): n × m.
+    q: DMatrix<f64>,
+    /// W^(−½) Bᵀ = Q R: m × m.
+    r: DMatrix<f64>,
+}
+
+impl CorrectionMatrix {
+    /// The correction matrix of the conditions `rows` with the diagonal of W.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when rows depend on each other.
+    pub fn new(rows: &SparseRows, weights: Vec<f64>) -> Result<Self, NotPositiveDefinite> {
+        let jacobian = rows.to_dense();
+        let mut scaled = jacobian.transpose();
+        for (mut row, weight) in scaled.row_iter_mut().zip(&weights) {
+            row /= weight.sqrt();
+        }
+        if scaled.ncols() > scaled.nrows() {
+            return Err(NotPositiveDefinite);
+        }
+        let (q, r) = scaled.clone().qr().unpack();
+        let independent =
+            (0..r.nrows()).all(|row| r[(row, row)].abs() > 1e-10 * scaled.column(row).norm());
+        if !independent {
+            return Err(NotPositiveDefinite);
+        }
+        Ok(Self {
+            jacobian,
+            weights,
+            q,
+            r,
+        })
+    }
+
+    /// Y, i × i.
+    pub fn y(&self) -> DMatrix<f64> {
+        let size = self.weights.len();
+        let projector = &self.q * self.q.transpose();
+        DMatrix::from_fn(size, size, |i, j| {
+            let identity = if i == j { 1.0 } else { 0.0 };
+            identity - projector[(i, j)] * (self.weights[j] / self.weights[i]).sqrt()
+        })
+    }
+
+    /// S, one row and column for each row of B.
+    ///
+    /// # Panics
+    /// Never: independent rows have an invertible R.
+    pub fn s(&self) -> DMatrix<f64> {
+        let rows = self.r.nrows();
+        let inverse = self
+            .r
+            .solve_upper_triangular(&DMatrix::identity(rows, rows));
+        let inverse = inverse.expect("independent rows");
+        &inverse * inverse.transpose()
+    }
+
+    /// B.
+    pub fn b(&self) -> &DMatrix<f64> {
+        &self.jacobian
+    }
+}

@@ -1,0 +1,100 @@
+//! Factors kept in files: factorise once, correct many fields in many runs.
+//!
+//! A file holds the bytes `gelbench factor`, a version, the factor, and a CRC-32 of all that. A factor fits a
+//! corrector whose conditions have as many rows and unknowns, with the same weights; it may have been taken
+//! at another field.
+
+use std::path::Path;
+
+use super::factor::FactorParts;
+use super::{Corrector, Factor};
+
+/// What the file begins with.
+const MAGIC: &[u8] = b"gelbench factor";
+/// The version of the format.
+const VERSION: u32 = 1;
+
+/// Why a kept factor cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RetainedFault {
+    /// The bytes do not begin as a kept factor does.
+    #[error("this is no kept factor")]
+    NoFactor,
+    /// The file was written by another version of gelbench.
+    #[error(
+        "the factor was kept in format {0}, this gelbench reads format {VERSION}: factorise again"
+    )]
+    Version(u32),
+    /// The checksum is wrong.
+    #[error("the kept factor is damaged: its checksum is wrong")]
+    Damaged,
+    /// The factor is one of other conditions.
+    #[error("the kept factor does not fit the problem: {0}")]
+    DoesNotFit(String),
+    /// The file could not be read.
+    #[error("cannot read {0}")]
+    Unreadable(String),
+}
+
+/// A factor as bytes for a file.
+pub fn to_bytes(factor: &Factor) -> Vec<u8> {
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend(postcard::to_stdvec(&factor.parts()).expect("a factor can be written to memory"));
+    let checksum = crc32fast::hash(&bytes);
+    bytes.extend(checksum.to_le_bytes());
+    bytes
+}
+
+/// Reads a kept factor for `corrector`.
+///
+/// # Errors
+/// A [`RetainedFault`].
+pub fn from_bytes(bytes: &[u8], corrector: &Corrector) -> Result<Factor, RetainedFault> {
+    let rest = bytes.strip_prefix(MAGIC).ok_or(RetainedFault::NoFactor)?;
+    let (version, _) = rest.split_first_chunk().ok_or(RetainedFault::Damaged)?;
+    let version = u32::from_le_bytes(*version);
+    if version != VERSION {
+        return Err(RetainedFault::Version(version));
+    }
+    let (content, checksum) = bytes.split_last_chunk().ok_or(RetainedFault::Damaged)?;
+    if crc32fast::hash(content) != u32::from_le_bytes(*checksum) {
+        return Err(RetainedFault::Damaged);
+    }
+    let content = &content[MAGIC.len() + size_of::<u32>()..];
+    let parts: FactorParts = postcard::from_bytes(content).map_err(|_| RetainedFault::Damaged)?;
+    fits(&parts, corrector).map_err(RetainedFault::DoesNotFit)?;
+    Factor::from_parts(parts).map_err(|_| RetainedFault::Damaged)
+}
+
+/// Reads a kept factor from a file.
+///
+/// # Errors
+/// A [`RetainedFault`].
+pub fn load(path: &Path, corrector: &Corrector) -> Result<Factor, RetainedFault> {
+    let bytes = std::fs::read(path)
+        .map_err(|cause| RetainedFault::Unreadable(format!("{}: {cause}", path.display())))?;
+    from_bytes(&bytes, corrector)
+}
+
+fn fits(parts: &FactorParts, corrector: &Corrector) -> Result<(), String> {
+    let rows: usize = corrector
+        .conditions
+        .iter()
+        .map(|condition| condition.rows())
+        .sum();
+    let unknowns = corrector.weights.len();
+    let (its_rows, its_unknowns) = (parts.jacobian.len(), parts.jacobian.columns());
+    if (its_rows, its_unknowns) != (rows, unknowns) {
+        return Err(format!(
+            "it has {its_rows} rows and {its_unknowns} unknowns, the problem {rows} and {unknowns}"
+        ));
+    }
+    if parts.weights != corrector.weights {
+        return Err("its weights are others".into());
+    }
+    if parts.unknowns.is_some() && parts.unknowns != corrector.square_unknowns() {
+        return Err("its conditions belong to other unknowns".into());
+    }
+    Ok(())
+}

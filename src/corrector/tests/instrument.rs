@@ -1,0 +1,374 @@
+//! The corrector as an instrument: its forms, its matrix, its retained factors and its estimates.
+
+use nalgebra::DMatrix;
+
+use super::*;
+use crate::corrector::retained::{self, RetainedFault};
+use crate::mesh::Side;
+use crate::solve::Assembly;
+
+fn by_solver(solver: Solver) -> CorrectorSettings {
+    CorrectorSettings { solver, ..SETTINGS }
+}
+
+/// Some independent rows over `size` unknowns.
+fn rows(count: usize, size: usize) -> SparseRows {
+    let numbers = noise(count * size);
+    let mut rows = SparseRows::new(size);
+    for row in 0..count {
+        let entries = (0..size).filter(|column| (row * 3 + column) % 4 != 0);
+        rows.push(entries.map(|column| (column, numbers[row * size + column])));
+    }
+    rows
+}
+
+#[test]
+fn all_forms_of_the_projection_agree() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let field = &uncorrected.displacement;
+    let weights: Vec<f64> = noise(field.len()).iter().map(|n| 1.5 + n).collect();
+    let pull = noise(field.len());
+    for known in [KnownConditions::ALL, FREE_GRIPS] {
+        let project = |solver| {
+            let conditions = plate.conditions(STRETCH, known);
+            let corrector = Corrector::new(conditions, weights.clone(), by_solver(solver));
+            let mut factor = corrector.factor(field)?;
+            let values = corrector.values(field).unwrap();
+            Ok::<_, SolveFault>((factor.solver(), factor.project(&values, &pull).unwrap()))
+        };
+        let (_, expected) = project(Solver::Dense).unwrap();
+        let mut forms = vec![Solver::Cholesky, Solver::Kkt];
+        if known == KnownConditions::ALL {
+            forms.push(Solver::Symmetric);
+        }
+        for form in forms {
+            let (taken, found) = project(form).unwrap();
+            assert_eq!(taken, form);
+            let step = largest_difference(&found.step, &expected.step) / largest(&expected.step);
+            let psi = largest_difference(&found.multipliers, &expected.multipliers);
+            let psi = psi / largest(&expected.multipliers);
+            assert!(
+                step < 1e-9 && psi < 1e-9,
+                "{form:?} {known:?}: {step:.1e} {psi:.1e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_form_is_chosen_by_size_and_kind() {
+    let few = rows(3, 10);
+    let chosen = |jacobian, weights, unknowns| {
+        Factor::new(jacobian, weights, unknowns, Solver::Automatic)
+            .unwrap()
+            .solver()
+    };
+    assert_eq!(chosen(few.clone(), vec![1.0; 10], None), Solver::Dense);
+    let mut weights = vec![1.0; 10];
+    weights[4] = 0.0;
+    assert_eq!(chosen(few, weights, None), Solver::Kkt);
+    let mut many = SparseRows::new(400);
+    (0..300).for_each(|row| many.push([(row, 1.0), (row + 100, 0.5)]));
+    assert_eq!(chosen(many, vec![1.0; 400], None), Solver::Cholesky);
+    // Rows that are parallel to seven digits: B Bᵀ is worth nothing, the whole system is.
+    let mut close = SparseRows::new(400);
+    (0..200).for_each(|row| close.push([(row, 1.0), (row + 200, 1.0)]));
+    (0..150).for_each(|row| close.push([(row, 1.0), (row + 200, 1.0 + 4e-7)]));
+    assert_eq!(chosen(close, vec![1.0; 400], None), Solver::Kkt);
+}
+
+#[test]
+fn the_correction_matrix_is_what_the_publication_says() {
+    let b = rows(5, 12);
+    let matrix = CorrectionMatrix::new(&b, vec![1.0; 12]).unwrap();
+    let y = matrix.y();
+    let size = |matrix: &DMatrix<f64>| matrix.amax();
+    assert!(size(&(&y - y.transpose())) < 1e-12, "symmetric");
+    assert!(size(&(&y * &y - &y)) < 1e-12, "idempotent");
+    assert!(size(&(matrix.b() * &y)) < 1e-12, "B Y = 0");
+    assert_eq!(y.rank(1e-9), 12 - 5);
+    let normal = matrix.b() * matrix.b().transpose();
+    assert!(size(&(matrix.s() * normal - DMatrix::identity(5, 5))) < 1e-11);
+
+    let square = CorrectionMatrix::new(&rows(8, 8), vec![1.0; 8]).unwrap();
+    assert!(
+        size(&square.y()) < 1e-12,
+        "a square B leaves the data no say"
+    );
+
+    let weights: Vec<f64> = (0..12).map(|i| 0.5 + f64::from(i)).collect();
+    let y = CorrectionMatrix::new(&b, weights.clone()).unwrap().y();
+    assert!(size(&(&y * &y - &y)) < 1e-12);
+    let data = noise(12);
+    let mut factor = Factor::new(b, weights, None, Solver::Cholesky).unwrap();
+    let values = factor.jacobian().multiply(&data);
+    let projected = factor.project(&values, &[0.0; 12]).unwrap();
+    let expected = &y * nalgebra::DVector::from_column_slice(&data);
+    let found: Vec<f64> = data
+        .iter()
+        .zip(&projected.step)
+        .map(|(u, step)| u + step)
+        .collect();
+    assert!(largest_difference(&found, expected.as_slice()) < 1e-12);
+}
+
+#[test]
+fn dependent_and_contradictory_conditions_are_named() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let size = uncorrected.displacement.len();
+    let fault = |value: f64| {
+        let mut conditions = plate.conditions(STRETCH, KnownConditions::ALL);
+        conditions.push(Box::new(Linear::prescribed("pin", size, [(3, value)])));
+        let corrector = Corrector::new(conditions, vec![1.0; size], SETTINGS).named(plate.names());
+        let data = &uncorrected.displacement;
+        corrector.correct(data, data).map(|_| ()).unwrap_err()
+    };
+    let SolveFault::Dependent {
+        rows,
+        contradictory,
+        ..
+    } = fault(0.5)
+    else {
+        panic!("not named");
+    };
+    assert!(contradictory);
+    let expected = "at node 1 (0.0, 3.3) mm along y";
+    assert_eq!(rows.len(), 2, "{rows:?}");
+    assert!(rows.contains(&format!("grips {expected}")), "{rows:?}");
+    assert!(rows.contains(&format!("pin {expected}")), "{rows:?}");
+    assert!(matches!(
+        fault(0.0),
+        SolveFault::Dependent {
+            contradictory: false,
+            ..
+        }
+    ));
+}
+
+#[test]
+fn a_retained_factor_is_applied_to_many_fields_and_right_hand_sides() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let size = uncorrected.displacement.len();
+    let corrector = plate.corrector(STRETCH, FREE_GRIPS);
+    let mut retained = corrector.factor(&vec![0.0; size]).unwrap();
+    for shift in 0..3 {
+        let pull: Vec<f64> = noise(size + shift)[shift..].to_vec();
+        let values = noise(retained.jacobian().len());
+        let mut fresh = corrector.factor(&vec![0.0; size]).unwrap();
+        let expected = fresh.project(&values, &pull).unwrap();
+        assert_eq!(retained.project(&values, &pull).unwrap(), expected);
+    }
+}
+
+#[test]
+fn a_factor_survives_its_file_and_a_wrong_one_is_refused() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let size = uncorrected.displacement.len();
+    let pull = noise(size);
+    for known in [KnownConditions::ALL, FREE_GRIPS] {
+        let corrector = plate.corrector(STRETCH, known);
+        let mut factor = corrector.factor(&uncorrected.displacement).unwrap();
+        let bytes = retained::to_bytes(&factor);
+        let mut read = retained::from_bytes(&bytes, &corrector).unwrap();
+        assert_eq!(read.solver(), factor.solver());
+        let values = corrector.values(&uncorrected.displacement).unwrap();
+        let (expected, found) = (factor.project(&values, &pull), read.project(&values, &pull));
+        assert_eq!(found, expected);
+
+        let refused = |bytes: &[u8]| {
+            retained::from_bytes(bytes, &corrector)
+                .map(|_| ())
+                .unwrap_err()
+        };
+        for damaged in [40, bytes.len() / 2, bytes.len() - 1] {
+            let mut copy = bytes.clone();
+            copy[damaged] ^= 1;
+            assert_eq!(refused(&copy), RetainedFault::Damaged, "byte {damaged}");
+        }
+        assert_eq!(refused(&bytes[..bytes.len() - 9]), RetainedFault::Damaged);
+        assert_eq!(refused(b"gelbench"), RetainedFault::NoFactor);
+        let mut newer = bytes.clone();
+        newer[15] = 9;
+        assert_eq!(refused(&newer), RetainedFault::Version(9));
+    }
+    let all = plate.corrector(STRETCH, KnownConditions::ALL);
+    let bytes = retained::to_bytes(&all.factor(&uncorrected.displacement).unwrap());
+    let other = plate.corrector(STRETCH, FREE_GRIPS);
+    let fault = retained::from_bytes(&bytes, &other)
+        .map(|_| ())
+        .unwrap_err();
+    assert!(
+        fault.to_string().contains("does not fit the problem"),
+        "{fault}"
+    );
+}
+
+/// From a factor taken at rest, at 100 % stretch, where the tangent has grown ninefold.
+#[test]
+fn a_factor_taken_at_rest_corrects_at_full_stretch() {
+    let problem = Problem {
+        stretches: vec![1.0],
+        ..problem()
+    };
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let data = &uncorrected.displacement;
+    let corrector = plate.corrector(1.0, KnownConditions::ALL);
+    let expected = corrector.correct(data, data).unwrap();
+    let mut at_rest = corrector.factor(&vec![0.0; data.len()]).unwrap();
+    let found = corrector
+        .correct_retained(data, data, &mut at_rest)
+        .unwrap();
+    assert!(largest_difference(found.field(), expected.field()) < 1e-8);
+    let fresh = found.steps.iter().filter(|step| !step.retained).count();
+    assert_eq!(fresh, 1, "only the last, for the multipliers");
+    let psi = [&found, &expected].map(|correction| correction.multipliers[0].values.clone());
+    assert!(largest_difference(&psi[0], &psi[1]) < 1e-6 * largest(&psi[1]));
+
+    // A factor that is worth nothing: it stalls, and fresh ones finish the work.
+    let (mut rows, unknowns) = (SparseRows::new(data.len()), at_rest.parts().unknowns);
+    for row in 0..data.len() {
+        let far = if row % 2 == 0 { 1e-3 } else { -1e3 };
+        rows.push([(unknowns.as_ref().unwrap()[row], far)]);
+    }
+    let mut useless = Factor::new(rows, vec![1.0; data.len()], None, Solver::Dense).unwrap();
+    let found = corrector
+        .correct_retained(data, data, &mut useless)
+        .unwrap();
+    assert!(largest_difference(found.field(), expected.field()) < 1e-8);
+}
+
+#[test]
+fn every_kind_of_condition_is_met_and_has_the_right_jacobian() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let mesh = &springs.mesh;
+    let size = uncorrected.displacement.len();
+    let assembly = Assembly::new(plate.energy(), &vec![false; size]);
+    let on = |side| (0..mesh.nodes.len()).filter(move |node| mesh.on(side, *node));
+    let edge = |side, axis: usize| on(side).map(|node| 2 * node + axis).collect::<Vec<_>>();
+    let mut line: Vec<usize> = on(Side::Bottom).collect();
+    line.extend(on(Side::Right).skip(1));
+    line.extend(on(Side::Top).collect::<Vec<_>>().into_iter().rev().skip(1));
+    line.extend(
+        on(Side::Left)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .rev()
+            .skip(1)
+            .take(5),
+    );
+    let line: Vec<_> = line
+        .into_iter()
+        .map(|node| (node, mesh.nodes[node]))
+        .collect();
+    // A little more area and force than the lattice has.
+    let u = &uncorrected.displacement;
+    let area = 1.01
+        * EnclosedArea::new("area", line.clone(), 0.0)
+            .values(u)
+            .unwrap()[0];
+    let force = 1.01 * uncorrected.force;
+    let inner = (0..mesh.nodes.len()).filter(|node| !mesh.on_grip(*node));
+    let inner: Vec<usize> = inner.flat_map(|node| [2 * node, 2 * node + 1]).collect();
+    let loads: Vec<f64> = noise(inner.len()).iter().map(|n| 1e-3 * n).collect();
+    let middle = SparseRows::new(size);
+    let conditions: Vec<Box<dyn Condition>> = vec![
+        Box::new(Equilibrium::new("loaded", plate.energy(), &assembly, inner).with_loads(loads)),
+        Box::new(Linear::prescribed(
+            "left",
+            size,
+            edge(Side::Left, 0).into_iter().map(|i| (i, 0.0)),
+        )),
+        Box::new(Linear::together(
+            "rigid grip",
+            size,
+            &[edge(Side::Right, 0)],
+        )),
+        Box::new(TotalForce::new(
+            "force",
+            plate.energy(),
+            &assembly,
+            edge(Side::Right, 0),
+            force,
+        )),
+        Box::new(EnclosedArea::new("area", line, area)),
+        Box::new(Linear::new("none", middle, Vec::new())),
+    ];
+    let direction = noise(size);
+    for condition in &conditions {
+        let jacobian = condition.linearise(u).unwrap().jacobian;
+        assert_eq!(jacobian.len(), condition.rows(), "{}", condition.name());
+        let at = |step: f64| {
+            let moved: Vec<f64> = u
+                .iter()
+                .zip(&direction)
+                .map(|(u, d)| u + step * d)
+                .collect();
+            condition.values(&moved).unwrap()
+        };
+        let slope: Vec<f64> = difference(&at(1e-5), &at(-1e-5))
+            .iter()
+            .map(|d| d / 2e-5)
+            .collect();
+        let error = largest_difference(&slope, &jacobian.multiply(&direction));
+        assert!(
+            error < 1e-5 * largest(&slope).max(1.0),
+            "{}: {error:.1e}",
+            condition.name()
+        );
+    }
+    let corrector = Corrector::new(conditions, vec![1.0; size], SETTINGS);
+    let corrected = corrector.correct(u, u).unwrap();
+    assert!(largest(&corrector.values(corrected.field()).unwrap()) < 1e-7);
+}
+
+/// A line through noisy points: slope and intercept are parameters, and the estimate is that of ordinary
+/// least squares.
+#[test]
+fn parameters_without_data_are_regressed_with_their_standard_errors() {
+    let n = 20;
+    let noise = noise(n);
+    let mut data: Vec<f64> = (0..n)
+        .map(|i| 1.5 + 0.3 * i as f64 + 0.1 * noise[i])
+        .collect();
+    data.extend([0.0, 0.0]);
+    let mut rows = SparseRows::new(n + 2);
+    for i in 0..n {
+        rows.push([(i, 1.0), (n, -1.0), (n + 1, -(i as f64))]);
+    }
+    let mut weights = vec![1.0; n];
+    weights.extend([0.0, 0.0]);
+    let conditions: Vec<Box<dyn Condition>> =
+        vec![Box::new(Linear::new("line", rows, vec![0.0; n]))];
+    let corrector = Corrector::new(conditions, weights, SETTINGS);
+    let correction = corrector.correct(&data, &data).unwrap();
+    let slope = corrector.estimate(&data, &correction, n + 1).unwrap();
+
+    let mean = |value: &dyn Fn(usize) -> f64| (0..n).map(value).sum::<f64>() / n as f64;
+    let (x, y) = (mean(&|i| i as f64), mean(&|i| data[i]));
+    let spread: f64 = (0..n).map(|i| (i as f64 - x).powi(2)).sum();
+    let expected = (0..n).map(|i| (i as f64 - x) * (data[i] - y)).sum::<f64>() / spread;
+    let left: f64 = (0..n)
+        .map(|i| (data[i] - y - expected * (i as f64 - x)).powi(2))
+        .sum();
+    let error = (left / (n as f64 - 2.0) / spread).sqrt();
+    assert!((slope.value - expected).abs() < 1e-12);
+    assert!(
+        (slope.standard_error / error - 1.0).abs() < 1e-9,
+        "{} {error}",
+        slope.standard_error
+    );
+    // Student's distribution with 18 degrees of freedom.
+    let reach = (slope.interval[1] - slope.value) / slope.standard_error;
+    assert!((reach - 2.100_922).abs() < 1e-5, "{reach}");
+}
