@@ -19,7 +19,8 @@ use crate::error::{Diagnostic, Error};
 use crate::material::Card;
 use crate::material::registry::CARDS;
 use crate::problem::Problem;
-use crate::study::{DEFAULT, Study};
+use crate::study::{self, DEFAULT, Study};
+use crate::validation::{self, Case, Computed};
 use crate::{output, run};
 
 mod message;
@@ -29,6 +30,7 @@ Samples:
   gelbench new my_plate                      write my_plate.toml, a commented study
   gelbench check my_plate.toml               read it and tell every fault
   gelbench run my_plate.toml                 compute it and write output/my_plate/
+  gelbench validate                          redo the publication's claims, write validation/REPORT.md
   gelbench materials list                    the cards that come along
   gelbench materials show pva-10             one card with its moduli and its source
 
@@ -64,6 +66,20 @@ enum Command {
         /// Name of the study; `.toml` is added where it is missing
         name: PathBuf,
     },
+    /// Redo the publication's claims and the comparisons with other codes
+    ///
+    /// Writes REPORT.md with its pictures and REPORT.html.
+    #[command(after_help = "Sample: gelbench validate vibrating-spring --output /tmp/validation")]
+    Validate {
+        /// Cases to compute; all where none is named
+        cases: Vec<String>,
+        /// Leave out the slow cases
+        #[arg(long)]
+        quick: bool,
+        /// Write the report into this folder
+        #[arg(long, value_name = "FOLDER", default_value = "validation")]
+        output: PathBuf,
+    },
     /// Look at material cards
     Materials {
         #[command(subcommand)]
@@ -98,6 +114,11 @@ pub fn main() -> ExitCode {
         Command::Run { study, output } => run_study(&study, output),
         Command::Check { study } => check(&study),
         Command::New { name } => new_study(name),
+        Command::Validate {
+            cases,
+            quick,
+            output,
+        } => validate(&cases, quick, &output),
         Command::Materials { command } => match command {
             Materials::List => list_cards(),
             Materials::Show { card } => show_card(&card),
@@ -115,14 +136,16 @@ pub fn main() -> ExitCode {
 type Outcome = Result<u8, Error>;
 
 fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
-    let study = Study::load(path)?;
+    let text = study::read(path)?;
+    if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
+        return run_case(case, path, &text, folder);
+    }
+    let study = Study::of_file(path, text)?;
     warn(&study.warnings);
     let folder = folder.unwrap_or_else(|| study.output.folder.clone());
     output::prepare(&folder)?;
 
-    let bar = ProgressBar::new(run::progress_steps(&study) as u64);
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {wide_msg}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let bar = progress_bar(run::progress_steps(&study) as u64);
     let progress = |model: &str, stretch: f64| {
         bar.set_message(format!("{model}, {}", Problem::describe_step(stretch)));
         bar.inc(1);
@@ -143,8 +166,82 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
     Ok(u8::from(!passed))
 }
 
+/// Computes a study of one of the validation cases.
+fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Outcome {
+    let file = path.display().to_string();
+    case.check(&file, text)?;
+    let stem = path.file_stem().map_or_else(PathBuf::new, PathBuf::from);
+    let folder = folder.unwrap_or_else(|| Path::new("output").join(stem));
+    output::prepare(&folder)?;
+    let bar = progress_bar(0);
+    let computed = case.compute(&file, text, &|what| {
+        bar.set_message(what.to_owned());
+        bar.tick();
+    });
+    bar.finish_and_clear();
+    let computed = computed?;
+    let (title, json) = (computed.title.clone(), computed.json());
+    let cases = [computed];
+    let (blocks, figures) = validation::report::report(&title, &cases);
+    output::write_pictures(&folder, &figures)?;
+    output::save(
+        &folder.join("report.json"),
+        format!("{json:#}\n").as_bytes(),
+    )?;
+    output::write_document(&folder, "report", &blocks, &figures)?;
+    conclude(&cases, &folder.join("report.html"))
+}
+
+fn validate(names: &[String], quick: bool, folder: &Path) -> Outcome {
+    let chosen = validation::choose(names, quick)?;
+    output::prepare(folder)?;
+    let bar = progress_bar(chosen.len() as u64);
+    let mut cases = Vec::new();
+    for case in chosen {
+        let told = |what: &str| {
+            bar.set_message(format!("{}: {what}", case.kind));
+            bar.tick();
+        };
+        told("begins");
+        cases.push(case.compute(case.file, case.study, &told)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
+    output::write_pictures(folder, &figures)?;
+    output::write_document(folder, "REPORT", &blocks, &figures)?;
+    conclude(&cases, &folder.join("REPORT.md"))
+}
+
+/// Prints the checks and decides on the exit code.
+fn conclude(cases: &[Computed], report: &Path) -> Outcome {
+    print(&format!(
+        "{}\nreport: {}\n",
+        message::checks(cases),
+        report.display()
+    ))?;
+    Ok(u8::from(!cases.iter().all(Computed::passed)))
+}
+
+fn progress_bar(length: u64) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {wide_msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
 fn check(path: &Path) -> Outcome {
-    let study = Study::load(path)?;
+    let text = study::read(path)?;
+    if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
+        case.check(&path.display().to_string(), &text)?;
+        print(&format!(
+            "{}: no faults; a study of the kind {}\n",
+            path.display(),
+            case.kind
+        ))?;
+        return Ok(0);
+    }
+    let study = Study::of_file(path, text)?;
     warn(&study.warnings);
     print(&format!("{}\n", message::study(path, &study)))?;
     Ok(0)

@@ -48,6 +48,9 @@ pub use plate::PlateCorrector;
 pub struct CorrectorSettings {
     /// Largest scaled residual relative to the largest displacement; see [`Step::residual`].
     pub tolerance: f64,
+    /// Largest further move of the field that is left undone, relative to the largest displacement, where
+    /// the data have a say in the result: a small part of their noise is enough.
+    pub movement: f64,
     /// Steps allowed.
     pub max_steps: usize,
     /// The form of the projection.
@@ -210,6 +213,7 @@ impl<'a> Corrector<'a> {
     ) -> Result<Correction, SolveFault> {
         let CorrectorSettings {
             tolerance,
+            movement,
             max_steps,
             ..
         } = self.settings;
@@ -232,7 +236,7 @@ impl<'a> Corrector<'a> {
                 length,
                 retained: false,
             });
-            if residual <= tolerance && moved <= 10.0 * tolerance {
+            if residual <= tolerance && moved <= movement {
                 return Ok(Correction {
                     steps,
                     multipliers: self.by_condition(&projection.multipliers),
@@ -246,7 +250,16 @@ impl<'a> Corrector<'a> {
                     tolerance,
                 });
             }
-            (field, length) = self.next(&system, data, &before, &projection)?;
+            // Near enough to the data, only the conditions are still to be met.
+            let (target, projection) = if moved <= movement {
+                let still = vec![0.0; before.len()];
+                let back = factor.project(&system.values, &still);
+                let back = back.map_err(|NotPositiveDefinite| self.dependent(&system))?;
+                (&before[..], back)
+            } else {
+                (data, projection)
+            };
+            (field, length) = self.next(&system, &mut factor, target, &before, &projection)?;
         }
     }
 

@@ -19,3 +19,4 @@ pub mod sheet_energy;
 pub mod solve;
 pub mod study;
 pub mod units;
+pub mod validation;

@@ -139,6 +139,23 @@ impl MassSpring {
         }
     }
 
+    /// The lattice with other cross-sections in mm²; springs that get none are left out.
+    #[must_use]
+    pub fn with_areas(self, problem: &Problem, mut area: impl FnMut(&Spring) -> f64) -> Self {
+        let change = |spring: Spring| Spring {
+            area: area(&spring),
+            ..spring
+        };
+        let springs = self.springs.into_iter().map(change);
+        let springs: Vec<Spring> = springs.filter(|spring| spring.area > 0.0).collect();
+        let lattice = Lattice::new(problem, &self.mesh, &springs, self.lattice.area_stiffness);
+        Self {
+            mesh: self.mesh,
+            springs,
+            lattice,
+        }
+    }
+
     /// The lattice's energy as a potential of the nodal displacements.
     pub fn potential(&self) -> &dyn Potential {
         &self.lattice

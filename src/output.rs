@@ -15,6 +15,9 @@ pub mod picture;
 mod report;
 mod vtk;
 
+pub use figures::Figure;
+pub use report::Block;
+
 /// Writes everything a study asks for into its folder and returns the files in the order of writing.
 ///
 /// # Errors
@@ -31,23 +34,50 @@ pub fn write(study: &Study, results: &Results, folder: &Path) -> Result<Vec<Path
     } else {
         Vec::new()
     };
-    for figure in &figures {
-        written.push(save(&folder.join(&figure.name), &figure.png)?);
-    }
+    written.extend(write_pictures(folder, &figures)?);
     if study.output.report {
-        let blocks = report::report(study, results, &figures);
         let json = json::json(study, results);
-        let page = html::html(&study.title, &blocks, &figures);
-        let reports = [
-            ("report.json", format!("{json:#}\n")),
-            ("report.html", page),
-            ("report.md", markdown::markdown(&blocks, &figures)),
-        ];
-        for (name, text) in reports {
-            written.push(save(&folder.join(name), text.as_bytes())?);
-        }
+        written.push(save(
+            &folder.join("report.json"),
+            format!("{json:#}\n").as_bytes(),
+        )?);
+        let blocks = report::report(study, results, &figures);
+        written.extend(write_document(folder, "report", &blocks, &figures)?);
     }
     Ok(written)
+}
+
+/// Writes pictures into a folder.
+///
+/// # Errors
+/// [`Error::Write`] with the file that could not be written.
+pub fn write_pictures(folder: &Path, figures: &[Figure]) -> Result<Vec<PathBuf>, Error> {
+    let pictures = figures.iter();
+    pictures
+        .map(|figure| save(&folder.join(&figure.name), &figure.png))
+        .collect()
+}
+
+/// Writes a document as `NAME.md`, with its pictures beside it, and as one self-contained `NAME.html`.
+///
+/// # Errors
+/// [`Error::Write`] with the file that could not be written.
+pub fn write_document(
+    folder: &Path,
+    name: &str,
+    blocks: &[Block],
+    figures: &[Figure],
+) -> Result<[PathBuf; 2], Error> {
+    let title = blocks.iter().find_map(|block| match block {
+        Block::Heading(1, title) => Some(title.as_str()),
+        _ => None,
+    });
+    let page = html::html(title.unwrap_or(name), blocks, figures);
+    let text = markdown::markdown(blocks, figures);
+    Ok([
+        save(&folder.join(format!("{name}.html")), page.as_bytes())?,
+        save(&folder.join(format!("{name}.md")), text.as_bytes())?,
+    ])
 }
 
 /// Makes sure that files can be written into `folder`, before any work is done for them.

@@ -85,18 +85,25 @@ pub struct OutputSettings {
     pub report: bool,
 }
 
+/// The text of a study file.
+///
+/// # Errors
+/// [`Error::Input`] when the file cannot be read.
+pub fn read(path: &Path) -> Result<String, Error> {
+    std::fs::read_to_string(path).map_err(|cause| {
+        let fault = Diagnostic::error("", format!("cannot read {}: {cause}", path.display()));
+        Error::Input(vec![
+            fault.hint("`gelbench new NAME` writes a study to start from"),
+        ])
+    })
+}
+
 impl Study {
-    /// Reads the study in `path`.
+    /// Checks the text of the study file `path`.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault of the study and of its card.
-    pub fn load(path: &Path) -> Result<Self, Error> {
-        let text = std::fs::read_to_string(path).map_err(|cause| {
-            let fault = Diagnostic::error("", format!("cannot read {}: {cause}", path.display()));
-            Error::Input(vec![
-                fault.hint("`gelbench new NAME` writes a study to start from"),
-            ])
-        })?;
+    pub fn of_file(path: &Path, text: String) -> Result<Self, Error> {
         let name = path
             .file_stem()
             .map_or_else(String::new, |stem| stem.to_string_lossy().into());
@@ -114,7 +121,7 @@ impl Study {
             let defaults = Document::parse("default.toml", DEFAULT, &faults);
             let document = Document::parse(file, &text, &faults);
             let root = document.root(Some(&defaults), &faults);
-            read(name, folder, root, &faults)
+            read_sections(name, folder, root, &faults)
         };
         let warnings = faults.finish()?;
         let study = study.expect("a study without a card has a fault");
@@ -132,7 +139,8 @@ impl Study {
 }
 
 /// Reads all sections; nothing when there is no card to work with, which is recorded as a fault.
-fn read(name: &str, folder: &Path, root: Section<'_>, faults: &Faults) -> Option<Study> {
+fn read_sections(name: &str, folder: &Path, root: Section<'_>, faults: &Faults) -> Option<Study> {
+    root.choice("kind", &[("plate", ())]);
     let title = root.text("title");
     let card = read_card(&root.section("material"), folder, faults);
     let law: Arc<dyn HyperelasticLaw> = match &card {
@@ -153,6 +161,7 @@ fn read(name: &str, folder: &Path, root: Section<'_>, faults: &Faults) -> Option
     let scheme = section.choice("scheme", &DifferenceScheme::NAMES);
     let corrector = CorrectorSettings {
         tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
+        movement: 1e-9,
         max_steps: section.count("max_steps", 1, 1000),
         solver: Solver::Automatic,
     };

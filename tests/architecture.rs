@@ -16,6 +16,7 @@ const LAYERS: &[&[&str]] = &[
     &["results"],
     &["output"],
     &["run"],
+    &["validation"],
     &["command"],
 ];
 

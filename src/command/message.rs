@@ -11,6 +11,7 @@ use crate::material::Card;
 use crate::problem::Problem;
 use crate::results::{Requirement, Results};
 use crate::study::Study;
+use crate::validation::{Computed, Wanted, limit, number};
 
 /// A finding with the lines of the file that it is about.
 pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
@@ -96,6 +97,34 @@ pub fn summary(results: &Results, requirements: &[Requirement]) -> String {
         );
     }
     text
+}
+
+/// One line for each check of some cases, and their number.
+pub fn checks(cases: &[Computed]) -> String {
+    let mut text = String::new();
+    let mut passed = [0, 0];
+    for (case, check) in cases
+        .iter()
+        .flat_map(|case| case.outcome.checks.iter().map(move |check| (case, check)))
+    {
+        passed[usize::from(check.passed())] += 1;
+        let wanted = match check.wanted {
+            Wanted::Equal(value, tolerance) => {
+                format!("{} ± {} %", limit(value), limit(tolerance))
+            }
+            Wanted::AtMost(most) => format!("at most {}", limit(most)),
+            Wanted::AtLeast(least) => format!("at least {}", limit(least)),
+        };
+        text += &format!(
+            "{} {}: {} = {} {} ({wanted})\n",
+            if check.passed() { "pass" } else { "FAIL" },
+            case.kind,
+            check.quantity,
+            number(check.computed),
+            check.unit,
+        );
+    }
+    text + &format!("{} of {} checks passed\n", passed[1], passed[0] + passed[1])
 }
 
 /// One line of the list of cards.

@@ -63,8 +63,8 @@ pub fn accelerate(
             .map_err(|NotPositiveDefinite| SolveFault::Singular)?
             .step;
         let moved = largest(&step) / largest(&field).max(f64::MIN_POSITIVE);
-        let tolerance = corrector.settings.tolerance;
-        if now <= tolerance && moved <= 10.0 * tolerance {
+        let settings = corrector.settings;
+        if now <= settings.tolerance && moved <= settings.movement {
             return Ok((field, steps));
         }
         if stalled || !now.is_finite() || steps.len() >= corrector.settings.max_steps {

@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::mesh::{Mesh, Side};
 use crate::problem::{Problem, Solution};
 use crate::sheet_energy::SheetEnergy;
-use crate::solve::{Assembly, Convergence};
+use crate::solve::{Assembly, Convergence, SparseRows};
 
 /// Name of the condition F.
 pub const EQUILIBRIUM: &str = "equilibrium";
@@ -70,6 +70,23 @@ impl Describe for PlateNames<'_> {
         let axis = ["x", "y"][unknown % 2];
         format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
     }
+}
+
+/// Measured displacements ([x, y] in mm at rest, [ux, uy] in mm) anywhere on the plate, which the corrected
+/// field has to pass through: two rows a point.
+pub fn measured_points(name: &str, mesh: &Mesh, points: &[([f64; 2], [f64; 2])]) -> Linear {
+    let mut rows = SparseRows::new(2 * mesh.nodes.len());
+    let mut values = Vec::new();
+    for (place, displacement) in points {
+        let (cell, local) = mesh.locate(*place);
+        let shares = mesh.shape.values(local);
+        for (axis, value) in displacement.iter().enumerate() {
+            let nodes = mesh.cell(cell).iter().zip(&shares);
+            rows.push(nodes.map(|(node, share)| (2 * node + axis, *share)));
+            values.push(*value);
+        }
+    }
+    Linear::new(name, rows, values)
 }
 
 impl<'a> PlateCorrector<'a> {

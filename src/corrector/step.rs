@@ -1,6 +1,6 @@
 //! From one field to the next: the steps of the non-linear correction.
 
-use super::{Corrector, Projection, System, difference, factor};
+use super::{Corrector, Factor, Projection, System, difference, factor};
 use crate::error::SolveFault;
 use crate::solve::SparseRows;
 use crate::solve::sparse::largest;
@@ -60,70 +60,117 @@ impl<'a> Merit<'a> {
     }
 }
 
+/// How often a long step is moved back onto the conditions before it is shortened.
+const RETURNS: usize = 4;
+
 impl Corrector<'_> {
     /// The next field, and the share of the linearised step that led there.
     pub(super) fn next(
         &self,
         system: &System,
+        factor: &mut Factor,
         data: &[f64],
         before: &[f64],
         projection: &Projection,
     ) -> Result<(Vec<f64>, f64), SolveFault> {
-        if let Some(field) = self.advance_curved(system, data, before, projection) {
-            return Ok((field, 1.0));
-        }
         let merit = Merit::new(system, data, &self.weights, before, &projection.multipliers);
-        self.advance(&merit, before, &projection.step)
+        match self.advance_curved(&merit, factor, before, projection) {
+            Some(next) => Ok(next),
+            None => self.advance(&merit, factor, before, &projection.step),
+        }
     }
 
     /// Takes the longest share 1, ½, ¼ … of a step that inverts no cell and that the merit accepts.
     fn advance(
         &self,
         merit: &Merit,
+        factor: &mut Factor,
         before: &[f64],
         step: &[f64],
     ) -> Result<(Vec<f64>, f64), SolveFault> {
         let mut length = 1.0;
-        loop {
-            let steps = before.iter().zip(step);
-            let field: Vec<f64> = steps.map(|(u, step)| u + length * step).collect();
-            let last = length < SHORTEST_STEP;
-            match self.values(&field) {
-                Err(fault) if last => return Err(self.inverted(fault)),
-                Ok(values) if last || merit.accepts(&field, &values) => {
-                    return Ok((field, length));
-                }
-                _ => length *= 0.5,
+        while length > SHORTEST_STEP {
+            if let Some(field) = self.try_step(merit, factor, before, step, length) {
+                return Ok((field, length));
             }
+            length *= 0.5;
         }
+        let field = along(before, step, length);
+        let inverted = self.values(&field).map_err(|fault| self.inverted(fault));
+        inverted.map(|_| (field, length))
     }
 
-    /// A step that counts the curvature of the conditions, where it lessens the defect of the whole system;
-    /// with as many conditions as unknowns the plain step is that already.
+    /// The field at a share of a step, if the merit accepts it as it is, or moved back onto the conditions:
+    /// along a curved set of admissible fields, a long step leaves the set by the square of its length.
+    fn try_step(
+        &self,
+        merit: &Merit,
+        factor: &mut Factor,
+        before: &[f64],
+        step: &[f64],
+        length: f64,
+    ) -> Option<Vec<f64>> {
+        let mut field = along(before, step, length);
+        let mut values = self.values(&field).ok()?;
+        for _ in 0..RETURNS {
+            if merit.accepts(&field, &values) {
+                return Some(field);
+            }
+            // The linearised conditions ask for a part of the step in proportion to its length only.
+            let asked = merit.system.values.iter().map(|c| (1.0 - length) * c);
+            let excess: Vec<f64> = values
+                .iter()
+                .zip(asked)
+                .map(|(c, asked)| c - asked)
+                .collect();
+            let back = factor.project(&excess, &vec![0.0; field.len()]).ok()?;
+            let returned = along(&field, &back.step, 1.0);
+            let next = self.values(&returned).ok()?;
+            if merit.defect_of(&next) > 0.5 * merit.defect_of(&values) {
+                return None;
+            }
+            (field, values) = (returned, next);
+        }
+        merit.accepts(&field, &values).then_some(field)
+    }
+
+    /// A step that counts the curvature of the conditions, or a part of it where all of it leads uphill.
+    /// With as many conditions as unknowns the plain step is that already.
     fn advance_curved(
         &self,
-        system: &System,
-        data: &[f64],
+        merit: &Merit,
+        factor: &mut Factor,
         before: &[f64],
         plain: &Projection,
-    ) -> Option<Vec<f64>> {
+    ) -> Option<(Vec<f64>, f64)> {
+        const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+        const LENGTHS: [f64; 3] = [1.0, 0.5, 0.25];
+        let (system, data) = (merit.system, merit.data);
         if system.values.len() == self.weights.len() {
             return None;
         }
         let curvature = self.curvature(before, &plain.multipliers)?;
-        let (jacobian, pull) = (&system.jacobian, difference(data, before));
-        let curved =
-            factor::project_curved(jacobian, &self.weights, &curvature, &system.values, &pull);
-        let curved = curved.ok()?;
-        let field: Vec<f64> = before
-            .iter()
-            .zip(&curved.step)
-            .map(|(u, step)| u + step)
-            .collect();
-        let next = self.linearise(&field).ok()?;
-        let after = self.imbalance(&next, data, &field, &curved.multipliers);
-        let now = self.imbalance(system, data, before, &plain.multipliers);
-        (after < 0.5 * now).then_some(field)
+        let pull = difference(data, before);
+        let (jacobian, values) = (&system.jacobian, &system.values);
+        let imbalance = self.imbalance(system, data, before, &plain.multipliers);
+        for part in PARTS {
+            let scaled = curvature.scaled(&vec![part; before.len()]);
+            let curved = factor::project_curved(jacobian, &self.weights, &scaled, values, &pull);
+            let Ok(curved) = curved else { continue };
+            // Near the solution the merit no longer resolves a good step, but the imbalance does.
+            let field = along(before, &curved.step, 1.0);
+            if let Ok(next) = self.linearise(&field)
+                && self.imbalance(&next, data, &field, &curved.multipliers) < 0.5 * imbalance
+            {
+                return Some((field, 1.0));
+            }
+            for length in LENGTHS {
+                if let Some(field) = self.try_step(merit, factor, before, &curved.step, length) {
+                    return Some((field, length));
+                }
+            }
+        }
+        None
     }
 
     fn curvature(&self, field: &[f64], multipliers: &[f64]) -> Option<SparseRows> {
@@ -154,4 +201,13 @@ impl Corrector<'_> {
             .collect();
         largest(&system.scaled(&system.values)).max(largest(&forces))
     }
+}
+
+/// u + α δ.
+fn along(field: &[f64], step: &[f64], length: f64) -> Vec<f64> {
+    field
+        .iter()
+        .zip(step)
+        .map(|(u, step)| u + length * step)
+        .collect()
 }

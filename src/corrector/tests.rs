@@ -15,6 +15,7 @@ mod instrument;
 
 const SETTINGS: CorrectorSettings = CorrectorSettings {
     tolerance: 1e-11,
+    movement: 1e-10,
     max_steps: 60,
     solver: Solver::Automatic,
 };

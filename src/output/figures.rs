@@ -10,7 +10,8 @@ use crate::problem::{Problem, Solution};
 use crate::results::Results;
 use crate::study::Study;
 
-/// A picture of a run.
+/// A picture and its caption.
+#[derive(Clone, Debug)]
 pub struct Figure {
     /// File name.
     pub name: String,

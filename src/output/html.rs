@@ -8,7 +8,7 @@ use super::figures::Figure;
 use super::report::Block;
 
 const STYLE: &str = "
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.7rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabular-nums; }
@@ -71,7 +71,7 @@ fn class(cell: &str) -> &'static str {
         "pass" => "pass",
         "FAIL" => "fail",
         number if number.parse::<f64>().is_ok() => "number",
-        long if long.chars().count() > 40 => "long",
+        long if long.chars().count() > 28 => "long",
         _ => "",
     }
 }

@@ -11,6 +11,7 @@ use crate::study::Study;
 use super::figures::Figure;
 
 /// A part of a report.
+#[derive(Clone, Debug)]
 pub enum Block {
     /// A heading of the given level, 1 to 3.
     Heading(u8, String),

@@ -332,6 +332,27 @@ fn every_kind_of_condition_is_met_and_has_the_right_jacobian() {
     assert!(largest(&corrector.values(corrected.field()).unwrap()) < 1e-7);
 }
 
+#[test]
+fn a_corrected_field_passes_through_measured_points() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let corrector = plate_corrector(&problem, &springs.mesh);
+    let mut conditions = corrector.conditions(STRETCH, FREE_GRIPS);
+    let points = [([7.3, 4.1], [3.5, 0.6]), ([22.0, 12.9], [11.1, -0.2])];
+    conditions.push(Box::new(plate::measured_points(
+        "markers",
+        &springs.mesh,
+        &points,
+    )));
+    let data = &uncorrected.displacement;
+    let corrector = Corrector::new(conditions, vec![1.0; data.len()], SETTINGS);
+    let corrected = corrector.correct(data, data).unwrap();
+    for (place, expected) in points {
+        let found = springs.mesh.displacement_at(corrected.field(), place);
+        assert!(largest_difference(&found, &expected) < 1e-9, "{found:?}");
+    }
+}
+
 /// A line through noisy points: slope and intercept are parameters, and the estimate is that of ordinary
 /// least squares.
 #[test]

@@ -1,0 +1,425 @@
+//! Cases that redo the claims of the publication and hold gelbench to other codes and to mathematics.
+//!
+//! A case is a study file with a `kind` of its own: `gelbench run` computes one, `gelbench validate` all.
+
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use crate::document::{Document, Faults, Section};
+use crate::error::{Diagnostic, Error, nearest};
+use crate::output::picture::lines::LineChart;
+use crate::output::{Block, Figure};
+
+mod correction_matrix;
+mod cost;
+mod nonlinear_spring;
+mod oscillator;
+mod other_codes;
+mod plate;
+mod plate_ablation;
+pub mod report;
+mod smoothing;
+mod vibrating_spring;
+
+/// Reports what is being done.
+pub type Progress<'a> = &'a dyn Fn(&str);
+
+/// A case that has been read, ready to be computed.
+type Prepared = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
+
+/// A kind of study that checks something.
+pub struct Case {
+    /// The `kind` of its studies.
+    pub kind: &'static str,
+    /// The study that comes along; its keys are the defaults.
+    pub study: &'static str,
+    /// Where that study stands.
+    pub file: &'static str,
+    /// Whether `--quick` leaves it out.
+    pub slow: bool,
+    prepare: fn(&Section) -> Prepared,
+}
+
+/// All cases, in the order of the report.
+pub const CASES: &[Case] = &[
+    Case {
+        kind: "nonlinear-spring",
+        study: include_str!("../examples/nonlinear_spring.toml"),
+        file: "examples/nonlinear_spring.toml",
+        slow: false,
+        prepare: nonlinear_spring::prepare,
+    },
+    Case {
+        kind: "plate-ablation",
+        study: include_str!("../examples/plate_ablation.toml"),
+        file: "examples/plate_ablation.toml",
+        slow: false,
+        prepare: plate_ablation::prepare,
+    },
+    Case {
+        kind: "vibrating-spring",
+        study: include_str!("../examples/vibrating_spring.toml"),
+        file: "examples/vibrating_spring.toml",
+        slow: false,
+        prepare: vibrating_spring::prepare,
+    },
+    Case {
+        kind: "smoothing",
+        study: include_str!("../examples/smoothing.toml"),
+        file: "examples/smoothing.toml",
+        slow: true,
+        prepare: smoothing::prepare,
+    },
+    Case {
+        kind: "cost",
+        study: include_str!("../examples/cost.toml"),
+        file: "examples/cost.toml",
+        slow: true,
+        prepare: cost::prepare,
+    },
+    Case {
+        kind: "correction-matrix",
+        study: include_str!("../validation/correction_matrix.toml"),
+        file: "validation/correction_matrix.toml",
+        slow: false,
+        prepare: correction_matrix::prepare,
+    },
+    Case {
+        kind: "other-codes",
+        study: include_str!("../validation/other_codes.toml"),
+        file: "validation/other_codes.toml",
+        slow: true,
+        prepare: other_codes::prepare,
+    },
+];
+
+/// What a computed value has to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// A value, within a tolerance in percent of it.
+    Equal(f64, f64),
+    /// At most so much.
+    AtMost(f64),
+    /// At least so much.
+    AtLeast(f64),
+}
+
+/// One checked figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// What is checked.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it has to be.
+    pub wanted: Wanted,
+    /// Where that comes from.
+    pub source: &'static str,
+    /// What gelbench computed.
+    pub computed: f64,
+}
+
+impl Check {
+    /// A check of a computed value.
+    pub fn new(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        wanted: Wanted,
+        source: &'static str,
+        computed: f64,
+    ) -> Self {
+        Self {
+            quantity: quantity.into(),
+            unit,
+            wanted,
+            source,
+            computed,
+        }
+    }
+
+    /// Deviation from the wanted value in %, where there is one.
+    pub fn error_percent(&self) -> Option<f64> {
+        match self.wanted {
+            Wanted::Equal(expected, _) => Some(100.0 * (self.computed / expected - 1.0).abs()),
+            _ => None,
+        }
+    }
+
+    /// Whether the value is what it has to be; one that is not a number is not.
+    pub fn passed(&self) -> bool {
+        match self.wanted {
+            Wanted::Equal(_, tolerance) => {
+                self.error_percent().is_some_and(|error| error <= tolerance)
+            }
+            Wanted::AtMost(limit) => self.computed <= limit,
+            Wanted::AtLeast(limit) => self.computed >= limit,
+        }
+    }
+}
+
+/// What the publication claims, and what came out here.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Claim {
+    /// The publication's words, shortened.
+    pub claim: &'static str,
+    /// What came out here.
+    pub reproduced: String,
+}
+
+/// The result of a case.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// The checks.
+    pub checks: Vec<Check>,
+    /// Claims of the publication.
+    pub claims: Vec<Claim>,
+    /// Explanations and tables.
+    pub blocks: Vec<Block>,
+    /// Pictures.
+    pub figures: Vec<Figure>,
+    /// Times that were measured: what, and seconds.
+    pub times: Vec<(String, f64)>,
+}
+
+/// A case that was computed.
+#[derive(Clone, Debug)]
+pub struct Computed {
+    /// The study's title.
+    pub title: String,
+    /// The case's kind.
+    pub kind: &'static str,
+    /// Its result.
+    pub outcome: Outcome,
+    /// Computing time in s.
+    pub seconds: f64,
+}
+
+impl Computed {
+    /// Whether all checks passed.
+    pub fn passed(&self) -> bool {
+        self.outcome.checks.iter().all(Check::passed)
+    }
+
+    /// The figures for machines.
+    pub fn json(&self) -> Value {
+        let check = |check: &Check| {
+            let (expected, tolerance) = match check.wanted {
+                Wanted::Equal(value, tolerance) => (json!(value), json!(tolerance)),
+                Wanted::AtMost(limit) => (json!({ "at_most": limit }), Value::Null),
+                Wanted::AtLeast(limit) => (json!({ "at_least": limit }), Value::Null),
+            };
+            json!({
+                "quantity": check.quantity,
+                "unit": check.unit,
+                "expected": expected,
+                "source": check.source,
+                "computed": check.computed,
+                "error_percent": check.error_percent(),
+                "tolerance_percent": tolerance,
+                "passed": check.passed(),
+            })
+        };
+        let times = self
+            .outcome
+            .times
+            .iter()
+            .map(|(what, seconds)| (what.clone(), json!(seconds)));
+        json!({
+            "case": self.kind,
+            "title": self.title,
+            "checks": self.outcome.checks.iter().map(check).collect::<Vec<_>>(),
+            "passed": self.passed(),
+            "times_s": times.collect::<serde_json::Map<_, _>>(),
+        })
+    }
+}
+
+/// The cases of some kinds, or all; without the slow ones where `quick` is wanted and none is named.
+///
+/// # Errors
+/// [`Error::Input`] with every unknown name.
+pub fn choose(names: &[String], quick: bool) -> Result<Vec<&'static Case>, Error> {
+    if names.is_empty() {
+        return Ok(CASES.iter().filter(|case| !(quick && case.slow)).collect());
+    }
+    let known = || CASES.iter().map(|case| case.kind);
+    let unknown = names
+        .iter()
+        .filter(|name| !known().any(|kind| kind == name.as_str()));
+    let faults: Vec<Diagnostic> = unknown
+        .map(|name| {
+            let fault = Diagnostic::error("", format!("there is no case `{name}`"));
+            match nearest(name, known()) {
+                Some(near) => fault.hint(format!("did you mean `{near}`?")),
+                None => fault.hint(format!("cases: {}", known().collect::<Vec<_>>().join(", "))),
+            }
+        })
+        .collect();
+    if !faults.is_empty() {
+        return Err(Error::Input(faults));
+    }
+    let chosen = CASES
+        .iter()
+        .filter(|case| names.iter().any(|name| name == case.kind));
+    Ok(chosen.collect())
+}
+
+/// The case that a study's text is of; nothing for a plate study.
+///
+/// # Errors
+/// [`Error::Input`] when the kind is unknown.
+pub fn case_of(file: &str, text: &str) -> Result<Option<&'static Case>, Error> {
+    let unread = Faults::default();
+    let document = Document::parse(file, text, &unread);
+    let root = document.root(None, &unread);
+    if !root.has("kind") {
+        return Ok(None);
+    }
+    let kind = root.text("kind");
+    if kind == "plate" || kind.is_empty() {
+        return Ok(None);
+    }
+    let known = || CASES.iter().map(|case| case.kind);
+    if let Some(case) = CASES.iter().find(|case| case.kind == kind) {
+        return Ok(Some(case));
+    }
+    let mut hint = format!("one of plate, {}", known().collect::<Vec<_>>().join(", "));
+    if let Some(near) = nearest(&kind, known().chain(["plate"])) {
+        hint = format!("did you mean \"{near}\"? It must be {hint}");
+    }
+    let faults = Faults::default();
+    document
+        .root(None, &faults)
+        .fault("kind", &format!("\"{kind}\" is not known here"), &hint);
+    faults.finish().map(|_: Vec<Diagnostic>| None)
+}
+
+impl Case {
+    /// Reads a study of this case, without computing.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault.
+    pub fn check(&self, file: &str, text: &str) -> Result<(), Error> {
+        self.read(file, text).map(|_| ())
+    }
+
+    /// Reads and computes a study of this case.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault of the study, [`Error::Solve`] when a model has no solution.
+    pub fn compute(&self, file: &str, text: &str, progress: Progress) -> Result<Computed, Error> {
+        let (title, prepared) = self.read(file, text)?;
+        let start = Instant::now();
+        let outcome = prepared(progress)?;
+        Ok(Computed {
+            title,
+            kind: self.kind,
+            outcome,
+            seconds: start.elapsed().as_secs_f64(),
+        })
+    }
+
+    fn read(&self, file: &str, text: &str) -> Result<(String, Prepared), Error> {
+        let faults = Faults::default();
+        let read = {
+            let defaults = Document::parse(self.file, self.study, &faults);
+            let document = Document::parse(file, text, &faults);
+            let root = document.root(Some(&defaults), &faults);
+            root.text("kind");
+            let title = root.text("title");
+            let prepared = (self.prepare)(&root);
+            root.unknown_keys();
+            (title, prepared)
+        };
+        faults.finish()?;
+        Ok(read)
+    }
+}
+
+/// A number as a table shows it: five significant digits, or powers of ten where it is far from one.
+pub fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor();
+    if (-3.0..5.0).contains(&exponent) {
+        let digits = (4.0 - exponent).max(0.0) as usize;
+        return format!("{value:.digits$}");
+    }
+    format!("{value:.2e}")
+}
+
+/// A limit as a person would write it.
+pub fn limit(value: f64) -> String {
+    match value.abs() {
+        small if small > 0.0 && small < 1e-3 => format!("{value:e}"),
+        _ => value.to_string(),
+    }
+}
+
+/// A chart as a figure of a case.
+fn figure(name: &str, caption: &str, chart: &LineChart) -> Figure {
+    Figure {
+        name: name.to_owned(),
+        caption: caption.to_owned(),
+        png: chart.png(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checks_pass_and_fail_as_they_should() {
+        let check = |wanted, computed| Check::new("x", "mm", wanted, "a book", computed);
+        assert!(check(Wanted::Equal(2.0, 1.0), 2.01).passed());
+        assert!(!check(Wanted::Equal(2.0, 1.0), 2.03).passed());
+        assert!(
+            check(Wanted::AtMost(1.0), 1.0).passed() && !check(Wanted::AtMost(1.0), 1.1).passed()
+        );
+        assert!(check(Wanted::AtLeast(1.0), 1.0).passed());
+        for wanted in [
+            Wanted::Equal(2.0, 1.0),
+            Wanted::AtMost(1.0),
+            Wanted::AtLeast(1.0),
+        ] {
+            assert!(!check(wanted, f64::NAN).passed());
+        }
+    }
+
+    #[test]
+    fn numbers_are_written_with_five_digits() {
+        assert_eq!(number(0.012_345_67), "0.012346");
+        assert_eq!(number(-123.456_78), "-123.46");
+        assert_eq!(number(1.234_56e-7), "1.23e-7");
+        assert_eq!((limit(80.0), limit(1e-9)), ("80".into(), "1e-9".into()));
+    }
+
+    #[test]
+    fn every_case_reads_its_own_study_and_tells_faults() {
+        for case in CASES {
+            case.check(case.file, case.study).unwrap();
+            let found = case_of(case.file, case.study).unwrap().unwrap();
+            assert_eq!(found.kind, case.kind);
+            let told = case
+                .check("x.toml", "kind = \"x\"\nmisspelt = 1\n")
+                .unwrap_err();
+            assert!(told.to_string().contains("misspelt: unknown key"), "{told}");
+        }
+        assert!(case_of("x.toml", "kind = \"plate\"").unwrap().is_none());
+        let fault = case_of("x.toml", "kind = \"smoothin\"")
+            .map(|_| ())
+            .unwrap_err();
+        assert!(
+            fault.to_string().contains("did you mean \"smoothing\""),
+            "{fault}"
+        );
+        let fault = choose(&["smoothin".into()], false).map(|_| ()).unwrap_err();
+        assert!(
+            fault.to_string().contains("did you mean `smoothing`"),
+            "{fault}"
+        );
+    }
+}

@@ -1,0 +1,161 @@
+//! The properties of Y (Eq. 16–19) and the agreement of the four forms of the projection.
+
+use nalgebra::DMatrix;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::{Check, Outcome, Prepared, Wanted};
+use crate::corrector::{CorrectionMatrix, Factor, Solver};
+use crate::document::Section;
+use crate::error::{Error, SolveFault};
+use crate::solve::{NotPositiveDefinite, SparseRows};
+
+/// Reads a study of this case.
+pub fn prepare(root: &Section) -> Prepared {
+    let section = root.section("system");
+    let unknowns = section.count("unknowns", 4, 400);
+    let conditions = section.count("conditions", 2, 400);
+    if conditions >= unknowns {
+        section.fault(
+            "conditions",
+            "must be fewer than the unknowns",
+            "such as half as many",
+        );
+    }
+    let seed = section.count("seed", 0, usize::MAX) as u64;
+    section.unknown_keys();
+    Box::new(move |_| {
+        compute(unknowns, conditions, seed).map_err(|NotPositiveDefinite| Error::Solve {
+            model: "corrector".into(),
+            step: "a random system".into(),
+            fault: SolveFault::Singular,
+        })
+    })
+}
+
+/// Numbers in −1…1, about a third of them zero.
+fn random_rows(random: &mut ChaCha8Rng, count: usize, size: usize) -> SparseRows {
+    let mut rows = SparseRows::new(size);
+    for _ in 0..count {
+        let row = (0..size).filter_map(|column| {
+            let value = random.random_range(-1.5..1.0_f64);
+            (value > -1.0).then_some((column, value))
+        });
+        rows.push(row.collect::<Vec<_>>());
+    }
+    rows
+}
+
+fn compute(unknowns: usize, conditions: usize, seed: u64) -> Result<Outcome, NotPositiveDefinite> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let rows = random_rows(&mut random, conditions, unknowns);
+    let numbers = |random: &mut ChaCha8Rng, size: usize| -> Vec<f64> {
+        (0..size).map(|_| random.random_range(-1.0..1.0)).collect()
+    };
+    let matrix = CorrectionMatrix::new(&rows, vec![1.0; unknowns])?;
+    let (y, s, b) = (matrix.y(), matrix.s(), matrix.b());
+    let size = |matrix: DMatrix<f64>| matrix.amax();
+    let identity = DMatrix::identity(conditions, conditions);
+    let square = random_rows(&mut random, unknowns, unknowns);
+    let zero = size(CorrectionMatrix::new(&square, vec![1.0; unknowns])?.y());
+    let at_most = |quantity: &str, limit, source, value| {
+        Check::new(quantity, "–", Wanted::AtMost(limit), source, value)
+    };
+    let mut checks = vec![
+        at_most(
+            "Y − Yᵀ, largest entry",
+            1e-12,
+            "Eq. 18",
+            size(&y - y.transpose()),
+        ),
+        at_most(
+            "Y Y − Y, largest entry",
+            1e-12,
+            "Eq. 18",
+            size(&y * &y - &y),
+        ),
+        at_most("B Y, largest entry", 1e-12, "Eq. 14", size(b * &y)),
+        at_most(
+            "S B Bᵀ − I, largest entry",
+            1e-11,
+            "Eq. 19",
+            size(s * b * b.transpose() - identity),
+        ),
+        Check::new(
+            "rank of Y",
+            "–",
+            Wanted::Equal((unknowns - conditions) as f64, 0.0),
+            "i less the rows of B",
+            y.rank(1e-9) as f64,
+        ),
+        at_most(
+            "Y of a square B, largest entry",
+            1e-12,
+            "design of Eq. 22-23",
+            zero,
+        ),
+    ];
+
+    let (values, pull) = (
+        numbers(&mut random, conditions),
+        numbers(&mut random, unknowns),
+    );
+    let project = |solver| {
+        Factor::new(rows.clone(), vec![1.0; unknowns], None, solver)?.project(&values, &pull)
+    };
+    let expected = project(Solver::Dense)?;
+    for (name, solver) in [
+        ("sparse Cholesky", Solver::Cholesky),
+        ("sparse KKT", Solver::Kkt),
+    ] {
+        let found = project(solver)?;
+        let far = |a: &[f64], b: &[f64]| {
+            let scale = b.iter().fold(0.0, |most: f64, b| most.max(b.abs()));
+            a.iter()
+                .zip(b)
+                .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
+                / scale
+        };
+        let worst =
+            far(&found.step, &expected.step).max(far(&found.multipliers, &expected.multipliers));
+        checks.push(at_most(
+            &format!("{name} beside dense: field and multipliers"),
+            1e-9,
+            "the same projection",
+            worst,
+        ));
+    }
+    checks.push(at_most(
+        "multipliers beside the derivative of the minimum",
+        1e-6,
+        "central differences",
+        derivative(&rows, &values, &pull)?,
+    ));
+    Ok(Outcome {
+        checks,
+        ..Outcome::default()
+    })
+}
+
+/// Largest relative difference of −ψ and the derivatives of ½ ‖δ − pull‖² by the right-hand sides.
+fn derivative(rows: &SparseRows, values: &[f64], pull: &[f64]) -> Result<f64, NotPositiveDefinite> {
+    let mut factor = Factor::new(rows.clone(), vec![1.0; pull.len()], None, Solver::Dense)?;
+    let psi = factor.project(values, pull)?.multipliers;
+    let largest = psi.iter().fold(0.0, |most: f64, psi| most.max(psi.abs()));
+    let mut worst = 0.0_f64;
+    for row in 0..values.len() {
+        let mut minimum = |step: f64| -> Result<f64, NotPositiveDefinite> {
+            let mut moved = values.to_vec();
+            moved[row] -= step;
+            let found = factor.project(&moved, pull)?.step;
+            Ok(found
+                .iter()
+                .zip(pull)
+                .map(|(d, p)| 0.5 * (d - p).powi(2))
+                .sum())
+        };
+        let slope = (minimum(1e-4)? - minimum(-1e-4)?) / 2e-4;
+        worst = worst.max((slope + psi[row]).abs() / largest);
+    }
+    Ok(worst)
+}

@@ -1,0 +1,196 @@
+//! Example 1, Part I: f = k u² from a linear trial.
+//!
+//! Eq. 20–23. F(u) = f − k u² = 0 at every force, so B = −2 k diag(u) is square and Y = 0: one step of the
+//! linearised constraint is a Newton step from the trial. The trial is the secant ū = f u_max/f_max.
+
+use super::{Check, Claim, Outcome, Prepared, Wanted, number};
+use crate::corrector::{Condition, Corrector, CorrectorSettings, Function, Linearised, Solver};
+use crate::document::{Bound, Section};
+use crate::error::Error;
+use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::output::{Block, Figure};
+use crate::solve::SparseRows;
+use crate::units::Dimension;
+
+/// A spring with measured forces.
+struct Spring {
+    stiffness: f64,
+    forces: Vec<f64>,
+    iterates: usize,
+}
+
+/// Reads a study of this case.
+pub fn prepare(root: &Section) -> Prepared {
+    let section = root.section("spring");
+    let stiffness = section.number("stiffness", Bound::Positive);
+    let largest = section.quantity("largest_force", Dimension::Force, Bound::Positive);
+    let points = section.count("points", 2, 10_000);
+    let iterates = section.count("iterates", 2, 6);
+    section.unknown_keys();
+    let forces = (1..=points)
+        .map(|i| largest * i as f64 / points as f64)
+        .collect();
+    let spring = Spring {
+        stiffness,
+        forces,
+        iterates,
+    };
+    Box::new(move |_| compute(&spring))
+}
+
+fn compute(spring: &Spring) -> Result<Outcome, Error> {
+    let (k, forces) = (spring.stiffness, &spring.forces);
+    let exact: Vec<f64> = forces.iter().map(|f| (f / k).sqrt()).collect();
+    let secant = exact[exact.len() - 1] / forces[forces.len() - 1];
+    let trial: Vec<f64> = forces.iter().map(|f| f * secant).collect();
+    let own = forces.clone();
+    let law = Function::new("f = k u²", forces.len(), move |u| {
+        let mut jacobian = SparseRows::new(u.len());
+        (0..u.len()).for_each(|i| jacobian.push([(i, -2.0 * k * u[i])]));
+        let values = own.iter().zip(u).map(|(f, u)| f - k * u * u).collect();
+        Linearised { values, jacobian }
+    });
+    let settings = CorrectorSettings {
+        tolerance: 1e-12,
+        movement: 1e-11,
+        max_steps: 60,
+        solver: Solver::Dense,
+    };
+    let conditions: Vec<Box<dyn Condition>> = vec![Box::new(law)];
+    let corrector = Corrector::new(conditions, vec![1.0; forces.len()], settings);
+    let correction = corrector
+        .correct(&trial, &trial)
+        .map_err(|fault| Error::Solve {
+            model: "corrector".into(),
+            step: "the parabolic spring".into(),
+            fault,
+        })?;
+    let deviations: Vec<f64> = correction
+        .steps
+        .iter()
+        .map(|step| relative(&step.field, &exact))
+        .collect();
+    let below_ten = deviations
+        .iter()
+        .position(|d| *d < 10.0)
+        .unwrap_or(usize::MAX);
+    // W (u − ū) + Bᵀ ψ = 0 with B = −2 k u.
+    let closed_form = exact
+        .iter()
+        .zip(&trial)
+        .map(|(u, data)| (u - data) / (2.0 * k * u));
+    let psi = &correction.multipliers[0].values;
+    let wrong = closed_form
+        .zip(psi)
+        .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let checks = vec![
+        Check::new(
+            "deviation after one step",
+            "%",
+            Wanted::AtMost(10.0),
+            "publication: below 10 %",
+            deviations[1],
+        ),
+        Check::new(
+            "deviation after two steps",
+            "%",
+            Wanted::AtMost(1.0),
+            "Newton from a secant",
+            deviations[2],
+        ),
+        Check::new(
+            "deviation at the end",
+            "%",
+            Wanted::AtMost(1e-9),
+            "u = √(f/k)",
+            deviations[deviations.len() - 1],
+        ),
+        Check::new(
+            "multipliers beside (u − ū)/(2 k u)",
+            "mm²/N",
+            Wanted::AtMost(1e-9),
+            "closed form",
+            wrong,
+        ),
+    ];
+    let claim = Claim {
+        claim: "Example 1, Part I: the corrected parabolic spring deviates by less than 10 %",
+        reproduced: format!(
+            "the linear trial deviates by {} %, the first step by {} %; below 10 % from step {below_ten} on",
+            number(deviations[0]),
+            number(deviations[1])
+        ),
+    };
+    let rows = deviations.iter().enumerate().take(spring.iterates + 1);
+    let table = Block::Table(
+        vec!["step".into(), "deviation, relative L2 [%]".into()],
+        rows.map(|(step, deviation)| vec![step.to_string(), number(*deviation)])
+            .collect(),
+    );
+    let iterates: Vec<&[f64]> = correction
+        .steps
+        .iter()
+        .map(|step| &step.field[..])
+        .collect();
+    Ok(Outcome {
+        checks,
+        claims: vec![claim],
+        blocks: vec![table],
+        figures: figures(spring, &exact, &iterates, psi),
+        times: Vec::new(),
+    })
+}
+
+fn relative(field: &[f64], exact: &[f64]) -> f64 {
+    super::plate::Plate::percent(field, exact, None)
+}
+
+fn figures(spring: &Spring, exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> Vec<Figure> {
+    let line = |label: &str, values: &[f64], colour, stroke| Line {
+        label: label.to_owned(),
+        points: spring
+            .forces
+            .iter()
+            .zip(values)
+            .map(|(f, u)| [*f, *u])
+            .collect(),
+        colour,
+        stroke,
+    };
+    let motion = LineChart {
+        title: "Parabolic spring from a linear trial".into(),
+        x: Axis::linear("force [N]"),
+        y: Axis::linear("displacement [mm]"),
+        lines: vec![
+            line("exact", exact, [30, 30, 30], Stroke::Solid),
+            line("uncorrected", iterates[0], [213, 94, 0], Stroke::Solid),
+            line("after one step", iterates[1], [0, 158, 115], Stroke::Dashed),
+            line(
+                "after two steps",
+                iterates[2],
+                [0, 114, 178],
+                Stroke::Points,
+            ),
+        ],
+        band: None,
+    };
+    let multipliers = LineChart {
+        title: "Lagrange multipliers of f − k u² = 0".into(),
+        x: Axis::linear("force [N]"),
+        y: Axis::linear("multiplier ζ [mm²/N]"),
+        lines: vec![line("ζ", psi, [204, 121, 167], Stroke::Marked)],
+        band: None,
+    };
+    vec![
+        super::figure(
+            "nonlinear_spring.png",
+            "Figure 1 of the publication: uncorrected, corrected and exact displacement.",
+            &motion,
+        ),
+        super::figure(
+            "nonlinear_spring_multipliers.png",
+            "Figure 1 of the publication: the Lagrange multipliers.",
+            &multipliers,
+        ),
+    ]
+}

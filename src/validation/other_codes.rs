@@ -1,0 +1,112 @@
+//! The built-in finite elements at equal mesh beside dolfinx, scikit-fem and FElupe.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::{Check, Outcome, Prepared, Progress, Wanted};
+use crate::document::Section;
+use crate::error::Error;
+use crate::finite_element::{Element, FiniteElements};
+use crate::material::Card;
+use crate::problem::{Problem, Solution};
+
+const SUMMARY: &str = include_str!("../../validation/plate/summary.csv");
+const STRETCHES: [f64; 5] = [0.15, 0.3, 0.5, 0.75, 1.0];
+
+/// Reads a study of this case.
+pub fn prepare(root: &Section) -> Prepared {
+    let section = root.section("mesh");
+    let finest = section.count("finest", 30, 120);
+    section.unknown_keys();
+    Box::new(move |progress| compute(finest, progress))
+}
+
+/// One mesh of one material: (material, cells along the plate, element).
+type Model = (String, usize, String);
+
+/// Force, width and energy of one code at one stretch, where it gives them.
+struct Row {
+    code: String,
+    stretch: f64,
+    values: [Option<f64>; 3],
+}
+
+fn published(finest: usize) -> BTreeMap<Model, Vec<Row>> {
+    let mut models: BTreeMap<Model, Vec<Row>> = BTreeMap::new();
+    for line in SUMMARY.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |column: usize| cells[column].parse::<f64>().ok();
+        let along = number(3).unwrap_or(f64::NAN) as usize;
+        if along > finest {
+            continue;
+        }
+        let model = (cells[0].to_owned(), along, cells[5].to_owned());
+        models.entry(model).or_default().push(Row {
+            code: cells[1].to_owned(),
+            stretch: number(7).unwrap_or(f64::NAN),
+            values: [8, 9, 10].map(number),
+        });
+    }
+    models
+}
+
+fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
+    let mut worst: BTreeMap<(String, String), f64> = BTreeMap::new();
+    for ((material, along, element), rows) in published(finest) {
+        progress(&format!(
+            "{material}, {element}, {along} × {} cells",
+            along / 3
+        ));
+        let solutions = solve(&material, along, &element)?;
+        for row in rows {
+            let Some(solution) = solutions
+                .iter()
+                .find(|solution| solution.stretch == row.stretch)
+            else {
+                continue;
+            };
+            let computed = [solution.force, solution.mid_width, solution.energy];
+            let largest = worst.entry((row.code, element.clone())).or_insert(0.0);
+            for (computed, expected) in computed.into_iter().zip(row.values) {
+                let error = expected.map_or(0.0, |expected| (computed / expected - 1.0).abs());
+                *largest = largest.max(error);
+            }
+        }
+    }
+    let check = |((code, element), error): ((String, String), f64)| {
+        let quantity =
+            format!("force, width, energy beside {code}, {element}: largest relative difference");
+        Check::new(
+            quantity,
+            "–",
+            Wanted::AtMost(1e-6),
+            "validation/plate/summary.csv",
+            error,
+        )
+    };
+    Ok(Outcome {
+        checks: worst.into_iter().map(check).collect(),
+        ..Outcome::default()
+    })
+}
+
+fn solve(material: &str, along: usize, element: &str) -> Result<Vec<Solution>, Error> {
+    let card = if material == "nh" {
+        "neo-hooke"
+    } else {
+        "pva-10"
+    };
+    let problem = Problem {
+        size: [150.0, 50.0],
+        thickness: 2.0,
+        law: Card::load(card, Path::new("."))?.law,
+        stretches: STRETCHES.to_vec(),
+    };
+    let element = if element == "Q1" {
+        Element::Q1
+    } else {
+        Element::Q2
+    };
+    let model = FiniteElements::new(&problem, [along, along / 3], element);
+    model.solve(&problem, super::plate::NEWTON, &|_| ())
+}

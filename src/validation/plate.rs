@@ -1,0 +1,144 @@
+//! What the cases on the plate share: one stretch of a clamped plate, its lattice and its reference.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::corrector::plate::KnownConditions;
+use crate::corrector::{CorrectorSettings, DifferenceScheme, PlateCorrector, Solver};
+use crate::document::{Bound, Section};
+use crate::error::{Error, SolveFault};
+use crate::finite_element::{Element, FiniteElements};
+use crate::mass_spring::{LatticeSettings, MassSpring};
+use crate::material::{Card, HyperelasticLaw, NeoHooke};
+use crate::problem::{Problem, Solution};
+use crate::solve::NewtonSettings;
+use crate::units::Dimension;
+
+/// The plate of a case, read from its `[plate]` section.
+#[derive(Clone, Debug)]
+pub struct Plate {
+    /// The problem with one stretch.
+    pub problem: Problem,
+    /// Cells of the lattice.
+    pub cells: [usize; 2],
+}
+
+/// How every model of a case is solved.
+pub const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
+    max_iterations: 60,
+};
+
+/// How every correction of a case is computed.
+pub const CORRECTOR: CorrectorSettings = CorrectorSettings {
+    tolerance: 1e-10,
+    movement: 1e-9,
+    max_steps: 60,
+    solver: Solver::Automatic,
+};
+
+impl Plate {
+    /// Reads the section.
+    pub fn read(root: &Section<'_>) -> Self {
+        let section = root.section("plate");
+        let length = |key| section.quantity(key, Dimension::Length, Bound::Positive);
+        let size = [length("length"), length("width")];
+        let thickness = length("thickness");
+        let cells = section.count_pair("cells", 4, 400);
+        let law: Arc<dyn HyperelasticLaw> = match Card::load(&section.text("card"), Path::new("."))
+        {
+            Ok(card) => card.law,
+            Err(fault) => {
+                section.fault("card", &fault.to_string(), "see `gelbench materials list`");
+                Arc::new(NeoHooke { c10: 1.0 })
+            }
+        };
+        let stretches = vec![section.quantity("stretch", Dimension::Ratio, Bound::Positive)];
+        section.unknown_keys();
+        Self {
+            problem: Problem {
+                size,
+                thickness,
+                law,
+                stretches,
+            },
+            cells,
+        }
+    }
+
+    /// The stretch.
+    pub fn stretch(&self) -> f64 {
+        self.problem.stretches[0]
+    }
+
+    /// The regular lattice.
+    pub fn lattice(&self) -> MassSpring {
+        MassSpring::new(
+            &self.problem,
+            self.cells,
+            LatticeSettings { area_term: false },
+        )
+    }
+
+    /// A lattice in equilibrium.
+    pub fn solve(&self, lattice: &MassSpring) -> Result<Solution, Error> {
+        Ok(lattice.solve(&self.problem, NEWTON, &|_| ())?.remove(0))
+    }
+
+    /// Finite elements in equilibrium.
+    pub fn finite_elements(
+        &self,
+        cells: [usize; 2],
+        element: Element,
+    ) -> Result<(FiniteElements, Solution), Error> {
+        let model = FiniteElements::new(&self.problem, cells, element);
+        let solution = model.solve(&self.problem, NEWTON, &|_| ())?.remove(0);
+        Ok((model, solution))
+    }
+
+    /// The converged field at the nodes of the lattice: Q2 elements on twice as many cells.
+    pub fn reference(&self, lattice: &MassSpring) -> Result<Vec<f64>, Error> {
+        let (model, solution) = self.finite_elements(self.cells.map(|n| 2 * n), Element::Q2)?;
+        let nodes = lattice.mesh.nodes.iter();
+        let field =
+            nodes.flat_map(|node| model.mesh.displacement_at(&solution.displacement, *node));
+        Ok(field.collect())
+    }
+
+    /// The corrector on the nodes of a lattice.
+    pub fn corrector<'a>(&'a self, lattice: &'a MassSpring) -> PlateCorrector<'a> {
+        PlateCorrector::new(
+            &self.problem,
+            &lattice.mesh,
+            DifferenceScheme::Gauss,
+            CORRECTOR,
+        )
+    }
+
+    /// The fully corrected field.
+    pub fn corrected(&self, lattice: &MassSpring, data: &[f64]) -> Result<Solution, Error> {
+        let corrector = self.corrector(lattice);
+        Ok(corrector
+            .correct(data, self.stretch(), KnownConditions::ALL)?
+            .solution)
+    }
+
+    /// A failed correction as an error.
+    pub fn fault(&self, fault: SolveFault) -> Error {
+        Error::Solve {
+            model: "corrector".into(),
+            step: Problem::describe_step(self.stretch()),
+            fault,
+        }
+    }
+
+    /// Distance of two fields over the size of the second less `base`, in %.
+    pub fn percent(field: &[f64], reference: &[f64], base: Option<&[f64]>) -> f64 {
+        let norm =
+            |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
+        let error = norm(&mut field.iter().zip(reference).map(|(u, v)| u - v));
+        let zero = vec![0.0; reference.len()];
+        let base = base.unwrap_or(&zero);
+        100.0 * error / norm(&mut reference.iter().zip(base).map(|(v, a)| v - a))
+    }
+}

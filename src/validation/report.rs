@@ -1,0 +1,109 @@
+//! The validation report: all checks in one table, the publication's claims, the cases.
+
+use super::{Check, Computed, Wanted, limit, number};
+use crate::output::{Block, Figure};
+
+/// The report of one or several cases, and its pictures.
+pub fn report(title: &str, cases: &[Computed]) -> (Vec<Block>, Vec<Figure>) {
+    let (mut blocks, mut figures) = (vec![Block::Heading(1, title.to_owned())], Vec::new());
+    let checks = cases.iter().flat_map(|case| &case.outcome.checks);
+    let (all, passed) = (
+        checks.clone().count(),
+        checks.filter(|check| check.passed()).count(),
+    );
+    blocks.push(Block::Paragraph(format!(
+        "{passed} of {all} checks passed."
+    )));
+    let head = [
+        "case",
+        "quantity",
+        "unit",
+        "expected",
+        "source",
+        "computed",
+        "error [%]",
+        "tolerance [%]",
+        "result",
+    ];
+    let rows = cases.iter().flat_map(|case| {
+        case.outcome
+            .checks
+            .iter()
+            .map(|check| row(case.kind, check))
+    });
+    blocks.push(Block::Table(
+        head.map(String::from).to_vec(),
+        rows.collect(),
+    ));
+    let claims: Vec<_> = cases.iter().flat_map(|case| &case.outcome.claims).collect();
+    if !claims.is_empty() {
+        blocks.push(Block::Heading(2, "The publication's claims".into()));
+        blocks.push(Block::Paragraph(
+            "H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems."
+                .into(),
+        ));
+        let rows = claims
+            .iter()
+            .map(|claim| vec![claim.claim.to_owned(), claim.reproduced.clone()]);
+        blocks.push(Block::Table(
+            vec!["claim".into(), "reproduced here".into()],
+            rows.collect(),
+        ));
+    }
+    for case in cases {
+        let outcome = &case.outcome;
+        if outcome.blocks.is_empty() && outcome.figures.is_empty() {
+            continue;
+        }
+        blocks.push(Block::Heading(2, case.title.clone()));
+        blocks.extend(outcome.blocks.iter().cloned());
+        for figure in &outcome.figures {
+            blocks.push(Block::Figure(figures.len(), figure.caption.clone()));
+            figures.push(figure.clone());
+        }
+    }
+    blocks.extend(times(cases));
+    (blocks, figures)
+}
+
+fn row(case: &str, check: &Check) -> Vec<String> {
+    let (expected, tolerance) = match check.wanted {
+        Wanted::Equal(value, tolerance) => (limit(value), limit(tolerance)),
+        Wanted::AtMost(most) => (format!("≤ {}", limit(most)), "–".into()),
+        Wanted::AtLeast(least) => (format!("≥ {}", limit(least)), "–".into()),
+    };
+    vec![
+        case.to_owned(),
+        check.quantity.clone(),
+        check.unit.to_owned(),
+        expected,
+        check.source.to_owned(),
+        number(check.computed),
+        check.error_percent().map_or("–".into(), number),
+        tolerance,
+        if check.passed() { "pass" } else { "FAIL" }.to_owned(),
+    ]
+}
+
+fn times(cases: &[Computed]) -> Vec<Block> {
+    let mut rows = Vec::new();
+    for case in cases {
+        rows.push(vec![
+            case.kind.to_owned(),
+            "whole case".to_owned(),
+            format!("{:.2}", case.seconds),
+        ]);
+        let parts = case.outcome.times.iter();
+        rows.extend(parts.map(|(what, seconds)| {
+            vec![case.kind.to_owned(), what.clone(), format!("{seconds:.3}")]
+        }));
+    }
+    let head = ["case", "what", "time [s]"];
+    vec![
+        Block::Heading(2, "Times".into()),
+        Block::Paragraph(
+            "Times differ from run to run; those of one case were measured side by side.".into(),
+        ),
+        Block::Table(head.map(String::from).to_vec(), rows),
+    ]
+}
