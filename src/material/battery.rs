@@ -1,13 +1,14 @@
 //! The tests that every law must pass, shipped cards and a synthetic law alike.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector4};
 
 use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
-use super::registry::CARDS;
+use super::registry::{CARDS, LAWS};
 use super::sheet::{Gradient, Kinematics};
-use super::{Card, uniaxial};
+use super::{Card, NeoHooke, uniaxial};
 
 /// All derivatives non-zero and all different, so that no slip in the chain rule can hide.
 #[derive(Debug)]
@@ -37,6 +38,107 @@ fn for_each_law(test: impl Fn(&str, &dyn HyperelasticLaw)) {
     for (name, _) in CARDS {
         test(name, &*Card::load(name, Path::new(".")).unwrap().law);
     }
+    for (name, parameters) in SAMPLES {
+        test(name, &*sample(name, parameters));
+    }
+}
+
+/// Parameters of the laws that no shipped card uses.
+const SAMPLES: [(&str, &str); 7] = [
+    (
+        "mooney-rivlin-3",
+        "c10 = \"0.04 MPa\"\nc01 = \"0.01 MPa\"\nc11 = \"2 kPa\"",
+    ),
+    (
+        "mooney-rivlin-5",
+        "c10 = \"0.04 MPa\"\nc01 = \"0.01 MPa\"\nc20 = \"3 kPa\"\nc11 = \"2 kPa\"\nc02 = \"1 kPa\"",
+    ),
+    (
+        "yeoh",
+        "c10 = \"0.03 MPa\"\nc20 = \"-2 kPa\"\nc30 = \"1 kPa\"",
+    ),
+    ("gent", "mu = \"0.05 MPa\"\njm = 30"),
+    ("arruda-boyce", "mu = \"0.05 MPa\"\nlambda_m = 2.5"),
+    ("fung-demiray", "mu = \"0.05 MPa\"\nb = 0.4"),
+    ("veronda-westmann", "c = \"0.05 MPa\"\nbeta = 0.4"),
+];
+
+fn sample(law: &str, parameters: &str) -> Arc<dyn HyperelasticLaw> {
+    let card = CARDS[0].1;
+    let (head, rest) = card.split_once("[parameters]").unwrap();
+    let (_, rest) = rest.split_once("[data]").unwrap();
+    let head = head.replace("marlow-exponential", law);
+    let text = format!("{head}[parameters]\n{parameters}\n[data]{rest}");
+    Card::parse(law, law, &text).unwrap().law
+}
+
+#[test]
+fn every_law_of_the_registry_is_tested() {
+    for (law, ..) in LAWS {
+        let by_card = CARDS
+            .iter()
+            .any(|(name, _)| Card::load(name, Path::new(".")).unwrap().law_name == *law);
+        assert!(
+            by_card || SAMPLES.iter().any(|(name, _)| name == law),
+            "{law}"
+        );
+    }
+}
+
+#[test]
+fn laws_have_their_stated_small_strain_moduli_and_limits() {
+    let modulus = |law: &str, parameters: &str| sample(law, parameters).shear_modulus();
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    near(
+        modulus(
+            "yeoh",
+            "c10 = \"0.03 MPa\"\nc20 = \"5 kPa\"\nc30 = \"1 kPa\"",
+        ),
+        0.06,
+    );
+    near(modulus("gent", "mu = \"0.05 MPa\"\njm = 30"), 0.05);
+    near(modulus("fung-demiray", "mu = \"0.05 MPa\"\nb = 0.4"), 0.05);
+    near(
+        modulus("veronda-westmann", "c = \"0.05 MPa\"\nbeta = 0.4"),
+        0.02,
+    );
+    near(modulus("mooney-rivlin-5", SAMPLES[1].1), 0.1);
+    let m = 2.5_f64.powi(-2);
+    let series = 1.0
+        + 0.6 * m
+        + 99.0 / 175.0 * m * m
+        + 513.0 / 875.0 * m.powi(3)
+        + 42039.0 / 67375.0 * m.powi(4);
+    near(
+        modulus("arruda-boyce", "mu = \"0.05 MPa\"\nlambda_m = 2.5"),
+        0.05 * series,
+    );
+    // Limits: all of these become the neo-Hookean law with C₁₀ = 0.025 MPa.
+    let exact = uniaxial::uniaxial(&NeoHooke { c10: 0.025 }, 0.8).nominal_stress;
+    for (law, parameters) in [
+        ("gent", "mu = \"0.05 MPa\"\njm = 1e12"),
+        ("fung-demiray", "mu = \"0.05 MPa\"\nb = 1e-12"),
+        ("arruda-boyce", "mu = \"0.05 MPa\"\nlambda_m = 1e6"),
+        (
+            "yeoh",
+            "c10 = \"0.025 MPa\"\nc20 = \"0 MPa\"\nc30 = \"0 MPa\"",
+        ),
+    ] {
+        near(
+            uniaxial::uniaxial(&*sample(law, parameters), 0.8).nominal_stress,
+            exact,
+        );
+    }
+}
+
+#[test]
+fn a_chain_beyond_its_limit_has_no_energy() {
+    let gent = sample("gent", "mu = \"0.05 MPa\"\njm = 2");
+    let state = Invariants {
+        i1_minus_3: 2.1,
+        i2_minus_3: 1.0,
+    };
+    assert!(!gent.evaluate(state).energy.is_finite());
 }
 
 const STATES: [[f64; 4]; 5] = [

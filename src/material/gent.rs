@@ -1,0 +1,52 @@
+//! Gent's law of limited chain extensibility.
+
+use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::parameters::Parameters;
+use crate::document::Bound;
+
+/// Gent's law: the stress grows without bound as I₁ − 3 approaches Jₘ.
+///
+/// ```text
+/// Ψ = −½ μ Jₘ ln(1 − (I₁ − 3)/Jₘ)                              [MPa = N·mm/mm³]
+/// ```
+///
+/// | symbol | card key | unit | admissible | meaning |
+/// |---|---|---|---|---|
+/// | μ | `mu` | MPa | > 0 | initial shear modulus |
+/// | Jₘ | `jm` | – | > 0 | largest I₁ − 3 |
+///
+/// **Limits.** Jₘ → ∞: neo-Hooke with C₁₀ = μ/2. Small strain: μ₀ = μ.
+/// **Not covered.** States with I₁ − 3 ≥ Jₘ have no energy: models refuse them like inverted cells.
+///
+/// # References
+/// A. N. Gent, Rubber Chem. Technol. 69, 59 (1996), doi:10.5254/1.3538357
+#[derive(Clone, Copy, Debug)]
+pub struct Gent {
+    /// μ in MPa.
+    pub mu: f64,
+    /// Jₘ.
+    pub jm: f64,
+}
+
+impl Gent {
+    /// Reads the parameters of a card.
+    pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
+        Box::new(Self {
+            mu: parameters.stress("mu", Bound::Positive),
+            jm: parameters.number("jm", Bound::Positive),
+        })
+    }
+}
+
+impl HyperelasticLaw for Gent {
+    fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
+        let share = invariants.i1_minus_3 / self.jm;
+        let left = 1.0 - share;
+        EnergyDerivatives {
+            energy: -0.5 * self.mu * self.jm * (-share).ln_1p(),
+            d1: 0.5 * self.mu / left,
+            d11: 0.5 * self.mu / (self.jm * left * left),
+            ..EnergyDerivatives::default()
+        }
+    }
+}
