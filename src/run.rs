@@ -8,6 +8,7 @@ use crate::corrector::plate::KnownConditions;
 use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::MassSpring;
+use crate::problem::Solution;
 use crate::results::{ReferenceMesh, Results};
 use crate::study::Study;
 
@@ -20,81 +21,83 @@ pub fn progress_steps(study: &Study) -> usize {
 ///
 /// # Errors
 /// [`Error::Solve`] with the model and the stretch at which no solution was found.
-pub fn run(study: &Study, progress: &dyn Fn(&str, f64)) -> Result<Results, Error> {
+pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let problem = &study.problem;
     let mut times = Vec::new();
 
     let springs = MassSpring::new(problem, study.cells, study.lattice);
     let uncorrected = timed(&mut times, "mass-spring", || {
-        springs.solve(problem, study.mass_spring, &|stretch| {
-            progress("mass-spring", stretch)
-        })
+        let told = |stretch: f64| progress("mass-spring", stretch);
+        springs.solve(problem, study.mass_spring, &told)
     })?;
-
     let corrected = timed(&mut times, "corrector", || {
         let corrector = PlateCorrector::new(problem, &springs.mesh, study.scheme, study.corrector);
-        let correct = |field: &crate::problem::Solution| {
-            let data = &field.displacement;
-            let corrected = corrector.correct(data, field.stretch, KnownConditions::ALL)?;
+        let correct = |field: &Solution| {
+            let state =
+                corrector.correct(&field.displacement, field.stretch, KnownConditions::ALL)?;
             progress("corrector", field.stretch);
-            Ok(corrected)
+            Ok(state)
         };
         uncorrected
             .iter()
             .map(correct)
             .collect::<Result<Vec<_>, Error>>()
     })?;
+    let reference = finite_elements(study, &mut times, progress)?;
 
-    let names = [
-        "finite elements, coarse",
-        "finite elements, middle",
-        "finite elements, fine",
-    ];
-    let [coarse, middle, fine] = study.reference_meshes();
-    let mut solve = |name, cells| -> Result<ReferenceMesh, Error> {
-        let model = FiniteElements::new(problem, cells, study.element);
-        let told = |stretch: f64| progress(name, stretch);
-        let solutions = timed(&mut times, name, || {
-            model.solve(problem, study.finite_element, &told)
-        })?;
-        Ok(ReferenceMesh { model, solutions })
-    };
-    let meshes = [
-        solve(names[0], coarse)?,
-        solve(names[1], middle)?,
-        solve(names[2], fine)?,
-    ];
-
-    let reference = Reference::new(
+    let measure = Reference::new(
         problem,
-        meshes
+        reference
             .each_ref()
             .map(|mesh| (&mesh.model, &mesh.solutions[..])),
     );
-    let compare = |(step, stretch): (usize, &f64)| StepComparison {
-        stretch: *stretch,
-        mass_spring: reference.deviation(&springs.mesh, &uncorrected[step], step),
-        corrected: reference.deviation(&springs.mesh, &corrected[step].solution, step),
-        reference: reference.self_convergence(step),
+    let steps = 0..problem.stretches.len();
+    let compare = |step: usize| StepComparison {
+        stretch: problem.stretches[step],
+        mass_spring: measure.deviation(&springs.mesh, &uncorrected[step], step),
+        corrected: measure.deviation(&springs.mesh, &corrected[step].solution, step),
+        reference: measure.self_convergence(step),
     };
-    let comparison = problem.stretches.iter().enumerate().map(compare).collect();
-    let on_lattice = |step| reference.displacement_on(&springs.mesh, step);
+    let comparison = steps.clone().map(compare).collect();
+    let on_lattice = |step| measure.displacement_on(&springs.mesh, step);
     Ok(Results {
-        reference_on_lattice: (0..problem.stretches.len()).map(on_lattice).collect(),
+        reference_on_lattice: steps.map(on_lattice).collect(),
         springs,
         uncorrected,
         corrected,
-        reference: meshes,
+        reference,
         comparison,
         times,
     })
 }
 
-fn timed<T>(
-    times: &mut Vec<(&'static str, f64)>,
-    what: &'static str,
-    work: impl FnOnce() -> T,
-) -> T {
+/// Is told each model and stretch that is done.
+type Progress<'a> = &'a dyn Fn(&str, f64);
+/// What was done, and how long it took in s.
+type Times = Vec<(&'static str, f64)>;
+
+/// The reference on three meshes, coarse to fine.
+fn finite_elements(
+    study: &Study,
+    times: &mut Times,
+    progress: Progress,
+) -> Result<[ReferenceMesh; 3], Error> {
+    let mut solve = |name, cells| -> Result<ReferenceMesh, Error> {
+        let model = FiniteElements::new(&study.problem, cells, study.element);
+        let told = |stretch: f64| progress(name, stretch);
+        let solve = || model.solve(&study.problem, study.finite_element, &told);
+        let solutions = timed(times, name, solve)?;
+        Ok(ReferenceMesh { model, solutions })
+    };
+    let [coarse, middle, fine] = study.reference_meshes();
+    Ok([
+        solve("finite elements, coarse", coarse)?,
+        solve("finite elements, middle", middle)?,
+        solve("finite elements, fine", fine)?,
+    ])
+}
+
+fn timed<T>(times: &mut Times, what: &'static str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
     times.push((what, start.elapsed().as_secs_f64()));

@@ -4,7 +4,7 @@
 //! linearised constraint is a Newton step from the trial. The trial is the secant ū = f u_max/f_max.
 
 use super::{Check, Claim, Outcome, Prepared, Wanted, number};
-use crate::corrector::{Condition, Corrector, CorrectorSettings, Function, Linearised, Solver};
+use crate::corrector::{Corrector, CorrectorSettings, Function, Linearised, Solver};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
@@ -43,11 +43,50 @@ fn compute(spring: &Spring) -> Result<Outcome, Error> {
     let exact: Vec<f64> = forces.iter().map(|f| (f / k).sqrt()).collect();
     let secant = exact[exact.len() - 1] / forces[forces.len() - 1];
     let trial: Vec<f64> = forces.iter().map(|f| f * secant).collect();
-    let own = forces.clone();
-    let law = Function::new("f = k u²", forces.len(), move |u| {
+    let corrected = corrector(spring).correct(&trial, &trial);
+    let correction = corrected.map_err(|fault| Error::Solve {
+        model: "corrector".into(),
+        step: "the parabolic spring".into(),
+        fault,
+    })?;
+    let iterates: Vec<&[f64]> = correction
+        .steps
+        .iter()
+        .map(|step| &step.field[..])
+        .collect();
+    let deviations: Vec<f64> = iterates
+        .iter()
+        .map(|field| relative(field, &exact))
+        .collect();
+    // W (u − ū) + Bᵀ ψ = 0 with B = −2 k u.
+    let fields = exact.iter().zip(&trial);
+    let closed_form = fields.map(|(u, data)| (u - data) / (2.0 * k * u));
+    let psi = &correction.multipliers[0].values;
+    let wrong = closed_form
+        .zip(psi)
+        .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let rows = deviations.iter().enumerate().take(spring.iterates + 1);
+    let table = Block::Table(
+        vec!["step".into(), "deviation, relative L2 [%]".into()],
+        rows.map(|(step, deviation)| vec![step.to_string(), number(*deviation)])
+            .collect(),
+    );
+    Ok(Outcome {
+        checks: checks(&deviations, wrong),
+        claims: vec![claim(&deviations)],
+        blocks: vec![table],
+        figures: figures(spring, &exact, &iterates, psi),
+        times: Vec::new(),
+    })
+}
+
+fn corrector(spring: &Spring) -> Corrector<'static> {
+    let (k, forces) = (spring.stiffness, spring.forces.clone());
+    let points = forces.len();
+    let law = Function::new("f = k u²", points, move |u| {
         let mut jacobian = SparseRows::new(u.len());
         (0..u.len()).for_each(|i| jacobian.push([(i, -2.0 * k * u[i])]));
-        let values = own.iter().zip(u).map(|(f, u)| f - k * u * u).collect();
+        let values = forces.iter().zip(u).map(|(f, u)| f - k * u * u).collect();
         Linearised { values, jacobian }
     });
     let settings = CorrectorSettings {
@@ -56,89 +95,52 @@ fn compute(spring: &Spring) -> Result<Outcome, Error> {
         max_steps: 60,
         solver: Solver::Dense,
     };
-    let conditions: Vec<Box<dyn Condition>> = vec![Box::new(law)];
-    let corrector = Corrector::new(conditions, vec![1.0; forces.len()], settings);
-    let correction = corrector
-        .correct(&trial, &trial)
-        .map_err(|fault| Error::Solve {
-            model: "corrector".into(),
-            step: "the parabolic spring".into(),
-            fault,
-        })?;
-    let deviations: Vec<f64> = correction
-        .steps
-        .iter()
-        .map(|step| relative(&step.field, &exact))
-        .collect();
-    let below_ten = deviations
-        .iter()
-        .position(|d| *d < 10.0)
-        .unwrap_or(usize::MAX);
-    // W (u − ū) + Bᵀ ψ = 0 with B = −2 k u.
-    let closed_form = exact
-        .iter()
-        .zip(&trial)
-        .map(|(u, data)| (u - data) / (2.0 * k * u));
-    let psi = &correction.multipliers[0].values;
-    let wrong = closed_form
-        .zip(psi)
-        .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
-    let checks = vec![
-        Check::new(
+    Corrector::new(vec![Box::new(law)], vec![1.0; points], settings)
+}
+
+fn checks(deviations: &[f64], wrong_multipliers: f64) -> Vec<Check> {
+    let at_most = |quantity, unit, limit, source, value| {
+        Check::new(quantity, unit, Wanted::AtMost(limit), source, value)
+    };
+    let last = deviations[deviations.len() - 1];
+    vec![
+        at_most(
             "deviation after one step",
             "%",
-            Wanted::AtMost(10.0),
+            10.0,
             "publication: below 10 %",
             deviations[1],
         ),
-        Check::new(
+        at_most(
             "deviation after two steps",
             "%",
-            Wanted::AtMost(1.0),
+            1.0,
             "Newton from a secant",
             deviations[2],
         ),
-        Check::new(
-            "deviation at the end",
-            "%",
-            Wanted::AtMost(1e-9),
-            "u = √(f/k)",
-            deviations[deviations.len() - 1],
-        ),
-        Check::new(
+        at_most("deviation at the end", "%", 1e-9, "u = √(f/k)", last),
+        at_most(
             "multipliers beside (u − ū)/(2 k u)",
             "mm²/N",
-            Wanted::AtMost(1e-9),
+            1e-9,
             "closed form",
-            wrong,
+            wrong_multipliers,
         ),
-    ];
-    let claim = Claim {
+    ]
+}
+
+fn claim(deviations: &[f64]) -> Claim {
+    let (trial, first) = (number(deviations[0]), number(deviations[1]));
+    let below = match deviations.iter().position(|deviation| *deviation < 10.0) {
+        Some(step) => format!("below 10 % from step {step} on"),
+        None => "never below 10 %".into(),
+    };
+    Claim {
         claim: "Example 1, Part I: the corrected parabolic spring deviates by less than 10 %",
         reproduced: format!(
-            "the linear trial deviates by {} %, the first step by {} %; below 10 % from step {below_ten} on",
-            number(deviations[0]),
-            number(deviations[1])
+            "the linear trial deviates by {trial} %, the first step by {first} %; {below}"
         ),
-    };
-    let rows = deviations.iter().enumerate().take(spring.iterates + 1);
-    let table = Block::Table(
-        vec!["step".into(), "deviation, relative L2 [%]".into()],
-        rows.map(|(step, deviation)| vec![step.to_string(), number(*deviation)])
-            .collect(),
-    );
-    let iterates: Vec<&[f64]> = correction
-        .steps
-        .iter()
-        .map(|step| &step.field[..])
-        .collect();
-    Ok(Outcome {
-        checks,
-        claims: vec![claim],
-        blocks: vec![table],
-        figures: figures(spring, &exact, &iterates, psi),
-        times: Vec::new(),
-    })
+    }
 }
 
 fn relative(field: &[f64], exact: &[f64]) -> f64 {

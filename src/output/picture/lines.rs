@@ -1,5 +1,6 @@
 //! Line charts.
 
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -73,6 +74,8 @@ pub struct LineChart {
     pub band: Option<([f64; 2], String)>,
 }
 
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
 const SIZE: (u32, u32) = (860, 480);
 const LEGEND_WIDTH: u32 = 250;
 
@@ -120,35 +123,33 @@ impl LineChart {
                 .y_label_formatter(&|y| self.y.scale.label(*y))
                 .draw()?;
             for line in &self.lines {
-                let position = |[x, y]: &[f64; 2]| {
-                    Some((self.x.scale.position(*x)?, self.y.scale.position(*y)?))
-                };
-                let points: Vec<_> = line.points.iter().filter_map(position).collect();
-                let colour = line.rgb();
-                let pen = stroke(colour, 2);
-                match line.stroke {
-                    Stroke::Dashed => {
-                        chart.draw_series(DashedLineSeries::new(
-                            points.clone(),
-                            7 * FINE,
-                            5 * FINE,
-                            pen,
-                        ))?;
-                    }
-                    Stroke::Points => {}
-                    Stroke::Solid | Stroke::Marked => {
-                        chart.draw_series(LineSeries::new(points.clone(), pen))?;
-                    }
-                }
-                if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
-                    let markers = points
-                        .iter()
-                        .map(|point| Circle::new(*point, units(4), colour.filled()));
-                    chart.draw_series(markers)?;
-                }
+                self.draw_line(&mut chart, line)?;
             }
             self.draw_legend(&legend)
         })
+    }
+
+    fn draw_line(&self, chart: &mut Chart, line: &Line) -> super::DrawResult<()> {
+        let position =
+            |[x, y]: &[f64; 2]| Some((self.x.scale.position(*x)?, self.y.scale.position(*y)?));
+        let points: Vec<_> = line.points.iter().filter_map(position).collect();
+        let colour = line.rgb();
+        let pen = stroke(colour, 2);
+        if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
+            let marker = |point: &(f64, f64)| Circle::new(*point, units(4), colour.filled());
+            chart.draw_series(points.iter().map(marker))?;
+        }
+        match line.stroke {
+            Stroke::Dashed => {
+                let dashes = DashedLineSeries::new(points, 7 * FINE, 5 * FINE, pen);
+                chart.draw_series(dashes)?;
+            }
+            Stroke::Points => {}
+            Stroke::Solid | Stroke::Marked => {
+                chart.draw_series(LineSeries::new(points, pen))?;
+            }
+        }
+        Ok(())
     }
 
     fn draw_legend(
