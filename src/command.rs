@@ -97,6 +97,25 @@ enum Materials {
         /// Name of a card that comes along, or path of one ending in .toml
         card: String,
     },
+    /// Draw the curves of a card: uniaxial, planar and equibiaxial tension
+    #[command(after_help = "Sample: gelbench materials plot pva-10    writes pva-10.png")]
+    Plot {
+        /// Name of a card that comes along, or path of one ending in .toml
+        card: String,
+        /// The picture; the card's name with .png where it is not given
+        #[arg(long, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
+    /// Draw the uniaxial curves of several cards in one picture and tell their moduli
+    #[command(after_help = "Sample: gelbench materials compare pva-10 pva-10-cauchy neo-hooke")]
+    Compare {
+        /// Names of cards that come along, or paths of ones ending in .toml
+        #[arg(required = true, num_args = 2..)]
+        cards: Vec<String>,
+        /// The picture
+        #[arg(long, value_name = "FILE", default_value = "materials.png")]
+        output: PathBuf,
+    },
 }
 
 /// Runs the command with the arguments of the process.
@@ -122,6 +141,8 @@ pub fn main() -> ExitCode {
         Command::Materials { command } => match command {
             Materials::List => list_cards(),
             Materials::Show { card } => show_card(&card),
+            Materials::Plot { card, output } => plot_card(&card, output),
+            Materials::Compare { cards, output } => compare_cards(&cards, &output),
         },
     };
     match outcome {
@@ -275,6 +296,35 @@ fn list_cards() -> Outcome {
 
 fn show_card(name: &str) -> Outcome {
     print(&message::card(&Card::load(name, Path::new("."))?))?;
+    Ok(0)
+}
+
+fn plot_card(name: &str, file: Option<PathBuf>) -> Outcome {
+    let card = Card::load(name, Path::new("."))?;
+    let stem = Path::new(name)
+        .file_stem()
+        .map_or_else(PathBuf::new, PathBuf::from);
+    let file = file.unwrap_or_else(|| stem.with_extension("png"));
+    output::save(&file, &output::material_chart(&card).png())?;
+    print(&format!("{} written\n", file.display()))?;
+    Ok(0)
+}
+
+fn compare_cards(names: &[String], file: &Path) -> Outcome {
+    let (mut cards, mut faults) = (Vec::new(), Vec::new());
+    for name in names {
+        match Card::load(name, Path::new(".")) {
+            Ok(card) => cards.push(card),
+            Err(Error::Input(found)) => faults.extend(found),
+            Err(other) => return Err(other),
+        }
+    }
+    if !faults.is_empty() {
+        return Err(Error::Input(faults));
+    }
+    output::save(file, &output::comparison_chart(&cards).png())?;
+    let lines: String = cards.iter().map(message::moduli_line).collect();
+    print(&format!("{lines}{} written\n", file.display()))?;
     Ok(0)
 }
 

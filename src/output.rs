@@ -15,7 +15,7 @@ pub mod picture;
 mod report;
 mod vtk;
 
-pub use figures::Figure;
+pub use figures::{Figure, comparison_chart, material_chart};
 pub use report::Block;
 
 /// Writes everything a study asks for into its folder and returns the files in the order of writing.

@@ -235,6 +235,21 @@ fn cards_are_listed_and_shown() {
         "{shown}"
     );
     gelbench(folder.path(), &["materials", "show", "pva"]).code(2);
+    gelbench(folder.path(), &["materials", "plot", "pva-10"]).code(0);
+    assert!(folder.path().join("pva-10.png").exists());
+    let done = gelbench(
+        folder.path(),
+        &["materials", "compare", "pva-10", "neo-hooke"],
+    )
+    .code(0);
+    assert!(words(&done.get_output().stdout).contains("E₀ = 0.136540 MPa"));
+    assert!(folder.path().join("materials.png").exists());
+    let done = gelbench(folder.path(), &["materials", "compare", "pva", "neo"]).code(2);
+    let told = words(&done.get_output().stderr);
+    assert!(
+        told.contains("`pva`") && told.contains("`neo`"),
+        "both are named: {told}"
+    );
 }
 
 #[test]

@@ -137,6 +137,15 @@ pub fn card_line(card: &Card) -> String {
     )
 }
 
+/// The small-strain moduli of a card.
+pub fn moduli_line(card: &Card) -> String {
+    let (young, shear) = (card.law.youngs_modulus(), card.law.shear_modulus());
+    format!(
+        "{:<16} E₀ = {young:.6} MPa, μ₀ = {shear:.6} MPa\n",
+        card.name
+    )
+}
+
 /// Everything about a card.
 pub fn card(card: &Card) -> String {
     let [low, high] = card.stretch_range;

@@ -32,7 +32,7 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
     let mut all = vec![figure(
         "material.png",
         "The material: nominal stress over stretch.",
-        material(&study.card).png(),
+        material_chart(&study.card).png(),
     )];
     for (step, stretch) in study.problem.stretches.iter().enumerate() {
         let at = Problem::describe_step(*stretch);
@@ -80,7 +80,7 @@ fn figure(name: &str, caption: &str, png: Vec<u8>) -> Figure {
 }
 
 /// The curves of a card in the three usual tests.
-pub fn material(card: &Card) -> LineChart {
+pub fn material_chart(card: &Card) -> LineChart {
     let [low, high] = card.stretch_range;
     let (from, to) = (low.min(1.0), high.max(1.0));
     let law = &*card.law;
@@ -134,6 +134,44 @@ pub fn material(card: &Card) -> LineChart {
         y: Axis::linear("nominal stress [MPa]"),
         lines,
         band: Some(([low, high], "range of the card".to_owned())),
+    }
+}
+
+/// The uniaxial curves of several cards, each over its own range.
+pub fn comparison_chart(cards: &[Card]) -> LineChart {
+    const COLOURS: [[u8; 3]; 7] = [
+        CORRECTED,
+        MASS_SPRING,
+        SECOND,
+        THIRD,
+        FINITE_ELEMENT,
+        [230, 159, 0],
+        [86, 180, 233],
+    ];
+    let line = |(index, card): (usize, &Card)| {
+        let [low, high] = card.stretch_range;
+        let stretch = |i: i32| low + (high - low) * f64::from(i) / 100.0;
+        let stress = |stretch: f64| uniaxial::uniaxial(&*card.law, stretch - 1.0).nominal_stress;
+        Line {
+            label: card.name.clone(),
+            points: (0..=100)
+                .map(|i| [stretch(i), stress(stretch(i))])
+                .collect(),
+            colour: COLOURS[index % COLOURS.len()],
+            // A colour that comes again is dashed.
+            stroke: if index < COLOURS.len() {
+                Stroke::Solid
+            } else {
+                Stroke::Dashed
+            },
+        }
+    };
+    LineChart {
+        title: "Uniaxial tension".into(),
+        x: Axis::linear("stretch λ [–]"),
+        y: Axis::linear("nominal stress [MPa]"),
+        lines: cards.iter().enumerate().map(line).collect(),
+        band: None,
     }
 }
 
