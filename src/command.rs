@@ -68,7 +68,8 @@ enum Command {
     },
     /// Redo the publication's claims and the comparisons with other codes
     ///
-    /// Writes REPORT.md with its pictures and REPORT.html.
+    /// Writes REPORT.md with its pictures and REPORT.html: all cases into validation/, some of them into
+    /// output/validation/.
     #[command(after_help = "Sample: gelbench validate vibrating-spring --output /tmp/validation")]
     Validate {
         /// Cases to compute; all where none is named
@@ -77,8 +78,8 @@ enum Command {
         #[arg(long)]
         quick: bool,
         /// Write the report into this folder
-        #[arg(long, value_name = "FOLDER", default_value = "validation")]
-        output: PathBuf,
+        #[arg(long, value_name = "FOLDER")]
+        output: Option<PathBuf>,
     },
     /// Look at material cards
     Materials {
@@ -137,7 +138,7 @@ pub fn main() -> ExitCode {
             cases,
             quick,
             output,
-        } => validate(&cases, quick, &output),
+        } => validate(&cases, quick, output),
         Command::Materials { command } => match command {
             Materials::List => list_cards(),
             Materials::Show { card } => show_card(&card),
@@ -189,13 +190,12 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
 
 /// Computes a study of one of the validation cases.
 fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Outcome {
-    let file = path.display().to_string();
-    case.check(&file, text)?;
+    warn(&case.check(path, text)?);
     let stem = path.file_stem().map_or_else(PathBuf::new, PathBuf::from);
     let folder = folder.unwrap_or_else(|| Path::new("output").join(stem));
     output::prepare(&folder)?;
     let bar = progress_bar(0);
-    let computed = case.compute(&file, text, &|what| {
+    let computed = case.compute(path, text, &|what| {
         bar.set_message(what.to_owned());
         bar.tick();
     });
@@ -213,8 +213,16 @@ fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Ou
     conclude(&cases, &folder.join("report.html"))
 }
 
-fn validate(names: &[String], quick: bool, folder: &Path) -> Outcome {
+fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     let chosen = validation::choose(names, quick)?;
+    // A part never takes the place of the whole report.
+    let whole = chosen.len() == validation::CASES.len();
+    let usual = if whole {
+        "validation"
+    } else {
+        "output/validation"
+    };
+    let folder = &folder.unwrap_or_else(|| PathBuf::from(usual));
     output::prepare(folder)?;
     let bar = progress_bar(chosen.len() as u64);
     let mut cases = Vec::new();
@@ -224,7 +232,7 @@ fn validate(names: &[String], quick: bool, folder: &Path) -> Outcome {
             bar.tick();
         };
         told("begins");
-        cases.push(case.compute(case.file, case.study, &told)?);
+        cases.push(case.compute_or_fail(&told)?);
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -254,7 +262,7 @@ fn progress_bar(length: u64) -> ProgressBar {
 fn check(path: &Path) -> Outcome {
     let text = study::read(path)?;
     if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
-        case.check(&path.display().to_string(), &text)?;
+        warn(&case.check(path, &text)?);
         print(&format!(
             "{}: no faults; a study of the kind {}\n",
             path.display(),
@@ -269,6 +277,7 @@ fn check(path: &Path) -> Outcome {
 }
 
 fn new_study(name: PathBuf) -> Outcome {
+    let name: PathBuf = name.components().collect();
     let path = match name.extension() {
         Some(extension) if extension == "toml" => name,
         _ => PathBuf::from(format!("{}.toml", name.display())),

@@ -94,13 +94,11 @@ impl<'a> Reference<'a> {
         let reference = &solutions[step];
         let expected = interpolate(fine, &reference.displacement, mesh);
         let affine = self.problem.affine(mesh, solution.stretch);
-        let areas = nodal_areas(mesh);
-        let error = distance(&areas, &solution.displacement, &expected);
-        let zero = vec![0.0; expected.len()];
+        let field = &solution.displacement;
         let percent = |value: f64, expected: f64| 100.0 * (value / expected - 1.0);
         Deviation {
-            displacement_percent: 100.0 * error / distance(&areas, &expected, &zero),
-            departure_percent: 100.0 * error / distance(&areas, &expected, &affine),
+            displacement_percent: displacement_percent(mesh, field, &expected),
+            departure_percent: departure_percent(mesh, field, &expected, &affine),
             max_difference: largest_distance(&solution.displacement, &expected),
             force_percent: percent(solution.force, reference.force),
             width_percent: percent(solution.mid_width, reference.mid_width),
@@ -165,6 +163,17 @@ impl<'a> Reference<'a> {
             Err(_) => Vector4::repeat(f64::NAN),
         }
     }
+}
+
+/// Distance of two fields on a mesh in relative L2, weighted by area, in %.
+pub fn displacement_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
+    departure_percent(mesh, field, reference, &vec![0.0; reference.len()])
+}
+
+/// Distance of two fields on a mesh over the size of what the reference departs from `affine`, in %.
+pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: &[f64]) -> f64 {
+    let areas = nodal_areas(mesh);
+    100.0 * distance(&areas, field, reference) / distance(&areas, reference, affine)
 }
 
 /// Whether a point lies within a fifth of the width of a corner.

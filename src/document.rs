@@ -95,6 +95,8 @@ pub enum Bound {
     NonNegative,
     /// Within both limits, which are included.
     Within(f64, f64),
+    /// Within both limits, which are included, as these words say.
+    Range(f64, f64, &'static str),
 }
 
 impl Bound {
@@ -103,6 +105,7 @@ impl Bound {
             Self::Any => (value.is_finite(), "a finite number".to_owned()),
             Self::Positive => (value > 0.0, "greater than zero".to_owned()),
             Self::NonNegative => (value >= 0.0, "zero or greater".to_owned()),
+            Self::Range(low, high, words) => ((low..=high).contains(&value), words.to_owned()),
             Self::Within(low, high) => (
                 (low..=high).contains(&value),
                 format!("between {low} and {high}"),
@@ -224,8 +227,9 @@ impl<'a> Section<'a> {
         .unwrap_or(low)
     }
 
-    /// A list of exactly two whole numbers from `low` to `high`.
-    pub fn count_pair(&self, key: &'static str, low: usize, high: usize) -> [usize; 2] {
+    /// A list of exactly two whole numbers from `low` to `high`; nothing when it is wrong, which is recorded
+    /// as a fault.
+    pub fn count_pair(&self, key: &'static str, low: usize, high: usize) -> Option<[usize; 2]> {
         let wanted = format!("two whole numbers from {low} to {high}, such as [60, 20]");
         self.read(key, &wanted, |value| {
             let DeValue::Array(items) = value else {
@@ -240,7 +244,6 @@ impl<'a> Section<'a> {
                 .then(|| numbers.try_into().ok())
                 .flatten()
         })
-        .unwrap_or([low; 2])
     }
 
     /// A number without a dimension.
@@ -283,7 +286,7 @@ impl<'a> Section<'a> {
             _ => {
                 let hint = format!("write [{}, …]", dimension.example());
                 self.fault_at(key, value, "must be a list", &hint);
-                Vec::new()
+                vec![f64::NAN]
             }
         }
     }
@@ -339,6 +342,7 @@ impl<'a> Section<'a> {
                 &format!("must be {wanted}"),
                 &format!("it is {}", self.written_text(value)),
             );
+            return f64::NAN;
         }
         number
     }
@@ -349,6 +353,24 @@ impl<'a> Section<'a> {
             .get(value.span())
             .unwrap_or_default()
             .to_owned()
+    }
+
+    /// Adds a finding about another file that this one names.
+    pub fn add(&self, finding: Diagnostic) {
+        self.faults.push(finding);
+    }
+
+    /// A heading: a text of one line.
+    pub fn heading(&self, key: &'static str) -> String {
+        let text = self.text(key);
+        if text.chars().any(char::is_control) {
+            self.fault(
+                key,
+                "must be one line of plain text",
+                "leave out line breaks",
+            );
+        }
+        text
     }
 
     /// Records a fault at the place of `key`.

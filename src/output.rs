@@ -44,7 +44,38 @@ pub fn write(study: &Study, results: &Results, folder: &Path) -> Result<Vec<Path
         let blocks = report::report(study, results, &figures);
         written.extend(write_document(folder, "report", &blocks, &figures)?);
     }
+    remove_stale(folder, &written)?;
     Ok(written)
+}
+
+/// Removes what an earlier run of a study with more stretches has left among the files of this one.
+fn remove_stale(folder: &Path, written: &[PathBuf]) -> Result<(), Error> {
+    for (part, prefixes, ending) in [
+        ("", &["plates_", "error_"][..], "png"),
+        (
+            "vtk",
+            &["mass_spring_", "springs_", "corrected_", "finite_element_"][..],
+            "vtu",
+        ),
+    ] {
+        let Ok(entries) = std::fs::read_dir(folder.join(part)) else {
+            continue;
+        };
+        for path in entries.flatten().map(|entry| entry.path()) {
+            let stem = path
+                .file_stem()
+                .map(|stem| stem.to_string_lossy().into_owned());
+            let number = stem
+                .iter()
+                .find_map(|stem| prefixes.iter().find_map(|prefix| stem.strip_prefix(prefix)));
+            let numbered = number.is_some_and(|number| number.parse::<u32>().is_ok());
+            let ours = numbered && path.extension().is_some_and(|found| found == ending);
+            if ours && !written.contains(&path) {
+                std::fs::remove_file(&path).map_err(|cause| Error::write(&path, cause))?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Writes pictures into a folder.

@@ -19,8 +19,14 @@ use crate::units::Dimension;
 /// The study that `gelbench new` writes: every key with its default.
 pub const DEFAULT: &str = include_str!("study/default.toml");
 
-/// Most cells of a mesh in one direction.
+/// Most cells of a mesh in one direction, and in all: more than this would not fit into common memories.
 const MOST_CELLS: usize = 2000;
+const MOST_CELLS_IN_ALL: usize = 200_000;
+
+/// Lengths that a plate may have, in mm: from a micrometre to a kilometre.
+const LENGTHS: Bound = Bound::Range(1e-3, 1e6, "greater than zero, from 1 µm to 1 km");
+/// Stretches that a plate may be given.
+const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
 
 /// A study, checked.
 #[derive(Debug)]
@@ -121,7 +127,7 @@ impl Study {
             let defaults = Document::parse("default.toml", DEFAULT, &faults);
             let document = Document::parse(file, &text, &faults);
             let root = document.root(Some(&defaults), &faults);
-            read_sections(name, folder, root, &faults)
+            read_sections(name, folder, root)
         };
         let warnings = faults.finish()?;
         let study = study.expect("a study without a card has a fault");
@@ -139,15 +145,15 @@ impl Study {
 }
 
 /// Reads all sections; nothing when there is no card to work with, which is recorded as a fault.
-fn read_sections(name: &str, folder: &Path, root: Section<'_>, faults: &Faults) -> Option<Study> {
+fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> {
     root.choice("kind", &[("plate", ())]);
-    let title = root.text("title");
-    let card = read_card(&root.section("material"), folder, faults);
-    let law: Arc<dyn HyperelasticLaw> = match &card {
-        Some(card) => Arc::clone(&card.law),
-        None => Arc::new(NeoHooke { c10: 1.0 }),
-    };
-    let (problem, cells) = read_plate(&root.section("plate"), law);
+    let title = root.heading("title");
+    let material = root.section("material");
+    let card = read_card(&material, folder);
+    material.unknown_keys();
+    let plate = root.section("plate");
+    let (problem, cells) = read_plate(&plate, card.as_ref());
+    plate.unknown_keys();
     let stretches = read_stretches(&root.section("load"), card.as_ref());
 
     let section = root.section("mass_spring");
@@ -199,10 +205,11 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>, faults: &Faults) 
     })
 }
 
-fn read_card(section: &Section<'_>, folder: &Path, faults: &Faults) -> Option<Card> {
+/// The card under `card` of a section, looked for relative to `folder`; nothing when it is no card to work
+/// with, which is recorded as a fault.
+pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
     const KEY: &str = "card";
     let name = section.text(KEY);
-    section.unknown_keys();
     match Card::load(&name, folder) {
         Ok(card) if card.offset == OffsetTreatment::Keep => {
             section.fault(
@@ -210,13 +217,13 @@ fn read_card(section: &Section<'_>, folder: &Path, faults: &Faults) -> Option<Ca
                 "this card keeps a stress at rest and cannot drive a model",
                 "set `offset = \"subtract\"` in the card",
             );
-            Some(card)
+            None
         }
         Ok(card) => Some(card),
         Err(Error::Input(found)) => {
             for fault in found {
                 match fault.place {
-                    Some(_) => faults.push(fault),
+                    Some(_) => section.add(fault),
                     None => section.fault(KEY, &fault.message, fault.hint.as_deref().unwrap_or("")),
                 }
             }
@@ -229,38 +236,80 @@ fn read_card(section: &Section<'_>, folder: &Path, faults: &Faults) -> Option<Ca
     }
 }
 
-fn read_plate(section: &Section<'_>, law: Arc<dyn HyperelasticLaw>) -> (Problem, [usize; 2]) {
-    let length = |key| section.quantity(key, Dimension::Length, Bound::Positive);
+/// The plate of a section without its stretches, and the cells of its lattice.
+pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (Problem, [usize; 2]) {
+    let length = |key| section.quantity(key, Dimension::Length, LENGTHS);
     let size = [length("length"), length("width")];
     let thickness = length("thickness");
-    let cells = section.count_pair("cells", 1, MOST_CELLS);
-    section.unknown_keys();
-    let sides = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
-    let aspect = (sides[0] / sides[1]).max(sides[1] / sides[0]);
-    if aspect > LARGEST_ASPECT {
-        let across = (size[1] * cells[0] as f64 / size[0]).round().max(1.0);
-        section.fault(
-            "cells",
-            &format!("the sides of a cell have the ratio {aspect:.2}; springs need less than √3"),
-            &format!(
-                "with {} cells along the plate take {across} across it",
-                cells[0]
-            ),
-        );
+    let cells = read_cells(section, 2);
+    if let Some(cells) = cells {
+        check_aspect(section, size, cells);
     }
+    let law: Arc<dyn HyperelasticLaw> = match card {
+        Some(card) => Arc::clone(&card.law),
+        None => Arc::new(NeoHooke { c10: 1.0 }),
+    };
     let problem = Problem {
         size,
         thickness,
         law,
         stretches: Vec::new(),
     };
-    (problem, cells)
+    (problem, cells.unwrap_or([2, 2]))
+}
+
+/// The cells of a mesh, not too many in all.
+fn read_cells(section: &Section<'_>, fewest: usize) -> Option<[usize; 2]> {
+    let cells = section.count_pair("cells", fewest, MOST_CELLS)?;
+    if cells[0] * cells[1] > MOST_CELLS_IN_ALL {
+        section.fault(
+            "cells",
+            &format!("{} cells are too many", cells[0] * cells[1]),
+            &format!("take at most {MOST_CELLS_IN_ALL}"),
+        );
+        return None;
+    }
+    Some(cells)
+}
+
+/// Springs cannot make a lattice of long cells isotropic.
+fn check_aspect(section: &Section<'_>, size: [f64; 2], cells: [usize; 2]) {
+    let sides = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
+    let aspect = (sides[0] / sides[1]).max(sides[1] / sides[0]);
+    if aspect > LARGEST_ASPECT {
+        let across = (size[1] * cells[0] as f64 / size[0]).round().max(2.0);
+        let along = (size[0] * across / size[1]).round().max(2.0);
+        section.fault(
+            "cells",
+            &format!("the sides of a cell have the ratio {aspect:.2}; springs need less than √3"),
+            &format!("take [{along}, {across}]"),
+        );
+    }
+}
+
+/// Warns of a stretch outside the range of the card.
+pub fn check_range(section: &Section<'_>, key: &'static str, stretch: f64, card: &Card) {
+    if !card.covers(1.0 + stretch) {
+        let [low, high] = card.stretch_range.map(|lambda| 100.0 * (lambda - 1.0));
+        let step = Problem::describe_step(stretch);
+        section.warning(
+            key,
+            &format!("{step} is outside the range of the card `{}`", card.name),
+            &format!("it was calibrated from {low:.0} to {high:.0} % stretch"),
+        );
+    }
+}
+
+/// One stretch, as a ratio or in percent.
+pub fn read_stretch(section: &Section<'_>, key: &'static str) -> f64 {
+    section.quantity(key, Dimension::Ratio, STRETCHES)
 }
 
 fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
     const KEY: &str = "stretches";
-    let stretches = section.quantities(KEY, Dimension::Ratio, Bound::Positive);
+    let stretches = section.quantities(KEY, Dimension::Ratio, STRETCHES);
     section.unknown_keys();
+    let good = stretches.iter().all(|stretch| *stretch > 0.0);
     if stretches.is_empty() {
         section.fault(
             KEY,
@@ -268,23 +317,15 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
             "such as [\"15 %\", \"30 %\"]",
         );
     }
-    if stretches.windows(2).any(|pair| pair[1] <= pair[0]) {
+    if good && stretches.windows(2).any(|pair| pair[1] <= pair[0]) {
         section.fault(KEY, "must ascend", "sort them and leave out repetitions");
     }
-    for stretch in &stretches {
-        let lambda = 1.0 + stretch;
-        if let Some(card) = card.filter(|card| !card.covers(lambda)) {
-            let [low, high] = card.stretch_range.map(|lambda| 100.0 * (lambda - 1.0));
-            section.warning(
-                KEY,
-                &format!(
-                    "{} is outside the range of the card `{}`",
-                    Problem::describe_step(*stretch),
-                    card.name
-                ),
-                &format!("it was calibrated from {low:.0} to {high:.0} % stretch"),
-            );
-        }
+    for (stretch, card) in stretches
+        .iter()
+        .filter(|_| good)
+        .zip(card.into_iter().cycle())
+    {
+        check_range(section, KEY, *stretch, card);
     }
     stretches
 }
@@ -297,7 +338,9 @@ fn read_newton(section: &Section<'_>) -> NewtonSettings {
 }
 
 fn read_reference_cells(section: &Section<'_>) -> [usize; 2] {
-    let cells = section.count_pair("cells", 4, MOST_CELLS);
+    let Some(cells) = read_cells(section, 4) else {
+        return [4, 4];
+    };
     if cells.iter().any(|cells| cells % 4 != 0) {
         let [x, y] = cells.map(|cells| cells.next_multiple_of(4));
         section.fault(
@@ -401,7 +444,9 @@ mod tests {
 
     #[test]
     fn settings_that_contradict_each_other_are_refused() {
-        assert!(faults("[plate]\ncells = [60, 10]\n")[0].contains("take 20 across"));
+        assert!(faults("[plate]\ncells = [60, 10]\n")[0].contains("take [60, 20]"));
+        assert!(faults("[plate]\ncells = [2, 2]\n")[0].contains("take [6, 2]"));
+        assert!(faults("[plate]\ncells = [1500, 500]\n")[0].contains("750000 cells are too many"));
         assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
         assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));
         assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("ascend"));

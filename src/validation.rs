@@ -2,6 +2,7 @@
 //!
 //! A case is a study file with a `kind` of its own: `gelbench run` computes one, `gelbench validate` all.
 
+use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
@@ -38,7 +39,7 @@ pub struct Case {
     pub file: &'static str,
     /// Whether `--quick` leaves it out.
     pub slow: bool,
-    prepare: fn(&Section) -> Prepared,
+    prepare: fn(&Section, &Path) -> Prepared,
 }
 
 /// All cases, in the order of the report.
@@ -296,20 +297,20 @@ pub fn case_of(file: &str, text: &str) -> Result<Option<&'static Case>, Error> {
 }
 
 impl Case {
-    /// Reads a study of this case, without computing.
+    /// Reads a study of this case, without computing, and gives its warnings.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault.
-    pub fn check(&self, file: &str, text: &str) -> Result<(), Error> {
-        self.read(file, text).map(|_| ())
+    pub fn check(&self, file: &Path, text: &str) -> Result<Vec<Diagnostic>, Error> {
+        self.read(file, text).map(|(.., warnings)| warnings)
     }
 
     /// Reads and computes a study of this case.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault of the study, [`Error::Solve`] when a model has no solution.
-    pub fn compute(&self, file: &str, text: &str, progress: Progress) -> Result<Computed, Error> {
-        let (title, prepared) = self.read(file, text)?;
+    pub fn compute(&self, file: &Path, text: &str, progress: Progress) -> Result<Computed, Error> {
+        let (title, prepared, _) = self.read(file, text)?;
         let start = Instant::now();
         let outcome = prepared(progress)?;
         Ok(Computed {
@@ -320,20 +321,51 @@ impl Case {
         })
     }
 
-    fn read(&self, file: &str, text: &str) -> Result<(String, Prepared), Error> {
+    /// Computes the study that comes along; a model without a solution is a check that failed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] or [`Error::Write`].
+    pub fn compute_or_fail(&self, progress: Progress) -> Result<Computed, Error> {
+        let file = Path::new(self.file);
+        match self.compute(file, self.study, progress) {
+            Err(fault @ Error::Solve { .. }) => {
+                let check = Check::new(
+                    fault.to_string(),
+                    "–",
+                    Wanted::AtMost(0.0),
+                    "no fault",
+                    f64::NAN,
+                );
+                Ok(Computed {
+                    title: self.kind.to_owned(),
+                    kind: self.kind,
+                    outcome: Outcome {
+                        checks: vec![check],
+                        ..Outcome::default()
+                    },
+                    seconds: 0.0,
+                })
+            }
+            other => other,
+        }
+    }
+
+    fn read(&self, file: &Path, text: &str) -> Result<(String, Prepared, Vec<Diagnostic>), Error> {
+        let folder = file.parent().unwrap_or(Path::new("."));
+        let file = file.display().to_string();
         let faults = Faults::default();
-        let read = {
+        let (title, prepared) = {
             let defaults = Document::parse(self.file, self.study, &faults);
-            let document = Document::parse(file, text, &faults);
+            let document = Document::parse(&file, text, &faults);
             let root = document.root(Some(&defaults), &faults);
             root.text("kind");
-            let title = root.text("title");
-            let prepared = (self.prepare)(&root);
+            let title = root.heading("title");
+            let prepared = (self.prepare)(&root, folder);
             root.unknown_keys();
             (title, prepared)
         };
-        faults.finish()?;
-        Ok(read)
+        let warnings = faults.finish()?;
+        Ok((title, prepared, warnings))
     }
 }
 
@@ -356,6 +388,13 @@ pub fn limit(value: f64) -> String {
         small if small > 0.0 && small < 1e-3 => format!("{value:e}"),
         _ => value.to_string(),
     }
+}
+
+/// Distance of two series over the size of the second, in relative L2, in %.
+fn percent(values: &[f64], reference: &[f64]) -> f64 {
+    let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
+    let error = norm(&mut values.iter().zip(reference).map(|(u, v)| u - v));
+    100.0 * error / norm(&mut reference.iter().copied())
 }
 
 /// A chart as a figure of a case.
@@ -400,11 +439,11 @@ mod tests {
     #[test]
     fn every_case_reads_its_own_study_and_tells_faults() {
         for case in CASES {
-            case.check(case.file, case.study).unwrap();
+            case.check(Path::new(case.file), case.study).unwrap();
             let found = case_of(case.file, case.study).unwrap().unwrap();
             assert_eq!(found.kind, case.kind);
             let told = case
-                .check("x.toml", "kind = \"x\"\nmisspelt = 1\n")
+                .check(Path::new("x.toml"), "kind = \"x\"\nmisspelt = 1\n")
                 .unwrap_err();
             assert!(told.to_string().contains("misspelt: unknown key"), "{told}");
         }

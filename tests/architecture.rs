@@ -113,9 +113,9 @@ fn packages_have_one_door_each() {
     for file in sources(Path::new("src")) {
         let text = fs::read_to_string(&file).unwrap();
         for (package, door) in SINGLE_DOORS {
-            let uses = text.lines().any(|line| {
-                let line = line.trim_start();
-                line.starts_with(&format!("use {package}")) || line.contains(&format!(" {package}"))
+            let uses = text.match_indices(package).any(|(at, _)| {
+                let before = text[..at].chars().next_back();
+                before.is_none_or(|c| !c.is_alphanumeric() && c != '_' && c != ':')
             });
             let name = file.to_string_lossy();
             assert!(!uses || name.starts_with(door), "{name} names {package}");

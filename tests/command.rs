@@ -160,6 +160,23 @@ fn pictures_and_vtk_files_are_what_they_claim() {
 }
 
 #[test]
+fn nothing_of_an_earlier_run_is_left_among_the_files() {
+    let folder = folder_with(&SMALL.replace("[\"20 %\"]", "[0.1, 0.2]"));
+    let output = folder.path().join("output/small");
+    gelbench(folder.path(), &["run", "small.toml"]).code(0);
+    assert!(
+        output.join("plates_002.png").exists() && output.join("vtk/corrected_002.vtu").exists()
+    );
+    fs::write(output.join("notes_002.png"), "mine").unwrap();
+    fs::write(folder.path().join("small.toml"), SMALL).unwrap();
+    gelbench(folder.path(), &["run", "small.toml"]).code(0);
+    assert!(
+        !output.join("plates_002.png").exists() && !output.join("vtk/corrected_002.vtu").exists()
+    );
+    assert!(output.join("plates_001.png").exists() && output.join("notes_002.png").exists());
+}
+
+#[test]
 fn a_requirement_that_is_not_met_ends_with_code_1() {
     let folder = folder_with(&SMALL.replace("\"5 %\"", "\"0.001 %\""));
     let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);

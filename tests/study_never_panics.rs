@@ -5,6 +5,7 @@ use std::path::Path;
 use gelbench::material::Card;
 use gelbench::material::registry::CARDS;
 use gelbench::study::{DEFAULT, Study};
+use gelbench::validation::{CASES, case_of};
 use proptest::prelude::*;
 
 /// `text` with a piece replaced.
@@ -27,6 +28,13 @@ proptest! {
     fn numbers(value in prop_oneof!["-?[0-9]{1,30}", "-?[0-9]\\.[0-9]e-?[0-9]{1,4}", "nan|inf|-inf"]) {
         let text = format!("[plate]\nlength = \"{value} cm\"\ncells = [{value}, 3]\n[load]\nstretches = [{value}]\n");
         let _ = Study::parse("name", "name.toml", Path::new("/nowhere"), text);
+    }
+
+    #[test]
+    fn cases(case in 0..CASES.len(), at in 0_usize..10_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}") {
+        let text = damaged(CASES[case].study, at, length, &piece);
+        let _ = CASES[case].check(Path::new("name.toml"), &text);
+        let _ = case_of("name.toml", &text);
     }
 
     #[test]

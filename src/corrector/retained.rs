@@ -1,8 +1,8 @@
 //! Factors kept in files: factorise once, correct many fields in many runs.
 //!
-//! A file holds the bytes `gelbench factor`, a version, the factor, and a CRC-32 of all that. A factor fits a
-//! corrector whose conditions have as many rows and unknowns, with the same weights; it may have been taken
-//! at another field.
+//! A file holds the bytes `gelbench factor`, a version, the names and rows of the conditions, the factor, and a
+//! CRC-32 of all that. A factor fits a corrector with the same conditions by name and number of rows, the same
+//! unknowns and the same weights; it may have been taken at another field. `output::save` writes the bytes.
 
 use std::path::Path;
 
@@ -36,11 +36,22 @@ pub enum RetainedFault {
     Unreadable(String),
 }
 
-/// A factor as bytes for a file.
-pub fn to_bytes(factor: &Factor) -> Vec<u8> {
+/// The names and numbers of rows of a corrector's conditions.
+type Fingerprint = Vec<(String, usize)>;
+
+fn fingerprint(corrector: &Corrector) -> Fingerprint {
+    let conditions = corrector.conditions.iter();
+    conditions
+        .map(|condition| (condition.name().to_owned(), condition.rows()))
+        .collect()
+}
+
+/// A factor of `corrector` as bytes for a file.
+pub fn to_bytes(factor: &Factor, corrector: &Corrector) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     bytes.extend(VERSION.to_le_bytes());
-    bytes.extend(postcard::to_stdvec(&factor.parts()).expect("a factor can be written to memory"));
+    let content = postcard::to_stdvec(&(fingerprint(corrector), factor.parts()));
+    bytes.extend(content.expect("a factor can be written to memory"));
     let checksum = crc32fast::hash(&bytes);
     bytes.extend(checksum.to_le_bytes());
     bytes
@@ -62,8 +73,9 @@ pub fn from_bytes(bytes: &[u8], corrector: &Corrector) -> Result<Factor, Retaine
         return Err(RetainedFault::Damaged);
     }
     let content = &content[MAGIC.len() + size_of::<u32>()..];
-    let parts: FactorParts = postcard::from_bytes(content).map_err(|_| RetainedFault::Damaged)?;
-    fits(&parts, corrector).map_err(RetainedFault::DoesNotFit)?;
+    let (conditions, parts): (Fingerprint, FactorParts) =
+        postcard::from_bytes(content).map_err(|_| RetainedFault::Damaged)?;
+    fits(&conditions, &parts, corrector).map_err(RetainedFault::DoesNotFit)?;
     Factor::from_parts(parts).map_err(|_| RetainedFault::Damaged)
 }
 
@@ -77,7 +89,11 @@ pub fn load(path: &Path, corrector: &Corrector) -> Result<Factor, RetainedFault>
     from_bytes(&bytes, corrector)
 }
 
-fn fits(parts: &FactorParts, corrector: &Corrector) -> Result<(), String> {
+fn fits(
+    conditions: &Fingerprint,
+    parts: &FactorParts,
+    corrector: &Corrector,
+) -> Result<(), String> {
     let rows: usize = corrector
         .conditions
         .iter()
@@ -89,6 +105,13 @@ fn fits(parts: &FactorParts, corrector: &Corrector) -> Result<(), String> {
         return Err(format!(
             "it has {its_rows} rows and {its_unknowns} unknowns, the problem {rows} and {unknowns}"
         ));
+    }
+    if *conditions != fingerprint(corrector) {
+        let names: Vec<_> = conditions
+            .iter()
+            .map(|(name, rows)| format!("{name} ({rows})"))
+            .collect();
+        return Err(format!("its conditions are others: {}", names.join(", ")));
     }
     if parts.weights != corrector.weights {
         return Err("its weights are others".into());

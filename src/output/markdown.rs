@@ -9,14 +9,14 @@ pub fn markdown(blocks: &[Block], figures: &[Figure]) -> String {
     for block in blocks {
         text += &match block {
             Block::Heading(level, heading) => {
-                format!("{} {heading}\n", "#".repeat(usize::from(*level)))
+                format!("{} {}\n", "#".repeat(usize::from(*level)), escaped(heading))
             }
-            Block::Paragraph(paragraph) => format!("{paragraph}\n"),
+            Block::Paragraph(paragraph) => format!("{}\n", escaped(paragraph)),
             Block::Table(head, rows) => table(head, rows),
             Block::Figure(index, caption) => {
                 format!("![{caption}]({})\n\n*{caption}*\n", figures[*index].name)
             }
-            Block::Code(code) => format!("```toml\n{}\n```\n", code.trim_end()),
+            Block::Code(code) => fenced(code),
         };
         text.push('\n');
     }
@@ -25,11 +25,26 @@ pub fn markdown(blocks: &[Block], figures: &[Figure]) -> String {
     text
 }
 
+/// Text that Markdown would read as something else.
+fn escaped(text: &str) -> String {
+    text.replace('<', "\\<")
+        .replace('|', "\\|")
+        .replace('*', "\\*")
+}
+
+/// A fence longer than any in the text.
+fn fenced(code: &str) -> String {
+    let longest = code.split(|c| c != '`').map(str::len).max().unwrap_or(0);
+    let fence = "`".repeat(longest.max(2) + 1);
+    format!("{fence}toml\n{}\n{fence}\n", code.trim_end())
+}
+
 fn table(head: &[String], rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| {
         let cells: Vec<_> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
         format!("| {} |\n", cells.join(" | "))
     };
+    debug_assert!(rows.iter().all(|row| row.len() == head.len()), "{head:?}");
     let rule = format!("|{}\n", " --- |".repeat(head.len()));
     let body: String = rows.iter().map(|row| line(row)).collect();
     line(head) + &rule + &body

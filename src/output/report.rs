@@ -94,7 +94,12 @@ fn verdict(study: &Study, results: &Results) -> Vec<Block> {
         Block::Paragraph(what),
         Block::Paragraph(format!("The corrected field has {result}:")),
         table(
-            &["requirement", "worst stretch [%]", "wanted [%]", "result"],
+            &[
+                "requirement",
+                "value at the worst stretch [%]",
+                "wanted [%]",
+                "result",
+            ],
             requirements.iter().map(row),
         ),
     ]
@@ -216,8 +221,7 @@ fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
         heading("Error budget"),
         table(&head, results.comparison.iter().enumerate().map(row)),
         Block::Paragraph(
-            "Each column is one source of error. The lattice's is what the springs cannot do; it is removed by \
-             the correction. What remains is the discretisation error of the corrector's finite differences on \
+            "The departure before the correction is what the springs cannot do; the correction removes it. What remains is the discretisation error of the corrector's finite differences on \
              the lattice's nodes, and the finite elements' own discretisation error, estimated from three meshes."
                 .into(),
         ),
@@ -366,7 +370,7 @@ fn material(study: &Study) -> Vec<Block> {
     for (key, value) in [("DOI", &card.doi), ("note", &card.note)] {
         rows.extend((!value.is_empty()).then(|| row(key, value.clone())));
     }
-    vec![heading("Material"), table(&["", ""], rows)]
+    vec![heading("Material"), table(&["property", "value"], rows)]
 }
 
 fn times(results: &Results) -> Vec<Block> {

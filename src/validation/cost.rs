@@ -1,17 +1,19 @@
 //! The cost of the corrected plate beside finite elements, measured side by side in one run.
 
+use std::path::Path;
 use std::time::Instant;
 
 use super::plate::Plate;
 use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
+use crate::compare::departure_percent;
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::Element;
 use crate::output::Block;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section) -> Prepared {
-    let plate = Plate::read(root);
+pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+    let plate = Plate::read(root, folder);
     let section = root.section("measure");
     let repetitions = section.count("repetitions", 1, 1000);
     section.unknown_keys();
@@ -30,7 +32,7 @@ fn compute(plate: &Plate, repetitions: usize, progress: Progress) -> Result<Outc
     let lattice = plate.lattice();
     let reference = plate.reference(&lattice)?;
     let affine = plate.problem.affine(&lattice.mesh, plate.stretch());
-    let departure = |field: &[f64]| Plate::percent(field, &reference, Some(&affine));
+    let departure = |field: &[f64]| departure_percent(&lattice.mesh, field, &reference, &affine);
     let mut ways = Vec::new();
     let mut measure =
         |name: &str, nodes: usize, work: &mut dyn FnMut() -> Result<Vec<f64>, Error>| {
@@ -88,10 +90,10 @@ fn outcome(ways: &[Way]) -> Outcome {
     };
     let head = ["way to the field", "nodes", "departure from affine [%]"];
     let checks = vec![Check::new(
-        "departure of the corrected plate over that of Q1 elements at equal nodes",
+        "consistency: departure of the corrected plate over that of Q1 elements at equal nodes",
         "–",
         Wanted::AtMost(1.01),
-        "equal accuracy",
+        "the same equations",
         corrected.departure / equal.departure,
     )];
     Outcome {

@@ -3,7 +3,9 @@
 //! Eq. 20–23. F(u) = f − k u² = 0 at every force, so B = −2 k diag(u) is square and Y = 0: one step of the
 //! linearised constraint is a Newton step from the trial. The trial is the secant ū = f u_max/f_max.
 
-use super::{Check, Claim, Outcome, Prepared, Wanted, number};
+use std::path::Path;
+
+use super::{Check, Claim, Outcome, Prepared, Wanted, number, percent};
 use crate::corrector::{Corrector, CorrectorSettings, Function, Linearised, Solver};
 use crate::document::{Bound, Section};
 use crate::error::Error;
@@ -20,7 +22,7 @@ struct Spring {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
     let section = root.section("spring");
     let stiffness = section.number("stiffness", Bound::Positive);
     let largest = section.quantity("largest_force", Dimension::Force, Bound::Positive);
@@ -56,7 +58,7 @@ fn compute(spring: &Spring) -> Result<Outcome, Error> {
         .collect();
     let deviations: Vec<f64> = iterates
         .iter()
-        .map(|field| relative(field, &exact))
+        .map(|field| percent(field, &exact))
         .collect();
     // W (u − ū) + Bᵀ ψ = 0 with B = −2 k u.
     let fields = exact.iter().zip(&trial);
@@ -141,10 +143,6 @@ fn claim(deviations: &[f64]) -> Claim {
             "the linear trial deviates by {trial} %, the first step by {first} %; {below}"
         ),
     }
-}
-
-fn relative(field: &[f64], exact: &[f64]) -> f64 {
-    super::plate::Plate::percent(field, exact, None)
 }
 
 fn figures(spring: &Spring, exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> Vec<Figure> {

@@ -144,6 +144,11 @@ impl Differences {
         rows
     }
 
+    /// D u + k M u.
+    pub fn residual(&self, u: &[f64], stiffness: f64) -> Vec<f64> {
+        self.combined(&[stiffness], self.points).multiply(u)
+    }
+
     /// The corrector with known constants.
     pub fn known(&self, constants: &[f64], settings: CorrectorSettings) -> Corrector<'static> {
         let rows = self.combined(constants, self.points);

@@ -14,7 +14,7 @@ const SUMMARY: &str = include_str!("../../validation/plate/summary.csv");
 const STRETCHES: [f64; 5] = [0.15, 0.3, 0.5, 0.75, 1.0];
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
     let section = root.section("mesh");
     let finest = section.count("finest", 30, 120);
     section.unknown_keys();

@@ -1,18 +1,16 @@
 //! What the cases on the plate share: one stretch of a clamped plate, its lattice and its reference.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use crate::corrector::plate::KnownConditions;
 use crate::corrector::{CorrectorSettings, DifferenceScheme, PlateCorrector, Solver};
-use crate::document::{Bound, Section};
+use crate::document::Section;
 use crate::error::{Error, SolveFault};
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
-use crate::material::{Card, HyperelasticLaw, NeoHooke};
 use crate::problem::{Problem, Solution};
 use crate::solve::NewtonSettings;
-use crate::units::Dimension;
+use crate::study;
 
 /// The plate of a case, read from its `[plate]` section.
 #[derive(Clone, Debug)]
@@ -38,29 +36,21 @@ pub const CORRECTOR: CorrectorSettings = CorrectorSettings {
 };
 
 impl Plate {
-    /// Reads the section.
-    pub fn read(root: &Section<'_>) -> Self {
+    /// Reads the section; a card given by a path is looked for relative to `folder`.
+    pub fn read(root: &Section<'_>, folder: &Path) -> Self {
         let section = root.section("plate");
-        let length = |key| section.quantity(key, Dimension::Length, Bound::Positive);
-        let size = [length("length"), length("width")];
-        let thickness = length("thickness");
-        let cells = section.count_pair("cells", 4, 400);
-        let law: Arc<dyn HyperelasticLaw> = match Card::load(&section.text("card"), Path::new("."))
-        {
-            Ok(card) => card.law,
-            Err(fault) => {
-                section.fault("card", &fault.to_string(), "see `gelbench materials list`");
-                Arc::new(NeoHooke { c10: 1.0 })
-            }
-        };
-        let stretches = vec![section.quantity("stretch", Dimension::Ratio, Bound::Positive)];
+        let card = study::read_card(&section, folder);
+        let (problem, cells) = study::read_plate(&section, card.as_ref());
+        let stretch = study::read_stretch(&section, "stretch");
+        if let Some(card) = card.filter(|_| stretch > 0.0) {
+            study::check_range(&section, "stretch", stretch, &card);
+        }
         section.unknown_keys();
+        let stretches = vec![stretch];
         Self {
             problem: Problem {
-                size,
-                thickness,
-                law,
                 stretches,
+                ..problem
             },
             cells,
         }
@@ -130,15 +120,5 @@ impl Plate {
             step: Problem::describe_step(self.stretch()),
             fault,
         }
-    }
-
-    /// Distance of two fields over the size of the second less `base`, in %.
-    pub fn percent(field: &[f64], reference: &[f64], base: Option<&[f64]>) -> f64 {
-        let norm =
-            |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
-        let error = norm(&mut field.iter().zip(reference).map(|(u, v)| u - v));
-        let zero = vec![0.0; reference.len()];
-        let base = base.unwrap_or(&zero);
-        100.0 * error / norm(&mut reference.iter().zip(base).map(|(v, a)| v - a))
     }
 }

@@ -2,11 +2,14 @@
 //!
 //! Which known conditions T are imposed decides; the springs, their topology and the start do not.
 
+use std::path::Path;
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::plate::{NEWTON, Plate};
 use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
+use crate::compare::{departure_percent, displacement_percent};
 use crate::corrector::plate::KnownConditions;
 use crate::document::{Bound, Section};
 use crate::error::Error;
@@ -17,8 +20,8 @@ use crate::solve::Newton;
 use crate::units::Dimension;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section) -> Prepared {
-    let plate = Plate::read(root);
+pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+    let plate = Plate::read(root, folder);
     let section = root.section("springs");
     let disturbance = section.quantity("disturbance", Dimension::Ratio, Bound::Within(0.0, 0.95));
     let seed = section.count("seed", 0, usize::MAX) as u64;
@@ -38,7 +41,17 @@ struct Fields {
 impl Fields {
     /// Departure from affine in relative L2, in %.
     fn departure(&self, field: &[f64]) -> f64 {
-        Plate::percent(field, &self.reference, Some(&self.affine))
+        departure_percent(&self.lattice.mesh, field, &self.reference, &self.affine)
+    }
+
+    /// Displacement in relative L2, in %.
+    fn displacement(&self, field: &[f64]) -> f64 {
+        displacement_percent(&self.lattice.mesh, field, &self.reference)
+    }
+
+    /// Distance to the corrected field in relative L2.
+    fn far(&self, field: &[f64]) -> f64 {
+        displacement_percent(&self.lattice.mesh, field, &self.corrected) / 100.0
     }
 }
 
@@ -115,7 +128,7 @@ fn known_conditions(
                 .get(step)
                 .map_or("–".into(), |value| number(*value))
         };
-        let displacement = Plate::percent(corrected.correction.field(), &fields.reference, None);
+        let displacement = fields.displacement(corrected.correction.field());
         rows.push(vec![
             name.to_owned(),
             number(before),
@@ -133,7 +146,12 @@ fn known_conditions(
                 .map(|(step, value)| [step as f64, *value])
                 .collect(),
             colour,
-            stroke: Stroke::Marked,
+            // Two of the lines lie on each other.
+            stroke: if name == "grips" {
+                Stroke::Dashed
+            } else {
+                Stroke::Marked
+            },
         });
         if known == KnownConditions::ALL {
             outcome.checks.extend([
@@ -179,7 +197,7 @@ fn known_conditions(
         .push(Block::Table(head.map(String::from).to_vec(), rows));
     outcome.claims.push(Claim {
         claim: "Example 1, Part II: the corrected plate is within 5 % of non-linear finite elements",
-        reproduced: format!("departure from affine {} % before, {} % after; displacement within {} %", number(before), number(last), number(Plate::percent(&fields.corrected, &fields.reference, None))),
+        reproduced: format!("departure from affine {} % before, {} % after; displacement within {} %", number(before), number(last), number(fields.displacement(&fields.corrected))),
     });
     let chart = LineChart {
         title: "What is known decides".into(),
@@ -258,7 +276,7 @@ fn other_lattices(
         let corrected =
             corrector.correct(&field.displacement, plate.stretch(), KnownConditions::ALL)?;
         let steps = &corrected.correction.steps;
-        let far = Plate::percent(corrected.correction.field(), &fields.corrected, None) / 100.0;
+        let far = fields.far(corrected.correction.field());
         worst = worst.max(far);
         rows.push(vec![
             name.to_owned(),
@@ -325,7 +343,7 @@ fn plain_newton(plate: &Plate, fields: &Fields, outcome: &mut Outcome) -> Result
          mass-spring field it takes {steps} steps; plain Newton on the same equations from the affine stretch takes {}.",
         log.iterations()
     )));
-    let far = Plate::percent(&field, &fields.corrected, None) / 100.0;
+    let far = fields.far(&field);
     outcome.checks.push(Check::new(
         "plain Newton from the affine stretch, relative L2 distance",
         "–",

@@ -176,7 +176,7 @@ fn a_factor_survives_its_file_and_a_wrong_one_is_refused() {
     for known in [KnownConditions::ALL, FREE_GRIPS] {
         let corrector = plate.corrector(STRETCH, known);
         let mut factor = corrector.factor(&uncorrected.displacement).unwrap();
-        let bytes = retained::to_bytes(&factor);
+        let bytes = retained::to_bytes(&factor, &corrector);
         let mut read = retained::from_bytes(&bytes, &corrector).unwrap();
         assert_eq!(read.solver(), factor.solver());
         let values = corrector.values(&uncorrected.displacement).unwrap();
@@ -200,7 +200,7 @@ fn a_factor_survives_its_file_and_a_wrong_one_is_refused() {
         assert_eq!(refused(&newer), RetainedFault::Version(9));
     }
     let all = plate.corrector(STRETCH, KnownConditions::ALL);
-    let bytes = retained::to_bytes(&all.factor(&uncorrected.displacement).unwrap());
+    let bytes = retained::to_bytes(&all.factor(&uncorrected.displacement).unwrap(), &all);
     let other = plate.corrector(STRETCH, FREE_GRIPS);
     let fault = retained::from_bytes(&bytes, &other)
         .map(|_| ())
@@ -209,6 +209,19 @@ fn a_factor_survives_its_file_and_a_wrong_one_is_refused() {
         fault.to_string().contains("does not fit the problem"),
         "{fault}"
     );
+
+    // As many rows and unknowns, but another condition.
+    let named = |name: &str| {
+        let rows = Linear::prescribed(name, 4, [(0, 1.0), (2, 1.0)]);
+        Corrector::new(vec![Box::new(rows)], vec![1.0; 4], SETTINGS)
+    };
+    let (grips, markers) = (named("grips"), named("markers"));
+    let bytes = retained::to_bytes(&grips.factor(&[0.0; 4]).unwrap(), &grips);
+    assert!(retained::from_bytes(&bytes, &grips).is_ok());
+    let fault = retained::from_bytes(&bytes, &markers)
+        .map(|_| ())
+        .unwrap_err();
+    assert!(fault.to_string().contains("grips (2)"), "{fault}");
 }
 
 /// From a factor taken at rest, at 100 % stretch, where the tangent has grown ninefold.
