@@ -174,7 +174,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
     };
     let results = run::run(&study, &progress);
     bar.finish_and_clear();
-    let results = results?;
+    let results = results.inspect_err(|_| output::abandon(&folder))?;
 
     let files = output::write(&study, &results, &folder)?;
     let requirements = results.requirements(&study.tolerances);
@@ -200,7 +200,7 @@ fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Ou
         bar.tick();
     });
     bar.finish_and_clear();
-    let computed = computed?;
+    let computed = computed.inspect_err(|_| output::abandon(&folder))?;
     let (title, json) = (computed.title.clone(), computed.json());
     let cases = [computed];
     let (blocks, figures) = validation::report::report(&title, &cases);

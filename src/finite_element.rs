@@ -95,7 +95,7 @@ impl FiniteElements {
             name,
             mesh: &self.mesh,
             potential: &self.energy,
-            first_cell: 0,
+            describe: Box::new(|cell| self.mesh.describe_cell(cell)),
         }
     }
 

@@ -169,8 +169,17 @@ impl MassSpring {
             name,
             mesh: &self.mesh,
             potential: &self.lattice,
-            first_cell: self.springs.len(),
+            describe: Box::new(|element| self.describe_element(element)),
         }
+    }
+
+    /// A spring by its ends, or a cell, for messages.
+    fn describe_element(&self, element: usize) -> String {
+        let Some(spring) = self.springs.get(element) else {
+            return self.mesh.describe_cell(element - self.springs.len());
+        };
+        let [[x, y], [to_x, to_y]] = spring.nodes.map(|node| self.mesh.nodes[node]);
+        format!("the spring from ({x:.1}, {y:.1}) to ({to_x:.1}, {to_y:.1}) mm")
     }
 
     /// Stretch and force of every spring.

@@ -121,6 +121,12 @@ pub fn prepare(folder: &Path) -> Result<(), Error> {
     Ok(())
 }
 
+/// Takes a folder that was prepared away again when nothing came to be written into it.
+pub fn abandon(folder: &Path) {
+    // It is not empty when an earlier run has left its files, and then it stays.
+    let _ = std::fs::remove_dir(folder);
+}
+
 /// Writes a file under a temporary name and then gives it its own, so that no half file ever has it.
 ///
 /// # Errors

@@ -31,8 +31,8 @@ pub struct Model<'a> {
     pub mesh: &'a Mesh,
     /// Its strain energy.
     pub potential: &'a dyn Potential,
-    /// Index of the potential's element that belongs to the first cell of the mesh.
-    pub first_cell: usize,
+    /// Names an element of the potential with its place, for messages.
+    pub describe: Box<dyn Fn(usize) -> String + 'a>,
 }
 
 /// A model's equilibrium at one stretch.
@@ -58,16 +58,6 @@ pub struct Solution {
 
 /// How often the way to a stretch is halved before it is given up.
 const HALVINGS: usize = 5;
-
-impl Model<'_> {
-    /// Names an element of the potential, for messages.
-    pub fn describe_element(&self, element: usize) -> String {
-        match element.checked_sub(self.first_cell) {
-            Some(cell) => self.mesh.describe_cell(cell),
-            None => format!("spring {element}"),
-        }
-    }
-}
 
 impl Problem {
     /// Marks the unknowns of `mesh` that the grips hold.
@@ -189,13 +179,12 @@ impl Problem {
         let mesh = model.mesh;
         let mut displacement = self.first_guess(mesh, stretch, previous);
         let mut residual = vec![0.0; displacement.len()];
-        let describe = |element: usize| model.describe_element(element);
         let convergence = newton.solve(
             model.potential,
             &mut displacement,
             &mut residual,
             settings,
-            &describe,
+            &model.describe,
         )?;
         Ok(Solution {
             stretch,

@@ -217,6 +217,10 @@ fn a_model_without_solution_ends_with_code_3() {
         told.contains("mass-spring (12 × 4 cells) at 20 % stretch") && told.contains("try:"),
         "{told}"
     );
+    assert!(
+        !folder.path().join("output/small").exists(),
+        "no empty folder is left"
+    );
 }
 
 #[test]

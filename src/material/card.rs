@@ -71,7 +71,7 @@ impl Card {
                 format!("cannot read the card {}: {cause}", path.display()),
             );
             Error::Input(vec![
-                fault.hint("a card's path is relative to the study file"),
+                fault.hint("a card's path is relative to the file that names it"),
             ])
         })?;
         Self::parse(name, &path.display().to_string(), &text)
