@@ -289,3 +289,67 @@ impl Regression {
         estimates.collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_differences_hold_for_the_exact_motion_to_their_order() {
+        let motion = |points| Motion {
+            stiffness: 2.0,
+            damping: 0.0,
+            amplitude: 1.0,
+            duration: 5.0,
+            points,
+        };
+        for (order, factor) in [(2, 4.0), (4, 16.0)] {
+            let defect = |points| {
+                let motion = motion(points);
+                let differences = Differences::new(points, motion.step(), order);
+                let residual = differences.residual(&motion.displacement(), motion.stiffness);
+                residual.iter().fold(0.0, |most: f64, r| most.max(r.abs())) / motion.step().powi(2)
+            };
+            let ratio = defect(51) / defect(101);
+            assert!(
+                (ratio / factor - 1.0).abs() < 0.05,
+                "order {order}: {ratio}"
+            );
+        }
+    }
+
+    #[test]
+    fn jacobian_and_curvature_are_derivatives() {
+        let (points, constants) = (12, 2);
+        let differences = Differences::new(points, 0.2, 2);
+        let z: Vec<f64> = (0..points + constants)
+            .map(|i| (1.3 * i as f64).sin())
+            .collect();
+        let psi: Vec<f64> = (0..points - 2).map(|i| (0.7 * i as f64).cos()).collect();
+        let direction: Vec<f64> = (0..z.len()).map(|i| (2.1 * i as f64).cos()).collect();
+        let at = |step: f64| {
+            let moved: Vec<f64> = z
+                .iter()
+                .zip(&direction)
+                .map(|(z, d)| z + step * d)
+                .collect();
+            differences.linearise(&moved, constants)
+        };
+        let (up, down) = (at(1e-4), at(-1e-4));
+        let close = |up: &[f64], down: &[f64], expected: &[f64]| {
+            let slopes = up.iter().zip(down).map(|(up, down)| (up - down) / 2e-4);
+            slopes
+                .zip(expected)
+                .all(|(slope, expected)| (slope - expected).abs() < 1e-8)
+        };
+        let jacobian = differences.linearise(&z, constants).jacobian;
+        assert!(close(
+            &up.values,
+            &down.values,
+            &jacobian.multiply(&direction)
+        ));
+        let curvature = differences.curvature(z.len(), &psi).multiply(&direction);
+        let [up, down] = [up, down].map(|end| end.jacobian.multiply_transposed(&psi));
+        assert!(close(&up, &down, &curvature));
+    }
+}

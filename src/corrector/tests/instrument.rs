@@ -366,6 +366,61 @@ fn a_corrected_field_passes_through_measured_points() {
     }
 }
 
+/// The curvature Σ ψᵢ ∂²cᵢ/∂u∂u times a direction is the change of Bᵀ ψ along it.
+fn curvature_error(condition: &dyn Condition, u: &[f64], psi: &[f64]) -> f64 {
+    let direction = noise(u.len());
+    let pull = |step: f64| {
+        let moved: Vec<f64> = u
+            .iter()
+            .zip(&direction)
+            .map(|(u, d)| u + step * d)
+            .collect();
+        condition
+            .linearise(&moved)
+            .unwrap()
+            .jacobian
+            .multiply_transposed(psi)
+    };
+    let slope = difference(&pull(1e-4), &pull(-1e-4));
+    let slope: Vec<f64> = slope.iter().map(|d| d / 2e-4).collect();
+    let curvature = condition
+        .curvature(u, psi)
+        .unwrap()
+        .expect("a curved condition");
+    largest_difference(&curvature.multiply(&direction), &slope) / largest(&slope)
+}
+
+#[test]
+fn curvatures_are_derivatives_of_the_jacobians() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let u = &uncorrected.displacement;
+    let assembly = Assembly::new(plate.energy(), &vec![false; u.len()]);
+    let corners = [0, 63, 69, 6].map(|node| (node, springs.mesh.nodes[node]));
+    let force: Vec<usize> = (0..u.len()).rev().step_by(2).take(7).collect();
+    let conditions: Vec<Box<dyn Condition>> = vec![
+        Box::new(Equilibrium::new(
+            "inside",
+            plate.energy(),
+            &assembly,
+            (20..90).collect(),
+        )),
+        Box::new(TotalForce::new(
+            "force",
+            plate.energy(),
+            &assembly,
+            force,
+            1.0,
+        )),
+        Box::new(EnclosedArea::new("area", corners.to_vec(), 600.0)),
+    ];
+    for condition in conditions {
+        let error = curvature_error(&*condition, u, &noise(condition.rows()));
+        assert!(error < 1e-5, "{}: {error:.1e}", condition.name());
+    }
+}
+
 /// A line through noisy points: slope and intercept are parameters, and the estimate is that of ordinary
 /// least squares.
 #[test]
