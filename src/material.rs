@@ -14,6 +14,7 @@ pub mod parameters;
 mod polynomial;
 pub mod registry;
 pub mod sheet;
+pub mod stability;
 pub mod uniaxial;
 mod veronda_westmann;
 mod yeoh;

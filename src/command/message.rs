@@ -8,6 +8,7 @@ use miette::{
 
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
+use crate::material::stability::{Mode, stable_range};
 use crate::problem::Problem;
 use crate::results::{Requirement, Results};
 use crate::study::Study;
@@ -168,6 +169,12 @@ pub fn card(card: &Card) -> String {
         card.offset.name()
     );
     text += &format!("  range      λ = {low} … {high} ({} test)\n", card.test);
+    for (name, mode) in Mode::ALL {
+        let [low, high] = stable_range(&*card.law, mode);
+        text += &format!(
+            "  stable     λ = {low:.3} … {high:.3} in {name} tests (Drucker, looked for from 0.1 to 10)\n"
+        );
+    }
     text += &format!(
         "  specimen   {}\n  source     {}\n",
         card.specimen, card.citation

@@ -2,8 +2,11 @@
 //! [`super::html`].
 
 use crate::compare::{Deviation, StepComparison};
+use crate::corrector::DifferenceScheme;
 use crate::finite_element::convergence::Richardson;
+use crate::material::Card;
 use crate::material::law::HyperelasticLaw;
+use crate::material::stability::{Mode, stable_range};
 use crate::problem::{Problem, Solution};
 use crate::results::{Requirement, Results};
 use crate::study::Study;
@@ -220,11 +223,16 @@ fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
     vec![
         heading("Error budget"),
         table(&head, results.comparison.iter().enumerate().map(row)),
-        Block::Paragraph(
-            "The departure before the correction is what the springs cannot do; the correction removes it. What remains is the discretisation error of the corrector's finite differences on \
-             the lattice's nodes, and the finite elements' own discretisation error, estimated from three meshes."
-                .into(),
-        ),
+        Block::Paragraph(format!(
+            "The departure before the correction is what the springs cannot do; the correction removes it. What \
+             remains is the discretisation error of the corrector's finite differences on the lattice's nodes{}, and \
+             the finite elements' own discretisation error, estimated from three meshes.",
+            match study.scheme {
+                DifferenceScheme::Gauss =>
+                    ", whose equations are those of bilinear finite elements there",
+                DifferenceScheme::Corners => "",
+            }
+        )),
     ]
 }
 
@@ -364,6 +372,7 @@ fn material(study: &Study) -> Vec<Block> {
                 card.offset.name()
             ),
         ),
+        row("stable (Drucker)", stable(card)),
         row("specimen", card.specimen.clone()),
         row("source", card.citation.clone()),
     ]);
@@ -371,6 +380,18 @@ fn material(study: &Study) -> Vec<Block> {
         rows.extend((!value.is_empty()).then(|| row(key, value.clone())));
     }
     vec![heading("Material"), table(&["property", "value"], rows)]
+}
+
+/// The stable stretches in the usual tests.
+fn stable(card: &Card) -> String {
+    let range = |(name, mode): (&str, Mode)| {
+        let [low, high] = stable_range(&*card.law, mode);
+        format!("{name} λ = {low:.3} … {high:.3}")
+    };
+    format!(
+        "{}; looked for from 0.1 to 10",
+        Mode::ALL.map(range).join(", ")
+    )
 }
 
 fn times(results: &Results) -> Vec<Block> {
