@@ -4,8 +4,10 @@
 
 pub mod newton;
 pub mod potential;
+pub mod rows;
 pub mod sparse;
 
 pub use newton::{Convergence, Newton, NewtonSettings};
 pub use potential::{Assembly, Inadmissible, Local, Potential};
-pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu, SparseRows, SymmetricPattern};
+pub use rows::SparseRows;
+pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu, SymmetricPattern};

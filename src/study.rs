@@ -11,6 +11,7 @@ use crate::error::{Diagnostic, Error};
 use crate::finite_element::Element;
 use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings};
 use crate::material::parameters::OffsetTreatment;
+use crate::material::stability::{Mode, SEARCHED, stable_range};
 use crate::material::{Card, HyperelasticLaw, NeoHooke};
 use crate::problem::Problem;
 use crate::solve::NewtonSettings;
@@ -287,8 +288,23 @@ fn check_aspect(section: &Section<'_>, size: [f64; 2], cells: [usize; 2]) {
     }
 }
 
-/// Warns of a stretch outside the range of the card.
+/// Warns of a stretch outside the range of the card, or beyond the stability of its law.
 pub fn check_range(section: &Section<'_>, key: &'static str, stretch: f64, card: &Card) {
+    let stable = stable_range(&*card.law, Mode::Uniaxial)[1];
+    if 1.0 + stretch > stable && stable < SEARCHED[1] {
+        section.warning(
+            key,
+            &format!(
+                "{} is beyond the stability of the card `{}`",
+                Problem::describe_step(stretch),
+                card.name
+            ),
+            &format!(
+                "in uniaxial tension it is stable up to {:.0} % stretch",
+                100.0 * (stable - 1.0)
+            ),
+        );
+    }
     if !card.covers(1.0 + stretch) {
         let [low, high] = card.stretch_range.map(|lambda| 100.0 * (lambda - 1.0));
         let step = Problem::describe_step(stretch);

@@ -30,6 +30,11 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
     }
     let report = match &finding.place {
         None => Report::new(report),
+        // The key is not in the file: there is no line to show.
+        Some((source, span)) if span.is_empty() => {
+            report.message = format!("{}: {}", source.name, report.message);
+            Report::new(report)
+        }
         Some((source, span)) => {
             let label = LabeledSpan::new(None, span.start, span.len());
             let source = NamedSource::new(&source.name, source.text.clone());

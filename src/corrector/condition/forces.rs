@@ -1,0 +1,197 @@
+//! Conditions on the internal forces of a potential.
+
+use super::{Condition, Linearised};
+use crate::solve::sparse::largest;
+use crate::solve::{Assembly, Inadmissible, Potential, SparseRows};
+
+/// Balance of forces ∂Π/∂uᵢ − fᵢ = 0 at the chosen unknowns, in N.
+///
+/// At inner nodes this is the governing equation F(u) = 0; at the nodes of an edge, the half cells on the
+/// inner side alone contribute, which is the edge's condition that the traction f, or none, acts on it.
+pub struct Equilibrium<'a> {
+    name: String,
+    potential: &'a dyn Potential,
+    assembly: &'a Assembly,
+    unknowns: Vec<usize>,
+    loads: Vec<f64>,
+}
+
+impl<'a> Equilibrium<'a> {
+    /// Equilibrium of `potential` at `unknowns` without loads; `assembly` must hold no unknown fixed.
+    pub fn new(
+        name: &str,
+        potential: &'a dyn Potential,
+        assembly: &'a Assembly,
+        unknowns: Vec<usize>,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            potential,
+            assembly,
+            loads: vec![0.0; unknowns.len()],
+            unknowns,
+        }
+    }
+
+    /// Adds external forces in N, one a row.
+    #[must_use]
+    pub fn with_loads(self, loads: Vec<f64>) -> Self {
+        assert_eq!(loads.len(), self.unknowns.len(), "one load a row");
+        Self { loads, ..self }
+    }
+
+    fn unbalanced(&self, residual: &[f64]) -> Vec<f64> {
+        let rows = self.unknowns.iter().zip(&self.loads);
+        rows.map(|(unknown, load)| residual[*unknown] - load)
+            .collect()
+    }
+}
+
+impl Condition for Equilibrium<'_> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn rows(&self) -> usize {
+        self.unknowns.len()
+    }
+
+    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+        let (residual, full) = internal_forces(self.potential, self.assembly, u)?;
+        let mut jacobian = SparseRows::new(u.len());
+        for unknown in &self.unknowns {
+            jacobian.push(full[*unknown].iter().copied());
+        }
+        Ok(Linearised {
+            values: self.unbalanced(&residual),
+            jacobian,
+        })
+    }
+
+    fn values(&self, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
+        let mut residual = vec![0.0; u.len()];
+        Assembly::residual(self.potential, u, &mut residual)?;
+        Ok(self.unbalanced(&residual))
+    }
+
+    fn curvature(
+        &self,
+        u: &[f64],
+        multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        let mut direction = vec![0.0; u.len()];
+        for (unknown, psi) in self.unknowns.iter().zip(multipliers) {
+            direction[*unknown] += psi;
+        }
+        stiffness_change(self.potential, self.assembly, u, &direction).map(Some)
+    }
+
+    fn unknowns(&self) -> Option<&[usize]> {
+        Some(&self.unknowns)
+    }
+}
+
+/// A known total force: Σ ∂Π/∂uᵢ − f = 0 over some unknowns, in N; one row.
+pub struct TotalForce<'a> {
+    name: String,
+    potential: &'a dyn Potential,
+    assembly: &'a Assembly,
+    unknowns: Vec<usize>,
+    force: f64,
+}
+
+impl<'a> TotalForce<'a> {
+    /// The forces of `potential` at `unknowns` sum up to `force`; `assembly` must hold no unknown fixed.
+    pub fn new(
+        name: &str,
+        potential: &'a dyn Potential,
+        assembly: &'a Assembly,
+        unknowns: Vec<usize>,
+        force: f64,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            potential,
+            assembly,
+            unknowns,
+            force,
+        }
+    }
+}
+
+impl Condition for TotalForce<'_> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn rows(&self) -> usize {
+        1
+    }
+
+    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+        let (residual, full) = internal_forces(self.potential, self.assembly, u)?;
+        let mut jacobian = SparseRows::new(u.len());
+        jacobian.push(
+            self.unknowns
+                .iter()
+                .flat_map(|unknown| full[*unknown].iter().copied()),
+        );
+        let sum: f64 = self.unknowns.iter().map(|unknown| residual[*unknown]).sum();
+        Ok(Linearised {
+            values: vec![sum - self.force],
+            jacobian,
+        })
+    }
+
+    fn curvature(
+        &self,
+        u: &[f64],
+        multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        let mut direction = vec![0.0; u.len()];
+        for (unknown, psi) in self.unknowns.iter().zip(std::iter::repeat(&multipliers[0])) {
+            direction[*unknown] += psi;
+        }
+        stiffness_change(self.potential, self.assembly, u, &direction).map(Some)
+    }
+}
+
+/// The rows of a full tangent: (column, value).
+type Rows = Vec<Vec<(usize, f64)>>;
+
+/// Residual and full tangent, row by row.
+fn internal_forces(
+    potential: &dyn Potential,
+    assembly: &Assembly,
+    u: &[f64],
+) -> Result<(Vec<f64>, Rows), Inadmissible> {
+    let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+    assembly.linearise(potential, u, &mut residual, &mut stiffness)?;
+    Ok((residual, assembly.pattern().full_rows(&stiffness)))
+}
+
+/// ∂K/∂u · d by central differences: the curvature of the residual, weighted by d.
+fn stiffness_change(
+    potential: &dyn Potential,
+    assembly: &Assembly,
+    u: &[f64],
+    direction: &[f64],
+) -> Result<SparseRows, Inadmissible> {
+    const SHARE: f64 = 1e-5;
+    let most = largest(direction);
+    let step = match most > 0.0 {
+        true => SHARE * largest(u) / most,
+        false => 1.0,
+    };
+    let at = |step: f64| {
+        let moved: Vec<f64> = u.iter().zip(direction).map(|(u, d)| u + step * d).collect();
+        internal_forces(potential, assembly, &moved)
+    };
+    let ((_, up), (_, down)) = (at(step)?, at(-step)?);
+    let mut change = SparseRows::new(u.len());
+    for (up, down) in up.iter().zip(&down) {
+        let entries = up.iter().zip(down);
+        change.push(entries.map(|((column, up), (_, down))| (*column, (up - down) / (2.0 * step))));
+    }
+    Ok(change)
+}
