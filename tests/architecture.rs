@@ -29,7 +29,7 @@ const SINGLE_DOORS: &[(&str, &str)] = &[
     ("maud::", "src/output/html.rs"),
     ("clap::", "src/command.rs"),
     ("miette::", "src/command"),
-    ("toml::", "src/document.rs"),
+    ("toml::", "src/document"),
 ];
 
 fn layer(module: &str) -> Option<usize> {
