@@ -190,12 +190,13 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
 
 /// Computes a study of one of the validation cases.
 fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Outcome {
-    warn(&case.check(path, text)?);
+    let ready = case.read(path, text)?;
+    warn(&ready.warnings);
     let stem = path.file_stem().map_or_else(PathBuf::new, PathBuf::from);
     let folder = folder.unwrap_or_else(|| Path::new("output").join(stem));
     output::prepare(&folder)?;
     let bar = progress_bar(0);
-    let computed = case.compute(path, text, &|what| {
+    let computed = ready.compute(&|what| {
         bar.set_message(what.to_owned());
         bar.tick();
     });
@@ -262,7 +263,7 @@ fn progress_bar(length: u64) -> ProgressBar {
 fn check(path: &Path) -> Outcome {
     let text = study::read(path)?;
     if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
-        warn(&case.check(path, &text)?);
+        warn(&case.read(path, &text)?.warnings);
         print(&format!(
             "{}: no faults; a study of the kind {}\n",
             path.display(),

@@ -92,7 +92,7 @@ impl<'a> Reference<'a> {
     pub fn deviation(&self, mesh: &Mesh, solution: &Solution, step: usize) -> Deviation {
         let (fine, solutions) = self.meshes[2];
         let reference = &solutions[step];
-        let expected = interpolate(fine, &reference.displacement, mesh);
+        let expected = fine.displacement_on(&reference.displacement, mesh);
         let affine = self.problem.affine(mesh, solution.stretch);
         let field = &solution.displacement;
         let percent = |value: f64, expected: f64| 100.0 * (value / expected - 1.0);
@@ -109,7 +109,7 @@ impl<'a> Reference<'a> {
     /// The reference displacement at the nodes of `mesh` in mm.
     pub fn displacement_on(&self, mesh: &Mesh, step: usize) -> Vec<f64> {
         let (fine, solutions) = self.meshes[2];
-        interpolate(fine, &solutions[step].displacement, mesh)
+        fine.displacement_on(&solutions[step].displacement, mesh)
     }
 
     /// The reference's own error at stretch number `step`.
@@ -120,7 +120,7 @@ impl<'a> Reference<'a> {
         let coarse = self.meshes[0].0;
         let [first, second, third] = self
             .meshes
-            .map(|(mesh, solutions)| interpolate(mesh, &solutions[step].displacement, coarse));
+            .map(|(mesh, solutions)| mesh.displacement_on(&solutions[step].displacement, coarse));
         let areas = nodal_areas(coarse);
         let (before, last) = (
             distance(&areas, &first, &second),
@@ -180,13 +180,6 @@ pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: 
 fn near_corner(size: [f64; 2], point: [f64; 2]) -> bool {
     let [x, y] = [0, 1].map(|axis| point[axis].min(size[axis] - point[axis]));
     x.hypot(y) < size[1] / 5.0
-}
-
-fn interpolate(from: &Mesh, displacement: &[f64], to: &Mesh) -> Vec<f64> {
-    let nodes = to.nodes.iter();
-    nodes
-        .flat_map(|node| from.displacement_at(displacement, *node))
-        .collect()
 }
 
 /// The share of the plate's area in mm² that belongs to each node of its regular grid: halved on each side.

@@ -199,6 +199,14 @@ impl Mesh {
         [component(0), component(1)]
     }
 
+    /// Displacement interpolated at all nodes of another mesh of the plate.
+    pub fn displacement_on(&self, displacement: &[f64], other: &Self) -> Vec<f64> {
+        let nodes = other.nodes.iter();
+        nodes
+            .flat_map(|node| self.displacement_at(displacement, *node))
+            .collect()
+    }
+
     /// Displacement gradient H₁₁, H₁₂, H₂₁, H₂₂ at a reference point of a cell.
     pub fn gradient_at(&self, displacement: &[f64], cell: usize, local: [f64; 2]) -> [f64; 4] {
         let step = self.cell_size();

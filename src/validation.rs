@@ -27,7 +27,16 @@ pub use outcome::{Check, Claim, Computed, Outcome, Wanted};
 /// Reports what is being done.
 pub type Progress<'a> = &'a dyn Fn(&str);
 
-/// A case that has been read, ready to be computed.
+/// A study of a case that has been read, ready to be computed.
+pub struct Ready {
+    title: String,
+    kind: &'static str,
+    prepared: Prepared,
+    /// What deserves attention but does not stop the work.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// The computation of a case.
 type Prepared = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
 
 /// A kind of study that checks something.
@@ -131,63 +140,32 @@ pub fn choose(names: &[String], quick: bool) -> Result<Vec<&'static Case>, Error
 /// # Errors
 /// [`Error::Input`] when the kind is unknown.
 pub fn case_of(file: &str, text: &str) -> Result<Option<&'static Case>, Error> {
-    let unread = Faults::default();
-    let document = Document::parse(file, text, &unread);
-    let root = document.root(None, &unread);
-    if !root.has("kind") {
-        return Ok(None);
-    }
-    let kind = root.text("kind");
-    if kind == "plate" || kind.is_empty() {
-        return Ok(None);
-    }
-    let known = || CASES.iter().map(|case| case.kind);
-    if let Some(case) = CASES.iter().find(|case| case.kind == kind) {
-        return Ok(Some(case));
-    }
-    let mut hint = format!("one of plate, {}", known().collect::<Vec<_>>().join(", "));
-    if let Some(near) = nearest(&kind, known().chain(["plate"])) {
-        hint = format!("did you mean \"{near}\"? It must be {hint}");
-    }
     let faults = Faults::default();
-    document
-        .root(None, &faults)
-        .fault("kind", &format!("\"{kind}\" is not known here"), &hint);
-    faults.finish().map(|_: Vec<Diagnostic>| None)
+    let found = {
+        let document = Document::parse(file, text, &faults);
+        let root = document.root(None, &faults);
+        if !root.has("kind") {
+            return Ok(None);
+        }
+        let cases = CASES.iter().map(|case| (case.kind, Some(case)));
+        let kinds: Vec<_> = std::iter::once(("plate", None)).chain(cases).collect();
+        root.choice("kind", &kinds)
+    };
+    match found {
+        // Other faults are told when the whole study is read.
+        Some(case) => Ok(case),
+        None => faults.finish().map(|_| None),
+    }
 }
 
 impl Case {
-    /// Reads a study of this case, without computing, and gives its warnings.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with every fault.
-    pub fn check(&self, file: &Path, text: &str) -> Result<Vec<Diagnostic>, Error> {
-        self.read(file, text).map(|(.., warnings)| warnings)
-    }
-
-    /// Reads and computes a study of this case.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with every fault of the study, [`Error::Solve`] when a model has no solution.
-    pub fn compute(&self, file: &Path, text: &str, progress: Progress) -> Result<Computed, Error> {
-        let (title, prepared, _) = self.read(file, text)?;
-        let start = Instant::now();
-        let outcome = prepared(progress)?;
-        Ok(Computed {
-            title,
-            kind: self.kind,
-            outcome,
-            seconds: start.elapsed().as_secs_f64(),
-        })
-    }
-
     /// Computes the study that comes along; a model without a solution is a check that failed.
     ///
     /// # Errors
     /// [`Error::Input`] or [`Error::Write`].
     pub fn compute_or_fail(&self, progress: Progress) -> Result<Computed, Error> {
-        let file = Path::new(self.file);
-        match self.compute(file, self.study, progress) {
+        let ready = self.read(Path::new(self.file), self.study)?;
+        match ready.compute(progress) {
             Err(fault @ Error::Solve { .. }) => {
                 let check = Check::new(
                     fault.to_string(),
@@ -210,7 +188,11 @@ impl Case {
         }
     }
 
-    fn read(&self, file: &Path, text: &str) -> Result<(String, Prepared, Vec<Diagnostic>), Error> {
+    /// Reads a study of this case.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault.
+    pub fn read(&self, file: &Path, text: &str) -> Result<Ready, Error> {
         let folder = file.parent().unwrap_or(Path::new("."));
         let file = file.display().to_string();
         let faults = Faults::default();
@@ -225,7 +207,29 @@ impl Case {
             (title, prepared)
         };
         let warnings = faults.finish()?;
-        Ok((title, prepared, warnings))
+        Ok(Ready {
+            title,
+            kind: self.kind,
+            prepared,
+            warnings,
+        })
+    }
+}
+
+impl Ready {
+    /// Computes the study.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when a model has no solution.
+    pub fn compute(self, progress: Progress) -> Result<Computed, Error> {
+        let start = Instant::now();
+        let outcome = (self.prepared)(progress)?;
+        Ok(Computed {
+            title: self.title,
+            kind: self.kind,
+            outcome,
+            seconds: start.elapsed().as_secs_f64(),
+        })
     }
 }
 
@@ -299,11 +303,15 @@ mod tests {
     #[test]
     fn every_case_reads_its_own_study_and_tells_faults() {
         for case in CASES {
-            case.check(Path::new(case.file), case.study).unwrap();
+            assert!(case.read(Path::new(case.file), case.study).is_ok());
             let found = case_of(case.file, case.study).unwrap().unwrap();
             assert_eq!(found.kind, case.kind);
+            let text = "kind = \"x\"
+misspelt = 1
+";
             let told = case
-                .check(Path::new("x.toml"), "kind = \"x\"\nmisspelt = 1\n")
+                .read(Path::new("x.toml"), text)
+                .map(|_| ())
                 .unwrap_err();
             assert!(told.to_string().contains("misspelt: unknown key"), "{told}");
         }

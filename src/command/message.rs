@@ -8,7 +8,7 @@ use miette::{
 
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
-use crate::material::stability::{Mode, stable_range};
+use crate::material::stability::{Mode, SEARCHED, stable_range};
 use crate::problem::Problem;
 use crate::results::{Requirement, Results};
 use crate::study::Study;
@@ -143,13 +143,14 @@ pub fn card_line(card: &Card) -> String {
     )
 }
 
-/// The small-strain moduli of a card.
+/// A card's name and small-strain moduli.
 pub fn moduli_line(card: &Card) -> String {
+    format!("{:<16} {}\n", card.name, moduli(card))
+}
+
+fn moduli(card: &Card) -> String {
     let (young, shear) = (card.law.youngs_modulus(), card.law.shear_modulus());
-    format!(
-        "{:<16} E₀ = {young:.6} MPa, μ₀ = {shear:.6} MPa\n",
-        card.name
-    )
+    format!("E₀ = {young:.6} MPa, μ₀ = {shear:.6} MPa")
 }
 
 /// Everything about a card.
@@ -162,11 +163,7 @@ pub fn card(card: &Card) -> String {
     for (key, value, unit) in &card.parameters {
         text += &format!("  parameter  {key} = {value} {unit}\n");
     }
-    text += &format!(
-        "  moduli     E₀ = {:.6} MPa, μ₀ = {:.6} MPa\n",
-        card.law.youngs_modulus(),
-        card.law.shear_modulus()
-    );
+    text += &format!("  moduli     {}\n", moduli(card));
     text += &format!(
         "  measures   {} stress, {} strain, offset {}\n",
         card.stress_measure.name(),
@@ -174,10 +171,11 @@ pub fn card(card: &Card) -> String {
         card.offset.name()
     );
     text += &format!("  range      λ = {low} … {high} ({} test)\n", card.test);
+    let [first, last] = SEARCHED;
     for (name, mode) in Mode::ALL {
         let [low, high] = stable_range(&*card.law, mode);
         text += &format!(
-            "  stable     λ = {low:.3} … {high:.3} in {name} tests (Drucker, looked for from 0.1 to 10)\n"
+            "  stable     λ = {low:.3} … {high:.3} in {name} tests (Drucker, looked for from {first} to {last})\n"
         );
     }
     text += &format!(

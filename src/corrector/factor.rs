@@ -32,10 +32,10 @@ use crate::solve::{Cholesky, NotPositiveDefinite, SparseLu, SparseRows};
 
 mod forms;
 
-pub(super) use forms::project_curved;
 use forms::{
     Symmetric, cholesky, dense, kkt, normal, project_cholesky, project_dense, project_kkt,
 };
+pub(super) use forms::{project_curved, weighted_qr};
 
 /// Step and multipliers of one projection.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::factor::weighted_qr;
 use crate::solve::{NotPositiveDefinite, SparseRows};
 
 /// ψ, S and Y of linear conditions B u = b with i unknowns, dense.
@@ -28,22 +29,9 @@ impl CorrectionMatrix {
     /// # Errors
     /// [`NotPositiveDefinite`] when rows depend on each other.
     pub fn new(rows: &SparseRows, weights: Vec<f64>) -> Result<Self, NotPositiveDefinite> {
-        let jacobian = rows.to_dense();
-        let mut scaled = jacobian.transpose();
-        for (mut row, weight) in scaled.row_iter_mut().zip(&weights) {
-            row /= weight.sqrt();
-        }
-        if scaled.ncols() > scaled.nrows() {
-            return Err(NotPositiveDefinite);
-        }
-        let (q, r) = scaled.clone().qr().unpack();
-        let independent =
-            (0..r.nrows()).all(|row| r[(row, row)].abs() > 1e-10 * scaled.column(row).norm());
-        if !independent {
-            return Err(NotPositiveDefinite);
-        }
+        let (q, r) = weighted_qr(rows, &weights)?;
         Ok(Self {
-            jacobian,
+            jacobian: rows.to_dense(),
             weights,
             q,
             r,

@@ -6,7 +6,7 @@ use crate::corrector::DifferenceScheme;
 use crate::finite_element::convergence::Richardson;
 use crate::material::Card;
 use crate::material::law::HyperelasticLaw;
-use crate::material::stability::{Mode, stable_range};
+use crate::material::stability::{Mode, SEARCHED, stable_range};
 use crate::problem::{Problem, Solution};
 use crate::results::{Requirement, Results};
 use crate::study::Study;
@@ -26,6 +26,14 @@ pub enum Block {
     Figure(usize, String),
     /// Text shown as it is.
     Code(String),
+}
+
+impl Block {
+    /// A table with these heads.
+    pub fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Self {
+        let head = head.iter().map(|cell| (*cell).to_owned()).collect();
+        Self::Table(head, rows.into_iter().collect())
+    }
 }
 
 /// The report of a run with `figures`.
@@ -57,11 +65,6 @@ pub fn report(study: &Study, results: &Results, figures: &[Figure]) -> Vec<Block
     )));
     blocks.extend(times(results));
     blocks
-}
-
-fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Block {
-    let head = head.iter().map(|cell| (*cell).to_owned()).collect();
-    Block::Table(head, rows.into_iter().collect())
 }
 
 fn heading(text: &str) -> Block {
@@ -96,7 +99,7 @@ fn verdict(study: &Study, results: &Results) -> Vec<Block> {
     vec![
         Block::Paragraph(what),
         Block::Paragraph(format!("The corrected field has {result}:")),
-        table(
+        Block::table(
             &[
                 "requirement",
                 "value at the worst stretch [%]",
@@ -147,7 +150,7 @@ fn deviations(study: &Study, results: &Results) -> Vec<Block> {
     ];
     vec![
         heading("Deviation from the finite elements"),
-        table(&head, results.comparison.iter().flat_map(rows)),
+        Block::table(&head, results.comparison.iter().flat_map(rows)),
         Block::Paragraph(format!(
             "Displacement and departure are relative L2 norms over the plate, weighted by area; the departure \
              has the affine stretch subtracted from both fields and is the strict measure. The nominal stress \
@@ -187,7 +190,7 @@ fn forces(results: &Results) -> Vec<Block> {
     ];
     vec![
         heading("Force, width at mid length and strain energy"),
-        table(&head, results.comparison.iter().enumerate().map(row)),
+        Block::table(&head, results.comparison.iter().enumerate().map(row)),
     ]
 }
 
@@ -222,7 +225,7 @@ fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
     ];
     vec![
         heading("Error budget"),
-        table(&head, results.comparison.iter().enumerate().map(row)),
+        Block::table(&head, results.comparison.iter().enumerate().map(row)),
         Block::Paragraph(format!(
             "The departure before the correction is what the springs cannot do; the correction removes it. What \
              remains is the discretisation error of the corrector's finite differences on the lattice's nodes{}, and \
@@ -284,7 +287,7 @@ fn reference(study: &Study, results: &Results) -> Vec<Block> {
             meshes[1],
             meshes[2]
         )),
-        table(&head, results.comparison.iter().map(row)),
+        Block::table(&head, results.comparison.iter().map(row)),
     ]
 }
 
@@ -333,7 +336,7 @@ fn convergence(results: &Results) -> Vec<Block> {
     ];
     vec![
         heading("Convergence"),
-        table(&head, rows),
+        Block::table(&head, rows),
         Block::Paragraph(
             "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: \
              largest scaled residual over the largest displacement; its equations are as many as its \
@@ -379,7 +382,10 @@ fn material(study: &Study) -> Vec<Block> {
     for (key, value) in [("DOI", &card.doi), ("note", &card.note)] {
         rows.extend((!value.is_empty()).then(|| row(key, value.clone())));
     }
-    vec![heading("Material"), table(&["property", "value"], rows)]
+    vec![
+        heading("Material"),
+        Block::table(&["property", "value"], rows),
+    ]
 }
 
 /// The stable stretches in the usual tests.
@@ -388,10 +394,9 @@ fn stable(card: &Card) -> String {
         let [low, high] = stable_range(&*card.law, mode);
         format!("{name} λ = {low:.3} … {high:.3}")
     };
-    format!(
-        "{}; looked for from 0.1 to 10",
-        Mode::ALL.map(range).join(", ")
-    )
+    let [low, high] = SEARCHED;
+    let ranges = Mode::ALL.map(range).join(", ");
+    format!("{ranges}; looked for from {low} to {high}")
 }
 
 fn times(results: &Results) -> Vec<Block> {
@@ -402,6 +407,6 @@ fn times(results: &Results) -> Vec<Block> {
         Block::Paragraph(
             "All stretches one after the other, on one core. Times differ from run to run.".into(),
         ),
-        table(&["model", "time [s]"], rows),
+        Block::table(&["model", "time [s]"], rows),
     ]
 }

@@ -58,14 +58,13 @@ fn compute(plate: &Plate, repetitions: usize, progress: Progress) -> Result<Outc
     measure("mass-spring, corrected", nodes, &mut || {
         let lattice = plate.lattice();
         let field = plate.solve(&lattice)?.displacement;
-        Ok(plate.corrected(&lattice, &field)?.displacement)
+        Ok(plate.corrected(&lattice, &field)?.solution.displacement)
     })?;
     let on_nodes = |cells: [usize; 2], element| -> Result<Vec<f64>, Error> {
         let (model, solution) = plate.finite_elements(cells, element)?;
-        let nodes = lattice.mesh.nodes.iter();
-        Ok(nodes
-            .flat_map(|node| model.mesh.displacement_at(&solution.displacement, *node))
-            .collect())
+        Ok(model
+            .mesh
+            .displacement_on(&solution.displacement, &lattice.mesh))
     };
     measure(
         "finite elements, Q1, equal nodes and accuracy",
@@ -104,7 +103,7 @@ fn outcome(ways: &[Way]) -> Outcome {
                          longer than the finite elements (see Times): the claim is not reproduced by this method"
                 .into(),
         }],
-        blocks: vec![Block::Table(head.map(String::from).to_vec(), ways.iter().map(row).collect())],
+        blocks: vec![Block::table(&head, ways.iter().map(row))],
         times: ways.iter().map(|way| (way.name.clone(), way.seconds)).collect(),
         ..Outcome::default()
     }

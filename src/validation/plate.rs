@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::corrector::plate::KnownConditions;
+use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::corrector::{CorrectorSettings, DifferenceScheme, PlateCorrector, Solver};
 use crate::document::Section;
 use crate::error::{Error, SolveFault};
@@ -89,10 +89,9 @@ impl Plate {
     /// The converged field at the nodes of the lattice: Q2 elements on twice as many cells.
     pub fn reference(&self, lattice: &MassSpring) -> Result<Vec<f64>, Error> {
         let (model, solution) = self.finite_elements(self.cells.map(|n| 2 * n), Element::Q2)?;
-        let nodes = lattice.mesh.nodes.iter();
-        let field =
-            nodes.flat_map(|node| model.mesh.displacement_at(&solution.displacement, *node));
-        Ok(field.collect())
+        Ok(model
+            .mesh
+            .displacement_on(&solution.displacement, &lattice.mesh))
     }
 
     /// The corrector on the nodes of a lattice.
@@ -106,11 +105,9 @@ impl Plate {
     }
 
     /// The fully corrected field.
-    pub fn corrected(&self, lattice: &MassSpring, data: &[f64]) -> Result<Solution, Error> {
+    pub fn corrected(&self, lattice: &MassSpring, data: &[f64]) -> Result<CorrectedState, Error> {
         let corrector = self.corrector(lattice);
-        Ok(corrector
-            .correct(data, self.stretch(), KnownConditions::ALL)?
-            .solution)
+        corrector.correct(data, self.stretch(), KnownConditions::ALL)
     }
 
     /// A failed correction as an error.

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use super::plate::{NEWTON, Plate};
 use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
 use crate::compare::{departure_percent, displacement_percent};
-use crate::corrector::plate::KnownConditions;
+use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mass_spring::{MassSpring, Spring};
@@ -35,7 +35,7 @@ struct Fields {
     uncorrected: Vec<f64>,
     reference: Vec<f64>,
     affine: Vec<f64>,
-    corrected: Vec<f64>,
+    corrected: CorrectedState,
 }
 
 impl Fields {
@@ -51,7 +51,11 @@ impl Fields {
 
     /// Distance to the corrected field in relative L2.
     fn far(&self, field: &[f64]) -> f64 {
-        displacement_percent(&self.lattice.mesh, field, &self.corrected) / 100.0
+        displacement_percent(
+            &self.lattice.mesh,
+            field,
+            &self.corrected.solution.displacement,
+        ) / 100.0
     }
 }
 
@@ -67,7 +71,7 @@ fn compute(
     let fields = Fields {
         reference: plate.reference(&lattice)?,
         affine: plate.problem.affine(&lattice.mesh, plate.stretch()),
-        corrected: plate.corrected(&lattice, &uncorrected)?.displacement,
+        corrected: plate.corrected(&lattice, &uncorrected)?,
         uncorrected,
         lattice,
     };
@@ -192,12 +196,10 @@ fn known_conditions(
         "steps",
     ];
     outcome.blocks.push(Block::Paragraph("Departure from affine, relative L2 distance to the converged finite elements, for the known conditions T that are imposed beside equilibrium inside:".into()));
-    outcome
-        .blocks
-        .push(Block::Table(head.map(String::from).to_vec(), rows));
+    outcome.blocks.push(Block::table(&head, rows));
     outcome.claims.push(Claim {
         claim: "Example 1, Part II: the corrected plate is within 5 % of non-linear finite elements",
-        reproduced: format!("departure from affine {} % before, {} % after; displacement within {} %", number(before), number(last), number(fields.displacement(&fields.corrected))),
+        reproduced: format!("departure from affine {} % before, {} % after; displacement within {} %", number(before), number(last), number(fields.displacement(&fields.corrected.solution.displacement))),
     });
     let chart = LineChart {
         title: "What is known decides".into(),
@@ -266,13 +268,13 @@ fn other_lattices(
             }),
         ),
     ];
+    let corrector = plate.corrector(&fields.lattice);
     let mut rows = Vec::new();
     let mut worst = 0.0_f64;
     for (name, areas) in lattices {
         progress(name);
         let lattice = plate.lattice().with_areas(&plate.problem, areas);
         let field = plate.solve(&lattice)?;
-        let corrector = plate.corrector(&fields.lattice);
         let corrected =
             corrector.correct(&field.displacement, plate.stretch(), KnownConditions::ALL)?;
         let steps = &corrected.correction.steps;
@@ -299,9 +301,7 @@ fn other_lattices(
         "The same correction from wrong springs and from other topologies, departure from affine:"
             .into(),
     ));
-    outcome
-        .blocks
-        .push(Block::Table(head.map(String::from).to_vec(), rows));
+    outcome.blocks.push(Block::table(&head, rows));
     outcome.checks.push(Check::new(
         "corrected fields of all lattices beside each other, relative L2",
         "–",
@@ -335,9 +335,7 @@ fn plain_newton(plate: &Plate, fields: &Fields, outcome: &mut Outcome) -> Result
             })
         })
         .map_err(|fault| plate.fault(fault))?;
-    let corrected =
-        corrector.correct(&fields.uncorrected, plate.stretch(), KnownConditions::ALL)?;
-    let steps = corrected.correction.steps.len() - 1;
+    let steps = fields.corrected.correction.steps.len() - 1;
     outcome.blocks.push(Block::Paragraph(format!(
         "With all of T imposed there are as many conditions as unknowns and each step is a Newton step. From the \
          mass-spring field it takes {steps} steps; plain Newton on the same equations from the affine stretch takes {}.",

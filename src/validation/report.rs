@@ -104,6 +104,6 @@ fn times(cases: &[Computed]) -> Vec<Block> {
         Block::Paragraph(
             "Times differ from run to run; those of one case were measured side by side.".into(),
         ),
-        Block::Table(head.map(String::from).to_vec(), rows),
+        Block::table(&head, rows),
     ]
 }

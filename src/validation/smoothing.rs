@@ -116,7 +116,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     ];
     outcome.blocks = vec![
         Block::Paragraph(EXPLANATION.into()),
-        Block::Table(head.map(String::from).to_vec(), rows),
+        Block::table(&head, rows),
     ];
     outcome.figures.push(super::figure(
         "smoothing.png",
@@ -142,12 +142,12 @@ fn coarse(
     let (plate, lattice) = (&settings.plate, &fields.lattice);
     let affine = plate.problem.affine(&lattice.mesh, plate.stretch());
     let (model, solution) = plate.finite_elements(settings.coarse, Element::Q1)?;
-    let nodes = lattice.mesh.nodes.iter();
-    let data = nodes.flat_map(|node| model.mesh.displacement_at(&solution.displacement, *node));
-    let data: Vec<f64> = data.collect();
+    let data = model
+        .mesh
+        .displacement_on(&solution.displacement, &lattice.mesh);
     let departure =
         |field: &[f64]| departure_percent(&lattice.mesh, field, &fields.reference, &affine);
-    let known = plate.corrected(lattice, &data)?.displacement;
+    let known = plate.corrected(lattice, &data)?.solution.displacement;
     let plate_corrector = plate.corrector(lattice);
     let corrector = grips_corrector(
         &plate_corrector,

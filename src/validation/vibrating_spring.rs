@@ -328,9 +328,7 @@ fn unknown_constants(
         "spread",
         "Cramér-Rao bound",
     ];
-    outcome
-        .blocks
-        .push(Block::Table(head.map(String::from).to_vec(), rows));
+    outcome.blocks.push(Block::table(&head, rows));
     Ok(first)
 }
 

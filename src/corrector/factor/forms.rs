@@ -59,6 +59,18 @@ pub(super) fn kkt(
 }
 
 pub(super) fn dense(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, NotPositiveDefinite> {
+    let (q, r) = weighted_qr(jacobian, weights)?;
+    Ok(Form::Dense { q, r })
+}
+
+/// Q (n × m, orthonormal columns) and R (m × m) of W^(−½) Bᵀ = Q R.
+///
+/// # Errors
+/// [`NotPositiveDefinite`] when rows of B depend on each other.
+pub(in crate::corrector) fn weighted_qr(
+    jacobian: &SparseRows,
+    weights: &[f64],
+) -> Result<(DMatrix<f64>, DMatrix<f64>), NotPositiveDefinite> {
     let (n, m) = (weights.len(), jacobian.len());
     let mut transposed = jacobian.to_dense().transpose();
     for (mut row, weight) in transposed.row_iter_mut().zip(weights) {
@@ -67,20 +79,12 @@ pub(super) fn dense(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, NotP
     if m > n || transposed.iter().any(|value: &f64| !value.is_finite()) {
         return Err(NotPositiveDefinite);
     }
-    let norms: Vec<f64> = transposed
-        .column_iter()
-        .map(|column| column.norm())
-        .collect();
+    let columns = transposed.column_iter();
+    let norms: Vec<f64> = columns.map(|column| column.norm()).collect();
     let (q, r) = transposed.qr().unpack();
-    let independent = norms
-        .iter()
-        .enumerate()
-        .all(|(row, norm)| r[(row, row)].abs() > 1e-10 * norm);
-    if independent {
-        Ok(Form::Dense { q, r })
-    } else {
-        Err(NotPositiveDefinite)
-    }
+    let mut rows = norms.iter().enumerate();
+    let independent = rows.all(|(row, norm)| r[(row, row)].abs() > 1e-10 * norm);
+    independent.then_some((q, r)).ok_or(NotPositiveDefinite)
 }
 
 /// With W^(−½) Bᵀ = Q R and δ = W^(−½) δ̂: δ̂ = p − Q (Qᵀ p + R⁻ᵀ c), p = W^½ (ū − u).
