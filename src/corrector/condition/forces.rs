@@ -79,11 +79,8 @@ impl Condition for Equilibrium<'_> {
         u: &[f64],
         multipliers: &[f64],
     ) -> Result<Option<SparseRows>, Inadmissible> {
-        let mut direction = vec![0.0; u.len()];
-        for (unknown, psi) in self.unknowns.iter().zip(multipliers) {
-            direction[*unknown] += psi;
-        }
-        stiffness_change(self.potential, self.assembly, u, &direction).map(Some)
+        let rows = self.unknowns.iter().zip(multipliers);
+        stiffness_change(self.potential, self.assembly, u, rows).map(Some)
     }
 
     fn unknowns(&self) -> Option<&[usize]> {
@@ -117,6 +114,11 @@ impl<'a> TotalForce<'a> {
             force,
         }
     }
+
+    fn unbalanced(&self, residual: &[f64]) -> Vec<f64> {
+        let forces = self.unknowns.iter().map(|unknown| residual[*unknown]);
+        vec![forces.sum::<f64>() - self.force]
+    }
 }
 
 impl Condition for TotalForce<'_> {
@@ -136,11 +138,16 @@ impl Condition for TotalForce<'_> {
                 .iter()
                 .flat_map(|unknown| full[*unknown].iter().copied()),
         );
-        let sum: f64 = self.unknowns.iter().map(|unknown| residual[*unknown]).sum();
         Ok(Linearised {
-            values: vec![sum - self.force],
+            values: self.unbalanced(&residual),
             jacobian,
         })
+    }
+
+    fn values(&self, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
+        let mut residual = vec![0.0; u.len()];
+        Assembly::residual(self.potential, u, &mut residual)?;
+        Ok(self.unbalanced(&residual))
     }
 
     fn curvature(
@@ -148,11 +155,8 @@ impl Condition for TotalForce<'_> {
         u: &[f64],
         multipliers: &[f64],
     ) -> Result<Option<SparseRows>, Inadmissible> {
-        let mut direction = vec![0.0; u.len()];
-        for (unknown, psi) in self.unknowns.iter().zip(std::iter::repeat(&multipliers[0])) {
-            direction[*unknown] += psi;
-        }
-        stiffness_change(self.potential, self.assembly, u, &direction).map(Some)
+        let rows = self.unknowns.iter().zip(std::iter::repeat(&multipliers[0]));
+        stiffness_change(self.potential, self.assembly, u, rows).map(Some)
     }
 }
 
@@ -170,21 +174,30 @@ fn internal_forces(
     Ok((residual, assembly.pattern().full_rows(&stiffness)))
 }
 
-/// ∂K/∂u · d by central differences: the curvature of the residual, weighted by d.
-fn stiffness_change(
+/// ∂K/∂u · d by central differences: the curvature of the residual, weighted by d, which is given as
+/// (unknown, weight).
+fn stiffness_change<'a>(
     potential: &dyn Potential,
     assembly: &Assembly,
     u: &[f64],
-    direction: &[f64],
+    weights: impl Iterator<Item = (&'a usize, &'a f64)>,
 ) -> Result<SparseRows, Inadmissible> {
     const SHARE: f64 = 1e-5;
-    let most = largest(direction);
+    let mut direction = vec![0.0; u.len()];
+    for (unknown, weight) in weights {
+        direction[*unknown] += weight;
+    }
+    let most = largest(&direction);
     let step = match most > 0.0 {
         true => SHARE * largest(u) / most,
         false => 1.0,
     };
     let at = |step: f64| {
-        let moved: Vec<f64> = u.iter().zip(direction).map(|(u, d)| u + step * d).collect();
+        let moved: Vec<f64> = u
+            .iter()
+            .zip(&direction)
+            .map(|(u, d)| u + step * d)
+            .collect();
         internal_forces(potential, assembly, &moved)
     };
     let ((_, up), (_, down)) = (at(step)?, at(-step)?);
