@@ -159,7 +159,7 @@ impl<'a> Reference<'a> {
     /// First Piola–Kirchhoff stress in MPa; not a number where the field is inverted.
     fn stress(&self, gradient: [f64; 4]) -> Vector4<f64> {
         match Kinematics::new(&Vector4::from(gradient)) {
-            Ok(kinematics) => kinematics.stress(&*self.problem.law).1,
+            Ok(kinematics) => self.problem.law.stress(&kinematics).1,
             Err(_) => Vector4::repeat(f64::NAN),
         }
     }

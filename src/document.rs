@@ -83,7 +83,7 @@ impl<'a> Document<'a> {
 }
 
 /// The values that a number may take.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// Any finite number.
     Any,

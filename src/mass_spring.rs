@@ -4,7 +4,7 @@
 //! T = K(·) (|x| − x₀) = a P(λ),   λ = |x|/x₀                                          [N]
 //! ```
 //!
-//! P is the card's uniaxial nominal stress and a the cross-section that the spring stands for, so that
+//! P is the nominal stress of a strip of the sheet cut along the spring and a the cross-section that the spring stands for, so that
 //! K(·) = a P(λ)/(x₀ (λ − 1)) follows the card's curve. The cross-sections make the lattice isotropic
 //! at small strain. With hx, hy the sides of a cell, d its diagonal, t the thickness and s = 1:
 //!
@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::error::Error;
-use crate::material::{HyperelasticLaw, uniaxial};
+use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{Model, Problem, Solution};
 use crate::solve::{Inadmissible, Local, NewtonSettings, Potential};
@@ -189,10 +189,10 @@ impl MassSpring {
             let relative =
                 [0, 1].map(|axis| displacement[2 * to + axis] - displacement[2 * from + axis]);
             let strain = strain(self.lattice.directions[index], relative);
-            let stress = uniaxial::uniaxial(&*self.lattice.law, strain).nominal_stress;
+            let tension = self.lattice.tension(index, strain);
             SpringState {
                 stretch: 1.0 + strain,
-                force: spring.area * stress,
+                force: spring.area * tension.nominal_stress,
             }
         };
         self.springs.iter().enumerate().map(state).collect()
@@ -256,13 +256,19 @@ impl Lattice {
         }
     }
 
+    /// The sheet's tension curve along a spring.
+    fn tension(&self, spring: usize, strain: f64) -> TensionResponse {
+        let unit = self.directions[spring].map(|component| component * self.springs[spring].0);
+        self.law.tension(unit, strain)
+    }
+
     /// Energy a x₀ Ψ(λ), force a P and stiffness of one spring.
     fn evaluate_spring(&self, index: usize, u: &[f64], local: Local<'_>) -> f64 {
         let (rest_length, area) = self.springs[index];
         let direction = self.directions[index];
         let relative = [u[2] - u[0], u[3] - u[1]];
         let strain = strain(direction, relative);
-        let response = uniaxial::uniaxial(&*self.law, strain);
+        let response = self.tension(index, strain);
         let current =
             [0, 1].map(|axis| direction[axis] * rest_length + relative[axis] / rest_length);
         let stretch = 1.0 + strain;

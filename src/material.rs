@@ -1,21 +1,24 @@
 //! Hyperelastic laws, the cards that hold their parameters, and the thin sheet made of them.
 //!
-//! A new law is one file that implements [`HyperelasticLaw`] and one line in [`registry`].
+//! A new law is one file that implements [`InvariantLaw`], or [`HyperelasticLaw`] where it is no law of
+//! invariants, and one entry in [`registry`].
 
 mod arruda_boyce;
 pub mod card;
+pub mod curve;
 mod fung_demiray;
 mod gent;
+mod holzapfel_gasser_ogden;
 pub mod law;
-mod marlow;
+pub mod marlow;
 mod mooney_rivlin;
 mod neo_hooke;
+mod ogden;
 pub mod parameters;
 mod polynomial;
 pub mod registry;
 pub mod sheet;
 pub mod stability;
-pub mod uniaxial;
 mod veronda_westmann;
 mod yeoh;
 
@@ -26,10 +29,11 @@ pub use arruda_boyce::ArrudaBoyce;
 pub use card::Card;
 pub use fung_demiray::FungDemiray;
 pub use gent::Gent;
-pub use law::{EnergyDerivatives, HyperelasticLaw, Invariants};
-pub use marlow::MarlowExponential;
+pub use holzapfel_gasser_ogden::HolzapfelGasserOgden;
+pub use law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hooke::NeoHooke;
+pub use ogden::Ogden;
 pub use polynomial::Polynomial;
 pub use veronda_westmann::VerondaWestmann;
 pub use yeoh::Yeoh;

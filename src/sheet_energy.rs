@@ -98,9 +98,9 @@ impl Potential for SheetEnergy {
         for point in self.cell_points(element) {
             let kinematics = Self::kinematics(point, u).map_err(|()| Inadmissible { element })?;
             let (density, stress) = match &mut local.stiffness {
-                None => kinematics.stress(&*self.law),
+                None => self.law.stress(&kinematics),
                 Some(stiffness) => {
-                    let response = kinematics.response(&*self.law);
+                    let response = self.law.response(&kinematics);
                     let tangent = response.tangent * point.volume;
                     add_stiffness(stiffness, &point.gradients, tangent.as_slice());
                     (response.energy, response.first_piola_kirchhoff_stress)

@@ -18,6 +18,8 @@ pub enum Dimension {
     Density,
     /// Internal unit s.
     Time,
+    /// Internal unit rad.
+    Angle,
     /// A ratio, written as a bare number or in percent.
     Ratio,
 }
@@ -52,6 +54,9 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("ms", Dimension::Time, 1e-3),
     ("min", Dimension::Time, 60.0),
     ("h", Dimension::Time, 3600.0),
+    ("rad", Dimension::Angle, 1.0),
+    ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
+    ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
     ("%", Dimension::Ratio, 1e-2),
 ];
 
@@ -64,6 +69,7 @@ impl Dimension {
             Self::Stress => "stress",
             Self::Density => "density",
             Self::Time => "time",
+            Self::Angle => "angle",
             Self::Ratio => "ratio",
         }
     }
@@ -76,6 +82,19 @@ impl Dimension {
             .map(|(symbol, ..)| *symbol)
     }
 
+    /// The unit of this dimension inside the program; empty for a ratio.
+    pub fn internal_unit(self) -> &'static str {
+        match self {
+            Self::Length => "mm",
+            Self::Force => "N",
+            Self::Stress => "MPa",
+            Self::Density => "tonne/mm^3",
+            Self::Time => "s",
+            Self::Angle => "rad",
+            Self::Ratio => "",
+        }
+    }
+
     /// An example of a well-formed quantity, for hints.
     pub fn example(self) -> &'static str {
         match self {
@@ -84,6 +103,7 @@ impl Dimension {
             Self::Stress => "\"0.0611 MPa\"",
             Self::Density => "\"1020 kg/m^3\"",
             Self::Time => "\"10 s\"",
+            Self::Angle => "\"30 deg\"",
             Self::Ratio => "0.5 or \"50 %\"",
         }
     }

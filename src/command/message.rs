@@ -8,7 +8,8 @@ use miette::{
 
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
-use crate::material::stability::{Mode, SEARCHED, stable_range};
+use crate::material::curve::Mode;
+use crate::material::stability::{SEARCHED, stable_range};
 use crate::problem::Problem;
 use crate::results::{Requirement, Results};
 use crate::study::Study;
@@ -160,8 +161,12 @@ pub fn card(card: &Card) -> String {
         "{}\n\n  law        {}: {}\n",
         card.title, card.law_name, card.formula
     );
-    for (key, value, unit) in &card.parameters {
+    for parameter in &card.parameters {
+        let (key, value, unit) = (parameter.key, parameter.value, parameter.unit());
         text += &format!("  parameter  {key} = {value} {unit}\n");
+    }
+    for (key, name) in &card.choices {
+        text += &format!("  parameter  {key} = {name}\n");
     }
     text += &format!("  moduli     {}\n", moduli(card));
     text += &format!(

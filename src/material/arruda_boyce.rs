@@ -1,6 +1,6 @@
 //! The eight-chain law of Arruda and Boyce.
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -45,12 +45,12 @@ impl ArrudaBoyce {
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
         Box::new(Self {
             mu: parameters.stress("mu", Bound::Positive),
-            lambda_m: parameters.number("lambda_m", Bound::Within(1.0, 1e6)),
+            lambda_m: parameters.number("lambda_m", Bound::Within(1.0, 1e6), [1.05, 20.0]),
         })
     }
 }
 
-impl HyperelasticLaw for ArrudaBoyce {
+impl InvariantLaw for ArrudaBoyce {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let (y, i1) = (invariants.i1_minus_3, 3.0 + invariants.i1_minus_3);
         let mut sum = EnergyDerivatives::default();

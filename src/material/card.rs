@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::curve::Mode;
 use super::law::HyperelasticLaw;
-use super::parameters::{OffsetTreatment, Parameters, StrainMeasure, StressMeasure};
+use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS};
-use super::uniaxial::uniaxial;
 use crate::document::{Bound, Document, Faults};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
@@ -24,8 +24,10 @@ pub struct Card {
     pub formula: &'static str,
     /// The law with its parameters.
     pub law: Arc<dyn HyperelasticLaw>,
-    /// The parameters in internal units: key, value, unit.
-    pub parameters: Vec<(&'static str, f64, &'static str)>,
+    /// The parameters in internal units.
+    pub parameters: Vec<Parameter>,
+    /// What else the law's card states: key and choice.
+    pub choices: Vec<(&'static str, String)>,
     /// The stress that the curve behind the card gives.
     pub stress_measure: StressMeasure,
     /// The strain that the curve behind the card takes.
@@ -86,7 +88,7 @@ impl Card {
         let document = Document::parse(file, text, &faults);
         let root = document.root(None, &faults);
         let title = root.text("title");
-        let laws: Vec<_> = LAWS.iter().map(|law| (law.0, law)).collect();
+        let laws: Vec<_> = LAWS.iter().map(|law| (law.name, law)).collect();
         let law = root.choice("law", &laws);
 
         let data = root.section("data");
@@ -122,20 +124,21 @@ impl Card {
         source.unknown_keys();
         let parameters = root.section("parameters");
         root.unknown_keys();
-        let Some(&(law_name, formula, read_law)) = law else {
+        let Some(law_entry) = law else {
             return Err(faults.finish().expect_err("an unknown law is a fault"));
         };
-        let parameters = Parameters::new(parameters, stress_measure, strain_measure);
-        let law: Arc<dyn HyperelasticLaw> = read_law(&parameters).into();
-        let parameters = parameters.finish();
+        let parameters = Parameters::of_card(parameters, stress_measure, strain_measure);
+        let law: Arc<dyn HyperelasticLaw> = (law_entry.read)(&parameters).into();
+        let asked = parameters.finish();
         faults.finish()?;
         Ok(Self {
             name: name.to_owned(),
             title,
-            law_name,
-            formula,
+            law_name: law_entry.name,
+            formula: law_entry.formula,
             law,
-            parameters,
+            parameters: asked.parameters,
+            choices: asked.choices,
             stress_measure,
             strain_measure,
             offset,
@@ -153,8 +156,8 @@ impl Card {
     pub fn parameter(&self, key: &str) -> Option<f64> {
         self.parameters
             .iter()
-            .find(|(known, ..)| *known == key)
-            .map(|(_, value, _)| *value)
+            .find(|parameter| parameter.key == key)
+            .map(|parameter| parameter.value)
     }
 
     /// The published tension curve σ₀ + A e^{b ε} behind the card as nominal stress in MPa, with its
@@ -186,7 +189,7 @@ impl Card {
                 StressMeasure::Cauchy => at_rest / stretch,
             };
             let published = self.published_nominal_stress(stretch)? - offset;
-            let law = uniaxial(&*self.law, stretch - 1.0).nominal_stress;
+            let law = Mode::Uniaxial.nominal_stress(&*self.law, stretch - 1.0);
             worst = worst.max((law - published).abs());
             largest = largest.max(published.abs());
         }

@@ -1,6 +1,6 @@
 //! The exponential law of Fung and Demiray.
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -33,12 +33,12 @@ impl FungDemiray {
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
         Box::new(Self {
             mu: parameters.stress("mu", Bound::Positive),
-            b: parameters.number("b", Bound::Positive),
+            b: parameters.number("b", Bound::Positive, [1e-3, 10.0]),
         })
     }
 }
 
-impl HyperelasticLaw for FungDemiray {
+impl InvariantLaw for FungDemiray {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let exponent = self.b * invariants.i1_minus_3;
         let growth = exponent.exp();

@@ -1,6 +1,6 @@
 //! Gent's law of limited chain extensibility.
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -33,12 +33,12 @@ impl Gent {
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
         Box::new(Self {
             mu: parameters.stress("mu", Bound::Positive),
-            jm: parameters.number("jm", Bound::Positive),
+            jm: parameters.number("jm", Bound::Positive, [1.0, 300.0]),
         })
     }
 }
 
-impl HyperelasticLaw for Gent {
+impl InvariantLaw for Gent {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let share = invariants.i1_minus_3 / self.jm;
         let left = 1.0 - share;

@@ -1,116 +1,59 @@
-//! Marlow's first-invariant law from an exponential uniaxial curve.
+//! Marlow's first-invariant law from a uniaxial curve.
+//!
+//! The uniaxial test is reproduced exactly, without fitting, and every other state follows from the
+//! assumption that the energy depends on the first invariant alone:
+//!
+//! ```text
+//! Ψ(I₁) = ∫₁^λ P dλ,   where   I₁ = λ² + 2/λ,   λ ≥ 1                      [mJ/mm³]
+//! Ψ′(I₁) = P(λ) / (2 (λ − λ⁻²))                                            [MPa]
+//! ```
+//!
+//! **Derivation.** With x = λ − 1 and R(x) = P/x, which is regular at rest,
+//!
+//! ```text
+//! Ψ′    = R g,                     g = (1 + x)² / (2 (3 + 3x + x²))
+//! dΨ′/dx = R′ g + R g′
+//! dI₁/dx = 2 x (3 + 3x + x²) / (1 + x)²
+//! Ψ″    = (dΨ′/dx) / (dI₁/dx)      ~ 1/x at rest
+//! ```
+//!
+//! Ψ″ is unbounded at rest, but the tangent multiplies it by (∂I₁/∂F)² ~ x². The stretch is found from
+//! I₁ − 3 by the root of x³ + 3x² − (I₁ − 3)(1 + x) = 0, so that no digit is lost near rest.
+//!
+//! **Not covered.** Dependence on I₂: planar and equibiaxial tension are predictions, and compression is
+//! what the tension curve says about the same I₁.
+//!
+//! # References
+//! R. S. Marlow, in: Constitutive Models for Rubber III, Balkema (2003), p. 157, ISBN 90-5809-566-5
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
-use super::parameters::{Parameters, StrainMeasure, StressMeasure};
-use crate::document::Bound;
+use super::law::{EnergyDerivatives, InvariantLaw, Invariants};
 
-/// Marlow's law lifted from the exponential tension curve of a hydrogel.
-///
-/// The uniaxial test is reproduced exactly, without fitting, and every other state follows from the
-/// assumption that the energy depends on the first invariant alone:
-///
-/// ```text
-/// s(ε) = A (e^{b ε} − 1)                                                   [MPa]
-/// P(λ) = s (nominal) or s/λ (Cauchy),   ε = λ − 1 (nominal) or ln λ (logarithmic)
-///
-/// Ψ(I₁) = ∫₁^λ P dλ,   where   I₁ = λ² + 2/λ,   λ ≥ 1                      [mJ/mm³]
-/// Ψ′(I₁) = P(λ) / (2 (λ − λ⁻²))                                            [MPa]
-/// ```
-///
-/// | symbol | card key | unit | admissible | meaning |
-/// |---|---|---|---|---|
-/// | A | `amplitude` | MPa | > 0 | amplitude of the exponential |
-/// | b | `exponent` | – | > 0 | rate of the exponential |
-/// | σ₀ | `offset` | MPa | any | constant of the published curve σ₀ + A e^{b ε} |
-///
-/// A published curve σ₀ + A e^{b ε} with σ₀ ≠ −A has a stress at rest. The law always uses the curve
-/// less its value at rest; `offset = "keep"` on a card is for drawing the published curve only.
-///
-/// **Derivation.** With x = λ − 1 and R(x) = P/x, which is regular at rest,
-///
-/// ```text
-/// Ψ′    = R g,                     g = (1 + x)² / (2 (3 + 3x + x²))
-/// dΨ′/dx = R′ g + R g′
-/// dI₁/dx = 2 x (3 + 3x + x²) / (1 + x)²
-/// Ψ″    = (dΨ′/dx) / (dI₁/dx)      ~ 1/x at rest
-/// ```
-///
-/// Ψ″ is unbounded at rest, but the tangent multiplies it by (∂I₁/∂F)² ~ x². The stretch is found from
-/// I₁ − 3 by the root of x³ + 3x² − (I₁ − 3)(1 + x) = 0, so that no digit is lost near rest.
-///
-/// **Limits.** Small strain: Ψ′(3) = E₀/6 with E₀ = A b.
-/// **Not covered.** Dependence on I₂: planar and equibiaxial tension are predictions.
-///
-/// # References
-/// R. S. Marlow, in: Constitutive Models for Rubber III, Balkema (2003), p. 157, ISBN 90-5809-566-5
-#[derive(Clone, Copy, Debug)]
-pub struct MarlowExponential {
-    /// A in MPa.
-    pub amplitude: f64,
-    /// b.
-    pub exponent: f64,
-    /// Which stress the curve gives.
-    pub stress_measure: StressMeasure,
-    /// Which strain the curve takes.
-    pub strain_measure: StrainMeasure,
+mod exponential;
+mod table;
+
+pub use exponential::ExponentialCurve;
+pub use table::TableCurve;
+
+/// A tension curve P(x) of the strain x = λ − 1 ≥ 0, with P(0) = 0.
+pub trait TensionCurve: Send + Sync + std::fmt::Debug {
+    /// R = P/x and dR/dx in MPa, at rest their limits.
+    fn secant(&self, x: f64) -> (f64, f64);
+
+    /// Ψ = ∫₀ˣ P dx in mJ/mm³.
+    fn energy(&self, x: f64) -> f64;
 }
 
-impl MarlowExponential {
-    /// Reads the parameters of a card.
-    pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
-        parameters.stress("offset", Bound::Any);
-        Box::new(Self {
-            amplitude: parameters.stress("amplitude", Bound::Positive),
-            exponent: parameters.number("exponent", Bound::Positive),
-            stress_measure: parameters.stress_measure,
-            strain_measure: parameters.strain_measure,
-        })
-    }
-
-    /// R = P/x and dR/dx at x = λ − 1 ≥ 0.
-    fn secant(&self, x: f64) -> (f64, f64) {
-        // ε = q x
-        let (q, dq) = match self.strain_measure {
-            StrainMeasure::Nominal => (1.0, 0.0),
-            StrainMeasure::Logarithmic => logarithm_quotient(x),
-        };
-        // P = c s
-        let (c, dc) = match self.stress_measure {
-            StressMeasure::Nominal => (1.0, 0.0),
-            StressMeasure::Cauchy => (1.0 / (1.0 + x), -1.0 / (1.0 + x).powi(2)),
-        };
-        let z = self.exponent * q * x;
-        let dz = self.exponent * (q + x * dq);
-        let (phi, dphi, _) = exponential_quotients(z);
-        let modulus = self.amplitude * self.exponent;
-        let secant = modulus * phi * q * c;
-        let slope = modulus * (dphi * dz * q * c + phi * dq * c + phi * q * dc);
-        (secant, slope)
-    }
-
-    /// Ψ = ∫₀ˣ P dx.
-    fn energy(&self, x: f64) -> f64 {
-        if self.stress_measure == StressMeasure::Nominal
-            && self.strain_measure == StrainMeasure::Nominal
-        {
-            let (.., phi2) = exponential_quotients(self.exponent * x);
-            return self.amplitude * self.exponent * x * x * phi2;
-        }
-        let panels = (self.exponent * x).ceil().clamp(1.0, 64.0);
-        let width = x / panels;
-        (0..panels as usize)
-            .flat_map(|panel| GAUSS_LEGENDRE.map(|(point, weight)| (panel as f64 + point, weight)))
-            .map(|(position, weight)| {
-                weight * width * (position * width) * self.secant(position * width).0
-            })
-            .sum()
-    }
+/// Marlow's law of a tension curve.
+#[derive(Clone, Debug)]
+pub struct Marlow<C> {
+    /// The curve.
+    pub curve: C,
 }
 
-impl HyperelasticLaw for MarlowExponential {
+impl<C: TensionCurve> InvariantLaw for Marlow<C> {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let x = uniaxial_strain(invariants.i1_minus_3);
-        let (secant, slope) = self.secant(x);
+        let (secant, slope) = self.curve.secant(x);
         let lambda = 1.0 + x;
         let cubic = 3.0 + 3.0 * x + x * x;
         let g = lambda * lambda / (2.0 * cubic);
@@ -118,7 +61,7 @@ impl HyperelasticLaw for MarlowExponential {
         let d1_by_x = slope * g + secant * dg;
         let i1_by_x = x / g;
         EnergyDerivatives {
-            energy: self.energy(x),
+            energy: self.curve.energy(x),
             d1: secant * g,
             d11: if i1_by_x > f64::MIN_POSITIVE {
                 d1_by_x / i1_by_x
@@ -145,59 +88,6 @@ fn uniaxial_strain(y: f64) -> f64 {
     x
 }
 
-/// φ = (eᶻ − 1)/z, φ′ and φ₂ = (eᶻ − 1 − z)/z², without cancellation: φ = 1 + z φ₂, φ′ = φ − φ₂.
-fn exponential_quotients(z: f64) -> (f64, f64, f64) {
-    let phi2 = if z.abs() < 1.0 {
-        // Σ zᵏ/(k + 2)!
-        (0..18)
-            .rev()
-            .fold(0.0, |sum, k| (1.0 + z * sum) / f64::from(k + 2))
-    } else {
-        (z.exp_m1() - z) / (z * z)
-    };
-    let phi = 1.0 + z * phi2;
-    (phi, phi - phi2, phi2)
-}
-
-/// q = ln(1 + x)/x and dq/dx, without cancellation at rest.
-fn logarithm_quotient(x: f64) -> (f64, f64) {
-    if x.abs() < 0.05 {
-        let series = |derivative: bool| {
-            (0..16).rev().fold(0.0, |sum, k| {
-                let k = f64::from(k);
-                let coefficient = if derivative {
-                    -(k + 1.0) / (k + 2.0)
-                } else {
-                    1.0 / (k + 1.0)
-                };
-                coefficient - x * sum
-            })
-        };
-        return (series(false), series(true));
-    }
-    let q = x.ln_1p() / x;
-    (q, (1.0 / (1.0 + x) - q) / x)
-}
-
-/// Ten-point Gauss–Legendre rule on the unit interval: (point, weight).
-const GAUSS_LEGENDRE: [(f64, f64); 10] = {
-    const HALF: [(f64, f64); 5] = [
-        (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
-        (0.433_395_394_129_247_2, 0.269_266_719_309_996_36),
-        (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
-        (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
-        (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
-    ];
-    let mut rule = [(0.0, 0.0); 10];
-    let mut i = 0;
-    while i < 5 {
-        rule[2 * i] = (0.5 - 0.5 * HALF[i].0, 0.5 * HALF[i].1);
-        rule[2 * i + 1] = (0.5 + 0.5 * HALF[i].0, 0.5 * HALF[i].1);
-        i += 1;
-    }
-    rule
-};
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -209,18 +99,5 @@ mod tests {
             let found = uniaxial_strain(y);
             assert!((found / x - 1.0).abs() < 4e-15, "x = {x}: {found}");
         }
-    }
-
-    #[test]
-    fn the_quotients_join_without_a_step() {
-        for z in [1.0 - 1e-12, 1.0 + 1e-12] {
-            let (phi, dphi, phi2) = exponential_quotients(z);
-            assert!((phi - 1.718_281_828_459_045).abs() < 3e-12);
-            assert!((dphi - 1.0).abs() < 3e-12);
-            assert!((phi2 - 0.718_281_828_459_045).abs() < 3e-12);
-        }
-        let (q, dq) = logarithm_quotient(0.049_999_999);
-        let (next_q, next_dq) = logarithm_quotient(0.050_000_001);
-        assert!((q - next_q).abs() < 1e-8 && (dq - next_dq).abs() < 1e-8);
     }
 }

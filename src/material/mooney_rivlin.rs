@@ -1,6 +1,6 @@
 //! The two-parameter Mooney–Rivlin law.
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -12,8 +12,8 @@ use crate::document::Bound;
 ///
 /// | symbol | card key | unit | admissible | meaning |
 /// |---|---|---|---|---|
-/// | C₁₀ | `c10` | MPa | > 0 | first-invariant modulus |
-/// | C₀₁ | `c01` | MPa | ≥ 0 | second-invariant modulus |
+/// | C₁₀ | `c10` | MPa | any | first-invariant modulus |
+/// | C₀₁ | `c01` | MPa | any | second-invariant modulus; the law is unstable from rest where C₁₀ + C₀₁ ≤ 0 |
 ///
 /// **Limits.** C₀₁ → 0: neo-Hooke. Small strain: μ₀ = 2 (C₁₀ + C₀₁).
 /// **Not covered.** Strain hardening: no admissible pair follows an exponential curve such as that of
@@ -33,13 +33,13 @@ impl MooneyRivlin {
     /// Reads the parameters of a card.
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
         Box::new(Self {
-            c10: parameters.stress("c10", Bound::Positive),
-            c01: parameters.stress("c01", Bound::NonNegative),
+            c10: parameters.stress("c10", Bound::Any),
+            c01: parameters.stress("c01", Bound::Any),
         })
     }
 }
 
-impl HyperelasticLaw for MooneyRivlin {
+impl InvariantLaw for MooneyRivlin {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         EnergyDerivatives {
             energy: self.c10 * invariants.i1_minus_3 + self.c01 * invariants.i2_minus_3,

@@ -1,6 +1,6 @@
 //! The neo-Hooke law.
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -34,7 +34,7 @@ impl NeoHooke {
     }
 }
 
-impl HyperelasticLaw for NeoHooke {
+impl InvariantLaw for NeoHooke {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         EnergyDerivatives {
             energy: self.c10 * invariants.i1_minus_3,

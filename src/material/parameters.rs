@@ -1,5 +1,7 @@
 //! The parameters of a material card, as a law reads them.
 
+use std::cell::RefCell;
+
 use crate::document::{Bound, Section};
 use crate::units::Dimension;
 
@@ -39,6 +41,24 @@ impl StressMeasure {
     pub fn name(self) -> &'static str {
         name_of(&Self::NAMES, self)
     }
+
+    /// Nominal stress from a stress of this measure at λ = 1 + `x`.
+    ///
+    /// σ = λ P holds along the axis of any test of an incompressible sheet without shear.
+    pub fn to_nominal(self, stress: f64, x: f64) -> f64 {
+        match self {
+            Self::Nominal => stress,
+            Self::Cauchy => stress / (1.0 + x),
+        }
+    }
+
+    /// A stress of this measure from nominal stress at λ = 1 + `x`.
+    pub fn of_nominal(self, nominal: f64, x: f64) -> f64 {
+        match self {
+            Self::Nominal => nominal,
+            Self::Cauchy => nominal * (1.0 + x),
+        }
+    }
 }
 
 impl StrainMeasure {
@@ -51,6 +71,22 @@ impl StrainMeasure {
     /// The name that cards use.
     pub fn name(self) -> &'static str {
         name_of(&Self::NAMES, self)
+    }
+
+    /// λ − 1 from a strain of this measure.
+    pub fn to_nominal(self, strain: f64) -> f64 {
+        match self {
+            Self::Nominal => strain,
+            Self::Logarithmic => strain.exp_m1(),
+        }
+    }
+
+    /// A strain of this measure from λ − 1.
+    pub fn of_nominal(self, x: f64) -> f64 {
+        match self {
+            Self::Nominal => x,
+            Self::Logarithmic => x.ln_1p(),
+        }
     }
 }
 
@@ -71,49 +107,196 @@ fn name_of<T: PartialEq>(names: &[(&'static str, T)], choice: T) -> &'static str
     found.map_or("", |(name, _)| name)
 }
 
-/// The `[parameters]` table of a card together with the measures that it is to be read in.
+/// One parameter of a law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its key on a card.
+    pub key: &'static str,
+    /// Its value in the internal unit.
+    pub value: f64,
+    /// Its dimension; a ratio has no unit.
+    pub dimension: Dimension,
+    /// The values that it may take.
+    pub bound: Bound,
+    /// Where the values of usual materials lie, for a parameter that is no stress.
+    pub usual: [f64; 2],
+}
+
+impl Parameter {
+    /// The internal unit, or a dash.
+    pub fn unit(&self) -> &'static str {
+        match self.dimension {
+            Dimension::Ratio => "–",
+            other => other.internal_unit(),
+        }
+    }
+
+    /// Whether energy and stress are proportional to it, as they are to every parameter that is a stress.
+    pub fn is_stress(&self) -> bool {
+        self.dimension == Dimension::Stress
+    }
+}
+
+/// What a law asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Asked {
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// Its choices: key and name.
+    pub choices: Vec<(&'static str, String)>,
+}
+
+/// Where the values come from.
+#[derive(Debug)]
+enum Origin<'a> {
+    Card(Section<'a>),
+    Values(&'a [f64]),
+}
+
+/// What a law reads its parameters from: the `[parameters]` table of a card, or plain values in the order
+/// in which the law asks for them. In both cases it remembers what was asked for.
 #[derive(Debug)]
 pub struct Parameters<'a> {
-    section: Section<'a>,
+    origin: Origin<'a>,
     /// Stress measure of the card.
     pub stress_measure: StressMeasure,
     /// Strain measure of the card.
     pub strain_measure: StrainMeasure,
-    values: std::cell::RefCell<Vec<(&'static str, f64, &'static str)>>,
+    asked: RefCell<Vec<Parameter>>,
+    choices: RefCell<Vec<(&'static str, String)>>,
 }
 
 impl<'a> Parameters<'a> {
     /// Parameters from the card's section.
-    pub fn new(
+    pub fn of_card(
         section: Section<'a>,
         stress_measure: StressMeasure,
         strain_measure: StrainMeasure,
     ) -> Self {
+        Self::new(Origin::Card(section), stress_measure, strain_measure)
+    }
+
+    /// Parameters with the given values, in the order in which the law asks for them; missing ones are
+    /// not numbers.
+    pub fn of_values(
+        values: &'a [f64],
+        stress_measure: StressMeasure,
+        strain_measure: StrainMeasure,
+    ) -> Self {
+        Self::new(Origin::Values(values), stress_measure, strain_measure)
+    }
+
+    fn new(
+        origin: Origin<'a>,
+        stress_measure: StressMeasure,
+        strain_measure: StrainMeasure,
+    ) -> Self {
         Self {
-            section,
+            origin,
             stress_measure,
             strain_measure,
-            values: std::cell::RefCell::default(),
+            asked: RefCell::default(),
+            choices: RefCell::default(),
         }
     }
 
     /// A parameter with the dimension of a stress, in MPa.
     pub fn stress(&self, key: &'static str, bound: Bound) -> f64 {
-        let value = self.section.quantity(key, Dimension::Stress, bound);
-        self.values.borrow_mut().push((key, value, "MPa"));
-        value
+        self.ask(key, Dimension::Stress, bound, [f64::NAN; 2])
     }
 
-    /// A parameter without a dimension.
-    pub fn number(&self, key: &'static str, bound: Bound) -> f64 {
-        let value = self.section.number(key, bound);
-        self.values.borrow_mut().push((key, value, "–"));
-        value
+    /// A parameter without a dimension; the values of usual materials lie within `usual`.
+    pub fn number(&self, key: &'static str, bound: Bound, usual: [f64; 2]) -> f64 {
+        self.ask(key, Dimension::Ratio, bound, usual)
     }
 
-    /// Reports unknown keys and returns what was read: (key, value, unit).
-    pub fn finish(self) -> Vec<(&'static str, f64, &'static str)> {
-        self.section.unknown_keys();
-        self.values.into_inner()
+    /// An angle in rad.
+    pub fn angle(&self, key: &'static str, usual: [f64; 2]) -> f64 {
+        self.ask(key, Dimension::Angle, Bound::Any, usual)
+    }
+
+    /// A choice that a card states; the first one where there is no card.
+    pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&'static str, T)]) -> T {
+        let chosen = match &self.origin {
+            Origin::Card(section) => section
+                .choice(key, choices)
+                .and_then(|_| {
+                    let name = section.text(key);
+                    choices.iter().find(|(known, _)| *known == name)
+                })
+                .unwrap_or(&choices[0]),
+            Origin::Values(_) => &choices[0],
+        };
+        self.choices.borrow_mut().push((key, chosen.0.to_owned()));
+        chosen.1
+    }
+
+    /// A stress that a card may leave out and that does not act on the law.
+    pub fn remark(&self, key: &'static str) {
+        if let Origin::Card(section) = &self.origin
+            && section.has(key)
+        {
+            self.stress(key, Bound::Any);
+        }
+    }
+
+    /// Two lists of a card, strains and stresses in MPa; none where there is no card.
+    pub fn curve(&self) -> Vec<[f64; 2]> {
+        let Origin::Card(section) = &self.origin else {
+            return Vec::new();
+        };
+        let strains = section.quantities("strain", Dimension::Ratio, Bound::Any);
+        let stresses = section.quantities("stress", Dimension::Stress, Bound::Any);
+        if strains.len() != stresses.len() {
+            section.fault(
+                "stress",
+                &format!(
+                    "has {} values and strain has {}",
+                    stresses.len(),
+                    strains.len()
+                ),
+                "give one stress for each strain",
+            );
+        }
+        strains
+            .into_iter()
+            .zip(stresses)
+            .map(|(strain, stress)| [strain, stress])
+            .collect()
+    }
+
+    /// Records a fault about a key of the card.
+    pub fn fault(&self, key: &'static str, message: &str, hint: &str) {
+        if let Origin::Card(section) = &self.origin {
+            section.fault(key, message, hint);
+        }
+    }
+
+    /// Reports unknown keys and returns what was asked for.
+    pub fn finish(self) -> Asked {
+        if let Origin::Card(section) = &self.origin {
+            section.unknown_keys();
+        }
+        Asked {
+            parameters: self.asked.into_inner(),
+            choices: self.choices.into_inner(),
+        }
+    }
+
+    fn ask(&self, key: &'static str, dimension: Dimension, bound: Bound, usual: [f64; 2]) -> f64 {
+        let mut asked = self.asked.borrow_mut();
+        let value = match &self.origin {
+            Origin::Card(section) if dimension == Dimension::Ratio => section.number(key, bound),
+            Origin::Card(section) => section.quantity(key, dimension, bound),
+            Origin::Values(values) => values.get(asked.len()).copied().unwrap_or(f64::NAN),
+        };
+        asked.push(Parameter {
+            key,
+            value,
+            dimension,
+            bound,
+            usual,
+        });
+        value
     }
 }

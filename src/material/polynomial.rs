@@ -1,6 +1,6 @@
 //! Mooney–Rivlin laws of higher order.
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -58,7 +58,7 @@ impl Polynomial {
     }
 }
 
-impl HyperelasticLaw for Polynomial {
+impl InvariantLaw for Polynomial {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let (a, b) = (invariants.i1_minus_3, invariants.i2_minus_3);
         EnergyDerivatives {

@@ -1,60 +1,131 @@
 //! The laws and the shipped cards by name.
 
 use super::law::HyperelasticLaw;
-use super::parameters::Parameters;
+use super::marlow::{ExponentialCurve, TableCurve};
+use super::parameters::{Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::{
-    ArrudaBoyce, FungDemiray, Gent, MarlowExponential, MooneyRivlin, NeoHooke, Polynomial,
-    VerondaWestmann, Yeoh,
+    ArrudaBoyce, FungDemiray, Gent, HolzapfelGasserOgden, MooneyRivlin, NeoHooke, Ogden,
+    Polynomial, VerondaWestmann, Yeoh,
 };
 
-/// Builds a law from the parameters of a card.
-pub type LawReader = fn(&Parameters) -> Box<dyn HyperelasticLaw>;
+/// A law by name.
+#[derive(Debug)]
+pub struct Law {
+    /// Its name on a card.
+    pub name: &'static str,
+    /// Its energy.
+    pub formula: &'static str,
+    /// Builds the law from the parameters of a card.
+    pub read: fn(&Parameters) -> Box<dyn HyperelasticLaw>,
+}
 
-/// Every law: its name on a card, its formula, and how it is read.
-pub const LAWS: &[(&str, &str, LawReader)] = &[
-    ("neo-hooke", "Ψ = C₁₀ (I₁ − 3)", NeoHooke::from_card),
-    (
-        "mooney-rivlin",
-        "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3)",
-        MooneyRivlin::from_card,
-    ),
-    (
-        "mooney-rivlin-3",
-        "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₁₁ (I₁ − 3)(I₂ − 3)",
-        Polynomial::from_card_3,
-    ),
-    (
-        "mooney-rivlin-5",
-        "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₂₀ (I₁ − 3)² + C₁₁ (I₁ − 3)(I₂ − 3) + C₀₂ (I₂ − 3)²",
-        Polynomial::from_card_5,
-    ),
-    (
-        "yeoh",
-        "Ψ = C₁₀ (I₁ − 3) + C₂₀ (I₁ − 3)² + C₃₀ (I₁ − 3)³",
-        Yeoh::from_card,
-    ),
-    ("gent", "Ψ = −½ μ Jₘ ln(1 − (I₁ − 3)/Jₘ)", Gent::from_card),
-    (
-        "arruda-boyce",
-        "Ψ = μ Σ Cᵢ λₘ^(2 − 2i) (I₁ⁱ − 3ⁱ), five terms",
-        ArrudaBoyce::from_card,
-    ),
-    (
-        "fung-demiray",
-        "Ψ = μ/(2 b) (e^(b (I₁ − 3)) − 1)",
-        FungDemiray::from_card,
-    ),
-    (
-        "veronda-westmann",
-        "Ψ = C (e^(β (I₁ − 3)) − 1) − ½ C β (I₂ − 3)",
-        VerondaWestmann::from_card,
-    ),
-    (
-        "marlow-exponential",
-        "Ψ(I₁) from the tension curve A (e^(b ε) − 1)",
-        MarlowExponential::from_card,
-    ),
+impl Law {
+    /// The law of a name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        LAWS.iter().find(|law| law.name == name)
+    }
+
+    /// The law with parameter values in internal units, and what it asked for.
+    pub fn with_values(
+        &self,
+        values: &[f64],
+        stress_measure: StressMeasure,
+        strain_measure: StrainMeasure,
+    ) -> (Box<dyn HyperelasticLaw>, Vec<Parameter>) {
+        let parameters = Parameters::of_values(values, stress_measure, strain_measure);
+        let law = (self.read)(&parameters);
+        (law, parameters.finish().parameters)
+    }
+}
+
+/// Every law.
+pub const LAWS: &[Law] = &[
+    Law {
+        name: "neo-hooke",
+        formula: "Ψ = C₁₀ (I₁ − 3)",
+        read: NeoHooke::from_card,
+    },
+    Law {
+        name: "mooney-rivlin",
+        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3)",
+        read: MooneyRivlin::from_card,
+    },
+    Law {
+        name: "mooney-rivlin-3",
+        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₁₁ (I₁ − 3)(I₂ − 3)",
+        read: Polynomial::from_card_3,
+    },
+    Law {
+        name: "mooney-rivlin-5",
+        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₂₀ (I₁ − 3)² + C₁₁ (I₁ − 3)(I₂ − 3) + C₀₂ (I₂ − 3)²",
+        read: Polynomial::from_card_5,
+    },
+    Law {
+        name: "yeoh",
+        formula: "Ψ = C₁₀ (I₁ − 3) + C₂₀ (I₁ − 3)² + C₃₀ (I₁ − 3)³",
+        read: Yeoh::from_card,
+    },
+    Law {
+        name: "ogden-1",
+        formula: OGDEN,
+        read: Ogden::from_card::<1>,
+    },
+    Law {
+        name: "ogden-2",
+        formula: OGDEN,
+        read: Ogden::from_card::<2>,
+    },
+    Law {
+        name: "ogden-3",
+        formula: OGDEN,
+        read: Ogden::from_card::<3>,
+    },
+    Law {
+        name: "ogden-4",
+        formula: OGDEN,
+        read: Ogden::from_card::<4>,
+    },
+    Law {
+        name: "gent",
+        formula: "Ψ = −½ μ Jₘ ln(1 − (I₁ − 3)/Jₘ)",
+        read: Gent::from_card,
+    },
+    Law {
+        name: "arruda-boyce",
+        formula: "Ψ = μ Σ Cᵢ λₘ^(2 − 2i) (I₁ⁱ − 3ⁱ), five terms",
+        read: ArrudaBoyce::from_card,
+    },
+    Law {
+        name: "fung-demiray",
+        formula: "Ψ = μ/(2 b) (e^(b (I₁ − 3)) − 1)",
+        read: FungDemiray::from_card,
+    },
+    Law {
+        name: "veronda-westmann",
+        formula: "Ψ = C (e^(β (I₁ − 3)) − 1) − ½ C β (I₂ − 3)",
+        read: VerondaWestmann::from_card,
+    },
+    Law {
+        name: "marlow-exponential",
+        formula: "Ψ(I₁) from the tension curve A (e^(b ε) − 1)",
+        read: ExponentialCurve::from_card,
+    },
+    Law {
+        name: MARLOW_TABLE,
+        formula: "Ψ(I₁) from a measured tension curve",
+        read: TableCurve::from_card,
+    },
+    Law {
+        name: "holzapfel-gasser-ogden",
+        formula: "Ψ = μ/2 (I₁ − 3) + Σ k₁/(2 k₂) (e^(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1)",
+        read: HolzapfelGasserOgden::from_card,
+    },
 ];
+
+const OGDEN: &str = "Ψ = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)";
+
+/// The law that takes a measured curve as it is: there is nothing to fit.
+pub const MARLOW_TABLE: &str = "marlow-table";
 
 /// Every card that gelbench brings along: its name and its text.
 pub const CARDS: &[(&str, &str)] = &[

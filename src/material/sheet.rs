@@ -1,4 +1,4 @@
-//! The response of an incompressible thin sheet in plane stress, for every law.
+//! The kinematics of an incompressible thin sheet in plane stress, and the response of a law Ψ(I₁, I₂).
 //!
 //! ```text
 //! F = I + H  (2×2),   C = FᵀF,   J = det F > 0,   λ₃ = 1/J                        [–]
@@ -18,7 +18,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::law::{HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, Invariants};
 
 /// Displacement gradient components H₁₁, H₁₂, H₂₁, H₂₂ where Hᵢⱼ = ∂uᵢ/∂Xⱼ.
 pub type Gradient = Vector4<f64>;
@@ -35,9 +35,13 @@ pub struct Kinematics {
     /// F.
     pub deformation_gradient: Gradient,
     /// J − 1.
-    area_change: f64,
+    pub area_change: f64,
+    /// C − I: components 11, 12, 22.
+    pub stretch_change: [f64; 3],
+    /// F − cof F, which is zero at rest.
+    pub distortion: Gradient,
     /// ½ ∂I₁/∂F.
-    half_d1: Gradient,
+    pub half_d1: Gradient,
     /// ½ ∂I₂/∂F.
     half_d2: Gradient,
 }
@@ -54,6 +58,11 @@ pub struct SheetResponse {
 }
 
 impl Kinematics {
+    /// The sheet at rest.
+    pub fn rest() -> Self {
+        Self::new(&Gradient::zeros()).expect("J = 1 at rest")
+    }
+
     /// Kinematics of the displacement gradient `h`.
     ///
     /// # Errors
@@ -78,7 +87,7 @@ impl Kinematics {
         let s = j * (3.0 + j * (3.0 + j)) / jacobian.powi(3); // 1 − J⁻³
         let q = d / (1.0 + d); // 1 − J⁻²
         let m = j - a + s * (2.0 + a); // 1 + J − tr C/J³
-        let skew = h - cofactor_h;
+        let distortion = h - cofactor_h;
         Ok(Self {
             invariants: Invariants {
                 i1_minus_3: (a * d - determinant) / (1.0 + d),
@@ -86,8 +95,10 @@ impl Kinematics {
             },
             deformation_gradient: f,
             area_change: j,
-            half_d1: skew + s * cofactor,
-            half_d2: skew - q * f + m * cofactor,
+            stretch_change: [e11, e12, e22],
+            distortion,
+            half_d1: distortion + s * cofactor,
+            half_d2: distortion - q * f + m * cofactor,
         })
     }
 
@@ -115,15 +126,13 @@ impl Kinematics {
         ]
     }
 
-    /// Energy and stress.
-    pub fn stress(&self, law: &dyn HyperelasticLaw) -> (f64, Gradient) {
-        let w = law.evaluate(self.invariants);
+    /// Energy and stress of a law Ψ(I₁, I₂) with the derivatives `w`.
+    pub fn stress(&self, w: &EnergyDerivatives) -> (f64, Gradient) {
         (w.energy, 2.0 * (w.d1 * self.half_d1 + w.d2 * self.half_d2))
     }
 
-    /// Energy, stress and consistent tangent.
-    pub fn response(&self, law: &dyn HyperelasticLaw) -> SheetResponse {
-        let w = law.evaluate(self.invariants);
+    /// Energy, stress and consistent tangent of a law Ψ(I₁, I₂) with the derivatives `w`.
+    pub fn response(&self, w: &EnergyDerivatives) -> SheetResponse {
         let (g1, g2) = (&self.half_d1, &self.half_d2);
         let mixed = g1 * g2.transpose();
         let mut tangent = 4.0
@@ -142,7 +151,7 @@ impl Kinematics {
     }
 
     /// ½ ∂²I₁/∂F² = 𝟙 + 3 J⁻⁴ cof F ⊗ cof F − J⁻³ 𝔼, where 𝔼 = ∂ cof F/∂F.
-    fn second_derivative_1(&self) -> Matrix4<f64> {
+    pub fn second_derivative_1(&self) -> Matrix4<f64> {
         let jacobian = self.area_ratio();
         let cofactor = cofactor(&self.deformation_gradient);
         let outer = cofactor * cofactor.transpose();
@@ -169,7 +178,8 @@ fn identity() -> Gradient {
     Vector4::new(1.0, 0.0, 0.0, 1.0)
 }
 
-fn cofactor(f: &Gradient) -> Gradient {
+/// cof F = ∂J/∂F.
+pub fn cofactor(f: &Gradient) -> Gradient {
     Vector4::new(f[3], -f[2], -f[1], f[0])
 }
 

@@ -3,48 +3,22 @@
 //! A sheet is stable where every small increment of strain takes positive work:
 //!
 //! ```text
-//! dτ : dε > 0,   τᵢ = ∂Ψ/∂εᵢ,   εᵢ = ln λᵢ
-//! D = ∂τ/∂ε = Ψ₁ I₁″ + Ψ₂ I₂″ + Ψ₁₁ I₁′⊗I₁′ + Ψ₁₂ (I₁′⊗I₂′ + I₂′⊗I₁′) + Ψ₂₂ I₂′⊗I₂′      [MPa]
+//! dτ : dε > 0,   τ = P Fᵀ,   dF = dε F,   dε symmetric
+//! dτ = (𝔸 : (dε F)) Fᵀ + P (dε F)ᵀ = D : dε,   𝔸 = ∂P/∂F                              [MPa]
 //! ```
 //!
-//! D is the 2 × 2 plane-stress tangent by the in-plane principal strains, the thickness following from
-//! incompressibility. It has to be positive definite, which says more than a rising curve in one test.
+//! D is the plane-stress tangent of the Kirchhoff stress without spin, the thickness following from
+//! incompressibility; where the axes of strain stay, it is ∂τᵢ/∂εⱼ with εᵢ = ln λᵢ. It has to be positive
+//! definite, which says more than a rising curve in one test.
 //!
 //! # References
 //! D. C. Drucker, J. Appl. Mech. 26, 101 (1959), doi:10.1115/1.4011929
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Matrix3, Vector4};
 
-use super::law::{HyperelasticLaw, Invariants};
-
-/// The usual tests of a sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// λ₂ = λ₁^(−½).
-    Uniaxial,
-    /// λ₂ = 1.
-    Planar,
-    /// λ₂ = λ₁.
-    Equibiaxial,
-}
-
-impl Mode {
-    /// All tests with their names.
-    pub const ALL: [(&'static str, Self); 3] = [
-        ("uniaxial", Self::Uniaxial),
-        ("planar", Self::Planar),
-        ("equibiaxial", Self::Equibiaxial),
-    ];
-
-    /// ln λ₂ over ln λ₁.
-    fn ratio(self) -> f64 {
-        match self {
-            Self::Uniaxial => -0.5,
-            Self::Planar => 0.0,
-            Self::Equibiaxial => 1.0,
-        }
-    }
-}
+use super::curve::Mode;
+use super::law::HyperelasticLaw;
+use super::sheet::{Gradient, Kinematics};
 
 /// Stretches beyond which stability is not looked for.
 pub const SEARCHED: [f64; 2] = [0.1, 10.0];
@@ -58,7 +32,12 @@ pub fn stable_range(law: &dyn HyperelasticLaw, mode: Mode) -> [f64; 2] {
 /// The strain of the first state between rest and `end` that is not stable.
 fn stable_until(law: &dyn HyperelasticLaw, mode: Mode, end: f64) -> f64 {
     const STEPS: i32 = 1000;
-    let stable = |strain: f64| is_stable(law, [strain, mode.ratio() * strain]);
+    // Logarithmic strain along the first axis.
+    let stable = |strain: f64| {
+        mode.gradient(law, strain.exp_m1())
+            .and_then(|gradient| tangent(law, &gradient))
+            .is_some_and(|tangent| tangent.cholesky().is_some())
+    };
     let strain = |step: i32| end * f64::from(step) / f64::from(STEPS);
     let Some(first) = (1..=STEPS).find(|step| !stable(strain(*step))) else {
         return end;
@@ -75,29 +54,30 @@ fn stable_until(law: &dyn HyperelasticLaw, mode: Mode, end: f64) -> f64 {
     inside
 }
 
-fn is_stable(law: &dyn HyperelasticLaw, strains: [f64; 2]) -> bool {
-    let tangent = tangent(law, strains);
-    tangent[(0, 0)] > 0.0 && tangent.determinant() > 0.0
-}
-
-/// D at the principal logarithmic strains ε₁, ε₂.
-fn tangent(law: &dyn HyperelasticLaw, [e1, e2]: [f64; 2]) -> Matrix2<f64> {
-    // λᵢ² and λᵢ⁻², the last of the thickness.
-    let squares = [e1, e2, -e1 - e2].map(|strain| (2.0 * strain).exp());
-    let inverses = squares.map(|square| 1.0 / square);
-    let sum = |values: [f64; 3]| values.iter().sum::<f64>();
-    let w = law.evaluate(Invariants {
-        i1_minus_3: sum(squares) - 3.0,
-        i2_minus_3: sum(inverses) - 3.0,
+/// D at a displacement gradient by the components ε₁₁, ε₂₂ and √2 ε₁₂; nothing for inadmissible states.
+fn tangent(law: &dyn HyperelasticLaw, gradient: &Gradient) -> Option<Matrix3<f64>> {
+    let kinematics = Kinematics::new(gradient).ok()?;
+    let response = law.response(&kinematics);
+    let matrix = |v: &Gradient| Matrix2::new(v[0], v[1], v[2], v[3]);
+    let f = matrix(&kinematics.deformation_gradient);
+    let p = matrix(&response.first_piola_kirchhoff_stress);
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let strains = [
+        Matrix2::new(1.0, 0.0, 0.0, 0.0),
+        Matrix2::new(0.0, 0.0, 0.0, 1.0),
+        Matrix2::new(0.0, half, half, 0.0),
+    ];
+    let columns = strains.map(|strain| {
+        let df = strain * f;
+        let dp = response.tangent * Vector4::new(df[(0, 0)], df[(0, 1)], df[(1, 0)], df[(1, 1)]);
+        matrix(&dp) * f.transpose() + p * df.transpose()
     });
-    let first = |v: [f64; 3], sign: f64| 2.0 * sign * Vector2::new(v[0] - v[2], v[1] - v[2]);
-    let second = |v: [f64; 3]| 4.0 * Matrix2::new(v[0] + v[2], v[2], v[2], v[1] + v[2]);
-    let (g1, g2) = (first(squares, 1.0), first(inverses, -1.0));
-    w.d1 * second(squares)
-        + w.d2 * second(inverses)
-        + w.d11 * g1 * g1.transpose()
-        + w.d12 * (g1 * g2.transpose() + g2 * g1.transpose())
-        + w.d22 * g2 * g2.transpose()
+    let tangent =
+        Matrix3::from_fn(|row, column| columns[column].component_mul(&strains[row]).sum());
+    tangent
+        .iter()
+        .all(|entry| entry.is_finite())
+        .then_some(tangent)
 }
 
 #[cfg(test)]
@@ -108,15 +88,10 @@ mod tests {
     use crate::material::{Card, MooneyRivlin, NeoHooke, Polynomial, VerondaWestmann};
 
     /// Ψ at principal logarithmic strains.
-    fn energy(law: &dyn HyperelasticLaw, [e1, e2]: [f64; 2]) -> f64 {
-        let squares = [e1, e2, -e1 - e2].map(|strain| (2.0 * strain).exp());
-        let i1_minus_3 = squares.iter().sum::<f64>() - 3.0;
-        let i2_minus_3 = squares.iter().map(|square| 1.0 / square).sum::<f64>() - 3.0;
-        law.evaluate(Invariants {
-            i1_minus_3,
-            i2_minus_3,
-        })
-        .energy
+    fn energy(law: &dyn HyperelasticLaw, strains: [f64; 2]) -> f64 {
+        let [first, second] = strains.map(f64::exp_m1);
+        let kinematics = Kinematics::new(&Vector4::new(first, 0.0, 0.0, second)).unwrap();
+        law.stress(&kinematics).0
     }
 
     #[test]
@@ -129,7 +104,8 @@ mod tests {
             c02: 0.001,
         };
         let (at, step) = ([0.3, -0.1], 1e-4);
-        let found = tangent(&law, at);
+        let [first, second] = at.map(f64::exp_m1);
+        let found = tangent(&law, &Vector4::new(first, 0.0, 0.0, second)).unwrap();
         for (i, j) in [(0, 0), (0, 1), (1, 1)] {
             let value = |a: f64, b: f64| {
                 let mut strains = at;
@@ -185,7 +161,7 @@ mod tests {
         };
         let [_, high] = stable_range(&law, Mode::Uniaxial);
         assert!(high > 1.58 && high < 1.63, "{high}");
-        let slope = crate::material::uniaxial::uniaxial(&law, high - 1.0).slope;
+        let slope = law.tension([1.0, 0.0], high - 1.0).slope;
         assert!(slope > 0.0, "{slope}");
     }
 }

@@ -1,6 +1,6 @@
 //! The law of Veronda and Westmann.
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -35,12 +35,12 @@ impl VerondaWestmann {
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
         Box::new(Self {
             c: parameters.stress("c", Bound::Positive),
-            beta: parameters.number("beta", Bound::Positive),
+            beta: parameters.number("beta", Bound::Positive, [1e-3, 10.0]),
         })
     }
 }
 
-impl HyperelasticLaw for VerondaWestmann {
+impl InvariantLaw for VerondaWestmann {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let exponent = self.beta * invariants.i1_minus_3;
         let (growth, slope) = (exponent.exp(), self.c * self.beta);

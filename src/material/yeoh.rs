@@ -1,6 +1,6 @@
 //! Yeoh's law.
 
-use super::law::{EnergyDerivatives, HyperelasticLaw, Invariants};
+use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -40,7 +40,7 @@ impl Yeoh {
     }
 }
 
-impl HyperelasticLaw for Yeoh {
+impl InvariantLaw for Yeoh {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let ([c1, c2, c3], y) = (self.coefficients, invariants.i1_minus_3);
         EnergyDerivatives {

@@ -4,7 +4,8 @@ use super::picture::Scale;
 use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel};
 use super::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::compare::StepComparison;
-use crate::material::{Card, uniaxial};
+use crate::material::Card;
+use crate::material::curve::Mode;
 use crate::mesh::Mesh;
 use crate::problem::{Problem, Solution};
 use crate::results::Results;
@@ -90,9 +91,9 @@ pub fn material_chart(card: &Card) -> LineChart {
             .map(|i| [stretch(i), nominal_stress(stretch(i))])
             .collect()
     };
-    let tension = |stretch: f64| uniaxial::uniaxial(law, stretch - 1.0).nominal_stress;
+    let curve = |mode: Mode| move |stretch: f64| mode.nominal_stress(law, stretch - 1.0);
     // Equibiaxial tension is much stiffer: its curve ends where it would press the others flat.
-    let highest = samples(&tension)
+    let highest = samples(&curve(Mode::Uniaxial))
         .iter()
         .fold(0.0, |most: f64, point| most.max(1.6 * point[1]));
     let line = |label: &str, colour, stroke, points: Vec<[f64; 2]>| Line {
@@ -105,18 +106,23 @@ pub fn material_chart(card: &Card) -> LineChart {
         stroke,
     };
     let mut lines = vec![
-        line("uniaxial", CORRECTED, Stroke::Solid, samples(&tension)),
+        line(
+            "uniaxial",
+            CORRECTED,
+            Stroke::Solid,
+            samples(&curve(Mode::Uniaxial)),
+        ),
         line(
             "planar",
             SECOND,
             Stroke::Dashed,
-            samples(&|stretch| uniaxial::planar(law, stretch)),
+            samples(&curve(Mode::Planar)),
         ),
         line(
             "equibiaxial",
             THIRD,
             Stroke::Dashed,
-            samples(&|stretch| uniaxial::equibiaxial(law, stretch)),
+            samples(&curve(Mode::Equibiaxial)),
         ),
     ];
     if card.published_nominal_stress(1.0).is_some() {
@@ -151,7 +157,7 @@ pub fn comparison_chart(cards: &[Card]) -> LineChart {
     let line = |(index, card): (usize, &Card)| {
         let [low, high] = card.stretch_range;
         let stretch = |i: i32| low + (high - low) * f64::from(i) / 100.0;
-        let stress = |stretch: f64| uniaxial::uniaxial(&*card.law, stretch - 1.0).nominal_stress;
+        let stress = |stretch: f64| Mode::Uniaxial.nominal_stress(&*card.law, stretch - 1.0);
         Line {
             label: card.name.clone(),
             points: (0..=100)

@@ -5,8 +5,9 @@ use crate::compare::{Deviation, StepComparison};
 use crate::corrector::DifferenceScheme;
 use crate::finite_element::convergence::Richardson;
 use crate::material::Card;
+use crate::material::curve::Mode;
 use crate::material::law::HyperelasticLaw;
-use crate::material::stability::{Mode, SEARCHED, stable_range};
+use crate::material::stability::{SEARCHED, stable_range};
 use crate::problem::{Problem, Solution};
 use crate::results::{Requirement, Results};
 use crate::study::Study;
@@ -356,7 +357,15 @@ fn material(study: &Study) -> Vec<Block> {
         row("law", format!("{}: {}", card.law_name, card.formula)),
     ];
     let parameters = card.parameters.iter();
-    rows.extend(parameters.map(|(key, value, unit)| row(key, format!("{value} {unit}"))));
+    rows.extend(parameters.map(|parameter| {
+        let (value, unit) = (parameter.value, parameter.unit());
+        row(parameter.key, format!("{value} {unit}"))
+    }));
+    rows.extend(
+        card.choices
+            .iter()
+            .map(|(key, name)| row(key, name.clone())),
+    );
     rows.extend([
         row(
             "initial Young's modulus E₀",

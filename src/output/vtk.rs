@@ -135,7 +135,7 @@ fn material_state(problem: &Problem, mesh: &Mesh, displacement: &[f64]) -> Vec<A
         let gradient = mesh.gradient_at(displacement, cell, [0.0, 0.0]);
         let kinematics = Kinematics::new(&Vector4::from(gradient))
             .expect("cells with positive corners have a positive centre");
-        let (density, p) = kinematics.stress(&*problem.law);
+        let (density, p) = problem.law.stress(&kinematics);
         nominal.extend([p[0], p[2], 0.0, p[1], p[3], 0.0, 0.0, 0.0, 0.0]);
         let [s11, s12, s22] = kinematics.cauchy_stress(&p);
         cauchy.extend([s11, s12, 0.0, s12, s22, 0.0, 0.0, 0.0, 0.0]);

@@ -1,0 +1,129 @@
+//! The curves of the usual tests of a sheet, for every law.
+
+use nalgebra::{Matrix2, Vector2, Vector4};
+
+use super::law::{HyperelasticLaw, TensionResponse};
+use super::sheet::{Gradient, Kinematics, SheetResponse};
+
+/// The usual tests of a sheet, stretched by λ along its first axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Free edges: λ₂ = λ^(−½) where the law is isotropic.
+    Uniaxial,
+    /// λ₂ = 1 (pure shear).
+    Planar,
+    /// λ₂ = λ.
+    Equibiaxial,
+}
+
+impl Mode {
+    /// All tests with their names.
+    pub const ALL: [(&'static str, Self); 3] = [
+        ("uniaxial", Self::Uniaxial),
+        ("planar", Self::Planar),
+        ("equibiaxial", Self::Equibiaxial),
+    ];
+
+    /// The name of the test.
+    pub fn name(self) -> &'static str {
+        let found = Self::ALL.iter().find(|(_, mode)| *mode == self);
+        found.map_or("", |(name, _)| name)
+    }
+
+    /// The displacement gradient of the test at λ = 1 + `strain`; nothing where the edges of a strip find
+    /// no equilibrium.
+    pub fn gradient(self, law: &dyn HyperelasticLaw, strain: f64) -> Option<Gradient> {
+        match self {
+            Self::Uniaxial => free_edges(&|kinematics| law.response(kinematics), strain),
+            Self::Planar => Some(Vector4::new(strain, 0.0, 0.0, 0.0)),
+            Self::Equibiaxial => Some(Vector4::new(strain, 0.0, 0.0, strain)),
+        }
+    }
+
+    /// Nominal stress along the first axis at λ = 1 + `strain`, in MPa.
+    pub fn nominal_stress(self, law: &dyn HyperelasticLaw, strain: f64) -> f64 {
+        match self {
+            Self::Uniaxial => law.tension([1.0, 0.0], strain).nominal_stress,
+            Self::Planar => biaxial(law, [strain, 0.0])[0],
+            Self::Equibiaxial => biaxial(law, [strain, strain])[0],
+        }
+    }
+}
+
+/// Nominal stresses along both axes of a sheet stretched by 1 + ε₁ and 1 + ε₂ along them, in MPa.
+pub fn biaxial(law: &dyn HyperelasticLaw, [first, second]: [f64; 2]) -> [f64; 2] {
+    match Kinematics::new(&Vector4::new(first, 0.0, 0.0, second)) {
+        Ok(kinematics) => {
+            let (_, stress) = law.stress(&kinematics);
+            [stress[0], stress[3]]
+        }
+        Err(_) => [f64::NAN; 2],
+    }
+}
+
+/// Shear stress P₁₂ of simple shear, u₁ = γ X₂, by the amount of shear γ, in MPa.
+pub fn simple_shear(law: &dyn HyperelasticLaw, amount: f64) -> f64 {
+    match Kinematics::new(&Vector4::new(0.0, amount, 0.0, 0.0)) {
+        Ok(kinematics) => law.stress(&kinematics).1[1],
+        Err(_) => f64::NAN,
+    }
+}
+
+/// The displacement gradient of a strip along the first axis with free edges: H₁₁ = `strain`, H₂₁ = 0, and
+/// H₁₂, H₂₂ such that P₁₂ = P₂₂ = 0. Nothing where there is no such state.
+///
+/// Newton's method with halved steps from the contraction of an isotropic strip.
+pub fn free_edges(
+    response: &dyn Fn(&Kinematics) -> SheetResponse,
+    strain: f64,
+) -> Option<Gradient> {
+    let lateral = -strain / ((1.0 + strain) + (1.0 + strain).sqrt()); // λ^−½ − 1
+    let mut h = Vector4::new(strain, 0.0, 0.0, lateral);
+    let at = |h: &Gradient| Some(response(&Kinematics::new(h).ok()?));
+    let mut state = at(&h)?;
+    for _ in 0..60 {
+        let (stress, a) = (&state.first_piola_kirchhoff_stress, &state.tangent);
+        let block = Matrix2::new(a[(1, 1)], a[(1, 3)], a[(3, 1)], a[(3, 3)]);
+        let residual = Vector2::new(stress[1], stress[3]);
+        let step = block.try_inverse()? * residual;
+        if step.norm() <= 1e-15 * h.norm() {
+            return Some(h);
+        }
+        let shorter = |length: f64| {
+            let mut moved = h;
+            moved[1] -= length * step[0];
+            moved[3] -= length * step[1];
+            let tried = at(&moved)?;
+            let stress = tried.first_piola_kirchhoff_stress;
+            let smaller = stress[1].hypot(stress[3]) < residual.norm();
+            smaller.then_some((moved, tried))
+        };
+        match (0..30).find_map(|halvings| shorter(0.5_f64.powi(halvings))) {
+            Some(moved) => (h, state) = moved,
+            // Rounding alone is left, or there is no way on.
+            None => return (step.norm() <= 1e-9 * h.norm()).then_some(h),
+        }
+    }
+    None
+}
+
+/// The tension curve of a strip with free edges along the first axis, from the sheet's response: the
+/// slope is condensed over H₁₂ and H₂₂. Not numbers where the strip finds no equilibrium.
+pub fn tension(response: &dyn Fn(&Kinematics) -> SheetResponse, strain: f64) -> TensionResponse {
+    let condensed = || {
+        let state = response(&Kinematics::new(&free_edges(response, strain)?).ok()?);
+        let a = &state.tangent;
+        let block = Matrix2::new(a[(1, 1)], a[(1, 3)], a[(3, 1)], a[(3, 3)]);
+        let coupling = Vector2::new(a[(1, 0)], a[(3, 0)]);
+        Some(TensionResponse {
+            energy: state.energy,
+            nominal_stress: state.first_piola_kirchhoff_stress[0],
+            slope: a[(0, 0)] - coupling.dot(&(block.try_inverse()? * coupling)),
+        })
+    };
+    condensed().unwrap_or(TensionResponse {
+        energy: f64::NAN,
+        nominal_stress: f64::NAN,
+        slope: f64::NAN,
+    })
+}

@@ -1,0 +1,288 @@
+//! Tension curves from measured tables.
+
+use super::{Marlow, TensionCurve};
+use crate::material::law::HyperelasticLaw;
+use crate::material::parameters::{Parameters, StrainMeasure, StressMeasure};
+
+/// A measured tension curve, interpolated by cubics that rise wherever the points rise.
+///
+/// | card key | unit | admissible | meaning |
+/// |---|---|---|---|
+/// | `strain` | – | increasing, not below rest | strains of the points in the card's strain measure |
+/// | `stress` | stress | a rise from rest | stresses of the points in the card's stress measure |
+/// | `extrapolation` | | `"linear"`, `"none"` | beyond the last point: straight on, or no energy at all |
+///
+/// The points are turned into nominal stress P over x = λ − 1. A stress of the first point at rest is
+/// subtracted from all (`offset = "subtract"`); where the table begins above rest, rest is added with P = 0.
+/// P and dP/dx are continuous; the slopes at the points are those of Fritsch and Butland, so that the curve
+/// has no overshoot.
+///
+/// # References
+/// F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5, 300 (1984), doi:10.1137/0905021
+#[derive(Clone, Debug)]
+pub struct TableCurve {
+    knots: Vec<Knot>,
+    extrapolate: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Knot {
+    x: f64,
+    stress: f64,
+    slope: f64,
+    /// ∫ P dx from rest.
+    energy: f64,
+}
+
+impl TableCurve {
+    /// Reads the table of a card.
+    pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
+        let points = nominal_points(
+            &parameters.curve(),
+            parameters.stress_measure,
+            parameters.strain_measure,
+        );
+        let extrapolate = parameters.choice("extrapolation", &[("linear", true), ("none", false)]);
+        match Self::new(&points, extrapolate) {
+            Ok(curve) => Box::new(Marlow { curve }),
+            Err(reason) => {
+                let hint = "give increasing strains from rest on, and a stress that begins to rise";
+                parameters.fault("stress", &reason, hint);
+                let rest = [Knot::default(), Knot::default()];
+                let knots = rest.to_vec();
+                Box::new(Marlow {
+                    curve: Self { knots, extrapolate },
+                })
+            }
+        }
+    }
+
+    /// A curve through points x = λ − 1, P in MPa.
+    ///
+    /// # Errors
+    /// Says what is wrong with the points.
+    pub fn new(points: &[[f64; 2]], extrapolate: bool) -> Result<Self, String> {
+        let mut points = points.to_vec();
+        if points.is_empty() {
+            return Err("the curve has no points".into());
+        }
+        if let Some(bad) = points.iter().flatten().find(|value| !value.is_finite()) {
+            return Err(format!("{bad} is not a finite number"));
+        }
+        let [first, at_rest] = points[0];
+        if first < 0.0 {
+            return Err("the curve begins below rest".into());
+        }
+        if first > 0.0 {
+            points.insert(0, [0.0, 0.0]);
+        } else {
+            points.iter_mut().for_each(|point| point[1] -= at_rest);
+        }
+        if let Some(pair) = points.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+            return Err(format!(
+                "the strain does not increase: a stretch of {} follows {}",
+                1.0 + pair[1][0],
+                1.0 + pair[0][0]
+            ));
+        }
+        if points.len() < 2 {
+            return Err("the curve needs a point beside rest".into());
+        }
+        let slopes = slopes(&points);
+        if slopes[0] <= 0.0 {
+            return Err("the curve does not rise from rest".into());
+        }
+        let mut knots: Vec<Knot> = Vec::with_capacity(points.len());
+        for ([x, stress], slope) in points.into_iter().zip(slopes) {
+            let energy = knots.last().map_or(0.0, |last| {
+                let h = x - last.x;
+                last.energy + h * (last.stress + stress) / 2.0 + h * h * (last.slope - slope) / 12.0
+            });
+            knots.push(Knot {
+                x,
+                stress,
+                slope,
+                energy,
+            });
+        }
+        Ok(Self { knots, extrapolate })
+    }
+
+    /// P, dP/dx and the energy at x ≥ 0, and P/x without cancellation.
+    fn evaluate(&self, x: f64) -> ([f64; 3], f64) {
+        let last = self.knots[self.knots.len() - 1];
+        if x > last.x {
+            if !self.extrapolate {
+                return ([f64::NAN, f64::NAN, f64::INFINITY], f64::NAN);
+            }
+            let over = x - last.x;
+            let stress = last.stress + over * last.slope;
+            let energy = last.energy + over * (last.stress + stress) / 2.0;
+            return ([stress, last.slope, energy], stress / x);
+        }
+        let next = self.knots.partition_point(|knot| knot.x < x).max(1);
+        let (from, to) = (self.knots[next - 1], self.knots[next]);
+        let h = to.x - from.x;
+        let s = x - from.x;
+        // P = P₀ + s (d₀ + s (c₂ + s c₃))
+        let mean = (to.stress - from.stress) / h;
+        let c2 = (3.0 * mean - 2.0 * from.slope - to.slope) / h;
+        let c3 = (from.slope + to.slope - 2.0 * mean) / (h * h);
+        let rise = from.slope + s * (c2 + s * c3);
+        let stress = from.stress + s * rise;
+        let slope = from.slope + s * (2.0 * c2 + 3.0 * s * c3);
+        let energy = from.energy
+            + s * (from.stress + s * (from.slope / 2.0 + s * (c2 / 3.0 + s * c3 / 4.0)));
+        let secant = if next == 1 { rise } else { stress / x };
+        ([stress, slope, energy], secant)
+    }
+}
+
+impl Default for Knot {
+    fn default() -> Self {
+        Self {
+            x: f64::NAN,
+            stress: f64::NAN,
+            slope: f64::NAN,
+            energy: f64::NAN,
+        }
+    }
+}
+
+impl TensionCurve for TableCurve {
+    fn secant(&self, x: f64) -> (f64, f64) {
+        let ([_, slope, _], secant) = self.evaluate(x);
+        if x > 0.0 && x >= self.knots[1].x {
+            return (secant, (slope - secant) / x);
+        }
+        // In the first interval R = d₀ + x (c₂ + x c₃).
+        let (from, to) = (self.knots[0], self.knots[1]);
+        let h = to.x;
+        let mean = to.stress / h;
+        let c2 = (3.0 * mean - 2.0 * from.slope - to.slope) / h;
+        let c3 = (from.slope + to.slope - 2.0 * mean) / (h * h);
+        (secant, c2 + 2.0 * c3 * x)
+    }
+
+    fn energy(&self, x: f64) -> f64 {
+        self.evaluate(x).0[2]
+    }
+}
+
+/// Points (strain, stress) of some measures as (λ − 1, nominal stress).
+pub fn nominal_points(
+    points: &[[f64; 2]],
+    stress_measure: StressMeasure,
+    strain_measure: StrainMeasure,
+) -> Vec<[f64; 2]> {
+    let convert = |[strain, stress]: &[f64; 2]| {
+        let x = strain_measure.to_nominal(*strain);
+        [x, stress_measure.to_nominal(*stress, x)]
+    };
+    points.iter().map(convert).collect()
+}
+
+/// Slopes at the points: a weighted harmonic mean of the neighbours', zero at extrema.
+fn slopes(points: &[[f64; 2]]) -> Vec<f64> {
+    let widths: Vec<f64> = points.windows(2).map(|p| p[1][0] - p[0][0]).collect();
+    let means: Vec<f64> = points
+        .windows(2)
+        .zip(&widths)
+        .map(|(p, h)| (p[1][1] - p[0][1]) / h)
+        .collect();
+    let last = means.len() - 1;
+    if last == 0 {
+        return vec![means[0]; 2];
+    }
+    let mut slopes = vec![end_slope(widths[0], widths[1], means[0], means[1])];
+    for i in 1..=last {
+        let (before, after) = (means[i - 1], means[i]);
+        slopes.push(if before * after <= 0.0 {
+            0.0
+        } else {
+            let (w1, w2) = (
+                2.0 * widths[i] + widths[i - 1],
+                widths[i] + 2.0 * widths[i - 1],
+            );
+            (w1 + w2) / (w1 / before + w2 / after)
+        });
+    }
+    let end = end_slope(widths[last], widths[last - 1], means[last], means[last - 1]);
+    slopes.push(end);
+    slopes
+}
+
+/// Three-point slope at an end, kept within what leaves the curve monotone.
+fn end_slope(h: f64, next_h: f64, mean: f64, next_mean: f64) -> f64 {
+    let slope = ((2.0 * h + next_h) * mean - h * next_mean) / (h + next_h);
+    if slope * mean <= 0.0 {
+        // A curve that would begin flat has no modulus: the secant stands in.
+        mean
+    } else if mean * next_mean < 0.0 && slope.abs() > 3.0 * mean.abs() {
+        3.0 * mean
+    } else {
+        slope
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::HyperelasticLaw;
+
+    const POINTS: [[f64; 2]; 6] = [
+        [0.0, 0.002],
+        [0.1, 0.022],
+        [0.25, 0.04],
+        [0.6, 0.11],
+        [0.8, 0.11],
+        [1.2, 0.4],
+    ];
+
+    #[test]
+    fn the_law_goes_through_the_points_and_rises_where_they_rise() {
+        let law = Marlow {
+            curve: TableCurve::new(&POINTS, true).unwrap(),
+        };
+        let stress = |x: f64| law.tension([1.0, 0.0], x).nominal_stress;
+        for [x, p] in POINTS {
+            assert!((stress(x) - (p - 0.002)).abs() < 1e-15, "{x}");
+        }
+        let mut last = 0.0;
+        for i in 1..=1500 {
+            let next = stress(f64::from(i) * 1e-3);
+            assert!(next >= last - 1e-15, "falls at {i}");
+            last = next;
+        }
+    }
+
+    #[test]
+    fn stress_and_slope_are_derivatives_and_continuous() {
+        let curve = TableCurve::new(&POINTS, true).unwrap();
+        for x in [0.03, 0.1, 0.17, 0.25, 0.5, 0.7, 1.0, 1.2, 1.5] {
+            let [stress, slope, _] = curve.evaluate(x).0;
+            let step = 1e-6;
+            let [before, after] = [x - step, x + step].map(|x| curve.evaluate(x).0);
+            assert!(
+                ((after[2] - before[2]) / (2.0 * step) - stress).abs() < 1e-9,
+                "{x}"
+            );
+            assert!(
+                ((after[0] - before[0]) / (2.0 * step) - slope).abs() < 1e-5,
+                "{x}"
+            );
+        }
+    }
+
+    #[test]
+    fn bad_tables_are_refused_with_a_reason() {
+        let reason = |points: &[[f64; 2]]| TableCurve::new(points, true).unwrap_err();
+        assert!(reason(&[]).contains("no points"));
+        assert!(reason(&[[0.0, 0.0]]).contains("beside rest"));
+        assert!(reason(&[[0.2, 0.1], [0.1, 0.2]]).contains("does not increase"));
+        assert!(reason(&[[0.1, -0.1], [0.2, -0.2]]).contains("rise"));
+        assert!(reason(&[[0.1, f64::NAN]]).contains("finite"));
+        let ends = TableCurve::new(&POINTS, false).unwrap();
+        assert!(!ends.energy(1.21).is_finite() && ends.energy(1.2).is_finite());
+    }
+}

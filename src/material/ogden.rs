@@ -1,0 +1,225 @@
+//! Ogden's law.
+
+use super::law::{HyperelasticLaw, TensionResponse};
+use super::parameters::Parameters;
+use super::sheet::{Gradient, Kinematics, SheetResponse, cofactor, cofactor_derivative};
+use crate::document::Bound;
+
+/// Ogden's law: powers of the principal stretches.
+///
+/// ```text
+/// Ψ = Σᵢ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)                      [MPa = N·mm/mm³]
+/// ```
+///
+/// | symbol | card key | unit | admissible | meaning |
+/// |---|---|---|---|---|
+/// | μᵢ | `mu_1` … | MPa | any | share of the initial shear modulus |
+/// | αᵢ | `alpha_1` … | – | not 0 | exponents |
+/// | | `convention` | | `"2mu/alpha^2"`, `"mu/alpha"` | the factor before each sum |
+///
+/// With `convention = "mu/alpha"` the card's μᵢ are those of Ψ = Σ μᵢ/αᵢ (…), as Ogden wrote it; they become
+/// μᵢ αᵢ/2 here.
+///
+/// **Derivation.** With m = ln J and z = (tr C − 2J)/(2J) = cosh(ln λ₁/λ₂) − 1 a term is
+///
+/// ```text
+/// 2 μ/α² (2 e^{αm/2} T + e^{−αm} − 3),   T(z) = cosh(½ α arcosh(1 + z))
+/// ```
+///
+/// T is Chebyshev's function of the order α/2: smooth in z where the two stretches are equal, so no
+/// eigenvectors are needed. tr C − 2J is a sum of squares, and differences of exponentials are written
+/// with expm1: no digit is lost near rest. T′ = α sinh(αδ)/(2 sinh 2δ) with z = 2 sinh²δ, and
+/// T″ follows from z (2 + z) T″ + (1 + z) T′ = (α/2)² T.
+///
+/// **Limits.** One term with α = 2: neo-Hooke; terms with α = 2 and −2: Mooney–Rivlin. Small strain: μ₀ = Σ μᵢ
+/// in the first convention. A term is stable when μᵢ > 0 (Hill).
+/// **Not covered.** Fits are not unique: very different parameters may follow the same curve and differ
+/// elsewhere (Ogden, Saccomandi, Sgura 2004).
+///
+/// # References
+/// R. W. Ogden, Proc. R. Soc. Lond. A 326, 565 (1972), doi:10.1098/rspa.1972.0026;
+/// R. W. Ogden, G. Saccomandi, I. Sgura, Comput. Mech. 34, 484 (2004), doi:10.1007/s00466-004-0593-y
+#[derive(Clone, Debug)]
+pub struct Ogden {
+    /// μᵢ in MPa and αᵢ of each term, for the factor 2 μ/α².
+    pub terms: Vec<[f64; 2]>,
+}
+
+/// The factor before the sum of powers.
+#[derive(Clone, Copy, Debug)]
+enum Convention {
+    TwoMuByAlphaSquared,
+    MuByAlpha,
+}
+
+const KEYS: [[&str; 2]; 4] = [
+    ["mu_1", "alpha_1"],
+    ["mu_2", "alpha_2"],
+    ["mu_3", "alpha_3"],
+    ["mu_4", "alpha_4"],
+];
+
+impl Ogden {
+    /// Reads the parameters of a card with `N` terms.
+    pub fn from_card<const N: usize>(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
+        let conventions = [
+            ("2mu/alpha^2", Convention::TwoMuByAlphaSquared),
+            ("mu/alpha", Convention::MuByAlpha),
+        ];
+        let convention = parameters.choice("convention", &conventions);
+        let term = |[mu, alpha]: [&'static str; 2]| {
+            let mu = parameters.stress(mu, Bound::Any);
+            let exponent = parameters.number(alpha, Bound::Within(-50.0, 50.0), [-8.0, 12.0]);
+            if exponent == 0.0 {
+                parameters.fault(alpha, "must not be zero", "a power of zero has no energy");
+            }
+            match convention {
+                Convention::TwoMuByAlphaSquared => [mu, exponent],
+                Convention::MuByAlpha => [mu * exponent / 2.0, exponent],
+            }
+        };
+        Box::new(Self {
+            terms: KEYS[..N].iter().map(|keys| term(*keys)).collect(),
+        })
+    }
+}
+
+/// Ψ and its derivatives by m and z.
+#[derive(Default)]
+struct Derivatives {
+    energy: f64,
+    m: f64,
+    z: f64,
+    mm: f64,
+    mz: f64,
+    zz: f64,
+}
+
+/// m, z and their derivatives by F.
+struct Measures {
+    m: f64,
+    z: f64,
+    jacobian: f64,
+    cofactor: Gradient,
+    dm: Gradient,
+    dz: Gradient,
+}
+
+impl Measures {
+    fn new(kinematics: &Kinematics) -> Self {
+        let f = &kinematics.deformation_gradient;
+        let jacobian = kinematics.area_ratio();
+        let cofactor = cofactor(f);
+        // Half the squared norm of F − cof F is tr C − 2J.
+        let distortion = &kinematics.distortion;
+        let z = distortion.norm_squared() / (4.0 * jacobian);
+        Self {
+            m: kinematics.area_change.ln_1p(),
+            z,
+            jacobian,
+            cofactor,
+            dm: cofactor / jacobian,
+            dz: (distortion - z * cofactor) / jacobian,
+        }
+    }
+}
+
+impl Ogden {
+    fn derivatives(&self, m: f64, z: f64) -> Derivatives {
+        let mut sum = Derivatives::default();
+        let delta = (0.5 * z).sqrt().asinh();
+        for [mu, alpha] in &self.terms {
+            let half = 0.5 * alpha;
+            let grown = half * m;
+            let (t_minus_1, t, dt, ddt) = chebyshev(half, z, delta);
+            let a = grown.exp_m1();
+            let (growth, shrink) = (1.0 + a, (-2.0 * grown).exp());
+            let factor = 2.0 * mu / (alpha * alpha);
+            sum.energy +=
+                factor * (2.0 * growth * t_minus_1 + a * a * (3.0 + 2.0 * a) / (growth * growth));
+            sum.m += factor * alpha * (growth * t_minus_1 + shrink * (3.0 * grown).exp_m1());
+            sum.z += 2.0 * factor * growth * dt;
+            sum.mm += 2.0 * mu * (0.5 * growth * t + shrink);
+            sum.mz += factor * alpha * growth * dt;
+            sum.zz += 2.0 * factor * growth * ddt;
+        }
+        sum
+    }
+}
+
+/// T − 1, T, T′ and T″ of the order `n` at z = 2 sinh²δ.
+fn chebyshev(n: f64, z: f64, delta: f64) -> (f64, f64, f64, f64) {
+    let t_minus_1 = 2.0 * (n * delta).sinh().powi(2);
+    let t = 1.0 + t_minus_1;
+    let square = n * n;
+    if z < 1e-4 {
+        // T″ is multiplied by terms of the order of z: two terms of the series are exact there.
+        let second = square * (square - 1.0) / 3.0;
+        let ddt = second * (1.0 + (square - 4.0) * z / 5.0);
+        let dt = square + second * z * (1.0 + (square - 4.0) * z / 10.0);
+        return (t_minus_1, t, dt, ddt);
+    }
+    let dt = n * (2.0 * n * delta).sinh() / (2.0 * delta).sinh();
+    let ddt = (square * t - (1.0 + z) * dt) / (z * (2.0 + z));
+    (t_minus_1, t, dt, ddt)
+}
+
+impl HyperelasticLaw for Ogden {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+        let measures = Measures::new(kinematics);
+        let w = self.derivatives(measures.m, measures.z);
+        (w.energy, w.m * measures.dm + w.z * measures.dz)
+    }
+
+    fn response(&self, kinematics: &Kinematics) -> SheetResponse {
+        let at = Measures::new(kinematics);
+        let w = self.derivatives(at.m, at.z);
+        let mixed = at.dm * at.dz.transpose();
+        let turned = at.dz * at.cofactor.transpose();
+        let e = cofactor_derivative();
+        let identity = nalgebra::Matrix4::identity();
+        // ∂²m = 𝔼/J − ∂m ⊗ ∂m;  ∂²z = (𝟙 − 𝔼)/J − z 𝔼/J − (∂z ⊗ cof F + cof F ⊗ ∂z)/J
+        let d2m = e / at.jacobian - at.dm * at.dm.transpose();
+        let d2z = (identity - e * (1.0 + at.z) - turned - turned.transpose()) / at.jacobian;
+        SheetResponse {
+            energy: w.energy,
+            first_piola_kirchhoff_stress: w.m * at.dm + w.z * at.dz,
+            tangent: w.mm * at.dm * at.dm.transpose()
+                + w.mz * (mixed + mixed.transpose())
+                + w.zz * at.dz * at.dz.transpose()
+                + w.m * d2m
+                + w.z * d2z,
+        }
+    }
+
+    /// ```text
+    /// P = Σ 2 μ/α (λ^α − λ^(−α/2))/λ
+    /// ```
+    fn tension(&self, _: [f64; 2], strain: f64) -> TensionResponse {
+        let (logarithm, stretch) = (strain.ln_1p(), 1.0 + strain);
+        let mut energy = 0.0;
+        // τ = dΨ/dε with ε = ln λ, and dτ/dε.
+        let (mut tau, mut slope) = (0.0, 0.0);
+        for [mu, alpha] in &self.terms {
+            let b = (-0.5 * alpha * logarithm).exp_m1();
+            let lateral = 1.0 + b;
+            energy += 2.0 * mu / (alpha * alpha) * b * b * (3.0 + 2.0 * b) / (lateral * lateral);
+            tau += 2.0 * mu / alpha * lateral * (1.5 * alpha * logarithm).exp_m1();
+            slope += mu * (2.0 / (lateral * lateral) + lateral);
+        }
+        TensionResponse {
+            energy,
+            nominal_stress: tau / stretch,
+            slope: (slope - tau) / (stretch * stretch),
+        }
+    }
+
+    /// μ₀ = Σ μᵢ.
+    fn shear_modulus(&self) -> f64 {
+        self.terms.iter().map(|[mu, _]| mu).sum()
+    }
+
+    fn youngs_modulus(&self) -> f64 {
+        3.0 * self.shear_modulus()
+    }
+}
