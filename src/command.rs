@@ -16,13 +16,13 @@ use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::error::{Diagnostic, Error};
-use crate::material::Card;
-use crate::material::registry::CARDS;
 use crate::problem::Problem;
 use crate::study::{self, DEFAULT, Study};
 use crate::validation::{self, Case, Computed};
 use crate::{output, run};
 
+mod fit_message;
+mod materials;
 mod message;
 
 const SAMPLES: &str = "\
@@ -33,6 +33,7 @@ Samples:
   gelbench validate                          redo the publication's claims, write validation/REPORT.md
   gelbench materials list                    the cards that come along
   gelbench materials show pva-10             one card with its moduli and its source
+  gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the best as a card
 
 Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write.";
 
@@ -81,41 +82,10 @@ enum Command {
         #[arg(long, value_name = "FOLDER")]
         output: Option<PathBuf>,
     },
-    /// Look at material cards
+    /// Look at material cards, fit laws to measured curves, convert test data
     Materials {
         #[command(subcommand)]
-        command: Materials,
-    },
-}
-
-#[derive(Subcommand)]
-enum Materials {
-    /// List the cards that come along
-    List,
-    /// Show one card: law, parameters, moduli, range, source
-    #[command(after_help = "Sample: gelbench materials show pva-10")]
-    Show {
-        /// Name of a card that comes along, or path of one ending in .toml
-        card: String,
-    },
-    /// Draw the curves of a card: uniaxial, planar and equibiaxial tension
-    #[command(after_help = "Sample: gelbench materials plot pva-10    writes pva-10.png")]
-    Plot {
-        /// Name of a card that comes along, or path of one ending in .toml
-        card: String,
-        /// The picture; the card's name with .png where it is not given
-        #[arg(long, value_name = "FILE")]
-        output: Option<PathBuf>,
-    },
-    /// Draw the uniaxial curves of several cards in one picture and tell their moduli
-    #[command(after_help = "Sample: gelbench materials compare pva-10 pva-10-cauchy neo-hooke")]
-    Compare {
-        /// Names of cards that come along, or paths of ones ending in .toml
-        #[arg(required = true, num_args = 2..)]
-        cards: Vec<String>,
-        /// The picture
-        #[arg(long, value_name = "FILE", default_value = "materials.png")]
-        output: PathBuf,
+        command: materials::Materials,
     },
 }
 
@@ -139,12 +109,7 @@ pub fn main() -> ExitCode {
             quick,
             output,
         } => validate(&cases, quick, output),
-        Command::Materials { command } => match command {
-            Materials::List => list_cards(),
-            Materials::Show { card } => show_card(&card),
-            Materials::Plot { card, output } => plot_card(&card, output),
-            Materials::Compare { cards, output } => compare_cards(&cards, &output),
-        },
+        Command::Materials { command } => materials::run(command),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),
@@ -292,49 +257,6 @@ fn new_study(name: PathBuf) -> Outcome {
     print(&format!(
         "{shown} written; compute it with: gelbench run {shown}\n"
     ))?;
-    Ok(0)
-}
-
-fn list_cards() -> Outcome {
-    let mut text = String::new();
-    for (name, _) in CARDS {
-        text += &message::card_line(&Card::load(name, Path::new("."))?);
-    }
-    print(&text)?;
-    Ok(0)
-}
-
-fn show_card(name: &str) -> Outcome {
-    print(&message::card(&Card::load(name, Path::new("."))?))?;
-    Ok(0)
-}
-
-fn plot_card(name: &str, file: Option<PathBuf>) -> Outcome {
-    let card = Card::load(name, Path::new("."))?;
-    let stem = Path::new(name)
-        .file_stem()
-        .map_or_else(PathBuf::new, PathBuf::from);
-    let file = file.unwrap_or_else(|| stem.with_extension("png"));
-    output::save(&file, &output::material_chart(&card).png())?;
-    print(&format!("{} written\n", file.display()))?;
-    Ok(0)
-}
-
-fn compare_cards(names: &[String], file: &Path) -> Outcome {
-    let (mut cards, mut faults) = (Vec::new(), Vec::new());
-    for name in names {
-        match Card::load(name, Path::new(".")) {
-            Ok(card) => cards.push(card),
-            Err(Error::Input(found)) => faults.extend(found),
-            Err(other) => return Err(other),
-        }
-    }
-    if !faults.is_empty() {
-        return Err(Error::Input(faults));
-    }
-    output::save(file, &output::comparison_chart(&cards).png())?;
-    let lines: String = cards.iter().map(message::moduli_line).collect();
-    print(&format!("{lines}{} written\n", file.display()))?;
     Ok(0)
 }
 

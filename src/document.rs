@@ -82,6 +82,11 @@ impl<'a> Document<'a> {
     }
 }
 
+/// A text in quotes, as a document has it.
+pub fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
 /// The values that a number may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {

@@ -8,6 +8,7 @@ use crate::results::Results;
 use crate::study::Study;
 
 mod figures;
+mod fit;
 mod html;
 mod json;
 mod markdown;
@@ -16,6 +17,7 @@ mod report;
 mod vtk;
 
 pub use figures::{Figure, comparison_chart, material_chart};
+pub use fit::{fit_json, fit_picture};
 pub use report::Block;
 
 /// Writes everything a study asks for into its folder and returns the files in the order of writing.

@@ -10,6 +10,8 @@ use std::fmt;
 pub enum Dimension {
     /// Internal unit mm.
     Length,
+    /// Internal unit mm².
+    Area,
     /// Internal unit N.
     Force,
     /// Internal unit MPa = N/mm².
@@ -33,6 +35,10 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("um", Dimension::Length, 1e-3),
     ("µm", Dimension::Length, 1e-3),
     ("in", Dimension::Length, 25.4),
+    ("mm^2", Dimension::Area, 1.0),
+    ("cm^2", Dimension::Area, 100.0),
+    ("m^2", Dimension::Area, 1e6),
+    ("in^2", Dimension::Area, 645.16),
     ("N", Dimension::Force, 1.0),
     ("mN", Dimension::Force, 1e-3),
     ("kN", Dimension::Force, 1e3),
@@ -65,6 +71,7 @@ impl Dimension {
     pub fn name(self) -> &'static str {
         match self {
             Self::Length => "length",
+            Self::Area => "area",
             Self::Force => "force",
             Self::Stress => "stress",
             Self::Density => "density",
@@ -86,6 +93,7 @@ impl Dimension {
     pub fn internal_unit(self) -> &'static str {
         match self {
             Self::Length => "mm",
+            Self::Area => "mm^2",
             Self::Force => "N",
             Self::Stress => "MPa",
             Self::Density => "tonne/mm^3",
@@ -99,6 +107,7 @@ impl Dimension {
     pub fn example(self) -> &'static str {
         match self {
             Self::Length => "\"2 mm\"",
+            Self::Area => "\"20 mm^2\"",
             Self::Force => "\"1.5 N\"",
             Self::Stress => "\"0.0611 MPa\"",
             Self::Density => "\"1020 kg/m^3\"",

@@ -8,7 +8,7 @@ const LAYERS: &[&[&str]] = &[
     &["error", "units"],
     &["document"],
     &["mesh", "material", "solve"],
-    &["problem", "sheet_energy"],
+    &["problem", "sheet_energy", "calibration"],
     &["mass_spring", "finite_element"],
     &["corrector"],
     &["compare"],
@@ -27,9 +27,11 @@ const SINGLE_DOORS: &[(&str, &str)] = &[
     ("plotters::", "src/output/picture"),
     ("resvg::", "src/output/picture"),
     ("maud::", "src/output/html.rs"),
-    ("clap::", "src/command.rs"),
+    ("clap::", "src/command"),
     ("miette::", "src/command"),
     ("toml::", "src/document"),
+    ("csv::", "src/calibration/table.rs"),
+    ("rmpfit::", "src/calibration/least_squares.rs"),
 ];
 
 fn layer(module: &str) -> Option<usize> {

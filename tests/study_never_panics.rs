@@ -1,9 +1,10 @@
-//! No text makes the reading of a study or of a card panic.
+//! No text makes the reading of a study, of a card or of test data panic.
 
 use std::path::Path;
 
+use gelbench::calibration::{FitSettings, Reading, TestData, fit};
 use gelbench::material::Card;
-use gelbench::material::registry::CARDS;
+use gelbench::material::registry::{CARDS, DATA, Law};
 use gelbench::study::{DEFAULT, Study};
 use gelbench::validation::{CASES, case_of};
 use proptest::prelude::*;
@@ -40,5 +41,14 @@ proptest! {
     #[test]
     fn cards(card in 0..CARDS.len(), at in 0_usize..10_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}") {
         let _ = Card::parse("name", "name.toml", &damaged(CARDS[card].1, at, length, &piece));
+    }
+
+    #[test]
+    fn test_data(file in 0..DATA.len(), at in 0_usize..3_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}|\\PC{0,6}") {
+        let text = damaged(DATA[file].1, at, length, &piece);
+        if let Ok(data) = TestData::parse("name.csv", &text, &Reading::new()) {
+            let law = Law::named("neo-hooke").unwrap();
+            let _ = fit(law, &[data], &FitSettings::default());
+        }
     }
 }

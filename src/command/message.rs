@@ -6,6 +6,7 @@ use miette::{
     GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report,
 };
 
+use super::fit_message;
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
 use crate::material::curve::Mode;
@@ -139,7 +140,7 @@ pub fn card_line(card: &Card) -> String {
     let [low, high] = card.stretch_range;
     let range = format!("λ {low} … {high}");
     format!(
-        "{:<16} {:<20} {range:<12} {}\n",
+        "{:<18} {:<20} {range:<20} {}\n",
         card.name, card.law_name, card.title
     )
 }
@@ -151,7 +152,12 @@ pub fn moduli_line(card: &Card) -> String {
 
 fn moduli(card: &Card) -> String {
     let (young, shear) = (card.law.youngs_modulus(), card.law.shear_modulus());
-    format!("E₀ = {young:.6} MPa, μ₀ = {shear:.6} MPa")
+    let along = if card.law.is_isotropic() {
+        ""
+    } else {
+        " along the first axis"
+    };
+    format!("E₀ = {young:.6} MPa{along}, μ₀ = {shear:.6} MPa")
 }
 
 /// Everything about a card.
@@ -183,6 +189,7 @@ pub fn card(card: &Card) -> String {
             "  stable     λ = {low:.3} … {high:.3} in {name} tests (Drucker, looked for from {first} to {last})\n"
         );
     }
+    text += &fit_message::curves(&*card.law, card.stretch_range, &|_| "");
     text += &format!(
         "  specimen   {}\n  source     {}\n",
         card.specimen, card.citation

@@ -102,6 +102,19 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A list of texts.
+    pub fn texts(&self, key: &'static str) -> Vec<String> {
+        let text = |value: &DeValue<'_>| match value {
+            DeValue::String(text) => Some(text.to_string()),
+            _ => None,
+        };
+        self.read(key, "a list of texts in quotes", |value| match value {
+            DeValue::Array(items) => items.iter().map(|item| text(item.get_ref())).collect(),
+            _ => None,
+        })
+        .unwrap_or_default()
+    }
+
     /// A truth value.
     pub fn flag(&self, key: &'static str) -> bool {
         self.read(key, "true or false", |value| match value {

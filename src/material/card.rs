@@ -7,7 +7,7 @@ use super::curve::Mode;
 use super::law::HyperelasticLaw;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS};
-use crate::document::{Bound, Document, Faults};
+use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
@@ -46,8 +46,25 @@ pub struct Card {
     pub specimen: String,
     /// Anything a user must know; may be empty.
     pub note: String,
+    /// How the card was fitted; nothing where it was not.
+    pub fit: Option<FitRecord>,
     /// The card's text as it was read.
     pub text: String,
+}
+
+/// What a card needs to be fitted again.
+#[derive(Clone, Debug)]
+pub struct FitRecord {
+    /// The files of test data, relative to the card.
+    pub data: Vec<String>,
+    /// What the files do not say: `key: value`.
+    pub reading: Vec<String>,
+    /// The weighting's name.
+    pub weighting: String,
+    /// How many starts were improved.
+    pub starts: usize,
+    /// Bounds as `key=low..high`.
+    pub bounds: Vec<String>,
 }
 
 impl Card {
@@ -122,6 +139,7 @@ impl Card {
         let specimen = source.text("specimen");
         let note = source.optional_text("note");
         source.unknown_keys();
+        let fit = root.has("fit").then(|| read_fit(&root.section("fit")));
         let parameters = root.section("parameters");
         root.unknown_keys();
         let Some(law_entry) = law else {
@@ -148,6 +166,7 @@ impl Card {
             doi,
             specimen,
             note,
+            fit,
             text: text.to_owned(),
         })
     }
@@ -200,6 +219,25 @@ impl Card {
     pub fn covers(&self, lambda: f64) -> bool {
         (self.stretch_range[0]..=self.stretch_range[1] * (1.0 + 1e-12)).contains(&lambda)
     }
+}
+
+fn read_fit(section: &Section) -> FitRecord {
+    let optional = |key: &'static str| {
+        if section.has(key) {
+            section.texts(key)
+        } else {
+            Vec::new()
+        }
+    };
+    let record = FitRecord {
+        data: section.texts("data"),
+        reading: optional("reading"),
+        weighting: section.text("weighting"),
+        starts: section.count("starts", 1, 1000),
+        bounds: optional("bounds"),
+    };
+    section.unknown_keys();
+    record
 }
 
 fn unknown_card(name: &str) -> Diagnostic {

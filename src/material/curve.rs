@@ -69,6 +69,40 @@ pub fn simple_shear(law: &dyn HyperelasticLaw, amount: f64) -> f64 {
     }
 }
 
+/// Points of the curves of a law: five values of λ, and of 1 + γ in simple shear, with nominal stresses in MPa.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The test; nothing for simple shear.
+    pub mode: Option<Mode>,
+    /// λ or 1 + γ, and nominal stress.
+    pub points: [[f64; 2]; 5],
+}
+
+impl Sample {
+    /// The name of the test.
+    pub fn name(&self) -> &'static str {
+        self.mode.map_or("shear", Mode::name)
+    }
+}
+
+/// The curves of a law from rest to the far end of a range of stretches.
+pub fn samples(law: &dyn HyperelasticLaw, [low, high]: [f64; 2]) -> Vec<Sample> {
+    let far = if high > 1.0 { high } else { low };
+    let strain = |i: usize| (far - 1.0) * (i + 1) as f64 / 5.0;
+    let modes = Mode::ALL.map(|(_, mode)| Some(mode)).into_iter();
+    let sample = |mode: Option<Mode>| {
+        let stress = |x: f64| match mode {
+            Some(mode) => mode.nominal_stress(law, x),
+            None => simple_shear(law, x),
+        };
+        Sample {
+            mode,
+            points: std::array::from_fn(|i| [1.0 + strain(i), stress(strain(i))]),
+        }
+    };
+    modes.chain([None]).map(sample).collect()
+}
+
 /// The displacement gradient of a strip along the first axis with free edges: H₁₁ = `strain`, H₂₁ = 0, and
 /// H₁₂, H₂₂ such that P₁₂ = P₂₂ = 0. Nothing where there is no such state.
 ///

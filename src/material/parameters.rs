@@ -61,6 +61,16 @@ impl StressMeasure {
     }
 }
 
+impl StressMeasure {
+    /// Its name at the beginning of a title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Cauchy => "Cauchy",
+        }
+    }
+}
+
 impl StrainMeasure {
     /// The names that cards use.
     pub const NAMES: [(&'static str, Self); 2] = [

@@ -2,11 +2,31 @@
 
 use super::law::HyperelasticLaw;
 use super::marlow::{ExponentialCurve, TableCurve};
-use super::parameters::{Parameter, Parameters, StrainMeasure, StressMeasure};
+use super::parameters::{Asked, Parameters, StrainMeasure, StressMeasure};
 use super::{
     ArrudaBoyce, FungDemiray, Gent, HolzapfelGasserOgden, MooneyRivlin, NeoHooke, Ogden,
     Polynomial, VerondaWestmann, Yeoh,
 };
+
+/// A file of test data by its stem.
+macro_rules! data {
+    ($stem:literal) => {
+        (
+            concat!("data/", $stem, ".csv"),
+            include_str!(concat!("../../materials/data/", $stem, ".csv")),
+        )
+    };
+}
+
+/// A card by its name.
+macro_rules! card {
+    ($name:literal) => {
+        (
+            $name,
+            include_str!(concat!("../../materials/", $name, ".toml")),
+        )
+    };
+}
 
 /// A law by name.
 #[derive(Debug)]
@@ -31,10 +51,10 @@ impl Law {
         values: &[f64],
         stress_measure: StressMeasure,
         strain_measure: StrainMeasure,
-    ) -> (Box<dyn HyperelasticLaw>, Vec<Parameter>) {
+    ) -> (Box<dyn HyperelasticLaw>, Asked) {
         let parameters = Parameters::of_values(values, stress_measure, strain_measure);
         let law = (self.read)(&parameters);
-        (law, parameters.finish().parameters)
+        (law, parameters.finish())
     }
 }
 
@@ -127,16 +147,31 @@ const OGDEN: &str = "Ψ = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^
 /// The law that takes a measured curve as it is: there is nothing to fit.
 pub const MARLOW_TABLE: &str = "marlow-table";
 
+/// The test data behind the shipped cards: path as the cards name it, and text.
+pub const DATA: &[(&str, &str)] = &[
+    data!("pva_10_uniaxial"),
+    data!("treloar_1944_uniaxial"),
+    data!("treloar_1944_planar"),
+    data!("treloar_1944_equibiaxial"),
+    data!("meunier_2008_uniaxial"),
+    data!("meunier_2008_planar"),
+    data!("meunier_2008_equibiaxial"),
+    data!("katashima_2012_equibiaxial"),
+    data!("katashima_2012_planar_direction1"),
+    data!("katashima_2012_planar_direction2"),
+    data!("katashima_2012_unequal-biaxial_direction1"),
+    data!("katashima_2012_unequal-biaxial_direction2"),
+];
+
 /// Every card that gelbench brings along: its name and its text.
 pub const CARDS: &[(&str, &str)] = &[
-    ("pva-10", include_str!("../../materials/pva-10.toml")),
-    (
-        "pva-10-cauchy",
-        include_str!("../../materials/pva-10-cauchy.toml"),
-    ),
-    ("neo-hooke", include_str!("../../materials/neo-hooke.toml")),
-    (
-        "mooney-rivlin",
-        include_str!("../../materials/mooney-rivlin.toml"),
-    ),
+    card!("pva-10"),
+    card!("pva-10-cauchy"),
+    card!("pva-10-ogden-1"),
+    card!("pva-10-yeoh"),
+    card!("treloar-ogden-3"),
+    card!("meunier-yeoh"),
+    card!("katashima-ogden-2"),
+    card!("neo-hooke"),
+    card!("mooney-rivlin"),
 ];

@@ -5,7 +5,8 @@ use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel};
 use super::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::compare::StepComparison;
 use crate::material::Card;
-use crate::material::curve::Mode;
+use crate::material::curve::{Mode, simple_shear};
+use crate::material::stability::{SEARCHED, stable_range};
 use crate::mesh::Mesh;
 use crate::problem::{Problem, Solution};
 use crate::results::Results;
@@ -27,6 +28,7 @@ const CORRECTED: [u8; 3] = [0, 114, 178];
 const FINITE_ELEMENT: [u8; 3] = [30, 30, 30];
 const SECOND: [u8; 3] = [0, 158, 115];
 const THIRD: [u8; 3] = [204, 121, 167];
+const AMBER: [u8; 3] = [230, 159, 0];
 
 /// All pictures of a run, in the order of the report.
 pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
@@ -91,52 +93,49 @@ pub fn material_chart(card: &Card) -> LineChart {
             .map(|i| [stretch(i), nominal_stress(stretch(i))])
             .collect()
     };
-    let curve = |mode: Mode| move |stretch: f64| mode.nominal_stress(law, stretch - 1.0);
+    let curves = Mode::ALL.map(|(name, mode)| {
+        let stress = move |stretch: f64| mode.nominal_stress(law, stretch - 1.0);
+        (name, samples(&stress), stable_range(law, mode))
+    });
+    let shear = samples(&|stretch| simple_shear(law, stretch - 1.0));
+    let curves = curves
+        .into_iter()
+        .chain([("simple shear", shear, SEARCHED)]);
+    let curves: Vec<_> = curves.collect();
     // Equibiaxial tension is much stiffer: its curve ends where it would press the others flat.
-    let highest = samples(&curve(Mode::Uniaxial))
-        .iter()
-        .fold(0.0, |most: f64, point| most.max(1.6 * point[1]));
-    let line = |label: &str, colour, stroke, points: Vec<[f64; 2]>| Line {
-        label: label.to_owned(),
-        points: points
-            .into_iter()
-            .filter(|point| point[1].abs() <= highest)
-            .collect(),
-        colour,
-        stroke,
+    let uniaxial = curves[0].1.iter();
+    let highest = uniaxial.fold(0.0, |most: f64, point| most.max(1.6 * point[1].abs()));
+    let shown = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        let points = points.iter().copied();
+        points.filter(|point| point[1].abs() <= highest).collect()
     };
-    let mut lines = vec![
-        line(
-            "uniaxial",
-            CORRECTED,
-            Stroke::Solid,
-            samples(&curve(Mode::Uniaxial)),
-        ),
-        line(
-            "planar",
-            SECOND,
-            Stroke::Dashed,
-            samples(&curve(Mode::Planar)),
-        ),
-        line(
-            "equibiaxial",
-            THIRD,
-            Stroke::Dashed,
-            samples(&curve(Mode::Equibiaxial)),
-        ),
-    ];
+    let mut lines = Vec::new();
+    for ((name, points, stable), colour) in curves.iter().zip([CORRECTED, SECOND, THIRD, AMBER]) {
+        lines.extend(Line::within(name, &shown(points), colour, *stable));
+    }
+    if lines.iter().any(|line| line.stroke == Stroke::Dashed) {
+        lines.push(Line {
+            label: "unstable (Drucker)".to_owned(),
+            points: Vec::new(),
+            colour: FINITE_ELEMENT,
+            stroke: Stroke::Dashed,
+        });
+    }
     if card.published_nominal_stress(1.0).is_some() {
         let published = |stretch| card.published_nominal_stress(stretch).unwrap_or(f64::NAN);
-        lines.push(line(
-            "published curve",
-            MASS_SPRING,
-            Stroke::Dashed,
-            samples(&published),
-        ));
+        lines.push(Line {
+            label: "published curve (uniaxial)".to_owned(),
+            points: shown(&samples(&published)),
+            colour: MASS_SPRING,
+            stroke: Stroke::Dashed,
+        });
     }
     LineChart {
         title: card.title.clone(),
-        x: Axis::linear("stretch λ [–]"),
+        x: Axis {
+            label: "stretch λ, in shear 1 + γ [–]".to_owned(),
+            scale: Scale::Interval,
+        },
         y: Axis::linear("nominal stress [MPa]"),
         lines,
         band: Some(([low, high], "range of the card".to_owned())),
@@ -151,7 +150,7 @@ pub fn comparison_chart(cards: &[Card]) -> LineChart {
         SECOND,
         THIRD,
         FINITE_ELEMENT,
-        [230, 159, 0],
+        AMBER,
         [86, 180, 233],
     ];
     let line = |(index, card): (usize, &Card)| {
@@ -174,7 +173,7 @@ pub fn comparison_chart(cards: &[Card]) -> LineChart {
     };
     LineChart {
         title: "Uniaxial tension".into(),
-        x: Axis::linear("stretch λ [–]"),
+        x: Axis::stretch(),
         y: Axis::linear("nominal stress [MPa]"),
         lines: cards.iter().enumerate().map(line).collect(),
         band: None,

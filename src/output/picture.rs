@@ -120,6 +120,8 @@ fn power_of_ten(exponent: f64) -> String {
 pub enum Scale {
     /// Evenly.
     Linear,
+    /// Evenly, with zero only where the values reach it: an axis of stretches.
+    Interval,
     /// By their decimal logarithm.
     Logarithmic,
 }
@@ -128,7 +130,7 @@ impl Scale {
     /// The position of a value; values that a logarithm does not take have none.
     fn position(self, value: f64) -> Option<f64> {
         let position = match self {
-            Self::Linear => value,
+            Self::Linear | Self::Interval => value,
             Self::Logarithmic => value.log10(),
         };
         position.is_finite().then_some(position)
@@ -136,7 +138,7 @@ impl Scale {
 
     fn label(self, position: f64) -> String {
         match self {
-            Self::Linear => tick(position),
+            Self::Linear | Self::Interval => tick(position),
             Self::Logarithmic if (position - position.round()).abs() < 1e-6 => {
                 power_of_ten(position.round())
             }
@@ -154,14 +156,14 @@ impl Scale {
         }
         match self {
             Self::Logarithmic => (low.floor(), high.ceil().max(low.floor() + 1.0)),
-            Self::Linear => {
+            Self::Linear | Self::Interval => {
                 let margin = if high > low {
                     0.05 * (high - low)
                 } else {
                     0.5 * high.abs().max(1.0)
                 };
                 // Zero is shown where it is near.
-                let from_zero = low >= 0.0 && low < 0.4 * high;
+                let from_zero = self == Self::Linear && low >= 0.0 && low < 0.4 * high;
                 (if from_zero { 0.0 } else { low - margin }, high + margin)
             }
         }

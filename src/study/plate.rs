@@ -36,6 +36,17 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
             );
             None
         }
+        Ok(card) if card.law.shear_modulus() <= 0.0 => {
+            section.fault(
+                KEY,
+                &format!(
+                    "this card's law is unstable from rest: its shear modulus is {:.4} MPa",
+                    card.law.shear_modulus()
+                ),
+                "choose another law; see `gelbench materials show`",
+            );
+            None
+        }
         Ok(card) => Some(card),
         Err(Error::Input(found)) => {
             for fault in found {

@@ -212,7 +212,9 @@ fn ticks((low, high): Range, scale: Scale) -> Vec<f64> {
     let nice = [1.0, 2.0, 2.5, 5.0, 10.0].map(|factor| factor * decade);
     let step = match scale {
         Scale::Logarithmic => 1.0,
-        Scale::Linear => nice.into_iter().find(|step| *step >= raw).unwrap_or(raw),
+        Scale::Linear | Scale::Interval => {
+            nice.into_iter().find(|step| *step >= raw).unwrap_or(raw)
+        }
     };
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;

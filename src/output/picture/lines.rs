@@ -24,6 +24,14 @@ impl Axis {
         }
     }
 
+    /// An axis of stretches.
+    pub fn stretch() -> Self {
+        Self {
+            label: "stretch λ [–]".to_owned(),
+            scale: Scale::Interval,
+        }
+    }
+
     /// A logarithmic axis.
     pub fn logarithmic(label: &str) -> Self {
         Self {
@@ -44,6 +52,8 @@ pub enum Stroke {
     Dashed,
     /// Markers alone.
     Points,
+    /// A pale area, its points the outline.
+    Filled,
 }
 
 /// One line of a chart.
@@ -79,54 +89,73 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64
 const SIZE: (u32, u32) = (860, 480);
 const LEGEND_WIDTH: u32 = 250;
 
+/// Charts one below the other as one PNG, with their heights in points.
+pub fn stacked(charts: &[(LineChart, u32)]) -> Vec<u8> {
+    let height = charts.iter().map(|(_, height)| height).sum();
+    render((SIZE.0, height), |area| {
+        let mut rest = area.clone();
+        for (chart, height) in charts {
+            let (own, below) = rest.split_vertically(FINE * height);
+            chart.draw(&own)?;
+            rest = below;
+        }
+        Ok(())
+    })
+}
+
 impl LineChart {
     /// The chart as a PNG.
     pub fn png(&self) -> Vec<u8> {
-        render(SIZE, |area| {
-            let (chart_area, legend) = area.split_horizontally(FINE * (SIZE.0 - LEGEND_WIDTH));
-            let positions = |axis: usize| {
-                let scale = [self.x.scale, self.y.scale][axis];
-                let points = self.lines.iter().flat_map(|line| &line.points);
-                points.filter_map(move |point| scale.position(point[axis]))
-            };
-            let (left, right) = self.x.scale.limits(positions(0));
-            let (bottom, top) = self.y.scale.limits(positions(1));
-            let title = bold(17).pos(Pos::new(HPos::Left, VPos::Center));
-            let place = (units(88), units(24));
-            area.draw(&Text::new(self.title.clone(), place, title))?;
-            let mut chart = ChartBuilder::on(&chart_area)
-                .margin(units(14))
-                .margin_top(units(46))
-                .x_label_area_size(units(48))
-                .y_label_area_size(units(74))
-                .build_cartesian_2d(left..right, bottom..top)?;
-            if let Some(([from, to], _)) = &self.band {
-                let corners = [(from.max(left), bottom), (to.min(right), top)];
-                chart.draw_series([Rectangle::new(corners, RGBColor(236, 242, 248).filled())])?;
-            }
-            let decades = |low: f64, high: f64| (high - low) as usize + 1;
-            let mut mesh = chart.configure_mesh();
-            mesh.x_desc(&self.x.label)
-                .y_desc(&self.y.label)
-                .axis_desc_style(text(14))
-                .label_style(text(13))
-                .axis_style(stroke(INK, 1))
-                .bold_line_style(stroke(PALE, 1))
-                .set_all_tick_mark_size(units(4))
-                .light_line_style(TRANSPARENT)
-                .x_labels(8)
-                .y_labels(match self.y.scale {
-                    Scale::Linear => 7,
-                    Scale::Logarithmic => decades(bottom, top).min(12),
-                });
-            mesh.x_label_formatter(&|x| self.x.scale.label(*x))
-                .y_label_formatter(&|y| self.y.scale.label(*y))
-                .draw()?;
-            for line in &self.lines {
-                self.draw_line(&mut chart, line)?;
-            }
-            self.draw_legend(&legend)
-        })
+        render(SIZE, |area| self.draw(area))
+    }
+
+    fn draw(
+        &self,
+        area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
+    ) -> super::DrawResult<()> {
+        let (chart_area, legend) = area.split_horizontally(FINE * (SIZE.0 - LEGEND_WIDTH));
+        let positions = |axis: usize| {
+            let scale = [self.x.scale, self.y.scale][axis];
+            let points = self.lines.iter().flat_map(|line| &line.points);
+            points.filter_map(move |point| scale.position(point[axis]))
+        };
+        let (left, right) = self.x.scale.limits(positions(0));
+        let (bottom, top) = self.y.scale.limits(positions(1));
+        let title = bold(17).pos(Pos::new(HPos::Left, VPos::Center));
+        let place = (units(88), units(24));
+        area.draw(&Text::new(self.title.clone(), place, title))?;
+        let mut chart = ChartBuilder::on(&chart_area)
+            .margin(units(14))
+            .margin_top(units(46))
+            .x_label_area_size(units(48))
+            .y_label_area_size(units(74))
+            .build_cartesian_2d(left..right, bottom..top)?;
+        if let Some(([from, to], _)) = &self.band {
+            let corners = [(from.max(left), bottom), (to.min(right), top)];
+            chart.draw_series([Rectangle::new(corners, RGBColor(236, 242, 248).filled())])?;
+        }
+        let decades = |low: f64, high: f64| (high - low) as usize + 1;
+        let mut mesh = chart.configure_mesh();
+        mesh.x_desc(&self.x.label)
+            .y_desc(&self.y.label)
+            .axis_desc_style(text(14))
+            .label_style(text(13))
+            .axis_style(stroke(INK, 1))
+            .bold_line_style(stroke(PALE, 1))
+            .set_all_tick_mark_size(units(4))
+            .light_line_style(TRANSPARENT)
+            .x_labels(8)
+            .y_labels(match self.y.scale {
+                Scale::Linear | Scale::Interval => 7,
+                Scale::Logarithmic => decades(bottom, top).min(12),
+            });
+        mesh.x_label_formatter(&|x| self.x.scale.label(*x))
+            .y_label_formatter(&|y| self.y.scale.label(*y))
+            .draw()?;
+        for line in &self.lines {
+            self.draw_line(&mut chart, line)?;
+        }
+        self.draw_legend(&legend)
     }
 
     fn draw_line(&self, chart: &mut Chart, line: &Line) -> super::DrawResult<()> {
@@ -136,7 +165,8 @@ impl LineChart {
         let colour = line.rgb();
         let pen = stroke(colour, 2);
         if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
-            let marker = |point: &(f64, f64)| Circle::new(*point, units(4), colour.filled());
+            let radius = units(if points.len() > 60 { 2 } else { 4 });
+            let marker = |point: &(f64, f64)| Circle::new(*point, radius, colour.filled());
             chart.draw_series(points.iter().map(marker))?;
         }
         match line.stroke {
@@ -145,6 +175,9 @@ impl LineChart {
                 chart.draw_series(dashes)?;
             }
             Stroke::Points => {}
+            Stroke::Filled => {
+                chart.draw_series([Polygon::new(points, line.pale().filled())])?;
+            }
             Stroke::Solid | Stroke::Marked => {
                 chart.draw_series(LineSeries::new(points, pen))?;
             }
@@ -170,6 +203,10 @@ impl LineChart {
                     }
                 }
                 Stroke::Points => {}
+                Stroke::Filled => {
+                    let corners = [(left, y - units(7)), (right, y + units(7))];
+                    area.draw(&Rectangle::new(corners, line.pale().filled()))?;
+                }
                 Stroke::Solid | Stroke::Marked => area.draw(&PathElement::new(sample, pen))?,
             }
             if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
@@ -195,8 +232,43 @@ impl LineChart {
 }
 
 impl Line {
+    /// A curve that is solid within a range of x and dashed outside of it.
+    pub fn within(
+        label: &str,
+        points: &[[f64; 2]],
+        colour: [u8; 3],
+        [low, high]: [f64; 2],
+    ) -> Vec<Self> {
+        let below = points.iter().take_while(|point| point[0] < low).count();
+        let above = points
+            .iter()
+            .filter(|point| point[0] <= high)
+            .count()
+            .max(below);
+        // The dashed parts begin where the solid one ends.
+        let parts = [
+            (&points[..(below + 1).min(points.len())], "", Stroke::Dashed),
+            (&points[below..above], label, Stroke::Solid),
+            (&points[above.saturating_sub(1)..], "", Stroke::Dashed),
+        ];
+        let line = |(points, label, stroke): (&[[f64; 2]], &str, Stroke)| Self {
+            label: label.to_owned(),
+            points: points.to_vec(),
+            colour,
+            stroke,
+        };
+        let long = |part: &(&[[f64; 2]], &str, Stroke)| part.0.len() > 1 || part.2 == Stroke::Solid;
+        parts.into_iter().filter(long).map(line).collect()
+    }
+
     fn rgb(&self) -> RGBColor {
         let [red, green, blue] = self.colour;
+        RGBColor(red, green, blue)
+    }
+
+    /// The colour on white, as an area has it.
+    fn pale(&self) -> RGBColor {
+        let [red, green, blue] = self.colour.map(|part| 255 - (255 - part) / 4);
         RGBColor(red, green, blue)
     }
 }

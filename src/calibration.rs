@@ -1,0 +1,24 @@
+//! From measured curves to a material card: reading of test data, least squares, and how far a fit can
+//! be trusted.
+//!
+//! ```text
+//! file ─table─▶ columns ─test_data─▶ TestData ─fit─▶ Fit ─quality─▶ Quality ─▶ card, picture, JSON
+//! ```
+
+mod card_text;
+mod conversion;
+mod fit;
+mod least_squares;
+mod misfit;
+mod quality;
+mod table;
+mod test_data;
+
+pub use card_text::{Provenance, card_text};
+pub use conversion::Conversion;
+pub use fit::{Bounds, Fit, FitSettings, Weighting, fit, rank};
+pub use quality::{Estimate, Quality, StableRange};
+pub use test_data::{KEYS, Observation, Reading, StrainColumn, Test, TestData};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,160 @@
+//! The material card of a fit, as text.
+
+use std::fmt::Write;
+
+use super::fit::{Fit, Weighting};
+use super::test_data::{Reading, TestData};
+use crate::document::quoted;
+use crate::material::registry::MARLOW_TABLE;
+use crate::units::Dimension;
+
+/// Where a card's data are.
+#[derive(Clone, Debug, Default)]
+pub struct Provenance {
+    /// The files of test data, as the card names them.
+    pub files: Vec<String>,
+    /// What was said about them beside their heads.
+    pub reading: Reading,
+}
+
+/// A card that `gelbench materials refit` can make again.
+pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> String {
+    let head = |key: &str| {
+        let mut found: Vec<&str> = Vec::new();
+        for value in tests.iter().filter_map(|test| test.head.get(key)) {
+            if !found.contains(&&**value) {
+                found.push(value);
+            }
+        }
+        found.join("; ")
+    };
+    let or = |text: String, other: &str| {
+        if text.is_empty() {
+            other.to_owned()
+        } else {
+            text
+        }
+    };
+    let files = provenance.files.join(", ");
+    let title = match head("specimen") {
+        specimen if specimen.is_empty() => format!("{} fitted to {files}", fit.law.name),
+        specimen => format!("{specimen}, {}", fit.law.name),
+    };
+    let specimen = or(head("specimen"), "not stated in the data");
+    let mut text = String::from(
+        "# Fitted by `gelbench materials fit`; `gelbench materials refit` makes it again.\n\n",
+    );
+    put(&mut text, "title", &quoted(&title));
+    put(&mut text, "law", &quoted(fit.law.name));
+    text += "\n[parameters]\n";
+    parameters(&mut text, fit);
+    let mut kinds: Vec<&str> = tests.iter().map(|test| test.test.name()).collect();
+    kinds.dedup();
+    let [low, high] = fit.quality.stretch_range;
+    text += "\n[data]\n";
+    put(&mut text, "test", &quoted(&kinds.join(", ")));
+    put(
+        &mut text,
+        "stress_measure",
+        &quoted(fit.stress_measure().name()),
+    );
+    put(&mut text, "strain_measure", &quoted("nominal"));
+    put(&mut text, "offset", &quoted("subtract"));
+    put(&mut text, "stretch_range", &format!("[{low}, {high}]"));
+    text += "\n[source]\n";
+    put(
+        &mut text,
+        "citation",
+        &quoted(&or(head("source"), &format!("data of {files}"))),
+    );
+    let doi = head("doi");
+    if !doi.is_empty() {
+        put(&mut text, "doi", &quoted(&doi));
+    }
+    put(&mut text, "specimen", &quoted(&specimen));
+    let note = note(fit);
+    put(&mut text, "note", &quoted(&note));
+    text += "\n[fit]\n";
+    put(&mut text, "data", &list(provenance.files.iter().cloned()));
+    put(
+        &mut text,
+        "weighting",
+        &quoted(fit.settings.weighting.name()),
+    );
+    put(&mut text, "starts", &fit.settings.starts.to_string());
+    let bounds = fit.settings.bounds.iter();
+    let bounds: Vec<_> = bounds
+        .map(|(key, [low, high])| format!("{key}={low}..{high}"))
+        .collect();
+    if !bounds.is_empty() {
+        put(&mut text, "bounds", &list(bounds.into_iter()));
+    }
+    if !provenance.reading.is_empty() {
+        let reading = provenance.reading.iter();
+        put(
+            &mut text,
+            "reading",
+            &list(reading.map(|(key, value)| format!("{key}: {value}"))),
+        );
+    }
+    text
+}
+
+fn put(text: &mut String, key: &str, value: &str) {
+    let _ = writeln!(text, "{key} = {value}");
+}
+
+fn list(items: impl Iterator<Item = String>) -> String {
+    let items: Vec<_> = items.map(|item| quoted(&item)).collect();
+    format!("[{}]", items.join(", "))
+}
+
+fn parameters(text: &mut String, fit: &Fit) {
+    for (parameter, estimate) in fit.parameters.iter().zip(&fit.quality.estimates) {
+        let value = match parameter.dimension {
+            Dimension::Ratio => parameter.value.to_string(),
+            other => quoted(&format!("{} {}", parameter.value, other.internal_unit())),
+        };
+        let error = if estimate.standard_error.is_finite() {
+            format!("standard error {:.2e}", estimate.standard_error)
+        } else {
+            "held by a bound".to_owned()
+        };
+        let _ = writeln!(text, "{} = {value} # {error}", parameter.key);
+    }
+    for (key, name) in &fit.choices {
+        put(text, key, &quoted(name));
+    }
+    if fit.law.name == MARLOW_TABLE {
+        let numbers = |axis: usize| fit.curve.iter().map(move |point| point[axis]);
+        let strains: Vec<_> = numbers(0).map(|x| x.to_string()).collect();
+        put(text, "strain", &format!("[{}]", strains.join(", ")));
+        put(
+            text,
+            "stress",
+            &list(numbers(1).map(|p| format!("{p} MPa"))),
+        );
+    }
+}
+
+/// The figures and the warnings of the fit in one line.
+fn note(fit: &Fit) -> String {
+    let quality = &fit.quality;
+    let mut note = if fit.parameters.is_empty() {
+        format!("the curve of {} points as it was measured", quality.points)
+    } else {
+        let residuals = match fit.settings.weighting {
+            Weighting::Absolute => "absolute",
+            Weighting::Relative => "relative",
+        };
+        format!(
+            "least squares of {residuals} residuals over {} points: RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.5}",
+            quality.points, quality.rmse, quality.nmad_percent, quality.r_squared
+        )
+    };
+    for warning in &quality.warnings {
+        note += "; ";
+        note += warning;
+    }
+    note
+}

@@ -1,0 +1,157 @@
+//! Test data in other measures and units.
+
+use std::fmt::Write;
+
+use super::test_data::{StrainColumn, Test, TestData};
+use crate::error::{Diagnostic, Error};
+use crate::material::parameters::StressMeasure;
+use crate::units::{self, Dimension};
+
+/// How test data are to be written.
+#[derive(Clone, Debug)]
+pub struct Conversion {
+    /// The stress measure.
+    pub stress: StressMeasure,
+    /// The strain measure.
+    pub strain: StrainColumn,
+    /// The unit of stress.
+    pub unit: String,
+}
+
+impl Conversion {
+    /// The data as a table that `gelbench materials fit` reads.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the unit is no unit of stress.
+    pub fn table(&self, data: &TestData) -> Result<String, Error> {
+        let factor = units::parse(&format!("1 {}", self.unit), Dimension::Stress);
+        let factor = factor.map_err(|fault| {
+            let known: Vec<_> = Dimension::Stress.units().collect();
+            let hint = format!("known units: {}", known.join(", "));
+            Error::Input(vec![
+                Diagnostic::error("", format!("the unit to write {fault}")).hint(hint),
+            ])
+        })?;
+        let mut text = String::new();
+        for (key, value) in &data.head {
+            if ["source", "doi", "specimen", "licence", "compiled by"].contains(&&**key) {
+                let _ = writeln!(text, "# {key}: {value}");
+            }
+        }
+        let axes = &data.axes;
+        let direction = if axes[..] == [1] {
+            "; direction: 2"
+        } else {
+            ""
+        };
+        let _ = writeln!(text, "# test: {}{direction}", data.test.name());
+        let _ = writeln!(text, "{}", self.names(data).join(","));
+        for row in data.observations.chunks(axes.len()) {
+            let along = match data.test {
+                Test::Uniaxial => vec![row[0].strains[row[0].axis]],
+                Test::Biaxial => row[0].strains.to_vec(),
+                _ => vec![row[0].strains[0]],
+            };
+            let strains = along.into_iter().map(|x| self.strain.of_nominal(x));
+            let stresses = row.iter().map(|one| {
+                let x = one.strains[one.axis];
+                let nominal = data.stress_measure.to_nominal(one.stress, x);
+                self.stress.of_nominal(nominal, x) / factor
+            });
+            let fields: Vec<_> = strains
+                .chain(stresses)
+                .map(|value| value.to_string())
+                .collect();
+            let _ = writeln!(text, "{}", fields.join(","));
+        }
+        Ok(text)
+    }
+
+    fn names(&self, data: &TestData) -> Vec<String> {
+        let strain = match self.strain {
+            StrainColumn::Stretch => "stretch".to_owned(),
+            StrainColumn::Strain(measure) => format!("{}_strain", measure.name()),
+        };
+        let numbered = |name: &str, unit: &str, axes: &[usize]| -> Vec<String> {
+            match axes {
+                [_] => vec![format!("{name} [{unit}]")],
+                _ => axes
+                    .iter()
+                    .map(|axis| format!("{name}_{} [{unit}]", axis + 1))
+                    .collect(),
+            }
+        };
+        let along: &[usize] = if data.test == Test::Biaxial {
+            &[0, 1]
+        } else {
+            &[0]
+        };
+        let mut names = numbered(&strain, "-", along);
+        let stress = format!("{}_stress", self.stress.name());
+        names.extend(numbered(&stress, &self.unit, &data.axes));
+        names
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::Reading;
+    use crate::material::parameters::StrainMeasure;
+
+    /// Nominal to Cauchy, logarithmic and kPa, and back.
+    #[test]
+    fn there_and_back_again() {
+        for text in [
+            "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n0.8,-0.5\n1.5,0.25\n",
+            "# test: planar; direction: 2\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n2,0.5\n",
+            "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n1.5,1.25,0.5,0.25\n",
+        ] {
+            let read = |text: &str| TestData::parse("a.csv", text, &Reading::new()).unwrap();
+            let data = read(text);
+            let away = Conversion {
+                stress: StressMeasure::Cauchy,
+                strain: StrainColumn::Strain(StrainMeasure::Logarithmic),
+                unit: "kPa".into(),
+            };
+            let there = read(&away.table(&data).unwrap());
+            assert_eq!(there.stress_measure, StressMeasure::Cauchy);
+            for (one, other) in data.observations.iter().zip(&there.observations) {
+                let x = one.strains[one.axis];
+                assert_eq!(one.axis, other.axis);
+                assert!((other.strains[one.axis] - x).abs() < 1e-15);
+                assert!(
+                    (one.stress * (1.0 + x) - other.stress).abs() < 1e-15,
+                    "{text}"
+                );
+            }
+            let back = Conversion {
+                stress: StressMeasure::Nominal,
+                strain: StrainColumn::Stretch,
+                unit: "MPa".into(),
+            };
+            let again = read(&back.table(&there).unwrap());
+            for (one, other) in data.observations.iter().zip(&again.observations) {
+                assert!((one.stress - other.stress).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn another_unit_than_one_of_stress_is_refused() {
+        let text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n";
+        let data = TestData::parse("a.csv", text, &Reading::new()).unwrap();
+        let conversion = Conversion {
+            stress: StressMeasure::Nominal,
+            strain: StrainColumn::Stretch,
+            unit: "mm".into(),
+        };
+        assert!(
+            conversion
+                .table(&data)
+                .unwrap_err()
+                .to_string()
+                .contains("measures length")
+        );
+    }
+}

@@ -1,0 +1,413 @@
+//! The parameters of a law that come nearest to some tests.
+//!
+//! ```text
+//! min Σᵢ (wᵢ (σᵢ − σ(p; λᵢ)))²,   w = 1 (absolute)   or   w = 1/max(|σᵢ|, 1 % of the test's largest) (relative)
+//! ```
+//!
+//! σ is the stress that the test measured, nominal or Cauchy. Energies are proportional to their parameters
+//! of the dimension of a stress; given the others, these follow by linear least squares. Starts are drawn for
+//! the others alone (a fixed sequence, the same on every machine), completed linearly, and the best of them
+//! are improved by Levenberg–Marquardt.
+//!
+//! # References
+//! G. H. Golub, V. Pereyra, Inverse Problems 19, R1 (2003), doi:10.1088/0266-5611/19/2/201
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+use super::least_squares::{self, Precision};
+use super::misfit::Misfit;
+use super::quality::{self, Quality};
+use super::test_data::{Observation, Test, TestData};
+use crate::document::Bound;
+use crate::error::{Diagnostic, Error, nearest};
+use crate::material::HyperelasticLaw;
+use crate::material::marlow::{Marlow, TableCurve};
+use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
+use crate::material::registry::{LAWS, Law, MARLOW_TABLE};
+
+/// What a residual is measured by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighting {
+    /// All differences of stress count alike.
+    Absolute,
+    /// All relative differences count alike.
+    Relative,
+}
+
+impl Weighting {
+    /// The names that cards and the command line use.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("absolute", Self::Absolute), ("relative", Self::Relative)];
+
+    /// The name that cards use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Absolute => "absolute",
+            Self::Relative => "relative",
+        }
+    }
+
+    /// The weight of an observation.
+    pub(super) fn weight(self, data: &TestData, observation: &Observation) -> f64 {
+        match self {
+            Self::Absolute => 1.0,
+            Self::Relative => {
+                let least = SMALLEST_SHARE * data.largest_stress;
+                1.0 / observation.stress.abs().max(least)
+            }
+        }
+    }
+}
+
+/// Limits of parameters by key, in internal units.
+pub type Bounds = Vec<(String, [f64; 2])>;
+
+/// How a fit is made.
+#[derive(Clone, Debug)]
+pub struct FitSettings {
+    /// What a residual is measured by.
+    pub weighting: Weighting,
+    /// Limits beside those that the law has.
+    pub bounds: Bounds,
+    /// How many of the best starts are improved.
+    pub starts: usize,
+}
+
+impl Default for FitSettings {
+    fn default() -> Self {
+        Self {
+            weighting: Weighting::Absolute,
+            bounds: Vec::new(),
+            starts: 8,
+        }
+    }
+}
+
+/// The smallest stress that a relative residual is divided by, as a share of its test's largest one.
+pub const SMALLEST_SHARE: f64 = 0.01;
+
+/// Points above this number are thinned while starts are compared; the last improvement uses all of them.
+const THINNED: usize = 400;
+/// Draws for each parameter that is no stress.
+const DRAWS: usize = 80;
+
+/// A law fitted to tests.
+#[derive(Debug)]
+pub struct Fit {
+    /// The law's entry in the registry.
+    pub law: &'static Law,
+    /// The law with its parameters.
+    pub fitted: Box<dyn HyperelasticLaw>,
+    /// The parameters, in internal units.
+    pub parameters: Vec<Parameter>,
+    /// What else a card of the law states: key and choice.
+    pub choices: Vec<(&'static str, String)>,
+    /// The points (λ − 1, nominal stress in MPa) of a law that takes the curve as it is.
+    pub curve: Vec<[f64; 2]>,
+    stress_measure: StressMeasure,
+    /// The settings.
+    pub settings: FitSettings,
+    /// How far the fit can be trusted.
+    pub quality: Quality,
+}
+
+impl Fit {
+    /// The stress measure of the data.
+    pub fn stress_measure(&self) -> StressMeasure {
+        self.stress_measure
+    }
+
+    /// Half the widths of the 95 % intervals of the fitted curve at some observations, in MPa.
+    pub fn half_widths(&self, data: &TestData, at: &[Observation]) -> Vec<f64> {
+        let values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
+        let gradients = self
+            .parameters
+            .iter()
+            .enumerate()
+            .map(|(index, parameter)| {
+                let step = 6e-6 * parameter.value.abs().max(1e-9);
+                let stresses = |sign: f64| {
+                    let mut moved = values.clone();
+                    moved[index] += sign * step;
+                    let law = self.law.with_values(&moved, self.stress_measure, MEASURE).0;
+                    at.iter()
+                        .map(|one| data.stress_of(&*law, one))
+                        .collect::<Vec<_>>()
+                };
+                let (above, below) = (stresses(1.0), stresses(-1.0));
+                let pairs = above.iter().zip(&below);
+                pairs
+                    .map(|(a, b)| (a - b) / (2.0 * step))
+                    .collect::<Vec<f64>>()
+            });
+        let gradients: Vec<Vec<f64>> = gradients.collect();
+        let variance = |point: usize| -> f64 {
+            let covariance = &self.quality.covariance;
+            let term =
+                |i: usize, j: usize| gradients[i][point] * covariance[(i, j)] * gradients[j][point];
+            let all = 0..gradients.len();
+            all.clone()
+                .map(|i| all.clone().map(|j| term(i, j)).sum::<f64>())
+                .sum()
+        };
+        let half = |point: usize| self.quality.student * variance(point).max(0.0).sqrt();
+        (0..at.len()).map(half).collect()
+    }
+}
+
+/// The strain measure that laws of a curve take in a fit.
+pub(super) const MEASURE: StrainMeasure = StrainMeasure::Nominal;
+
+/// Fits a law to some tests together.
+///
+/// # Errors
+/// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
+/// within the bounds describe the data at all.
+pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
+    let whole = Misfit::new(law, tests, settings.weighting);
+    if law.name == MARLOW_TABLE {
+        return take_curve(law, tests, settings, &whole);
+    }
+    let parameters = whole.build(&[]).1.parameters;
+    let bounds = limits(law, &parameters, &settings.bounds)?;
+    let points: usize = tests.iter().map(|test| test.observations.len()).sum();
+    if points <= parameters.len() {
+        let message = format!(
+            "{}: {} parameters need at least {} points, and there are {}",
+            law.name,
+            parameters.len(),
+            parameters.len() + 1,
+            points
+        );
+        return Err(refused(
+            message,
+            "measure more points, or choose a law with fewer parameters",
+        ));
+    }
+    let thinned = whole.thinned(THINNED);
+    let mut minima: Vec<(f64, Vec<f64>)> = starts(&thinned, &parameters, &bounds)
+        .into_iter()
+        .take(settings.starts)
+        .filter_map(|(_, start)| {
+            let found = least_squares::minimise(&thinned, &start, &bounds, Precision::Rough)?;
+            Some((least_squares::sum_of_squares(&thinned, &found), found))
+        })
+        .collect();
+    minima.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((_, best)) = minima.first() else {
+        let message = format!(
+            "{}: no parameters within the bounds describe the data",
+            law.name
+        );
+        return Err(refused(message, "widen the bounds, or choose another law"));
+    };
+    let finest = least_squares::minimise(&whole, best, &bounds, Precision::Full);
+    let best = ordered(&parameters, finest.unwrap_or_else(|| best.clone()));
+    let (fitted, asked) = whole.build(&best);
+    let parameters = asked.parameters;
+    // Another minimum counts as one when it is still elsewhere after the same care.
+    let near = |sum: f64| sum <= 1.05 * least_squares::sum_of_squares(&thinned, &best);
+    let elsewhere = minima.iter().find(|(sum, values)| {
+        near(*sum) && quality::differs(&ordered(&parameters, values.clone()), &parameters)
+    });
+    let other = elsewhere
+        .and_then(|(_, values)| least_squares::minimise(&thinned, values, &bounds, Precision::Full))
+        .map(|values| ordered(&parameters, values))
+        .filter(|values| quality::differs(values, &parameters));
+    let quality = quality::assess(
+        &whole,
+        settings.weighting,
+        tests,
+        &*fitted,
+        &parameters,
+        &bounds,
+        other.as_deref(),
+    );
+    Ok(Fit {
+        law,
+        fitted,
+        parameters,
+        choices: asked.choices,
+        curve: Vec::new(),
+        stress_measure: tests[0].stress_measure,
+        settings: settings.clone(),
+        quality,
+    })
+}
+
+/// Marlow's law of one measured tension curve: nothing is fitted.
+fn take_curve(
+    law: &'static Law,
+    tests: &[TestData],
+    settings: &FitSettings,
+    misfit: &Misfit,
+) -> Result<Fit, Error> {
+    let [test] = tests else {
+        let hint = "the others can be compared with `gelbench materials plot`";
+        return Err(refused(format!("{}: takes one file", law.name), hint));
+    };
+    if test.test != Test::Uniaxial {
+        let hint = "give the file of a uniaxial test, or choose another law";
+        return Err(refused(
+            format!("{}: takes a uniaxial test", law.name),
+            hint,
+        ));
+    }
+    let measure = test.stress_measure;
+    let point = |one: &Observation| {
+        let x = test.drawn_strain(one);
+        [x, measure.to_nominal(one.stress, x)]
+    };
+    let points: Vec<[f64; 2]> = test.observations.iter().map(point).collect();
+    let curve = TableCurve::new(&points, true).map_err(|reason| {
+        let hint = "cut the file to the loading branch from rest on, or fit another law";
+        refused(format!("{}: {reason}", law.name), hint)
+    })?;
+    let fitted: Box<dyn HyperelasticLaw> = Box::new(Marlow { curve });
+    let quality = quality::assess(misfit, settings.weighting, tests, &*fitted, &[], &[], None);
+    Ok(Fit {
+        law,
+        fitted,
+        parameters: Vec::new(),
+        choices: vec![("extrapolation", "linear".to_owned())],
+        curve: points,
+        stress_measure: StressMeasure::Nominal,
+        settings: settings.clone(),
+        quality,
+    })
+}
+
+/// All laws that can be fitted to some tests, the one with the smallest AICc first; laws that cannot be are
+/// left out with their reasons.
+pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
+    // A fibre law needs to see two directions.
+    let axis = |axis: usize| {
+        tests
+            .iter()
+            .flat_map(|test| &test.observations)
+            .any(|one| one.axis == axis)
+    };
+    let both_axes = axis(0) && axis(1);
+    let eligible: Vec<&'static Law> = LAWS
+        .iter()
+        .filter(|law| law.name != MARLOW_TABLE)
+        .filter(|law| both_axes || law.name != "holzapfel-gasser-ogden")
+        .collect();
+    let outcomes: Vec<Result<Fit, Error>> = eligible
+        .into_par_iter()
+        .map(|law| fit(law, tests, settings))
+        .collect();
+    let (mut fits, mut reasons) = (Vec::new(), Vec::new());
+    for outcome in outcomes {
+        match outcome {
+            Ok(fit) => fits.push(fit),
+            Err(reason) => reasons.push(reason.to_string()),
+        }
+    }
+    fits.sort_by(|a, b| a.quality.aicc.total_cmp(&b.quality.aicc));
+    (fits, reasons)
+}
+
+fn refused(message: String, hint: &str) -> Error {
+    Error::Input(vec![Diagnostic::error("", message).hint(hint)])
+}
+
+/// Lower and upper limit of each parameter.
+fn limits(law: &Law, parameters: &[Parameter], bounds: &Bounds) -> Result<Vec<[f64; 2]>, Error> {
+    for (key, [low, high]) in bounds {
+        let known: Vec<_> = parameters.iter().map(|parameter| parameter.key).collect();
+        if !known.contains(&&**key) {
+            let hint = match nearest(key, known.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("its parameters are {}", known.join(", ")),
+            };
+            return Err(refused(
+                format!("{} has no parameter `{key}`", law.name),
+                &hint,
+            ));
+        }
+        if low >= high {
+            let message = format!("the bounds {low} … {high} of {key} are not in order");
+            return Err(refused(message, "write the lower one first"));
+        }
+    }
+    let limit = |parameter: &Parameter| {
+        let [low, high] = match parameter.bound {
+            Bound::Any => [f64::NEG_INFINITY, f64::INFINITY],
+            Bound::Positive => [f64::MIN_POSITIVE, f64::INFINITY],
+            Bound::NonNegative => [0.0, f64::INFINITY],
+            Bound::Within(low, high) | Bound::Range(low, high, _) => [low, high],
+        };
+        let given = bounds.iter().find(|(key, _)| key == parameter.key);
+        given.map_or([low, high], |(_, [l, h])| [low.max(*l), high.min(*h)])
+    };
+    Ok(parameters.iter().map(limit).collect())
+}
+
+/// Starts within the bounds, the best first.
+fn starts(misfit: &Misfit, parameters: &[Parameter], bounds: &[[f64; 2]]) -> Vec<(f64, Vec<f64>)> {
+    let stresses: Vec<usize> = (0..parameters.len())
+        .filter(|index| parameters[*index].is_stress())
+        .collect();
+    let free = parameters.len() - stresses.len();
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let scale = misfit.stiffness();
+    let draws = if free == 0 { 1 } else { DRAWS * free };
+    let mut starts = Vec::new();
+    for _ in 0..draws {
+        let mut values: Vec<f64> = parameters
+            .iter()
+            .zip(bounds)
+            .map(|(parameter, [low, high])| {
+                let share: f64 = random.random();
+                let [from, to] = parameter.usual;
+                let drawn = if parameter.is_stress() {
+                    scale * 0.01_f64.powf(share)
+                } else if from > 0.0 {
+                    from * (to / from).powf(share)
+                } else {
+                    from + (to - from) * share
+                };
+                drawn.clamp(*low, *high)
+            })
+            .collect();
+        let drawn = values.clone();
+        if misfit.complete(&mut values, &stresses).is_none() {
+            values = drawn;
+        }
+        for (index, [low, high]) in bounds.iter().enumerate() {
+            // A start on a bound could never leave it: stay a little inside.
+            let inside = |limit: f64| limit + 0.01 * (scale - limit);
+            if parameters[index].is_stress() && values[index] <= *low {
+                values[index] = inside(*low);
+            } else if parameters[index].is_stress() && values[index] >= *high {
+                values[index] = inside(*high);
+            }
+        }
+        let sum = least_squares::sum_of_squares(misfit, &values);
+        if sum.is_finite()
+            && values
+                .iter()
+                .zip(bounds)
+                .all(|(v, [l, h])| (l..=h).contains(&v))
+        {
+            starts.push((sum, values));
+        }
+    }
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    starts
+}
+
+/// Terms of Ogden's law in the order of their exponents: the same fit always has the same face.
+fn ordered(parameters: &[Parameter], mut values: Vec<f64>) -> Vec<f64> {
+    let is_term =
+        |pair: &[Parameter]| pair[0].key.starts_with("mu_") && pair[1].key.starts_with("alpha_");
+    if parameters.len().is_multiple_of(2) && parameters.chunks(2).all(is_term) {
+        let mut terms: Vec<[f64; 2]> = values.chunks(2).map(|pair| [pair[0], pair[1]]).collect();
+        terms.sort_by(|a, b| b[1].total_cmp(&a[1]));
+        values = terms.concat();
+    }
+    values
+}

@@ -1,0 +1,149 @@
+//! Least squares with bounds: the only place that knows rmpfit, a Levenberg–Marquardt method after MPFIT.
+//!
+//! # References
+//! C. B. Markwardt, ADASS XVIII, ASP Conf. Ser. 411, 251 (2009); J. J. Moré, Lect. Notes Math. 630, 105 (1978)
+
+use nalgebra::{DMatrix, DVector};
+use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide};
+
+/// Residuals of a model as a function of its parameters.
+pub trait Residuals {
+    /// Their number.
+    fn count(&self) -> usize;
+
+    /// Writes them; whether all of them are finite.
+    fn evaluate(&self, parameters: &[f64], residuals: &mut [f64]) -> bool;
+}
+
+/// Sum of squares; infinite where the model has no value.
+pub fn sum_of_squares(model: &dyn Residuals, parameters: &[f64]) -> f64 {
+    let mut residuals = vec![0.0; model.count()];
+    if !model.evaluate(parameters, &mut residuals) {
+        return f64::INFINITY;
+    }
+    residuals.iter().map(|r| r * r).sum()
+}
+
+struct Problem<'a> {
+    model: &'a dyn Residuals,
+    parameters: Vec<MPPar>,
+    config: MPConfig,
+    /// Stands for residuals that are not finite, so that the step is refused.
+    refused: f64,
+}
+
+impl MPFitter for Problem<'_> {
+    fn eval(&mut self, parameters: &[f64], residuals: &mut [f64]) -> MPResult<()> {
+        if residuals.len() != self.model.count() {
+            return Err(MPError::Eval);
+        }
+        if !self.model.evaluate(parameters, residuals) {
+            residuals.fill(self.refused);
+        }
+        Ok(())
+    }
+
+    fn number_of_points(&self) -> usize {
+        self.model.count()
+    }
+
+    fn config(&self) -> &MPConfig {
+        &self.config
+    }
+
+    fn parameters(&self) -> &[MPPar] {
+        &self.parameters
+    }
+}
+
+/// How long the method goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// Until minima can be told apart.
+    Rough,
+    /// Until rounding stops it.
+    Full,
+}
+
+/// Improves `start` within `bounds`; nothing where the method finds no way from there.
+pub fn minimise(
+    model: &dyn Residuals,
+    start: &[f64],
+    bounds: &[[f64; 2]],
+    precision: Precision,
+) -> Option<Vec<f64>> {
+    let begin = sum_of_squares(model, start);
+    if !begin.is_finite() {
+        return None;
+    }
+    let parameter = |[low, high]: &[f64; 2]| MPPar {
+        limited_low: low.is_finite(),
+        limited_up: high.is_finite(),
+        limit_low: *low,
+        limit_up: *high,
+        side: MPSide::Both,
+        rel_step: 6e-6,
+        ..MPPar::new()
+    };
+    let (tolerance, iterations) = match precision {
+        Precision::Rough => (1e-7, 60),
+        Precision::Full => (1e-14, 1000),
+    };
+    let mut problem = Problem {
+        model,
+        parameters: bounds.iter().map(parameter).collect(),
+        config: MPConfig {
+            ftol: tolerance,
+            xtol: tolerance,
+            gtol: tolerance,
+            max_iter: iterations,
+            step_factor: 1.0,
+            ..MPConfig::new()
+        },
+        refused: 1e3 * (begin / model.count() as f64).sqrt().max(1.0),
+    };
+    let mut found = start.to_vec();
+    problem.mpfit(&mut found).ok()?;
+    (sum_of_squares(model, &found) <= begin).then_some(found)
+}
+
+/// ∂rᵢ/∂pⱼ by central differences, scaled to second-order accuracy; columns of `fixed` parameters are zero.
+pub fn jacobian(model: &dyn Residuals, at: &[f64], fixed: &[bool]) -> DMatrix<f64> {
+    let mut jacobian = DMatrix::zeros(model.count(), at.len());
+    let (mut above, mut below) = (vec![0.0; model.count()], vec![0.0; model.count()]);
+    for (column, value) in at.iter().enumerate() {
+        if fixed[column] {
+            continue;
+        }
+        let step = 6e-6 * value.abs().max(1e-9);
+        let mut moved = at.to_vec();
+        moved[column] = value + step;
+        model.evaluate(&moved, &mut above);
+        moved[column] = value - step;
+        model.evaluate(&moved, &mut below);
+        for (row, (a, b)) in above.iter().zip(&below).enumerate() {
+            jacobian[(row, column)] = (a - b) / (2.0 * step);
+        }
+    }
+    jacobian
+}
+
+/// The coefficients of columns that come nearest to a target; nothing where a column is not finite.
+pub fn linear(columns: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f64>> {
+    if !columns.iter().all(|entry| entry.is_finite()) {
+        return None;
+    }
+    let scales: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
+    if scales.contains(&0.0) {
+        return None;
+    }
+    let mut scaled = columns.clone();
+    for (mut column, scale) in scaled.column_iter_mut().zip(&scales) {
+        column /= *scale;
+    }
+    let mut found = scaled.svd(true, true).solve(target, 1e-13).ok()?;
+    for (value, scale) in found.iter_mut().zip(&scales) {
+        *value /= scale;
+    }
+    Some(found)
+}

@@ -1,0 +1,139 @@
+//! The residuals of a law at the observations of some tests.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::fit::{MEASURE, Weighting};
+use super::least_squares::{self, Residuals};
+use super::test_data::{Observation, TestData};
+use crate::material::HyperelasticLaw;
+use crate::material::parameters::Asked;
+use crate::material::registry::Law;
+
+/// The residuals of a law at some observations, or at means of many neighbouring ones.
+pub struct Misfit<'a> {
+    law: &'static Law,
+    tests: &'a [TestData],
+    points: Vec<Point>,
+}
+
+/// An observation of a test with its weight.
+#[derive(Clone, Copy)]
+struct Point {
+    test: usize,
+    observation: Observation,
+    weight: f64,
+}
+
+/// Tests with more observations than this along one axis are gathered in as many bins. A curve bends so
+/// little within one that its parameters do not feel it.
+const BINS: usize = 2000;
+
+impl<'a> Misfit<'a> {
+    pub fn new(law: &'static Law, tests: &'a [TestData], weighting: Weighting) -> Self {
+        let mut points = Vec::new();
+        for (test, data) in tests.iter().enumerate() {
+            for axis in [0, 1] {
+                let along = data.observations.iter().filter(|one| one.axis == axis);
+                let mut own: Vec<Point> = along
+                    .map(|observation| Point {
+                        test,
+                        observation: *observation,
+                        weight: weighting.weight(data, observation),
+                    })
+                    .collect();
+                if own.len() > BINS {
+                    let strain = |point: &Point| data.drawn_strain(&point.observation);
+                    own.sort_by(|a, b| strain(a).total_cmp(&strain(b)));
+                    own = own.chunks(own.len().div_ceil(BINS)).map(mean).collect();
+                }
+                points.extend(own);
+            }
+        }
+        Self { law, tests, points }
+    }
+
+    /// Every so manyth point, so that about `count` are left.
+    pub fn thinned(&self, count: usize) -> Self {
+        let stride = self.points.len().div_ceil(count);
+        Self {
+            points: self.points.iter().copied().step_by(stride).collect(),
+            ..*self
+        }
+    }
+
+    pub fn build(&self, values: &[f64]) -> (Box<dyn HyperelasticLaw>, Asked) {
+        let measure = self.tests[0].stress_measure;
+        self.law.with_values(values, measure, MEASURE)
+    }
+
+    fn predict(&self, law: &dyn HyperelasticLaw, point: &Point) -> f64 {
+        self.tests[point.test].stress_of(law, &point.observation)
+    }
+
+    /// A stress to draw from: the secant of the data, Σ |σ| |x| / Σ x².
+    pub fn stiffness(&self) -> f64 {
+        let (mut product, mut square) = (0.0, f64::MIN_POSITIVE);
+        for point in &self.points {
+            let x = self.tests[point.test].drawn_strain(&point.observation);
+            product += (point.observation.stress * x).abs();
+            square += x * x;
+        }
+        (product / square).max(f64::MIN_POSITIVE)
+    }
+
+    /// The values of the parameters that are stresses, by linear least squares.
+    pub fn complete(&self, values: &mut [f64], stresses: &[usize]) -> Option<()> {
+        let target = self.points.iter();
+        let target = target.map(|point| point.weight * point.observation.stress);
+        let target = DVector::from_iterator(self.points.len(), target);
+        let mut columns = DMatrix::zeros(self.points.len(), stresses.len());
+        for (column, index) in stresses.iter().enumerate() {
+            let mut unit = values.to_vec();
+            stresses.iter().for_each(|other| unit[*other] = 0.0);
+            unit[*index] = 1.0;
+            let (law, _) = self.build(&unit);
+            for (row, point) in self.points.iter().enumerate() {
+                columns[(row, column)] = point.weight * self.predict(&*law, point);
+            }
+        }
+        let found = least_squares::linear(&columns, &target)?;
+        for (index, value) in stresses.iter().zip(found.iter()) {
+            values[*index] = *value;
+        }
+        Some(())
+    }
+}
+
+/// The mean of some points by their weights; it weighs as all of them together.
+fn mean(points: &[Point]) -> Point {
+    let squares: f64 = points.iter().map(|point| point.weight * point.weight).sum();
+    let mean = |value: &dyn Fn(&Observation) -> f64| -> f64 {
+        let sum = points.iter();
+        let sum = sum.map(|point| point.weight * point.weight * value(&point.observation));
+        sum.sum::<f64>() / squares
+    };
+    Point {
+        test: points[0].test,
+        observation: Observation {
+            strains: [0, 1].map(|axis| mean(&|one| one.strains[axis])),
+            axis: points[0].observation.axis,
+            stress: mean(&|one| one.stress),
+        },
+        weight: squares.sqrt(),
+    }
+}
+
+impl Residuals for Misfit<'_> {
+    fn count(&self) -> usize {
+        self.points.len()
+    }
+
+    fn evaluate(&self, parameters: &[f64], residuals: &mut [f64]) -> bool {
+        let (law, _) = self.build(parameters);
+        for (residual, point) in residuals.iter_mut().zip(&self.points) {
+            let difference = point.observation.stress - self.predict(&*law, point);
+            *residual = point.weight * difference;
+        }
+        residuals.iter().all(|residual| residual.is_finite())
+    }
+}

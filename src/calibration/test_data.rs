@@ -1,0 +1,232 @@
+//! Test data: what was stretched how far, and what stress was measured.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::table::Table;
+use crate::error::{Diagnostic, Error};
+use crate::material::HyperelasticLaw;
+use crate::material::curve;
+use crate::material::parameters::{StrainMeasure, StressMeasure};
+
+mod head;
+mod layout;
+
+use head::Head;
+use layout::Layout;
+
+/// The kinds of test that a sheet can be put to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Test {
+    /// Stretched or pressed along one axis, free across.
+    Uniaxial,
+    /// Stretched along one axis, held across (pure shear).
+    Planar,
+    /// Stretched alike along both axes.
+    Equibiaxial,
+    /// Stretched along both axes by different amounts.
+    Biaxial,
+}
+
+impl Test {
+    /// The names that files use.
+    pub const NAMES: [(&'static str, Self); 6] = [
+        ("uniaxial", Self::Uniaxial),
+        ("planar", Self::Planar),
+        ("equibiaxial", Self::Equibiaxial),
+        ("biaxial", Self::Biaxial),
+        ("unequal-biaxial", Self::Biaxial),
+        ("compression", Self::Uniaxial),
+    ];
+
+    /// The name of the test.
+    pub fn name(self) -> &'static str {
+        let found = Self::NAMES.iter().find(|(_, test)| *test == self);
+        found.map_or("", |(name, _)| name)
+    }
+}
+
+/// What a column of deformation holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StrainColumn {
+    /// λ.
+    Stretch,
+    /// A strain.
+    Strain(StrainMeasure),
+}
+
+impl StrainColumn {
+    /// The names that files use.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("stretch", Self::Stretch),
+        ("nominal", Self::Strain(StrainMeasure::Nominal)),
+        ("logarithmic", Self::Strain(StrainMeasure::Logarithmic)),
+    ];
+
+    /// λ − 1 from a value of the column.
+    pub fn to_nominal(self, value: f64) -> f64 {
+        match self {
+            Self::Stretch => value - 1.0,
+            Self::Strain(measure) => measure.to_nominal(value),
+        }
+    }
+
+    /// A value of the column from λ − 1.
+    pub fn of_nominal(self, x: f64) -> f64 {
+        match self {
+            Self::Stretch => 1.0 + x,
+            Self::Strain(measure) => measure.of_nominal(x),
+        }
+    }
+}
+
+/// One measured stress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// λ − 1 along both axes; across a uniaxial test not a number.
+    pub strains: [f64; 2],
+    /// The axis along which the stress was measured: 0 or 1.
+    pub axis: usize,
+    /// The stress in the measure of the data, in MPa.
+    pub stress: f64,
+}
+
+/// The data of one test.
+#[derive(Clone, Debug)]
+pub struct TestData {
+    /// The file's name.
+    pub name: String,
+    /// The kind of test.
+    pub test: Test,
+    /// The stress that was measured.
+    pub stress_measure: StressMeasure,
+    /// The axes along which the stresses of each row were measured.
+    pub axes: Vec<usize>,
+    /// The observations in the order of the file, one for each axis of a row.
+    pub observations: Vec<Observation>,
+    /// The largest stress without its sign, in MPa.
+    pub largest_stress: f64,
+    /// What the head says about source, specimen, DOI and licence.
+    pub head: BTreeMap<String, String>,
+    /// What to look at before trusting the data.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What stands in the head of a file, given for files that do not say it: keys of [`KEYS`] and values.
+pub type Reading = BTreeMap<String, String>;
+
+/// What a file or the command line must say about a table.
+pub const KEYS: [&str; 9] = [
+    "test",
+    "stress measure",
+    "strain measure",
+    "stress unit",
+    "strain unit",
+    "direction",
+    "strain ratio",
+    "area",
+    "length",
+];
+
+impl TestData {
+    /// Reads a file; `reading` says what the file does not.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line and reason; nothing is ever guessed.
+    pub fn read(path: &Path, reading: &Reading) -> Result<Self, Error> {
+        Self::of_table(&Table::read(path)?, reading)
+    }
+
+    /// Reads a text.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(name: &str, text: &str, reading: &Reading) -> Result<Self, Error> {
+        Self::of_table(&Table::parse(name, text)?, reading)
+    }
+
+    fn of_table(table: &Table, reading: &Reading) -> Result<Self, Error> {
+        let head = Head { table, reading };
+        let data = Layout::new(&head).and_then(|layout| layout.read(&head));
+        data.map_err(|fault| Error::Input(vec![*fault]))
+    }
+
+    /// The stress of a law at an observation, in the measure of the data, in MPa.
+    pub fn stress_of(&self, law: &dyn HyperelasticLaw, observation: &Observation) -> f64 {
+        let axis = observation.axis;
+        let x = observation.strains[axis];
+        let nominal = match self.test {
+            Test::Uniaxial => {
+                let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
+                law.tension(direction, x).nominal_stress
+            }
+            _ => curve::biaxial(law, observation.strains)[axis],
+        };
+        self.stress_measure.of_nominal(nominal, x)
+    }
+
+    /// λ − 1 along the axis that the data are drawn over: the one that is stretched further.
+    pub fn drawn_strain(&self, observation: &Observation) -> f64 {
+        match self.test {
+            Test::Uniaxial => observation.strains[observation.axis],
+            _ => observation.strains[0],
+        }
+    }
+
+    /// States along the data of one axis, from the smallest to the largest strain with rest between or at an
+    /// end, for drawing a curve: `count` steps, the strain across interpolated. Their stresses are zero.
+    pub fn path(&self, axis: usize, count: usize) -> Vec<Observation> {
+        let mut sorted: Vec<&Observation> = self
+            .observations
+            .iter()
+            .filter(|one| one.axis == axis)
+            .collect();
+        sorted.sort_by(|a, b| self.drawn_strain(a).total_cmp(&self.drawn_strain(b)));
+        let [low, high] = self.stretch_range().map(|stretch| stretch - 1.0);
+        let at = |x: f64| {
+            let across = match self.test {
+                Test::Uniaxial => f64::NAN,
+                Test::Planar => 0.0,
+                Test::Equibiaxial => x,
+                Test::Biaxial => interpolate(&sorted, x),
+            };
+            let strains = if self.test == Test::Uniaxial && axis == 1 {
+                [across, x]
+            } else {
+                [x, across]
+            };
+            Observation {
+                strains,
+                axis,
+                stress: 0.0,
+            }
+        };
+        let share = |i: usize| low + (high - low) * i as f64 / count as f64;
+        (0..=count).map(|i| at(share(i))).collect()
+    }
+
+    /// The stretches between which the data lie, rest included.
+    pub fn stretch_range(&self) -> [f64; 2] {
+        let strains = || self.observations.iter().map(|one| self.drawn_strain(one));
+        [
+            1.0 + strains().fold(0.0, f64::min),
+            1.0 + strains().fold(0.0, f64::max),
+        ]
+    }
+}
+
+/// The strain across at a strain along, between sorted observations and rest.
+fn interpolate(sorted: &[&Observation], x: f64) -> f64 {
+    let mut before = [0.0, 0.0];
+    for one in sorted {
+        if one.strains[0] >= x && x >= before[0] && one.strains[0] > before[0] {
+            let share = (x - before[0]) / (one.strains[0] - before[0]);
+            return before[1] + share * (one.strains[1] - before[1]);
+        }
+        before = one.strains;
+    }
+    before[1]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! Reading of test data.
+
+use super::*;
+
+fn read(text: &str, reading: &[(&str, &str)]) -> Result<TestData, String> {
+    let reading = reading
+        .iter()
+        .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+        .collect();
+    TestData::parse("a.csv", text, &reading).map_err(|fault| fault.to_string())
+}
+
+#[test]
+fn measures_and_units_are_read_from_names_head_or_command_line() {
+    let expected = Observation {
+        strains: [0.5, 0.0],
+        axis: 0,
+        stress: 0.2,
+    };
+    for (text, reading) in [
+        (
+            "# test: planar\nstretch [-],nominal_stress [MPa]\n1.5,0.2",
+            &[][..],
+        ),
+        (
+            "# test: planar; stress measure: nominal (engineering)\nstretch [-],stress [kPa]\n1.5,200",
+            &[],
+        ),
+        (
+            "nominal_strain [%],engineering_stress [Pa]\n50,2e5",
+            &[("test", "planar")],
+        ),
+        (
+            "1.5,0.2\n",
+            &[
+                ("test", "planar"),
+                ("strain measure", "stretch"),
+                ("strain unit", "-"),
+                ("stress measure", "nominal"),
+                ("stress unit", "MPa"),
+            ],
+        ),
+        (
+            "# test: planar; area: 20 mm^2; length: 5 cm\nTime [s],extension [mm],load [N]\n1,25,4",
+            &[],
+        ),
+    ] {
+        let data = read(text, reading).unwrap();
+        let found = data.observations[0];
+        assert_eq!(found.axis, expected.axis);
+        assert!(
+            (found.strains[0] - 0.5).abs() < 1e-15 && found.strains[1] == 0.0,
+            "{text}"
+        );
+        assert!(
+            (found.stress - expected.stress).abs() < 1e-15,
+            "{text}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn what_is_not_stated_is_asked_for_and_never_guessed() {
+    let whole = "# test: uniaxial; stress measure: nominal\nstrain [-],stress [MPa]\n0.1,0.2";
+    for (without, message) in [
+        (
+            whole.replace("test: uniaxial; ", ""),
+            "the test is not stated",
+        ),
+        (
+            whole.replace("; stress measure: nominal", ""),
+            "the strain measure is not stated",
+        ),
+        (
+            whole.replace("; stress measure: nominal", "; strain measure: nominal"),
+            "the stress measure is not stated (write `# stress measure: nominal` at the top of the file, or give --stress nominal)",
+        ),
+        (
+            whole
+                .replace("nominal", "nominal; strain measure: nominal")
+                .replace(" [MPa]", ""),
+            "the stress unit is not stated",
+        ),
+        (
+            whole
+                .replace("nominal", "nominal; strain measure: nominal")
+                .replace(" [-]", ""),
+            "the strain unit is not stated",
+        ),
+        (
+            "# test: uniaxial\nextension [mm],load [N]\n1,2".into(),
+            "the length is not stated",
+        ),
+        (
+            "# test: biaxial\nstretch [-],nominal_stress [MPa]\n1.1,2".into(),
+            "the strain ratio is not stated",
+        ),
+    ] {
+        let found = read(&without, &[]).unwrap_err();
+        assert!(found.contains(message), "{without}\n{found}");
+    }
+}
+
+#[test]
+fn contradictions_and_impossible_values_are_refused_with_their_place() {
+    for (text, message) in [
+        (
+            "# test: uniaxial; stress measure: cauchy\nstretch [-],nominal_stress [MPa]\n1.1,1",
+            "the stress measure is nominal by the name of a column and cauchy by the head",
+        ),
+        (
+            "# test: uniaxial; stress unit: kPa\nstretch [-],nominal_stress [MPa]\n1.1,1",
+            "the stress unit is MPa by the name of a column and kPa by the head",
+        ),
+        (
+            "# test: uniaxal\nstretch [-],nominal_stress [MPa]\n1.1,1",
+            "did you mean `uniaxial`",
+        ),
+        (
+            "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1,0\n0,1",
+            "a.csv:4: the stretch is 0",
+        ),
+        (
+            "# test: uniaxial\nstretch [-],nominal_stress [mm]\n1,0",
+            "measures length",
+        ),
+        (
+            "# test: uniaxial\nstretch [-],nominal_stress [Mpa]\n1,0",
+            "unknown unit `Mpa`",
+        ),
+        (
+            "# test: uniaxial\nstretch [-],strss [MPa]\n1,0",
+            "there is no column of stresses",
+        ),
+    ] {
+        let found = read(text, &[]).unwrap_err();
+        assert!(found.contains(message), "{text}\n{found}");
+    }
+}
+
+#[test]
+fn both_axes_of_a_biaxial_test_are_read() {
+    let text = "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [kPa],nominal_stress_2 [kPa]\n1.2,1.1,30,20";
+    let data = read(text, &[]).unwrap();
+    assert_eq!(data.observations.len(), 2);
+    assert_eq!(data.observations[1].axis, 1);
+    assert!((data.observations[1].stress - 0.02).abs() < 1e-15);
+    let text = "# test: biaxial; strain ratio: 0.5; direction: 2\nstretch [-],nominal_stress [kPa]\n1.2,20";
+    let data = read(text, &[]).unwrap();
+    assert_eq!(data.observations[0].axis, 1);
+    assert!((data.observations[0].strains[1] - 0.1).abs() < 1e-15);
+}
+
+#[test]
+fn a_loop_of_loading_and_unloading_is_told() {
+    let text =
+        "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1,0\n1.2,1\n1.4,2\n1.2,0.8\n1,0";
+    let data = read(text, &[]).unwrap();
+    assert_eq!(data.observations.len(), 5);
+    let warning = data.warnings[0].to_string();
+    assert!(
+        warning.contains("a.csv:6: the strain turns back once"),
+        "{warning}"
+    );
+}

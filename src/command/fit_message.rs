@@ -1,0 +1,193 @@
+//! What the command prints about fits.
+
+use crate::calibration::{Fit, TestData};
+use crate::material::Card;
+use crate::material::HyperelasticLaw;
+use crate::material::curve::{Mode, samples};
+
+/// Parameters, figures, stability, predictions and warnings of a fit.
+pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
+    let quality = &fit.quality;
+    let mut text = format!("{}: {}\n", fit.law.name, fit.law.formula);
+    for test in tests {
+        text += &format!(
+            "  data         {} ({}, {} stress, {} points)\n",
+            test.name,
+            test.test.name(),
+            test.stress_measure.name(),
+            test.observations.len()
+        );
+    }
+    if !fit.parameters.is_empty() {
+        text += &format!("  residuals    {}\n", fit.settings.weighting.name());
+    }
+    for (parameter, estimate) in fit.parameters.iter().zip(&quality.estimates) {
+        let (key, value, unit) = (parameter.key, parameter.value, parameter.unit());
+        let [low, high] = estimate.interval;
+        text += &if estimate.at_bound {
+            format!(
+                "  {key:<12} {} {unit}   held by a bound\n",
+                digits(value, 6)
+            )
+        } else {
+            format!(
+                "  {key:<12} {} ± {} {unit}   95 % {} … {}\n",
+                digits(value, 6),
+                digits(estimate.standard_error, 2),
+                digits(low, 5),
+                digits(high, 5)
+            )
+        };
+    }
+    text += &correlation(fit);
+    if fit.parameters.is_empty() {
+        text += "  the curve is taken as it was measured; nothing is fitted\n";
+    } else {
+        text += &format!(
+            "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {:.2}, largest relative error {:.2} %, sum of squares {:.6} MPa²\n",
+            quality.rmse,
+            quality.nmad_percent,
+            quality.r_squared,
+            quality.aicc,
+            quality.largest_relative_error_percent,
+            quality.sum_of_squares
+        );
+    }
+    text += &format!(
+        "  moduli       E₀ = {:.6} MPa, μ₀ = {:.6} MPa\n",
+        fit.fitted.youngs_modulus(),
+        fit.fitted.shear_modulus()
+    );
+    for range in &quality.stable {
+        let [low, high] = range.stretches;
+        text += &format!(
+            "  stable       λ = {low:.3} … {high:.3} in {} tests (Drucker)\n",
+            range.mode.name()
+        );
+    }
+    text += &curves(&*fit.fitted, quality.stretch_range, &|mode| match mode {
+        Some(mode) if !quality.untested.contains(&mode) => "tested",
+        _ => "predicted",
+    });
+    for warning in &quality.warnings {
+        text += &format!("  warning: {warning}\n");
+    }
+    text
+}
+
+/// A number with so many significant digits.
+fn digits(value: f64, digits: i32) -> String {
+    let exponent = value.abs().log10().floor();
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    if !(-5.0..=6.0).contains(&exponent) {
+        return format!("{value:.*e}", digits as usize - 1);
+    }
+    let decimals = (digits - 1 - exponent as i32).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+fn correlation(fit: &Fit) -> String {
+    let matrix = &fit.quality.correlation;
+    if fit.parameters.len() < 2 {
+        return String::new();
+    }
+    let keys = fit.parameters.iter().map(|parameter| parameter.key);
+    let head: String = keys.clone().map(|key| format!("{key:>9}")).collect();
+    let mut text = format!("  correlation  {head}\n");
+    for (i, key) in keys.enumerate() {
+        let row: String = (0..=i)
+            .map(|j| format!("{:>9.4}", matrix[(i, j)]))
+            .collect();
+        text += &format!("    {key:<10} {row}\n");
+    }
+    text
+}
+
+/// Nominal stresses of the usual tests; `note` says more about one of them.
+pub fn curves(
+    law: &dyn HyperelasticLaw,
+    range: [f64; 2],
+    note: &dyn Fn(Option<Mode>) -> &'static str,
+) -> String {
+    let samples = samples(law, range);
+    let stretches = samples[0].points.iter();
+    let stretches: String = stretches
+        .map(|[stretch, _]| format!("{stretch:>10.3}"))
+        .collect();
+    let mut text = format!("  nominal stress [MPa] at λ, 1 + γ {stretches}\n");
+    for sample in samples {
+        let stresses: String = sample
+            .points
+            .iter()
+            .map(|[_, p]| format!("{p:>10.4}"))
+            .collect();
+        text += &format!(
+            "    {:<12} {:<15}  {stresses}\n",
+            sample.name(),
+            note(sample.mode)
+        );
+    }
+    text
+}
+
+/// The laws by AICc.
+pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
+    let mut text = String::from(
+        "law                     parameters          AICc   RMSE [MPa]  NMAD [%]  largest rel. [%]  stable over the data  all parameters identifiable\n",
+    );
+    for fit in fits {
+        let quality = &fit.quality;
+        text += &format!(
+            "{:<24}{:>10}{:>14.2}{:>13.4e}{:>10.3}{:>18.2}  {:<20}  {}\n",
+            fit.law.name,
+            fit.parameters.len(),
+            quality.aicc,
+            quality.rmse,
+            quality.nmad_percent,
+            quality.largest_relative_error_percent,
+            if quality.is_stable() { "yes" } else { "no" },
+            if quality.is_identifiable(&fit.parameters) {
+                "yes"
+            } else {
+                "no"
+            }
+        );
+    }
+    for reason in reasons {
+        text += &format!("left out: {reason}\n");
+    }
+    text + "\n"
+}
+
+/// Refitted parameters that differ by less than this much are the same.
+const SAME_PERCENT: f64 = 1e-4;
+
+/// The parameters of a card and those found again, and whether they are the same.
+pub fn refit(card: &Card, fit: &Fit, tests: &[TestData]) -> (String, bool) {
+    let mut text = format!("{}: {}\n", card.name, card.title);
+    let mut worst = 0.0_f64;
+    for (old, new) in card.parameters.iter().zip(&fit.parameters) {
+        let difference = 100.0 * (new.value - old.value).abs() / old.value.abs().max(1e-300);
+        worst = worst.max(difference);
+        text += &format!(
+            "  {:<12} card {:.8e}   refitted {:.8e} {}   difference {difference:.1e} %\n",
+            old.key,
+            old.value,
+            new.value,
+            new.unit()
+        );
+    }
+    for test in tests {
+        let largest = test.largest_stress;
+        for one in &test.observations {
+            let [old, new] = [&*card.law, &*fit.fitted].map(|law| test.stress_of(law, one));
+            worst = worst.max(100.0 * (old - new).abs() / largest);
+        }
+    }
+    let same = worst <= SAME_PERCENT;
+    let verdict = if same { "the same" } else { "DIFFERENT" };
+    text += &format!("  largest difference of parameters and stresses {worst:.1e} %: {verdict}\n");
+    (text, same)
+}

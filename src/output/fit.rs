@@ -1,0 +1,237 @@
+//! Picture and figures of a fitted law.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::picture::Scale;
+use super::picture::lines::{Axis, Line, LineChart, Stroke, stacked};
+use crate::calibration::{Fit, Observation, Test, TestData};
+use crate::material::curve::{Mode, samples};
+
+const COLOURS: [[u8; 3]; 6] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+];
+const INK: [u8; 3] = [60, 60, 60];
+
+/// The observations of one file along one axis.
+struct Group<'a> {
+    data: &'a TestData,
+    axis: usize,
+    label: String,
+    colour: [u8; 3],
+}
+
+fn groups(tests: &[TestData]) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group> = Vec::new();
+    for data in tests {
+        for axis in [0, 1] {
+            if !data.observations.iter().any(|one| one.axis == axis) {
+                continue;
+            }
+            let direction = if axis == 1 { ", direction 2" } else { "" };
+            let mut label = format!("{}{direction}", data.test.name());
+            if groups.iter().any(|other| other.label == label) {
+                let stem = Path::new(&data.name).file_stem();
+                label = stem.map_or(label, |stem| stem.to_string_lossy().into_owned());
+            }
+            groups.push(Group {
+                data,
+                axis,
+                label,
+                colour: COLOURS[groups.len() % COLOURS.len()],
+            });
+        }
+    }
+    groups
+}
+
+impl Group<'_> {
+    fn observations(&self) -> impl Iterator<Item = &Observation> {
+        let axis = self.axis;
+        self.data
+            .observations
+            .iter()
+            .filter(move |one| one.axis == axis)
+    }
+
+    fn stretch(&self, observation: &Observation) -> f64 {
+        1.0 + self.data.drawn_strain(observation)
+    }
+
+    /// The stretches within which the fitted law is stable in this test.
+    fn stable(&self, fit: &Fit) -> [f64; 2] {
+        let mode = match self.data.test {
+            Test::Uniaxial => Mode::Uniaxial,
+            Test::Planar => Mode::Planar,
+            Test::Equibiaxial => Mode::Equibiaxial,
+            Test::Biaxial => return [0.0, f64::INFINITY],
+        };
+        let found = fit.quality.stable.iter().find(|range| range.mode == mode);
+        found.map_or([0.0, f64::INFINITY], |range| range.stretches)
+    }
+}
+
+/// Data with the fitted curve and its 95 % band, and the residuals below.
+pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Vec<u8> {
+    let (mut bands, mut curves, mut points) = (Vec::new(), Vec::new(), Vec::new());
+    let mut residuals = vec![Line {
+        label: String::new(),
+        points: vec![
+            [fit.quality.stretch_range[0], 0.0],
+            [fit.quality.stretch_range[1], 0.0],
+        ],
+        colour: INK,
+        stroke: Stroke::Solid,
+    }];
+    let (mut any_band, mut any_unstable) = (false, false);
+    for group in groups(tests) {
+        let path = group.data.path(group.axis, 120);
+        let stress = |one: &Observation| group.data.stress_of(&*fit.fitted, one);
+        let curve: Vec<[f64; 2]> = path
+            .iter()
+            .map(|one| [group.stretch(one), stress(one)])
+            .collect();
+        let halves = fit.half_widths(group.data, &path);
+        let edge = |sign: f64| {
+            let pairs = curve.iter().zip(&halves);
+            pairs
+                .map(move |([x, y], half)| [*x, y + sign * half])
+                .collect::<Vec<_>>()
+        };
+        if halves.iter().all(|half| half.is_finite()) && !fit.parameters.is_empty() {
+            let mut outline = edge(1.0);
+            outline.extend(edge(-1.0).into_iter().rev());
+            bands.push(line("", outline, group.colour, Stroke::Filled));
+            any_band = true;
+        }
+        let [low, high] = group.stable(fit);
+        any_unstable |= curve
+            .iter()
+            .any(|[stretch, _]| !(low..=high).contains(stretch));
+        // Darker than the markers that it lies on.
+        let colour = group.colour.map(|part| part / 2);
+        curves.extend(Line::within("", &curve, colour, [low, high]));
+        let shown = thinned(group.observations().copied().collect());
+        let measured = shown
+            .iter()
+            .map(|one| [group.stretch(one), one.stress])
+            .collect();
+        points.push(line(&group.label, measured, group.colour, Stroke::Points));
+        let left = |one: &Observation| [group.stretch(one), one.stress - stress(one)];
+        residuals.push(line(
+            "",
+            shown.iter().map(left).collect(),
+            group.colour,
+            Stroke::Points,
+        ));
+    }
+    let mut lines = bands;
+    lines.extend(points);
+    lines.extend(curves);
+    for (shown, label, stroke) in [
+        (true, "fitted curve", Stroke::Solid),
+        (any_unstable, "unstable (Drucker)", Stroke::Dashed),
+        (any_band, "95 % band of the curve", Stroke::Filled),
+    ] {
+        if shown {
+            lines.push(line(label, Vec::new(), INK, stroke));
+        }
+    }
+    let stress = format!("{} stress [MPa]", fit.stress_measure().title());
+    let upper = LineChart {
+        title: format!("{} fitted to {}", fit.law.name, names(tests)),
+        x: Axis::stretch(),
+        y: Axis::linear(&stress),
+        lines,
+        band: None,
+    };
+    let lower = LineChart {
+        title: "Residuals: measured less fitted".into(),
+        x: Axis::stretch(),
+        y: Axis {
+            label: "stress [MPa]".into(),
+            scale: Scale::Linear,
+        },
+        lines: residuals,
+        band: None,
+    };
+    stacked(&[(upper, 460), (lower, 250)])
+}
+
+fn line(label: &str, points: Vec<[f64; 2]>, colour: [u8; 3], stroke: Stroke) -> Line {
+    Line {
+        label: label.to_owned(),
+        points,
+        colour,
+        stroke,
+    }
+}
+
+/// At most a thousand observations: more markers than that are a blot.
+fn thinned(observations: Vec<Observation>) -> Vec<Observation> {
+    let stride = observations.len().div_ceil(1000).max(1);
+    observations.into_iter().step_by(stride).collect()
+}
+
+fn names(tests: &[TestData]) -> String {
+    match tests {
+        [test] => Path::new(&test.name)
+            .file_name()
+            .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+        _ => format!("{} tests", tests.len()),
+    }
+}
+
+/// All figures of a fit. Numbers that do not exist are `null`.
+pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
+    let quality = &fit.quality;
+    let parameters = fit.parameters.iter().zip(&quality.estimates);
+    let rows = quality.correlation.row_iter();
+    json!({
+        "gelbench": env!("CARGO_PKG_VERSION"),
+        "law": fit.law.name,
+        "formula": fit.law.formula,
+        "data": tests.iter().map(|test| json!({
+            "file": test.name,
+            "test": test.test.name(),
+            "stress_measure": test.stress_measure.name(),
+            "points": test.observations.len(),
+        })).collect::<Vec<_>>(),
+        "weighting": fit.settings.weighting.name(),
+        "parameters": parameters.map(|(parameter, estimate)| json!({
+            "key": parameter.key,
+            "value": parameter.value,
+            "unit": parameter.unit(),
+            "standard_error": estimate.standard_error,
+            "interval_95_percent": estimate.interval,
+            "at_bound": estimate.at_bound,
+        })).collect::<Vec<_>>(),
+        "correlation": rows.map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
+        "points": quality.points,
+        "sum_of_squares_MPa2": quality.sum_of_squares,
+        "rmse_MPa": quality.rmse,
+        "nmad_percent": quality.nmad_percent,
+        "r_squared": quality.r_squared,
+        "aicc": quality.aicc,
+        "largest_relative_error_percent": quality.largest_relative_error_percent,
+        "initial_shear_modulus_MPa": fit.fitted.shear_modulus(),
+        "initial_youngs_modulus_MPa": fit.fitted.youngs_modulus(),
+        "stretch_range": quality.stretch_range,
+        "stable": quality.stable.iter().map(|range| json!({
+            "test": range.mode.name(),
+            "stretches": range.stretches,
+        })).collect::<Vec<_>>(),
+        "curves": samples(&*fit.fitted, quality.stretch_range).iter().map(|sample| json!({
+            "test": sample.name(),
+            "supported_by_data": sample.mode.is_some_and(|mode| !quality.untested.contains(&mode)),
+            "stretch_and_nominal_stress_MPa": sample.points,
+        })).collect::<Vec<_>>(),
+        "warnings": quality.warnings,
+    })
+}
