@@ -190,7 +190,8 @@ fn nodal_areas(mesh: &Mesh) -> Vec<f64> {
         0.5_f64.powi(halvings as i32)
     };
     let shares: Vec<f64> = (0..mesh.nodes.len()).map(share).collect();
-    let whole = mesh.size[0] * mesh.size[1] / shares.iter().sum::<f64>();
+    let size = mesh.grid().size;
+    let whole = size[0] * size[1] / shares.iter().sum::<f64>();
     shares.into_iter().map(|share| share * whole).collect()
 }
 

@@ -163,8 +163,7 @@ impl MassSpring {
 
     /// The model as the solver sees it.
     pub fn model(&self) -> Model<'_> {
-        let [nx, ny] = self.mesh.cells;
-        let name = format!("mass-spring ({nx} × {ny} cells)");
+        let name = format!("mass-spring ({})", self.mesh.describe());
         Model {
             name,
             mesh: &self.mesh,

@@ -1,76 +1,13 @@
-//! Nodes, cells and named sets of a flat specimen, and fields on them.
+//! Nodes, cells and named groups of a flat specimen, and fields on them.
 
-/// The kind of all cells of a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CellShape {
-    /// Four nodes, bilinear.
-    Quad4,
-    /// Nine nodes, biquadratic: corners, mid-sides, centre.
-    Quad9,
-}
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
-impl CellShape {
-    /// Nodes of a cell.
-    pub fn nodes(self) -> usize {
-        match self {
-            Self::Quad4 => 4,
-            Self::Quad9 => 9,
-        }
-    }
+mod cell_shape;
+mod locate;
 
-    /// Steps of the node grid a cell spans in each direction.
-    fn degree(self) -> usize {
-        match self {
-            Self::Quad4 => 1,
-            Self::Quad9 => 2,
-        }
-    }
-
-    /// Reference coordinates (ξ, η) of the nodes in −1…1: corners counter-clockwise from (−1, −1),
-    /// then mid-sides, then the centre. This is VTK's order.
-    pub fn reference_nodes(self) -> &'static [[f64; 2]] {
-        const NODES: [[f64; 2]; 9] = [
-            [-1.0, -1.0],
-            [1.0, -1.0],
-            [1.0, 1.0],
-            [-1.0, 1.0],
-            [0.0, -1.0],
-            [1.0, 0.0],
-            [0.0, 1.0],
-            [-1.0, 0.0],
-            [0.0, 0.0],
-        ];
-        &NODES[..self.nodes()]
-    }
-
-    /// Values Nₐ of the shape functions at a reference point.
-    pub fn values(self, point: [f64; 2]) -> Vec<f64> {
-        let value = |axis: usize, node: f64| self.factor(node, point[axis])[0];
-        self.reference_nodes()
-            .iter()
-            .map(|node| value(0, node[0]) * value(1, node[1]))
-            .collect()
-    }
-
-    /// Derivatives [∂Nₐ/∂ξ, ∂Nₐ/∂η] of the shape functions at a reference point.
-    pub fn derivatives(self, point: [f64; 2]) -> Vec<[f64; 2]> {
-        let derivative = |node: &[f64; 2]| {
-            let [x, dx] = self.factor(node[0], point[0]);
-            let [y, dy] = self.factor(node[1], point[1]);
-            [dx * y, x * dy]
-        };
-        self.reference_nodes().iter().map(derivative).collect()
-    }
-
-    /// The one-dimensional Lagrange polynomial of the node at `node`, and its derivative.
-    fn factor(self, node: f64, x: f64) -> [f64; 2] {
-        match self {
-            Self::Quad4 => [0.5 * (1.0 + node * x), 0.5 * node],
-            Self::Quad9 if node == 0.0 => [1.0 - x * x, -2.0 * x],
-            Self::Quad9 => [0.5 * x * (x + node), x + 0.5 * node],
-        }
-    }
-}
+pub use cell_shape::{CellShape, QuadraturePoint};
+use locate::Buckets;
 
 /// Named sides of the plate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,27 +22,90 @@ pub enum Side {
     Top,
 }
 
-/// A rectangular plate meshed by nx × ny equal cells; nodes are numbered along Y first.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mesh {
+impl Side {
+    /// All sides.
+    pub const ALL: [Self; 4] = [Self::Left, Self::Right, Self::Bottom, Self::Top];
+
+    /// The name of the group of nodes on it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Bottom => "bottom",
+            Self::Top => "top",
+        }
+    }
+}
+
+/// A named part of the boundary, or a set of nodes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// Its nodes, ascending.
+    pub nodes: Vec<usize>,
+    /// Its edges, if it is a part of the boundary: both ends, then the middle where there is one, with the
+    /// specimen to the left.
+    pub edges: Vec<Vec<usize>>,
+}
+
+/// A rectangle of equal cells; nodes are numbered along Y first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
     /// Length along X and width along Y in mm.
     pub size: [f64; 2],
     /// Cells along X and Y.
     pub cells: [usize; 2],
-    /// Kind of the cells.
-    pub shape: CellShape,
+}
+
+/// A flat mesh of triangles and quadrilaterals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
     /// Reference coordinates in mm.
     pub nodes: Vec<[f64; 2]>,
+    shapes: Vec<CellShape>,
+    starts: Vec<usize>,
     connectivity: Vec<usize>,
+    groups: BTreeMap<String, Group>,
+    grid: Option<Grid>,
+    buckets: OnceLock<Buckets>,
 }
 
 impl Mesh {
-    /// A plate of `size` mm with `cells` cells.
+    /// A mesh of cells with their nodes in the order of [`CellShape::reference_nodes`].
+    ///
+    /// # Panics
+    /// When a cell has another number of nodes than its kind.
+    pub fn new(
+        nodes: Vec<[f64; 2]>,
+        cells: impl IntoIterator<Item = (CellShape, Vec<usize>)>,
+    ) -> Self {
+        let (mut shapes, mut starts, mut connectivity) = (Vec::new(), vec![0], Vec::new());
+        for (shape, nodes) in cells {
+            assert_eq!(nodes.len(), shape.nodes(), "nodes of a {shape:?}");
+            shapes.push(shape);
+            connectivity.extend(nodes);
+            starts.push(connectivity.len());
+        }
+        Self {
+            nodes,
+            shapes,
+            starts,
+            connectivity,
+            groups: BTreeMap::new(),
+            grid: None,
+            buckets: OnceLock::new(),
+        }
+    }
+
+    /// A plate of `size` mm with `cells` equal cells; its groups are the sides `left`, `right`, `bottom`, `top`.
     ///
     /// # Panics
     /// When a size or a number of cells is not positive.
     pub fn plate(size: [f64; 2], cells: [usize; 2], shape: CellShape) -> Self {
         assert!(size.iter().all(|size| *size > 0.0) && cells.iter().all(|cells| *cells > 0));
+        assert!(
+            matches!(shape, CellShape::Quad4 | CellShape::Quad9),
+            "a grid of nodes"
+        );
         let degree = shape.degree();
         let steps = cells.map(|cells| cells * degree);
         // The last line of nodes lies on the side to the last digit.
@@ -116,80 +116,172 @@ impl Mesh {
         let nodes = (0..=steps[0])
             .flat_map(|i| (0..=steps[1]).map(move |j| [coordinate(0, i), coordinate(1, j)]))
             .collect();
-        let mut connectivity = Vec::with_capacity(cells[0] * cells[1] * shape.nodes());
-        for (i, j) in (0..cells[0]).flat_map(|i| (0..cells[1]).map(move |j| (i, j))) {
-            for [x, y] in shape.reference_nodes() {
+        let all = (0..cells[0]).flat_map(|i| (0..cells[1]).map(move |j| (i, j)));
+        let cell = |(i, j): (usize, usize)| {
+            let node = |[x, y]: &[f64; 2]| {
                 let step = |x: f64| ((x + 1.0) * degree as f64 / 2.0) as usize;
                 let (column, row) = (i * degree + step(*x), j * degree + step(*y));
-                connectivity.push(column * (steps[1] + 1) + row);
-            }
+                column * (steps[1] + 1) + row
+            };
+            (shape, shape.reference_nodes().iter().map(node).collect())
+        };
+        let mut mesh = Self::new(nodes, all.map(cell));
+        mesh.grid = Some(Grid { size, cells });
+        for side in Side::ALL {
+            mesh.name_boundary(side.name(), |node| mesh_side(size, side, node));
         }
-        Self {
-            size,
-            cells,
-            shape,
-            nodes,
-            connectivity,
-        }
+        mesh
     }
 
     /// Number of cells.
     pub fn cell_count(&self) -> usize {
-        self.cells[0] * self.cells[1]
+        self.shapes.len()
+    }
+
+    /// The kind of a cell.
+    pub fn shape(&self, cell: usize) -> CellShape {
+        self.shapes[cell]
     }
 
     /// The nodes of a cell, in the order of [`CellShape::reference_nodes`].
     pub fn cell(&self, cell: usize) -> &[usize] {
-        let size = self.shape.nodes();
-        &self.connectivity[cell * size..(cell + 1) * size]
+        &self.connectivity[self.starts[cell]..self.starts[cell + 1]]
     }
 
-    /// Length and width of a cell in mm.
-    pub fn cell_size(&self) -> [f64; 2] {
-        [0, 1].map(|axis| self.size[axis] / self.cells[axis] as f64)
+    /// The rectangle that the mesh is, if it is one of equal cells.
+    ///
+    /// # Panics
+    /// When the mesh is no such rectangle.
+    pub fn grid(&self) -> Grid {
+        self.grid.expect("the mesh of a plate")
     }
 
-    /// Centre of a cell in mm.
-    pub fn centre(&self, cell: usize) -> [f64; 2] {
-        let corners = &self.cell(cell)[..4];
-        [0, 1].map(|axis| {
-            corners
-                .iter()
-                .map(|node| self.nodes[*node][axis])
-                .sum::<f64>()
-                / 4.0
-        })
-    }
-
-    /// Whether a node lies on a side.
-    pub fn on(&self, side: Side, node: usize) -> bool {
-        let [x, y] = self.nodes[node];
-        match side {
-            Side::Left => x == 0.0,
-            Side::Right => x == self.size[0],
-            Side::Bottom => y == 0.0,
-            Side::Top => y == self.size[1],
+    /// `120 × 40 cells`, or the number of cells of a mesh that is no rectangle.
+    pub fn describe(&self) -> String {
+        match self.grid {
+            Some(Grid {
+                cells: [nx, ny], ..
+            }) => format!("{nx} × {ny} cells"),
+            None => format!("{} cells", self.cell_count()),
         }
     }
 
-    /// Whether a node lies on a grip: the left or the right side.
+    /// The groups by name.
+    pub fn groups(&self) -> &BTreeMap<String, Group> {
+        &self.groups
+    }
+
+    /// Names a group of nodes; the boundary edges that lie within it belong to it.
+    pub fn name_nodes(&mut self, name: &str, nodes: &BTreeSet<usize>) {
+        let edges = self.boundary().into_iter();
+        let edges = edges.filter(|edge| edge.iter().all(|node| nodes.contains(node)));
+        let group = Group {
+            edges: edges.collect(),
+            nodes: nodes.iter().copied().collect(),
+        };
+        self.groups.insert(name.to_owned(), group);
+    }
+
+    /// Names the part of the boundary whose edges have all nodes where `inside` holds.
+    pub fn name_boundary(&mut self, name: &str, inside: impl Fn([f64; 2]) -> bool) {
+        let edges = self.boundary().into_iter();
+        let edges = edges.filter(|edge| edge.iter().all(|node| inside(self.nodes[*node])));
+        self.name_edges(name, edges.collect());
+    }
+
+    /// Names a group of boundary edges.
+    pub fn name_edges(&mut self, name: &str, edges: Vec<Vec<usize>>) {
+        let nodes: BTreeSet<usize> = edges.iter().flatten().copied().collect();
+        let nodes = nodes.into_iter().collect();
+        self.groups.insert(name.to_owned(), Group { nodes, edges });
+    }
+
+    /// The edges that belong to one cell alone, each with the specimen to its left.
+    pub fn boundary(&self) -> Vec<Vec<usize>> {
+        let mut edges: BTreeMap<[usize; 2], (usize, Vec<usize>)> = BTreeMap::new();
+        for cell in 0..self.cell_count() {
+            let nodes = self.cell(cell);
+            for local in self.shape(cell).edges() {
+                let edge: Vec<usize> = local.iter().map(|node| nodes[*node]).collect();
+                let key = [edge[0].min(edge[1]), edge[0].max(edge[1])];
+                edges.entry(key).or_insert((0, edge)).0 += 1;
+            }
+        }
+        let lonely = edges.into_values().filter(|(cells, _)| *cells == 1);
+        lonely.map(|(_, edge)| edge).collect()
+    }
+
+    /// Centre of a cell in mm: the mean of its corners.
+    pub fn centre(&self, cell: usize) -> [f64; 2] {
+        let corners = &self.cell(cell)[..self.shape(cell).corners()];
+        [0, 1].map(|axis| {
+            let sum: f64 = corners.iter().map(|node| self.nodes[*node][axis]).sum();
+            sum / corners.len() as f64
+        })
+    }
+
+    /// Length and width of a cell of a plate in mm.
+    pub fn cell_size(&self) -> [f64; 2] {
+        let Grid { size, cells } = self.grid();
+        [0, 1].map(|axis| size[axis] / cells[axis] as f64)
+    }
+
+    /// Whether a node lies on a side of the plate.
+    pub fn on(&self, side: Side, node: usize) -> bool {
+        mesh_side(self.grid().size, side, self.nodes[node])
+    }
+
+    /// Whether a node lies on a grip of the plate: the left or the right side.
     pub fn on_grip(&self, node: usize) -> bool {
         self.on(Side::Left, node) || self.on(Side::Right, node)
     }
 
-    /// The cell that holds a point of the plate, and the point's reference coordinates in it.
+    /// The cell that holds a point, and the point's reference coordinates in it; for a point outside of the mesh
+    /// the nearest cell.
     pub fn locate(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
+        let Some(Grid { cells, .. }) = self.grid else {
+            let buckets = self.buckets.get_or_init(|| Buckets::new(self));
+            return buckets.locate(self, point);
+        };
         let step = self.cell_size();
-        let index =
-            [0, 1].map(|axis| ((point[axis] / step[axis]) as usize).min(self.cells[axis] - 1));
+        let index = [0, 1].map(|axis| ((point[axis] / step[axis]) as usize).min(cells[axis] - 1));
         let local = [0, 1].map(|axis| 2.0 * (point[axis] / step[axis] - index[axis] as f64) - 1.0);
-        (index[0] * self.cells[1] + index[1], local)
+        (index[0] * cells[1] + index[1], local)
+    }
+
+    /// The reference coordinates of a point in a cell, by Newton's method; nothing where it finds none.
+    fn local_coordinates(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
+        let shape = self.shape(cell);
+        let mut local = shape.centre();
+        for _ in 0..30 {
+            let values = shape.values(local);
+            let mut miss = point;
+            for (node, value) in self.cell(cell).iter().zip(&values) {
+                for (axis, miss) in miss.iter_mut().enumerate() {
+                    *miss -= value * self.nodes[*node][axis];
+                }
+            }
+            let map = self.map(cell, &shape.derivatives(local));
+            let jacobian = determinant(&map);
+            if jacobian == 0.0 || local.iter().any(|x| x.abs() > 50.0) {
+                return None;
+            }
+            let step = [
+                (map[1][1] * miss[0] - map[0][1] * miss[1]) / jacobian,
+                (map[0][0] * miss[1] - map[1][0] * miss[0]) / jacobian,
+            ];
+            local = [local[0] + step[0], local[1] + step[1]];
+            if step[0].abs().max(step[1].abs()) < 1e-13 {
+                return Some(local);
+            }
+        }
+        None
     }
 
     /// Displacement interpolated at a point; `displacement` holds ux, uy of node after node.
     pub fn displacement_at(&self, displacement: &[f64], point: [f64; 2]) -> [f64; 2] {
         let (cell, local) = self.locate(point);
-        let values = self.shape.values(local);
+        let values = self.shape(cell).values(local);
         let component = |axis: usize| {
             let nodes = self.cell(cell).iter().zip(&values);
             nodes
@@ -199,7 +291,7 @@ impl Mesh {
         [component(0), component(1)]
     }
 
-    /// Displacement interpolated at all nodes of another mesh of the plate.
+    /// Displacement interpolated at all nodes of another mesh of the specimen.
     pub fn displacement_on(&self, displacement: &[f64], other: &Self) -> Vec<f64> {
         let nodes = other.nodes.iter();
         nodes
@@ -207,14 +299,40 @@ impl Mesh {
             .collect()
     }
 
+    /// Gradients ∂Nₐ/∂X of a cell's shape functions in 1/mm, and the Jacobian of its map in mm², at a reference
+    /// point.
+    pub fn gradients(&self, cell: usize, local: [f64; 2]) -> (Vec<[f64; 2]>, f64) {
+        let derivatives = self.shape(cell).derivatives(local);
+        let map = self.map(cell, &derivatives);
+        let jacobian = determinant(&map);
+        let transform = |d: &[f64; 2]| {
+            [
+                (d[0] * map[1][1] - d[1] * map[1][0]) / jacobian,
+                (d[1] * map[0][0] - d[0] * map[0][1]) / jacobian,
+            ]
+        };
+        (derivatives.iter().map(transform).collect(), jacobian)
+    }
+
+    /// ∂Xᵢ/∂ξⱼ of a cell.
+    fn map(&self, cell: usize, derivatives: &[[f64; 2]]) -> [[f64; 2]; 2] {
+        let mut map = [[0.0; 2]; 2];
+        for (node, derivative) in self.cell(cell).iter().zip(derivatives) {
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                map[i][j] += self.nodes[*node][i] * derivative[j];
+            }
+        }
+        map
+    }
+
     /// Displacement gradient H₁₁, H₁₂, H₂₁, H₂₂ at a reference point of a cell.
     pub fn gradient_at(&self, displacement: &[f64], cell: usize, local: [f64; 2]) -> [f64; 4] {
-        let step = self.cell_size();
+        let (gradients, _) = self.gradients(cell, local);
         let mut gradient = [0.0; 4];
-        for (node, derivative) in self.cell(cell).iter().zip(self.shape.derivatives(local)) {
+        for (node, derivative) in self.cell(cell).iter().zip(gradients) {
             for (axis, direction) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 gradient[2 * axis + direction] +=
-                    displacement[2 * node + axis] * derivative[direction] * 2.0 / step[direction];
+                    displacement[2 * node + axis] * derivative[direction];
             }
         }
         gradient
@@ -222,7 +340,7 @@ impl Mesh {
 
     /// Width of the deformed plate at mid length in mm.
     pub fn mid_width(&self, displacement: &[f64]) -> f64 {
-        let [length, width] = self.size;
+        let [length, width] = self.grid().size;
         let lateral = |y: f64| self.displacement_at(displacement, [length / 2.0, y])[1];
         width + lateral(width) - lateral(0.0)
     }
@@ -231,6 +349,20 @@ impl Mesh {
     pub fn describe_cell(&self, cell: usize) -> String {
         let [x, y] = self.centre(cell);
         format!("cell {cell} near ({x:.1}, {y:.1}) mm")
+    }
+}
+
+fn determinant(map: &[[f64; 2]; 2]) -> f64 {
+    map[0][0] * map[1][1] - map[0][1] * map[1][0]
+}
+
+/// Whether a point lies on a side of a plate.
+fn mesh_side([length, width]: [f64; 2], side: Side, [x, y]: [f64; 2]) -> bool {
+    match side {
+        Side::Left => x == 0.0,
+        Side::Right => x == length,
+        Side::Bottom => y == 0.0,
+        Side::Top => y == width,
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
+use crate::mesh::{Mesh, QuadraturePoint};
 use crate::solve::{Inadmissible, Local, Potential};
 
 /// Where the energy is sampled: the displacement gradient there as a combination of nodal values.
@@ -21,17 +22,17 @@ pub struct SamplingPoint {
 pub struct SheetEnergy {
     law: Arc<dyn HyperelasticLaw>,
     unknowns: usize,
-    nodes_per_cell: usize,
     /// ux, uy of node after node for each cell.
     cell_unknowns: Vec<usize>,
-    points_per_cell: usize,
+    /// Where the unknowns of each cell begin.
+    unknown_starts: Vec<usize>,
     points: Vec<SamplingPoint>,
+    /// Where the points of each cell begin.
+    point_starts: Vec<usize>,
 }
 
 impl SheetEnergy {
-    /// The energy of cells that all have the same number of nodes and sampling points.
-    ///
-    /// `cells` gives each cell's nodes and points.
+    /// The energy of cells; `cells` gives each cell's nodes and points.
     pub fn new<'a>(
         law: Arc<dyn HyperelasticLaw>,
         nodes: usize,
@@ -40,25 +41,41 @@ impl SheetEnergy {
         let mut energy = Self {
             law,
             unknowns: 2 * nodes,
-            nodes_per_cell: 1,
             cell_unknowns: Vec::new(),
-            points_per_cell: 1,
+            unknown_starts: vec![0],
             points: Vec::new(),
+            point_starts: vec![0],
         };
         for (nodes, points) in cells {
-            energy.nodes_per_cell = nodes.len();
-            energy.points_per_cell = points.len();
-            energy
-                .cell_unknowns
-                .extend(nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]));
+            let unknowns = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
+            energy.cell_unknowns.extend(unknowns);
+            energy.unknown_starts.push(energy.cell_unknowns.len());
             energy.points.extend(points);
+            energy.point_starts.push(energy.points.len());
         }
         energy
     }
 
+    /// The energy of the cells of a mesh, integrated by their quadrature: the finite-element method.
+    pub fn of_mesh(law: Arc<dyn HyperelasticLaw>, mesh: &Mesh, thickness: f64) -> Self {
+        let points = |cell: usize| {
+            let rule = mesh.shape(cell).quadrature().into_iter();
+            let point = |(local, weight): QuadraturePoint| {
+                let (gradients, jacobian) = mesh.gradients(cell, local);
+                SamplingPoint {
+                    gradients,
+                    volume: thickness * jacobian * weight,
+                }
+            };
+            rule.map(point).collect()
+        };
+        let cells = (0..mesh.cell_count()).map(|cell| (mesh.cell(cell), points(cell)));
+        Self::new(law, mesh.nodes.len(), cells)
+    }
+
     /// The sampling points of a cell.
     pub fn cell_points(&self, cell: usize) -> &[SamplingPoint] {
-        &self.points[cell * self.points_per_cell..(cell + 1) * self.points_per_cell]
+        &self.points[self.point_starts[cell]..self.point_starts[cell + 1]]
     }
 
     /// Kinematics at a sampling point of a cell with the nodal displacements `u`.
@@ -80,12 +97,11 @@ impl Potential for SheetEnergy {
     }
 
     fn elements(&self) -> usize {
-        self.cell_unknowns.len() / (2 * self.nodes_per_cell)
+        self.unknown_starts.len() - 1
     }
 
     fn element_unknowns(&self, element: usize) -> &[usize] {
-        let size = 2 * self.nodes_per_cell;
-        &self.cell_unknowns[element * size..(element + 1) * size]
+        &self.cell_unknowns[self.unknown_starts[element]..self.unknown_starts[element + 1]]
     }
 
     fn evaluate_element(

@@ -79,7 +79,7 @@ pub fn measured_points(name: &str, mesh: &Mesh, points: &[([f64; 2], [f64; 2])])
     let mut values = Vec::new();
     for (place, displacement) in points {
         let (cell, local) = mesh.locate(*place);
-        let shares = mesh.shape.values(local);
+        let shares = mesh.shape(cell).values(local);
         for (axis, value) in displacement.iter().enumerate() {
             let nodes = mesh.cell(cell).iter().zip(&shares);
             rows.push(nodes.map(|(node, share)| (2 * node + axis, *share)));

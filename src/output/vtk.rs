@@ -112,15 +112,12 @@ fn plate(
     more_point_data: Vec<Attribute>,
 ) -> UnstructuredGridPiece {
     let cells: Vec<&[usize]> = (0..mesh.cell_count()).map(|cell| mesh.cell(cell)).collect();
-    let kind = match mesh.shape {
-        CellShape::Quad4 => CellType::Quad,
-        CellShape::Quad9 => CellType::BiquadraticQuad,
-    };
+    let kinds = (0..mesh.cell_count()).map(|cell| kind(mesh.shape(cell)));
     let mut point = vec![planar_vectors("displacement_mm", displacement)];
     point.extend(more_point_data);
     UnstructuredGridPiece {
         points: points(mesh),
-        cells: connect(&cells, kind),
+        cells: connect(&cells, kinds.collect()),
         data: Attributes {
             point,
             cell: material_state(problem, mesh, displacement),
@@ -128,11 +125,21 @@ fn plate(
     }
 }
 
+fn kind(shape: CellShape) -> CellType {
+    match shape {
+        CellShape::Triangle3 => CellType::Triangle,
+        CellShape::Triangle6 => CellType::QuadraticTriangle,
+        CellShape::Quad4 => CellType::Quad,
+        CellShape::Quad8 => CellType::QuadraticQuad,
+        CellShape::Quad9 => CellType::BiquadraticQuad,
+    }
+}
+
 fn material_state(problem: &Problem, mesh: &Mesh, displacement: &[f64]) -> Vec<Attribute> {
     let (mut nominal, mut cauchy, mut stretches) = (Vec::new(), Vec::new(), Vec::new());
     let (mut i1, mut thickness, mut energy) = (Vec::new(), Vec::new(), Vec::new());
     for cell in 0..mesh.cell_count() {
-        let gradient = mesh.gradient_at(displacement, cell, [0.0, 0.0]);
+        let gradient = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
         let kinematics = Kinematics::new(&Vector4::from(gradient))
             .expect("cells with positive corners have a positive centre");
         let (density, p) = problem.law.stress(&kinematics);
@@ -167,7 +174,7 @@ fn springs(results: &Results, step: usize) -> UnstructuredGridPiece {
         |value: fn(&crate::mass_spring::SpringState) -> f64| states.iter().map(value).collect();
     UnstructuredGridPiece {
         points: points(&model.mesh),
-        cells: connect(&cells, CellType::Line),
+        cells: connect(&cells, vec![CellType::Line; cells.len()]),
         data: Attributes {
             point: vec![planar_vectors("displacement_mm", displacement)],
             cell: vec![
@@ -198,13 +205,13 @@ fn points(mesh: &Mesh) -> IOBuffer {
     IOBuffer::F64(nodes.flat_map(|[x, y]| [*x, *y, 0.0]).collect())
 }
 
-fn connect(cells: &[&[usize]], kind: CellType) -> Cells {
+fn connect(cells: &[&[usize]], types: Vec<CellType>) -> Cells {
     let ends = cells.iter().scan(0, |end, cell| {
         *end += cell.len() as u64;
         Some(*end)
     });
     Cells {
-        types: vec![kind; cells.len()],
+        types,
         cell_verts: VertexNumbers::XML {
             connectivity: cells
                 .iter()

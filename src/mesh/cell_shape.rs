@@ -1,0 +1,285 @@
+//! The kinds of cells: reference nodes, shape functions, quadrature.
+
+/// The kind of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CellShape {
+    /// Three nodes, linear.
+    Triangle3,
+    /// Six nodes, quadratic: corners, mid-sides.
+    Triangle6,
+    /// Four nodes, bilinear.
+    Quad4,
+    /// Eight nodes, serendipity: corners, mid-sides.
+    Quad8,
+    /// Nine nodes, biquadratic: corners, mid-sides, centre.
+    Quad9,
+}
+
+/// A point of the reference cell and its weight.
+pub type QuadraturePoint = ([f64; 2], f64);
+
+const QUAD: [[f64; 2]; 9] = [
+    [-1.0, -1.0],
+    [1.0, -1.0],
+    [1.0, 1.0],
+    [-1.0, 1.0],
+    [0.0, -1.0],
+    [1.0, 0.0],
+    [0.0, 1.0],
+    [-1.0, 0.0],
+    [0.0, 0.0],
+];
+const TRIANGLE: [[f64; 2]; 6] = [
+    [0.0, 0.0],
+    [1.0, 0.0],
+    [0.0, 1.0],
+    [0.5, 0.0],
+    [0.5, 0.5],
+    [0.0, 0.5],
+];
+
+impl CellShape {
+    /// All kinds.
+    pub const ALL: [Self; 5] = [
+        Self::Triangle3,
+        Self::Triangle6,
+        Self::Quad4,
+        Self::Quad8,
+        Self::Quad9,
+    ];
+
+    /// Nodes of a cell.
+    pub fn nodes(self) -> usize {
+        match self {
+            Self::Triangle3 => 3,
+            Self::Triangle6 => 6,
+            Self::Quad4 => 4,
+            Self::Quad8 => 8,
+            Self::Quad9 => 9,
+        }
+    }
+
+    /// Corners of a cell.
+    pub fn corners(self) -> usize {
+        if self.is_triangle() { 3 } else { 4 }
+    }
+
+    /// Whether it has three corners.
+    pub fn is_triangle(self) -> bool {
+        matches!(self, Self::Triangle3 | Self::Triangle6)
+    }
+
+    /// Degree of the displacement along an edge.
+    pub fn degree(self) -> usize {
+        match self {
+            Self::Triangle3 | Self::Quad4 => 1,
+            Self::Triangle6 | Self::Quad8 | Self::Quad9 => 2,
+        }
+    }
+
+    /// The kind of the same corners with nodes in the corners alone.
+    pub fn linear(self) -> Self {
+        if self.is_triangle() {
+            Self::Triangle3
+        } else {
+            Self::Quad4
+        }
+    }
+
+    /// Reference coordinates (ξ, η) of the nodes: corners counter-clockwise, then mid-sides beginning
+    /// between the first two corners, then the centre. Quadrilaterals lie in −1…1, triangles in ξ, η ≥ 0, ξ + η ≤ 1.
+    /// This is the order of VTK, Gmsh and Abaqus.
+    pub fn reference_nodes(self) -> &'static [[f64; 2]] {
+        if self.is_triangle() {
+            &TRIANGLE[..self.nodes()]
+        } else {
+            &QUAD[..self.nodes()]
+        }
+    }
+
+    /// The middle of the reference cell.
+    pub fn centre(self) -> [f64; 2] {
+        if self.is_triangle() {
+            [1.0 / 3.0; 2]
+        } else {
+            [0.0; 2]
+        }
+    }
+
+    /// The nodes of each edge within the cell: its ends, then its middle.
+    pub fn edges(self) -> Vec<Vec<usize>> {
+        let corners = self.corners();
+        let edge = |i: usize| {
+            let mut nodes = vec![i, (i + 1) % corners];
+            if self.degree() == 2 {
+                nodes.push(corners + i);
+            }
+            nodes
+        };
+        (0..corners).map(edge).collect()
+    }
+
+    /// Points and weights that integrate the stiffness of an undistorted cell exactly.
+    pub fn quadrature(self) -> Vec<QuadraturePoint> {
+        let linear = [(-1.0 / 3.0_f64.sqrt(), 1.0), (1.0 / 3.0_f64.sqrt(), 1.0)];
+        let x = 0.6_f64.sqrt();
+        let quadratic = [(-x, 5.0 / 9.0), (0.0, 8.0 / 9.0), (x, 5.0 / 9.0)];
+        let grid = |rule: &[(f64, f64)]| {
+            let point = |(x, y): (&(f64, f64), &(f64, f64))| ([x.0, y.0], x.1 * y.1);
+            let pairs = rule.iter().flat_map(|x| rule.iter().map(move |y| (x, y)));
+            pairs.map(point).collect()
+        };
+        match self {
+            Self::Triangle3 => vec![([1.0 / 3.0; 2], 0.5)],
+            Self::Triangle6 => {
+                let (a, b) = (1.0 / 6.0, 2.0 / 3.0);
+                [[a, a], [b, a], [a, b]].map(|point| (point, a)).to_vec()
+            }
+            Self::Quad4 => grid(&linear),
+            Self::Quad8 | Self::Quad9 => grid(&quadratic),
+        }
+    }
+
+    /// Values Nₐ of the shape functions at a reference point.
+    pub fn values(self, [x, y]: [f64; 2]) -> Vec<f64> {
+        match self {
+            Self::Triangle3 => vec![1.0 - x - y, x, y],
+            Self::Triangle6 => {
+                let z = 1.0 - x - y;
+                let corner = |l: f64| l * (2.0 * l - 1.0);
+                vec![
+                    corner(z),
+                    corner(x),
+                    corner(y),
+                    4.0 * z * x,
+                    4.0 * x * y,
+                    4.0 * y * z,
+                ]
+            }
+            Self::Quad8 => QUAD[..8]
+                .iter()
+                .map(|node| serendipity(*node, [x, y]).0)
+                .collect(),
+            Self::Quad4 | Self::Quad9 => self
+                .reference_nodes()
+                .iter()
+                .map(|node| self.factor(node[0], x)[0] * self.factor(node[1], y)[0])
+                .collect(),
+        }
+    }
+
+    /// Derivatives [∂Nₐ/∂ξ, ∂Nₐ/∂η] of the shape functions at a reference point.
+    pub fn derivatives(self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
+        match self {
+            Self::Triangle3 => vec![[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]],
+            Self::Triangle6 => {
+                let z = 1.0 - x - y;
+                vec![
+                    [1.0 - 4.0 * z; 2],
+                    [4.0 * x - 1.0, 0.0],
+                    [0.0, 4.0 * y - 1.0],
+                    [4.0 * (z - x), -4.0 * x],
+                    [4.0 * y, 4.0 * x],
+                    [-4.0 * y, 4.0 * (z - y)],
+                ]
+            }
+            Self::Quad8 => QUAD[..8]
+                .iter()
+                .map(|node| serendipity(*node, [x, y]).1)
+                .collect(),
+            Self::Quad4 | Self::Quad9 => {
+                let derivative = |node: &[f64; 2]| {
+                    let [a, da] = self.factor(node[0], x);
+                    let [b, db] = self.factor(node[1], y);
+                    [da * b, a * db]
+                };
+                self.reference_nodes().iter().map(derivative).collect()
+            }
+        }
+    }
+
+    /// The one-dimensional Lagrange polynomial of the node at `node`, and its derivative.
+    fn factor(self, node: f64, x: f64) -> [f64; 2] {
+        match self.degree() {
+            1 => [0.5 * (1.0 + node * x), 0.5 * node],
+            _ if node == 0.0 => [1.0 - x * x, -2.0 * x],
+            _ => [0.5 * x * (x + node), x + 0.5 * node],
+        }
+    }
+
+    /// How far a reference point lies outside of the cell; zero inside.
+    pub fn outside(self, [x, y]: [f64; 2]) -> f64 {
+        if self.is_triangle() {
+            (-x).max(-y).max(x + y - 1.0).max(0.0)
+        } else {
+            (x.abs() - 1.0).max(y.abs() - 1.0).max(0.0)
+        }
+    }
+}
+
+/// Value and derivatives of the serendipity function of a corner or mid-side node.
+fn serendipity([a, b]: [f64; 2], [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+    let (u, v) = (1.0 + a * x, 1.0 + b * y);
+    if a == 0.0 {
+        let w = 1.0 - x * x;
+        (0.5 * w * v, [-x * v, 0.5 * w * b])
+    } else if b == 0.0 {
+        let w = 1.0 - y * y;
+        (0.5 * u * w, [0.5 * a * w, -u * y])
+    } else {
+        let c = a * x + b * y - 1.0;
+        (
+            0.25 * u * v * c,
+            [0.25 * a * v * (c + u), 0.25 * b * u * (c + v)],
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shape_functions_are_one_at_their_node_and_sum_up_to_one() {
+        for shape in CellShape::ALL {
+            for (i, node) in shape.reference_nodes().iter().enumerate() {
+                for (j, value) in shape.values(*node).into_iter().enumerate() {
+                    let expected = if i == j { 1.0 } else { 0.0 };
+                    assert!((value - expected).abs() < 1e-15, "{shape:?} {i} {j}");
+                }
+            }
+            let point = [0.21, 0.34];
+            let sum: f64 = shape.values(point).iter().sum();
+            assert!((sum - 1.0).abs() < 1e-15, "{shape:?}");
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_values() {
+        let (point, step) = ([0.21, 0.34], 1e-6);
+        for shape in CellShape::ALL {
+            let derivatives = shape.derivatives(point);
+            for axis in 0..2 {
+                let at = |sign: f64| {
+                    let mut moved = point;
+                    moved[axis] += sign * step;
+                    shape.values(moved)
+                };
+                for (node, (up, down)) in at(1.0).iter().zip(at(-1.0)).enumerate() {
+                    let expected = (up - down) / (2.0 * step);
+                    let error = (derivatives[node][axis] - expected).abs();
+                    assert!(error < 1e-9, "{shape:?} {node} {axis}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn quadrature_has_the_area_of_the_reference_cell() {
+        for shape in CellShape::ALL {
+            let area: f64 = shape.quadrature().iter().map(|(_, weight)| weight).sum();
+            let expected = if shape.is_triangle() { 0.5 } else { 4.0 };
+            assert!((area - expected).abs() < 1e-14, "{shape:?}");
+        }
+    }
+}

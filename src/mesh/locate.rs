@@ -1,0 +1,104 @@
+//! Which cell of a mesh holds a point.
+
+use super::Mesh;
+
+/// The cells of a mesh by the squares of a coarse grid that their boxes touch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Buckets {
+    low: [f64; 2],
+    step: f64,
+    counts: [usize; 2],
+    cells: Vec<Vec<usize>>,
+}
+
+impl Buckets {
+    /// Sorts the cells of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        let corner = |pick: fn(f64, f64) -> f64, start: f64| {
+            [0, 1].map(|axis| mesh.nodes.iter().map(|node| node[axis]).fold(start, pick))
+        };
+        let (low, high) = (
+            corner(f64::min, f64::INFINITY),
+            corner(f64::max, f64::NEG_INFINITY),
+        );
+        let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(f64::MIN_POSITIVE));
+        let step = (size[0] * size[1] / mesh.cell_count().max(1) as f64).sqrt();
+        let step = step.max(size[0].max(size[1]) / 2000.0);
+        let counts = size.map(|size| (size / step) as usize + 1);
+        let mut buckets = Self {
+            low,
+            step,
+            counts,
+            cells: vec![Vec::new(); counts[0] * counts[1]],
+        };
+        for cell in 0..mesh.cell_count() {
+            let nodes = mesh.cell(cell).iter().map(|node| mesh.nodes[*node]);
+            let (mut from, mut to) = ([usize::MAX; 2], [0; 2]);
+            for node in nodes {
+                let place = buckets.place(node);
+                for axis in 0..2 {
+                    from[axis] = from[axis].min(place[axis]);
+                    to[axis] = to[axis].max(place[axis]);
+                }
+            }
+            for i in from[0]..=to[0] {
+                for j in from[1]..=to[1] {
+                    buckets.cells[i * counts[1] + j].push(cell);
+                }
+            }
+        }
+        buckets
+    }
+
+    fn place(&self, point: [f64; 2]) -> [usize; 2] {
+        [0, 1].map(|axis| {
+            let step = (point[axis] - self.low[axis]) / self.step;
+            (step.max(0.0) as usize).min(self.counts[axis] - 1)
+        })
+    }
+
+    /// The cell that holds a point and the point's reference coordinates; for a point outside of the mesh the
+    /// nearest cell, with coordinates outside of it.
+    pub fn locate(&self, mesh: &Mesh, point: [f64; 2]) -> (usize, [f64; 2]) {
+        let [i, j] = self.place(point);
+        let mut best: Option<(f64, usize, [f64; 2])> = None;
+        for reach in 0..self.counts[0].max(self.counts[1]) {
+            for cell in self.ring([i, j], reach) {
+                let Some(local) = mesh.local_coordinates(cell, point) else {
+                    continue;
+                };
+                let outside = mesh.shape(cell).outside(local);
+                if best.is_none_or(|(least, ..)| outside < least) {
+                    best = Some((outside, cell, local));
+                }
+                if outside < 1e-12 {
+                    return (cell, local);
+                }
+            }
+            // One more ring around the first hit: the nearest cell may touch a neighbouring square.
+            if reach > 0 && best.is_some_and(|(outside, ..)| outside < 1.0) {
+                break;
+            }
+        }
+        let (_, cell, local) = best.expect("a mesh has a cell with an inverse map");
+        (cell, local)
+    }
+
+    /// The cells of all squares at a distance of `reach` squares.
+    fn ring(&self, [i, j]: [usize; 2], reach: usize) -> Vec<usize> {
+        let range = |middle: usize, count: usize| {
+            middle.saturating_sub(reach)..=(middle + reach).min(count - 1)
+        };
+        let mut found = Vec::new();
+        for a in range(i, self.counts[0]) {
+            for b in range(j, self.counts[1]) {
+                if a.abs_diff(i).max(b.abs_diff(j)) == reach {
+                    found.extend(&self.cells[a * self.counts[1] + b]);
+                }
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+}
