@@ -2,6 +2,7 @@
 //! finite elements.
 #![warn(missing_docs)]
 
+pub mod boundary;
 pub mod calibration;
 pub mod command;
 pub mod compare;

@@ -3,9 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
+mod blocks;
 mod cell_shape;
 mod locate;
 
+pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, QuadraturePoint};
 use locate::Buckets;
 

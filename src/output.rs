@@ -16,7 +16,7 @@ pub mod picture;
 mod report;
 mod vtk;
 
-pub use figures::{Figure, comparison_chart, material_chart};
+pub use figures::{Figure, comparison_chart, material_chart, mesh_picture};
 pub use fit::{fit_json, fit_picture};
 pub use report::Block;
 

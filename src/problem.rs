@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::error::{Error, SolveFault};
+use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Mesh, Side};
-use crate::solve::{Convergence, Newton, NewtonSettings, Potential};
+use crate::solve::{Convergence, Loading, NewtonSettings, Potential, State, follow};
 
 /// A rectangular plate between two rigid grips that clamp its short sides.
 ///
@@ -56,8 +56,45 @@ pub struct Solution {
     pub convergence: Convergence,
 }
 
-/// How often the way to a stretch is halved before it is given up.
-const HALVINGS: usize = 5;
+/// A model of the plate between its grips; the load factor is the stretch.
+struct PlateLoading<'a> {
+    problem: &'a Problem,
+    model: &'a Model<'a>,
+}
+
+impl Loading for PlateLoading<'_> {
+    fn held(&self) -> Vec<bool> {
+        self.problem.held(self.model.mesh)
+    }
+
+    fn impose(&self, stretch: f64, displacement: &mut [f64]) {
+        let mesh = self.model.mesh;
+        for node in 0..mesh.nodes.len() {
+            if let Some(held) = self.problem.grip_displacement(mesh, node, stretch) {
+                displacement[2 * node..2 * node + 2].copy_from_slice(&held);
+            }
+        }
+    }
+
+    fn potential(&self, _: f64) -> Box<dyn Potential + '_> {
+        Box::new(self.model.potential)
+    }
+
+    /// The state before, scaled with the grips' motion, or the affine stretch.
+    fn guess(&self, stretch: f64, previous: Option<&State>) -> Option<Vec<f64>> {
+        Some(match previous {
+            Some(previous) => {
+                let ratio = stretch / previous.factor;
+                previous.displacement.iter().map(|u| ratio * u).collect()
+            }
+            None => self.problem.affine(self.model.mesh, stretch),
+        })
+    }
+
+    fn describe(&self, element: usize) -> String {
+        (self.model.describe)(element)
+    }
+}
 
 impl Problem {
     /// Marks the unknowns of `mesh` that the grips hold.
@@ -85,24 +122,6 @@ impl Problem {
             .collect()
     }
 
-    /// A first guess for `stretch`: the previous solution scaled with the grips' motion, or the affine
-    /// stretch. The grips' displacements are exact in it.
-    pub fn first_guess(&self, mesh: &Mesh, stretch: f64, previous: Option<&Solution>) -> Vec<f64> {
-        let mut guess = match previous {
-            Some(previous) => {
-                let ratio = stretch / previous.stretch;
-                previous.displacement.iter().map(|u| ratio * u).collect()
-            }
-            None => self.affine(mesh, stretch),
-        };
-        for node in 0..mesh.nodes.len() {
-            if let Some(held) = self.grip_displacement(mesh, node, stretch) {
-                guess[2 * node..2 * node + 2].copy_from_slice(&held);
-            }
-        }
-        guess
-    }
-
     /// Force on the moving grip: the sum of its reactions along X, in N.
     pub fn grip_force(&self, mesh: &Mesh, residual: &[f64]) -> f64 {
         let on_right = (0..mesh.nodes.len()).filter(|node| mesh.on(Side::Right, *node));
@@ -120,82 +139,33 @@ impl Problem {
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<Solution>, Error> {
-        let fault = |stretch: f64, fault: SolveFault| Error::Solve {
-            model: model.name.clone(),
-            step: Problem::describe_step(stretch),
-            fault,
+        let plate = PlateLoading {
+            problem: self,
+            model,
         };
-        let mut newton = Newton::new(model.potential, &self.held(model.mesh))
-            .map_err(|cause| fault(self.stretches[0], cause))?;
-        let mut solutions: Vec<Solution> = Vec::new();
-        for &stretch in &self.stretches {
-            let solution = self
-                .reach(
-                    model,
-                    &mut newton,
-                    settings,
-                    solutions.last(),
-                    stretch,
-                    HALVINGS,
-                )
-                .map_err(|cause| fault(stretch, cause))?;
-            solutions.push(solution);
-            progress(stretch);
-        }
-        Ok(solutions)
+        let states = follow(&plate, &self.stretches, settings, progress);
+        let states = states.map_err(|end| Error::Solve {
+            model: model.name.clone(),
+            step: Problem::describe_step(end.factor),
+            fault: end.fault,
+        })?;
+        Ok(states
+            .into_iter()
+            .map(|state| self.solution(model.mesh, state))
+            .collect())
     }
 
-    /// Solves one stretch from the solution before it, through intermediate ones where it must.
-    fn reach(
-        &self,
-        model: &Model,
-        newton: &mut Newton,
-        settings: NewtonSettings,
-        previous: Option<&Solution>,
-        stretch: f64,
-        halvings: usize,
-    ) -> Result<Solution, SolveFault> {
-        let direct = self.solve_at(model, newton, settings, previous, stretch);
-        if direct.is_ok() || halvings == 0 {
-            return direct;
+    fn solution(&self, mesh: &Mesh, state: State) -> Solution {
+        Solution {
+            stretch: state.factor,
+            force: self.grip_force(mesh, &state.residual),
+            energy: state.convergence.energy,
+            mid_width: mesh.mid_width(&state.displacement),
+            displacement: state.displacement,
+            residual: state.residual,
+            load_steps: state.load_steps,
+            convergence: state.convergence,
         }
-        let half = 0.5 * (previous.map_or(0.0, |previous| previous.stretch) + stretch);
-        let half = self.reach(model, newton, settings, previous, half, halvings - 1)?;
-        let solution = self.reach(model, newton, settings, Some(&half), stretch, halvings - 1)?;
-        Ok(Solution {
-            load_steps: half.load_steps + solution.load_steps,
-            ..solution
-        })
-    }
-
-    fn solve_at(
-        &self,
-        model: &Model,
-        newton: &mut Newton,
-        settings: NewtonSettings,
-        previous: Option<&Solution>,
-        stretch: f64,
-    ) -> Result<Solution, SolveFault> {
-        let mesh = model.mesh;
-        let mut displacement = self.first_guess(mesh, stretch, previous);
-        let mut residual = vec![0.0; displacement.len()];
-        let convergence = newton.solve(
-            model.potential,
-            &mut displacement,
-            &mut residual,
-            settings,
-            &model.describe,
-        )?;
-        Ok(Solution {
-            stretch,
-            force: self.grip_force(mesh, &residual),
-            energy: convergence.energy,
-            mid_width: mesh.mid_width(&displacement),
-            displacement,
-            residual,
-            load_steps: 1,
-            convergence,
-        })
     }
 
     /// `50 % stretch`, for messages.

@@ -7,11 +7,13 @@ use std::time::Instant;
 
 use crate::document::{Document, Faults, Section};
 use crate::error::{Diagnostic, Error, nearest};
-use crate::output::Figure;
+use crate::mesh::Mesh;
 use crate::output::picture::lines::LineChart;
+use crate::output::{Figure, mesh_picture};
 
 mod correction_matrix;
 mod cost;
+mod finite_elements;
 mod nonlinear_spring;
 mod oscillator;
 mod other_codes;
@@ -102,6 +104,48 @@ pub const CASES: &[Case] = &[
         file: "validation/other_codes.toml",
         slow: true,
         prepare: other_codes::prepare,
+    },
+    Case {
+        kind: "patch-tests",
+        study: include_str!("../validation/cases/patch_tests.toml"),
+        file: "validation/cases/patch_tests.toml",
+        slow: false,
+        prepare: finite_elements::patch::prepare,
+    },
+    Case {
+        kind: "manufactured-solution",
+        study: include_str!("../validation/cases/manufactured_solution.toml"),
+        file: "validation/cases/manufactured_solution.toml",
+        slow: false,
+        prepare: finite_elements::manufactured::prepare,
+    },
+    Case {
+        kind: "hole",
+        study: include_str!("../validation/cases/hole.toml"),
+        file: "validation/cases/hole.toml",
+        slow: false,
+        prepare: finite_elements::hole::prepare,
+    },
+    Case {
+        kind: "ring",
+        study: include_str!("../validation/cases/ring.toml"),
+        file: "validation/cases/ring.toml",
+        slow: false,
+        prepare: finite_elements::ring::prepare,
+    },
+    Case {
+        kind: "cantilever",
+        study: include_str!("../validation/cases/cantilever.toml"),
+        file: "validation/cases/cantilever.toml",
+        slow: false,
+        prepare: finite_elements::cantilever::prepare,
+    },
+    Case {
+        kind: "cook",
+        study: include_str!("../validation/cases/cook.toml"),
+        file: "validation/cases/cook.toml",
+        slow: false,
+        prepare: finite_elements::cook::prepare,
     },
 ];
 
@@ -267,6 +311,15 @@ fn figure(name: &str, caption: &str, chart: &LineChart) -> Figure {
         name: name.to_owned(),
         caption: caption.to_owned(),
         png: chart.png(),
+    }
+}
+
+/// A mesh as a figure of a case.
+fn mesh_figure(name: &str, caption: &str, title: &str, mesh: &Mesh) -> Figure {
+    Figure {
+        name: name.to_owned(),
+        caption: caption.to_owned(),
+        png: mesh_picture(title, mesh),
     }
 }
 

@@ -9,7 +9,7 @@ const LAYERS: &[&[&str]] = &[
     &["document"],
     &["mesh", "material", "solve"],
     &["problem", "sheet_energy", "calibration"],
-    &["mass_spring", "finite_element"],
+    &["mass_spring", "finite_element", "boundary"],
     &["corrector"],
     &["compare"],
     &["study"],

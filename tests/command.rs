@@ -257,7 +257,7 @@ fn cards_are_listed_and_shown() {
     );
     gelbench(folder.path(), &["materials", "show", "pva"]).code(2);
     gelbench(folder.path(), &["materials", "plot", "pva-10"]).code(0);
-    assert!(folder.path().join("pva-10.png").exists());
+    assert!(folder.path().join("pva-10_curves.png").exists());
     let done = gelbench(
         folder.path(),
         &["materials", "compare", "pva-10", "neo-hooke"],

@@ -42,7 +42,7 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     };
     let specimen = or(head("specimen"), "not stated in the data");
     let mut text = String::from(
-        "# Fitted by `gelbench materials fit`; `gelbench materials refit` makes it again.\n\n",
+        "# Fitted by `gelbench materials fit`; `gelbench materials refit` fits it again and compares.\n\n",
     );
     put(&mut text, "title", &quoted(&title));
     put(&mut text, "law", &quoted(fit.law.name));

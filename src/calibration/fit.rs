@@ -90,6 +90,8 @@ pub const SMALLEST_SHARE: f64 = 0.01;
 
 /// Points above this number are thinned while starts are compared; the last improvement uses all of them.
 const THINNED: usize = 400;
+/// How many of the improved starts are improved to the end.
+const REFINED: usize = 2;
 /// Draws for each parameter that is no stress.
 const DRAWS: usize = 80;
 
@@ -166,12 +168,28 @@ pub(super) const MEASURE: StrainMeasure = StrainMeasure::Nominal;
 /// [`Error::Input`] when there are too few points, when a bound names no parameter, or when no parameters
 /// within the bounds describe the data at all.
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
+    if let Some(other) = tests
+        .iter()
+        .find(|test| test.stress_measure != tests[0].stress_measure)
+    {
+        let message = format!(
+            "{} gives {} stress and {} gives {} stress",
+            tests[0].name,
+            tests[0].stress_measure.name(),
+            other.name,
+            other.stress_measure.name()
+        );
+        return Err(refused(
+            message,
+            "turn one of them with `gelbench materials convert`",
+        ));
+    }
     let whole = Misfit::new(law, tests, settings.weighting);
     if law.name == MARLOW_TABLE {
         return take_curve(law, tests, settings, &whole);
     }
     let parameters = whole.build(&[]).1.parameters;
-    let bounds = limits(law, &parameters, &settings.bounds)?;
+    let bounds = limits(law, &parameters, &settings.bounds, whole.stiffness())?;
     let points: usize = tests.iter().map(|test| test.observations.len()).sum();
     if points <= parameters.len() {
         let message = format!(
@@ -187,24 +205,34 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         ));
     }
     let thinned = whole.thinned(THINNED);
-    let mut minima: Vec<(f64, Vec<f64>)> = starts(&thinned, &parameters, &bounds)
-        .into_iter()
-        .take(settings.starts)
+    let mut best_starts = starts(&thinned, &parameters, &bounds);
+    best_starts.truncate(settings.starts);
+    let mut minima: Vec<(f64, Vec<f64>)> = best_starts
+        .into_par_iter()
         .filter_map(|(_, start)| {
             let found = least_squares::minimise(&thinned, &start, &bounds, Precision::Rough)?;
             Some((least_squares::sum_of_squares(&thinned, &found), found))
         })
         .collect();
     minima.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((_, best)) = minima.first() else {
+    let refined = minima.iter().take(REFINED).map(|(sum, rough)| {
+        // A minimum that is far above the best one cannot become it.
+        let rough = rough.clone();
+        if *sum > 1.2 * minima[0].0 {
+            rough
+        } else {
+            refine(&whole, rough, &parameters, &bounds)
+        }
+    });
+    let sum = |values: &Vec<f64>| least_squares::sum_of_squares(&whole, values);
+    let Some(best) = refined.min_by(|a, b| sum(a).total_cmp(&sum(b))) else {
         let message = format!(
             "{}: no parameters within the bounds describe the data",
             law.name
         );
         return Err(refused(message, "widen the bounds, or choose another law"));
     };
-    let finest = least_squares::minimise(&whole, best, &bounds, Precision::Full);
-    let best = ordered(&parameters, finest.unwrap_or_else(|| best.clone()));
+    let best = ordered(&parameters, best);
     let (fitted, asked) = whole.build(&best);
     let parameters = asked.parameters;
     // Another minimum counts as one when it is still elsewhere after the same care.
@@ -237,6 +265,46 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
     })
 }
 
+/// Improves parameters until neither the linear ones alone nor all together can be improved: narrow valleys
+/// need several turns.
+fn refine(
+    misfit: &Misfit,
+    mut values: Vec<f64>,
+    parameters: &[Parameter],
+    bounds: &[[f64; 2]],
+) -> Vec<f64> {
+    let stresses = stresses(parameters);
+    let sum = |values: &[f64]| least_squares::sum_of_squares(misfit, values);
+    for _ in 0..5 {
+        let before = sum(&values);
+        let mut linear = values.clone();
+        let completed = misfit.complete(&mut linear, &stresses).is_some();
+        if completed && within(&linear, bounds) && sum(&linear) < before {
+            values = linear;
+        }
+        if let Some(better) = least_squares::minimise(misfit, &values, bounds, Precision::Full) {
+            values = better;
+        }
+        if sum(&values) > (1.0 - 1e-9) * before {
+            break;
+        }
+    }
+    values
+}
+
+/// The parameters that are stresses.
+fn stresses(parameters: &[Parameter]) -> Vec<usize> {
+    let all = 0..parameters.len();
+    all.filter(|index| parameters[*index].is_stress()).collect()
+}
+
+fn within(values: &[f64], bounds: &[[f64; 2]]) -> bool {
+    values
+        .iter()
+        .zip(bounds)
+        .all(|(value, [low, high])| (low..=high).contains(&value))
+}
+
 /// Marlow's law of one measured tension curve: nothing is fitted.
 fn take_curve(
     law: &'static Law,
@@ -255,6 +323,12 @@ fn take_curve(
             hint,
         ));
     }
+    if let Some((key, _)) = settings.bounds.first() {
+        return Err(refused(
+            format!("{} has no parameter `{key}`", law.name),
+            "leave the bound out",
+        ));
+    }
     let measure = test.stress_measure;
     let point = |one: &Observation| {
         let x = test.drawn_strain(one);
@@ -266,7 +340,14 @@ fn take_curve(
         refused(format!("{}: {reason}", law.name), hint)
     })?;
     let fitted: Box<dyn HyperelasticLaw> = Box::new(Marlow { curve });
-    let quality = quality::assess(misfit, settings.weighting, tests, &*fitted, &[], &[], None);
+    let mut quality = quality::assess(misfit, settings.weighting, tests, &*fitted, &[], &[], None);
+    if let [x, at_rest] = points[0]
+        && x == 0.0
+        && at_rest != 0.0
+    {
+        let said = format!("the stress at rest, {at_rest:.4e} MPa, is subtracted from the curve");
+        quality.warnings.push(said);
+    }
     Ok(Fit {
         law,
         fitted,
@@ -315,7 +396,12 @@ fn refused(message: String, hint: &str) -> Error {
 }
 
 /// Lower and upper limit of each parameter.
-fn limits(law: &Law, parameters: &[Parameter], bounds: &Bounds) -> Result<Vec<[f64; 2]>, Error> {
+fn limits(
+    law: &Law,
+    parameters: &[Parameter],
+    bounds: &Bounds,
+    scale: f64,
+) -> Result<Vec<[f64; 2]>, Error> {
     for (key, [low, high]) in bounds {
         let known: Vec<_> = parameters.iter().map(|parameter| parameter.key).collect();
         if !known.contains(&&**key) {
@@ -328,6 +414,9 @@ fn limits(law: &Law, parameters: &[Parameter], bounds: &Bounds) -> Result<Vec<[f
                 &hint,
             ));
         }
+        if bounds.iter().filter(|(other, _)| other == key).count() > 1 {
+            return Err(refused(format!("{key} has two bounds"), "give one"));
+        }
         if low >= high {
             let message = format!("the bounds {low} … {high} of {key} are not in order");
             return Err(refused(message, "write the lower one first"));
@@ -336,21 +425,29 @@ fn limits(law: &Law, parameters: &[Parameter], bounds: &Bounds) -> Result<Vec<[f
     let limit = |parameter: &Parameter| {
         let [low, high] = match parameter.bound {
             Bound::Any => [f64::NEG_INFINITY, f64::INFINITY],
-            Bound::Positive => [f64::MIN_POSITIVE, f64::INFINITY],
+            // Next to nothing beside what the data speak of.
+            Bound::Positive if parameter.is_stress() => [1e-9 * scale, f64::INFINITY],
+            Bound::Positive => [1e-9, f64::INFINITY],
             Bound::NonNegative => [0.0, f64::INFINITY],
             Bound::Within(low, high) | Bound::Range(low, high, _) => [low, high],
         };
         let given = bounds.iter().find(|(key, _)| key == parameter.key);
-        given.map_or([low, high], |(_, [l, h])| [low.max(*l), high.min(*h)])
+        let [from, to] = given.map_or([low, high], |(_, [l, h])| [low.max(*l), high.min(*h)]);
+        if from >= to {
+            let message = format!("the bounds of {} leave no value of the law", parameter.key);
+            return Err(refused(
+                message,
+                &format!("the law takes values from {low:.1e} to {high:.1e}"),
+            ));
+        }
+        Ok([from, to])
     };
-    Ok(parameters.iter().map(limit).collect())
+    parameters.iter().map(limit).collect()
 }
 
 /// Starts within the bounds, the best first.
 fn starts(misfit: &Misfit, parameters: &[Parameter], bounds: &[[f64; 2]]) -> Vec<(f64, Vec<f64>)> {
-    let stresses: Vec<usize> = (0..parameters.len())
-        .filter(|index| parameters[*index].is_stress())
-        .collect();
+    let stresses = stresses(parameters);
     let free = parameters.len() - stresses.len();
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let scale = misfit.stiffness();
@@ -377,22 +474,13 @@ fn starts(misfit: &Misfit, parameters: &[Parameter], bounds: &[[f64; 2]]) -> Vec
         if misfit.complete(&mut values, &stresses).is_none() {
             values = drawn;
         }
-        for (index, [low, high]) in bounds.iter().enumerate() {
+        for (value, [low, high]) in values.iter_mut().zip(bounds) {
             // A start on a bound could never leave it: stay a little inside.
-            let inside = |limit: f64| limit + 0.01 * (scale - limit);
-            if parameters[index].is_stress() && values[index] <= *low {
-                values[index] = inside(*low);
-            } else if parameters[index].is_stress() && values[index] >= *high {
-                values[index] = inside(*high);
-            }
+            let width = (high - low).min(scale.max(value.abs()));
+            *value = value.max(low + 1e-3 * width).min(high - 1e-3 * width);
         }
         let sum = least_squares::sum_of_squares(misfit, &values);
-        if sum.is_finite()
-            && values
-                .iter()
-                .zip(bounds)
-                .all(|(v, [l, h])| (l..=h).contains(&v))
-        {
+        if sum.is_finite() && within(&values, bounds) {
             starts.push((sum, values));
         }
     }

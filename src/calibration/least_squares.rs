@@ -87,7 +87,7 @@ pub fn minimise(
     };
     let (tolerance, iterations) = match precision {
         Precision::Rough => (1e-7, 60),
-        Precision::Full => (1e-14, 1000),
+        Precision::Full => (1e-13, 200),
     };
     let mut problem = Problem {
         model,

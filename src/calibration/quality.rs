@@ -38,6 +38,16 @@ pub struct StableRange {
     pub mode: Mode,
     /// First and last stretch.
     pub stretches: [f64; 2],
+    /// The stretches within which it should be: those of the data of this test, or of all data where there are none.
+    pub needed: [f64; 2],
+}
+
+impl StableRange {
+    /// Whether the law is stable as far as it should be; pressing counts in uniaxial tests alone.
+    pub fn is_enough(&self) -> bool {
+        let ([low, high], [from, to]) = (self.stretches, self.needed);
+        high >= to && (self.mode != Mode::Uniaxial || low <= from)
+    }
 }
 
 /// The figures of a fit.
@@ -84,11 +94,7 @@ impl Quality {
 
     /// Whether the law is stable in the uniaxial, planar and equibiaxial tests as far as the data go.
     pub fn is_stable(&self) -> bool {
-        let [from, to] = self.stretch_range;
-        self.stable.iter().all(|range| {
-            let [low, high] = range.stretches;
-            high >= to && (range.mode != Mode::Uniaxial || low <= from)
-        })
+        self.stable.iter().all(StableRange::is_enough)
     }
 }
 
@@ -142,7 +148,26 @@ pub(super) fn assess(
     });
     let k = (parameters.len() + 1) as f64;
     let n = points as f64;
-    let range = tests.iter().map(TestData::stretch_range);
+    let range = |tests: &mut dyn Iterator<Item = &TestData>| {
+        let ranges = tests.map(TestData::stretch_range);
+        ranges.fold([1.0_f64, 1.0_f64], |all, one| {
+            [all[0].min(one[0]), all[1].max(one[1])]
+        })
+    };
+    let stretch_range = range(&mut tests.iter());
+    let stable = Mode::ALL.map(|(_, mode)| {
+        let mut own = tests.iter().filter(|data| is_of(data, mode)).peekable();
+        let needed = if own.peek().is_some() {
+            range(&mut own)
+        } else {
+            stretch_range
+        };
+        StableRange {
+            mode,
+            stretches: stable_range(law, mode),
+            needed,
+        }
+    });
     let mut quality = Quality {
         points,
         sum_of_squares: deviations.squares,
@@ -155,15 +180,8 @@ pub(super) fn assess(
         correlation,
         covariance,
         student,
-        stable: Mode::ALL
-            .map(|(_, mode)| StableRange {
-                mode,
-                stretches: stable_range(law, mode),
-            })
-            .to_vec(),
-        stretch_range: range.fold([1.0, 1.0], |all, one| {
-            [all[0].min(one[0]), all[1].max(one[1])]
-        }),
+        stable: stable.to_vec(),
+        stretch_range,
         untested: untested(tests),
         warnings: Vec::new(),
     };
@@ -215,15 +233,20 @@ impl Deviations {
     }
 }
 
-/// s² (JᵀJ)⁻¹ of the parameters that no bound holds, by the singular values of J with columns of unit length.
+/// s² (JᵀJ)⁻¹ of the parameters that no bound holds, by the singular values of J with columns of unit length; not
+/// numbers for the others. What the data do not determine at all gets a huge variance.
 fn covariance(misfit: &Misfit, values: &[f64], fixed: &[bool], variance: f64) -> DMatrix<f64> {
-    let mut jacobian = least_squares::jacobian(misfit, values, fixed);
+    const LEAST: f64 = 1e-14;
+    let size = values.len();
+    let free: Vec<usize> = (0..size).filter(|index| !fixed[*index]).collect();
+    let mut covariance = DMatrix::from_element(size, size, f64::NAN);
+    if free.is_empty() {
+        return covariance;
+    }
+    let mut jacobian = least_squares::jacobian(misfit, values, fixed).select_columns(&free);
     let scales: Vec<f64> = jacobian
         .column_iter()
-        .map(|column| match column.norm() {
-            norm if norm > 0.0 => norm,
-            _ => 1.0,
-        })
+        .map(|column| column.norm().max(f64::MIN_POSITIVE))
         .collect();
     for (mut column, scale) in jacobian.column_iter_mut().zip(&scales) {
         column /= *scale;
@@ -231,35 +254,44 @@ fn covariance(misfit: &Misfit, values: &[f64], fixed: &[bool], variance: f64) ->
     // The triangle of QR has the singular values of J and is small.
     let decomposition = jacobian.qr().r().svd(false, true);
     let Some(v) = &decomposition.v_t else {
-        return DMatrix::from_element(values.len(), values.len(), f64::NAN);
+        return covariance;
     };
-    DMatrix::from_fn(values.len(), values.len(), |i, j| {
-        let singular = decomposition.singular_values.iter().enumerate();
-        let sum: f64 = singular
-            .filter(|(_, s)| **s > 1e-12)
-            .map(|(k, s)| v[(k, i)] * v[(k, j)] / (s * s))
-            .sum();
-        variance * sum / (scales[i] * scales[j])
-    })
+    for (i, row) in free.iter().enumerate() {
+        for (j, column) in free.iter().enumerate() {
+            let singular = decomposition.singular_values.iter().enumerate();
+            let terms = singular.map(|(k, s)| v[(k, i)] * v[(k, j)] / s.max(LEAST).powi(2));
+            covariance[(*row, *column)] = variance * terms.sum::<f64>() / (scales[i] * scales[j]);
+        }
+    }
+    covariance
 }
 
 /// The usual tests that no data cover.
 fn untested(tests: &[TestData]) -> Vec<Mode> {
-    let done = |mode: Mode| {
-        tests.iter().any(|data| match data.test {
-            Test::Uniaxial => mode == Mode::Uniaxial,
-            Test::Planar => mode == Mode::Planar,
-            Test::Equibiaxial => mode == Mode::Equibiaxial,
-            Test::Biaxial => false,
-        })
-    };
     let modes = Mode::ALL.into_iter().map(|(_, mode)| mode);
-    modes.filter(|mode| !done(*mode)).collect()
+    let untested = modes.filter(|mode| !tests.iter().any(|data| is_of(data, *mode)));
+    untested.collect()
+}
+
+/// Whether data are of one of the usual tests.
+fn is_of(data: &TestData, mode: Mode) -> bool {
+    match data.test {
+        Test::Uniaxial => mode == Mode::Uniaxial,
+        Test::Planar => mode == Mode::Planar,
+        Test::Equibiaxial => mode == Mode::Equibiaxial,
+        Test::Biaxial => false,
+    }
 }
 
 fn warnings(quality: &Quality, parameters: &[Parameter], other: Option<&[f64]>) -> Vec<String> {
     let mut warnings = Vec::new();
     let key = |index: usize| parameters[index].key;
+    if quality.nmad_percent > 20.0 {
+        warnings.push(format!(
+            "the law does not follow the data: they are {:.0} % apart in the mean",
+            quality.nmad_percent
+        ));
+    }
     let mut vague = Vec::new();
     for (parameter, estimate) in parameters.iter().zip(&quality.estimates) {
         let (key, value) = (parameter.key, parameter.value);
@@ -304,11 +336,11 @@ fn warnings(quality: &Quality, parameters: &[Parameter], other: Option<&[f64]>) 
         ));
     }
     for range in &quality.stable {
-        let ([low, high], [from, to]) = (range.stretches, quality.stretch_range);
+        let ([low, high], [from, to]) = (range.stretches, range.needed);
         let name = range.mode.name();
         if high <= 1.0 || low >= 1.0 {
             warnings.push(format!("the law is unstable from rest in {name} tests"));
-        } else if high < to || (range.mode == Mode::Uniaxial && low > from) {
+        } else if !range.is_enough() {
             warnings.push(format!(
                 "the law is stable (Drucker) in {name} tests from λ = {low:.3} to {high:.3} only, the data go from {from:.3} to {to:.3}"
             ));

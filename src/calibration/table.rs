@@ -8,6 +8,19 @@ use std::sync::Arc;
 
 use crate::error::{Diagnostic, Error, Source};
 
+/// What a file or the command line must say about a table.
+pub const KEYS: [&str; 9] = [
+    "test",
+    "stress measure",
+    "strain measure",
+    "stress unit",
+    "strain unit",
+    "direction",
+    "strain ratio",
+    "area",
+    "length",
+];
+
 /// A column's name and unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Column {
@@ -28,8 +41,12 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// The place of the line that names the columns.
     pub columns_place: Range<usize>,
-    /// The rows; each with its place.
+    /// The rows; each with its place. What is no number is none here, and told by [`Self::fault`].
     pub rows: Vec<(Vec<f64>, Range<usize>)>,
+    /// The first field of each column that is no number: its row and what is wrong.
+    faults: Vec<Option<(usize, String)>>,
+    /// Keys of the head that are said twice in different ways, with their places.
+    pub contradictions: Vec<(String, Range<usize>)>,
 }
 
 impl Table {
@@ -67,6 +84,11 @@ impl Table {
     /// [`Error::Input`] with the place and the reason.
     pub fn parse(name: &str, text: &str) -> Result<Self, Error> {
         let text = text.trim_start_matches('\u{feff}');
+        // Old line ends.
+        let text = &match text.contains('\n') {
+            true => text.to_owned(),
+            false => text.replace('\r', "\n"),
+        };
         let source = Arc::new(Source {
             name: name.to_owned(),
             text: text.to_owned(),
@@ -91,11 +113,14 @@ impl Table {
             .from_reader(text.as_bytes());
         let mut table = Self {
             source: Arc::clone(&source),
-            head: head(text),
+            head: BTreeMap::new(),
             columns: Vec::new(),
             columns_place: 0..0,
             rows: Vec::new(),
+            faults: Vec::new(),
+            contradictions: Vec::new(),
         };
+        table.read_head(text);
         let mut decimals = Decimals::default();
         let mut record = csv::StringRecord::new();
         loop {
@@ -107,10 +132,8 @@ impl Table {
             if record.iter().all(str::is_empty) {
                 continue;
             }
-            let start = record.position().map_or(0, |at| at.byte() as usize);
-            let length = text[start..].find(['\n', '\r']);
-            let place = start..length.map_or(text.len(), |length| start + length);
-            if table.rows.is_empty() && record.iter().all(|field| number(field).is_none()) {
+            let place = line_at(text, record.position().map_or(0, |at| at.byte() as usize));
+            if table.rows.is_empty() && record.iter().all(is_name) {
                 table.name_columns(&record, place);
                 continue;
             }
@@ -127,22 +150,64 @@ impl Table {
                     "numbers with decimal commas need semicolons or tabs between the columns";
                 return Err(refuse(place, &message, hint));
             }
-            let row: Result<Vec<f64>, String> =
-                record.iter().map(|field| decimals.read(field)).collect();
-            match row {
-                Ok(row) => table.rows.push((row, place)),
-                Err(reason) => {
-                    let hint =
-                        "every row holds finite numbers alone; units stand in the line of names";
-                    return Err(refuse(place, &reason, hint));
-                }
-            }
+            table.faults.resize(record.len(), None);
+            let row = record.iter().enumerate().map(|(column, field)| {
+                decimals.read(field).unwrap_or_else(|reason| {
+                    table.faults[column].get_or_insert((table.rows.len(), reason));
+                    f64::NAN
+                })
+            });
+            let row = row.collect();
+            table.rows.push((row, place));
+        }
+        if decimals.ambiguous() {
+            let hint = "write 1050 or 1.050 instead of 1,050, whichever is meant";
+            let message = "commas may be decimal commas or group thousands in this file";
+            return Err(refuse(0..0, message, hint));
         }
         if table.rows.is_empty() {
             let hint = "a table has a line of names with units and rows of numbers";
             return Err(refuse(0..0, "there are no rows of numbers", hint));
         }
         Ok(table)
+    }
+
+    /// What is wrong with the first field of a column that is no number, and where.
+    pub fn fault(&self, column: usize) -> Option<(&str, Range<usize>)> {
+        let (row, reason) = self.faults.get(column)?.as_ref()?;
+        Some((reason, self.rows[*row].1.clone()))
+    }
+
+    /// Reads the lines that begin with `#`: `key: value`, several of the known [`KEYS`] separated by semicolons.
+    fn read_head(&mut self, text: &str) {
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            let place = start..start + line.trim_end().len();
+            start += line.len();
+            let Some(comment) = line.strip_prefix('#') else {
+                continue;
+            };
+            let first = comment.split(':').next().unwrap_or_default();
+            let known = |key: &str| KEYS.contains(&&*plain_key(key));
+            let parts = if known(first) {
+                comment.split(';').collect()
+            } else {
+                vec![comment]
+            };
+            for (key, value) in parts.iter().filter_map(|part| part.split_once(':')) {
+                let value = value.trim().to_owned();
+                let key = plain_key(key);
+                match self.head.get(&key) {
+                    Some((said, _)) if known(&key) && *said != value => {
+                        self.contradictions.push((key, place.clone()));
+                    }
+                    Some(_) => {}
+                    None => {
+                        self.head.insert(key, (value, place.clone()));
+                    }
+                }
+            }
+        }
     }
 
     /// The first line of names names the columns, a second one may hold their units.
@@ -166,6 +231,10 @@ impl Table {
 struct Decimals {
     point: bool,
     comma: bool,
+    /// A comma that cannot group thousands.
+    surely_decimal: bool,
+    /// A whole number of three digits or more without a comma.
+    ungrouped: bool,
 }
 
 impl Decimals {
@@ -178,13 +247,26 @@ impl Decimals {
             return Err(format!("{field} is not a finite number"));
         }
         self.point |= field.contains('.');
-        self.comma |= field.contains(',');
+        if let Some((whole, decimals)) = field.split_once(',') {
+            let whole = whole.trim_start_matches(['+', '-']);
+            self.comma = true;
+            self.surely_decimal |= decimals.len() != 3 || whole.len() > 3 || whole.starts_with('0');
+        } else {
+            self.ungrouped |= value.abs() >= 100.0;
+        }
         if self.point && self.comma {
             return Err(format!(
                 "\"{field}\": decimal points and decimal commas are mixed in this file"
             ));
         }
         Ok(value)
+    }
+}
+
+impl Decimals {
+    /// Whether commas may just as well group thousands.
+    fn ambiguous(&self) -> bool {
+        self.comma && !self.surely_decimal && self.ungrouped
     }
 }
 
@@ -207,25 +289,27 @@ fn delimiter(text: &str) -> Option<u8> {
         .find(|delimiter| line.as_bytes().contains(delimiter))
 }
 
-/// `key: value` pairs of the lines that begin with `#`, several of them separated by semicolons.
-fn head(text: &str) -> BTreeMap<String, (String, Range<usize>)> {
-    let mut head = BTreeMap::new();
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let place = start..start + line.trim_end().len();
-        start += line.len();
-        let Some(comment) = line.strip_prefix('#') else {
-            continue;
-        };
-        for part in comment.split("; ") {
-            if let Some((key, value)) = part.split_once(": ") {
-                let key = key.trim().to_lowercase().replace('_', " ");
-                let value = value.trim().trim_end_matches(';').to_owned();
-                head.entry(key).or_insert((value, place.clone()));
-            }
+/// A key of the head in lower case with spaces.
+fn plain_key(key: &str) -> String {
+    key.trim().to_lowercase().replace('_', " ")
+}
+
+/// The line of a record: csv points to what stands before it, remarks and empty lines too.
+fn line_at(text: &str, from: usize) -> Range<usize> {
+    let mut start = from;
+    for line in text[from..].split_inclusive('\n') {
+        if !line.trim().is_empty() && !line.starts_with('#') {
+            return start..start + line.trim_end().len();
         }
+        start += line.len();
     }
-    head
+    from..from
+}
+
+/// Whether a field is a name or a unit: it does not begin as a number does.
+fn is_name(field: &str) -> bool {
+    let digits = field.trim_start_matches(['+', '-', '.', ',']);
+    number(field).is_none() && !digits.starts_with(|first: char| first.is_ascii_digit())
 }
 
 /// Name and unit of `nominal stress [MPa]` or `Stress (kPa)`.
@@ -290,23 +374,49 @@ mod tests {
             ("", "no columns"),
             ("# only a head\n", "no columns"),
             ("a,b\n", "no rows"),
-            ("a,b\n1,0\n2,NaN\n", "a.csv:3: NaN is not a finite number"),
-            ("a,b\n1,0\n2,inf\n", "a.csv:3: inf is not a finite number"),
-            ("a,b\n1,0\n2,x\n", "a.csv:3: \"x\" is not a number"),
-            (
-                "a,b\n1,0\n2,0.1 MPa\n",
-                "a.csv:3: \"0.1 MPa\" is not a number",
-            ),
-            ("a,b\n1,0\n2,\n", "a.csv:3: a field is empty"),
             (
                 "a,b\n1,5,0,2\n",
                 "a.csv:2: 4 fields where there are 2 columns",
             ),
-            ("a;b\n1,5;0,2\n1.5;0.3\n", "are mixed in this file"),
-            ("a;b\n1.000,5;0,2\n", "is not a number"),
+            ("a\tb\n1,050\t2\n950\t3\n", "group thousands"),
         ] {
             let found = refusal(text);
             assert!(found.contains(reason), "{text:?}: {found}");
         }
+    }
+
+    #[test]
+    fn fields_that_are_no_numbers_are_told_by_their_column() {
+        for (text, line, reason) in [
+            (
+                "a,b\n1,0\n# pause\n\n2,NaN\n",
+                5,
+                "NaN is not a finite number",
+            ),
+            ("a,b\n1,0\n2,inf\n", 3, "inf is not a finite number"),
+            ("a,b\n1,0\n2,x\n", 3, "\"x\" is not a number"),
+            ("a,b\n1,0\n2,0.1 MPa\n", 3, "\"0.1 MPa\" is not a number"),
+            ("a,b\n1,0\n2,\n", 3, "a field is empty"),
+            ("a;b\n1,5;0,2\n1,6;0.3\n", 3, "are mixed in this file"),
+            ("a;b\n1,0;1.000,5\n", 2, "is not a number"),
+        ] {
+            let table = Table::parse("a.csv", text).unwrap();
+            let (found, place) = table.fault(1).unwrap();
+            assert!(found.contains(reason), "{text:?}: {found}");
+            assert_eq!(table.source.line(place.start), line, "{text:?}");
+            assert_eq!(table.fault(0), None, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn remarks_old_line_ends_and_citations_are_read() {
+        let text =
+            "#test:uniaxial\r# source: Smith A 2001; Jones B: Aorta tests\ra [-],b [MPa]\r1,2\r";
+        let table = Table::parse("a.csv", text).unwrap();
+        assert_eq!(table.head["test"].0, "uniaxial");
+        assert_eq!(table.head["source"].0, "Smith A 2001; Jones B: Aorta tests");
+        assert_eq!(table.rows.len(), 1);
+        let twice = Table::parse("a.csv", "# test: planar\n# test: uniaxial\na,b\n1,2\n").unwrap();
+        assert_eq!(twice.contradictions[0].0, "test");
     }
 }

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+pub use super::table::KEYS;
 use super::table::Table;
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
-use crate::material::curve;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 
 mod head;
@@ -104,6 +104,8 @@ pub struct TestData {
     pub axes: Vec<usize>,
     /// The observations in the order of the file, one for each axis of a row.
     pub observations: Vec<Observation>,
+    /// The axis that is stretched further: 0 or 1.
+    pub drawn_axis: usize,
     /// The largest stress without its sign, in MPa.
     pub largest_stress: f64,
     /// What the head says about source, specimen, DOI and licence.
@@ -114,19 +116,6 @@ pub struct TestData {
 
 /// What stands in the head of a file, given for files that do not say it: keys of [`KEYS`] and values.
 pub type Reading = BTreeMap<String, String>;
-
-/// What a file or the command line must say about a table.
-pub const KEYS: [&str; 9] = [
-    "test",
-    "stress measure",
-    "strain measure",
-    "stress unit",
-    "strain unit",
-    "direction",
-    "strain ratio",
-    "area",
-    "length",
-];
 
 impl TestData {
     /// Reads a file; `reading` says what the file does not.
@@ -160,17 +149,28 @@ impl TestData {
                 let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
                 law.tension(direction, x).nominal_stress
             }
-            _ => curve::biaxial(law, observation.strains)[axis],
+            _ => law.biaxial(observation.strains)[axis],
         };
         self.stress_measure.of_nominal(nominal, x)
     }
 
-    /// λ − 1 along the axis that the data are drawn over: the one that is stretched further.
+    /// λ − 1 along the axis that the data are drawn over: the one of the stress in a uniaxial test, else the one
+    /// that is stretched further.
     pub fn drawn_strain(&self, observation: &Observation) -> f64 {
         match self.test {
             Test::Uniaxial => observation.strains[observation.axis],
-            _ => observation.strains[0],
+            _ => observation.strains[self.drawn_axis],
         }
+    }
+
+    /// The stretches between which the data lie along both axes, rest included.
+    pub fn stretch_range(&self) -> [f64; 2] {
+        let strains = || self.observations.iter().flat_map(|one| one.strains);
+        // f64::min and f64::max pass over strains that are not known.
+        [
+            1.0 + strains().fold(0.0, f64::min),
+            1.0 + strains().fold(0.0, f64::max),
+        ]
     }
 
     /// States along the data of one axis, from the smallest to the largest strain with rest between or at an
@@ -182,19 +182,22 @@ impl TestData {
             .filter(|one| one.axis == axis)
             .collect();
         sorted.sort_by(|a, b| self.drawn_strain(a).total_cmp(&self.drawn_strain(b)));
-        let [low, high] = self.stretch_range().map(|stretch| stretch - 1.0);
+        let ends = [sorted.first(), sorted.last()]
+            .map(|one| one.map_or(0.0, |one| self.drawn_strain(one)));
+        let (low, high) = (ends[0].min(0.0), ends[1].max(0.0));
+        let drawn = if self.test == Test::Uniaxial {
+            axis
+        } else {
+            self.drawn_axis
+        };
         let at = |x: f64| {
             let across = match self.test {
                 Test::Uniaxial => f64::NAN,
                 Test::Planar => 0.0,
                 Test::Equibiaxial => x,
-                Test::Biaxial => interpolate(&sorted, x),
+                Test::Biaxial => interpolate(&sorted, drawn, x),
             };
-            let strains = if self.test == Test::Uniaxial && axis == 1 {
-                [across, x]
-            } else {
-                [x, across]
-            };
+            let strains = if drawn == 0 { [x, across] } else { [across, x] };
             Observation {
                 strains,
                 axis,
@@ -204,28 +207,24 @@ impl TestData {
         let share = |i: usize| low + (high - low) * i as f64 / count as f64;
         (0..=count).map(|i| at(share(i))).collect()
     }
-
-    /// The stretches between which the data lie, rest included.
-    pub fn stretch_range(&self) -> [f64; 2] {
-        let strains = || self.observations.iter().map(|one| self.drawn_strain(one));
-        [
-            1.0 + strains().fold(0.0, f64::min),
-            1.0 + strains().fold(0.0, f64::max),
-        ]
-    }
 }
 
-/// The strain across at a strain along, between sorted observations and rest.
-fn interpolate(sorted: &[&Observation], x: f64) -> f64 {
-    let mut before = [0.0, 0.0];
+/// The strain across at a strain along, between sorted observations.
+fn interpolate(sorted: &[&Observation], along: usize, x: f64) -> f64 {
+    let mut before = sorted.first().map_or([0.0; 2], |one| one.strains);
     for one in sorted {
-        if one.strains[0] >= x && x >= before[0] && one.strains[0] > before[0] {
-            let share = (x - before[0]) / (one.strains[0] - before[0]);
-            return before[1] + share * (one.strains[1] - before[1]);
+        if one.strains[along] >= x {
+            let width = one.strains[along] - before[along];
+            let share = if width > 0.0 {
+                (x - before[along]) / width
+            } else {
+                1.0
+            };
+            return before[1 - along] + share * (one.strains[1 - along] - before[1 - along]);
         }
         before = one.strains;
     }
-    before[1]
+    before[1 - along]
 }
 
 #[cfg(test)]

@@ -147,9 +147,10 @@ fn every_card_with_data_is_found_again() {
             &FitSettings::default(),
         )
         .unwrap();
-        for (old, new) in card.parameters.iter().zip(&again.parameters) {
-            let difference = (old.value - new.value).abs() / old.value.abs();
-            assert!(difference < 1e-6, "{name} {}: {difference:.1e}", old.key);
+        let estimates = &again.quality.estimates;
+        for ((old, new), estimate) in card.parameters.iter().zip(&again.parameters).zip(estimates) {
+            let difference = (old.value - new.value).abs() / estimate.standard_error;
+            assert!(difference < 1e-3, "{name} {}: {difference:.1e}", old.key);
         }
         fitted += 1;
     }
@@ -194,7 +195,7 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
     };
     let row = |i: i32| {
         let x = f64::from(i) / 60.0;
-        let [first, second] = crate::material::curve::biaxial(&*made, [x, x]);
+        let [first, second] = made.biaxial([x, x]);
         format!("{},{first},{second}\n", 1.0 + x)
     };
     let rows: String = (1..=40).map(row).collect();
@@ -281,4 +282,98 @@ fn many_points_are_gathered_without_loss() {
     }
     let ratio = all.quality.estimates[0].standard_error / some.quality.estimates[0].standard_error;
     assert!((ratio * 40_f64.sqrt() - 1.0).abs() < 0.05, "{ratio}");
+}
+
+/// Bounds that exclude where the data lead, that lie outside of the law, and an active one of a stress.
+#[test]
+fn every_bound_is_kept_or_refused() {
+    let tests = data(&["treloar_1944_uniaxial"]);
+    let with = |law: &str, key: &str, range: [f64; 2]| {
+        let settings = FitSettings {
+            bounds: vec![(key.to_owned(), range)],
+            ..FitSettings::default()
+        };
+        fit(Law::named(law).unwrap(), &tests, &settings)
+    };
+    for (law, key, range, held) in [
+        ("neo-hooke", "c10", [0.0, 0.01], 0.01),
+        ("neo-hooke", "c10", [0.9, 1.0], 0.9),
+        ("yeoh", "c30", [-1.0, 1e-5], 1e-5),
+    ] {
+        let fit = with(law, key, range).unwrap();
+        let (index, parameter) = fit
+            .parameters
+            .iter()
+            .enumerate()
+            .find(|(_, one)| one.key == key)
+            .unwrap();
+        assert!(
+            (parameter.value / held - 1.0).abs() < 1e-6,
+            "{law} {key}: {}",
+            parameter.value
+        );
+        assert!(fit.quality.estimates[index].at_bound, "{law} {key}");
+    }
+    for (law, key, range) in [
+        ("neo-hooke", "c10", [-2.0, -1.0]),
+        ("gent", "jm", [-5.0, -1.0]),
+    ] {
+        let refused = with(law, key, range).unwrap_err().to_string();
+        assert!(refused.contains("leave no value of the law"), "{refused}");
+    }
+}
+
+#[test]
+fn data_that_do_not_determine_a_parameter_give_it_no_certainty() {
+    // A Gent solid far below its limit: J_m may be anything.
+    let row = |i: i32| {
+        let x = f64::from(i) / 50.0;
+        let wiggle = 1e-4 * (f64::from(i) * 1.7).sin();
+        format!(
+            "{},{}\n",
+            1.0 + x,
+            0.1 * ((1.0 + x) - (1.0 + x).powi(-2)) - 0.02 * x * x + wiggle
+        )
+    };
+    let rows: String = (1..=20).map(row).collect();
+    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
+    let tests = [TestData::parse("a.csv", &text, &Reading::new()).unwrap()];
+    let fit = fitted("gent", &tests);
+    assert!(
+        !fit.quality.is_identifiable(&fit.parameters),
+        "{:?}",
+        fit.quality.estimates
+    );
+}
+
+#[test]
+fn stability_is_asked_for_as_far_as_each_test_goes() {
+    let all = data(&[
+        "treloar_1944_uniaxial",
+        "treloar_1944_equibiaxial",
+        "treloar_1944_planar",
+    ]);
+    let gent = fitted("gent", &all).quality;
+    assert!(gent.stable[2].stretches[1] < 7.6 && gent.is_stable());
+}
+
+#[test]
+fn stress_measures_are_not_mixed() {
+    let read = |name: &str, measure: &str| {
+        let text = format!(
+            "# test: uniaxial\nstretch [-],{measure}_stress [MPa]\n1.1,0.1\n1.2,0.2\n1.3,0.3\n"
+        );
+        TestData::parse(name, &text, &Reading::new()).unwrap()
+    };
+    let tests = [read("a.csv", "nominal"), read("b.csv", "cauchy")];
+    let refused = fit(
+        Law::named("neo-hooke").unwrap(),
+        &tests,
+        &FitSettings::default(),
+    );
+    let refused = refused.unwrap_err().to_string();
+    assert!(
+        refused.contains("a.csv gives nominal stress and b.csv gives cauchy"),
+        "{refused}"
+    );
 }

@@ -44,13 +44,13 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
         text += "  the curve is taken as it was measured; nothing is fitted\n";
     } else {
         text += &format!(
-            "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {:.2}, largest relative error {:.2} %, sum of squares {:.6} MPa²\n",
+            "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {:.2}, largest relative error {:.2} %, sum of squares {} MPa²\n",
             quality.rmse,
             quality.nmad_percent,
             quality.r_squared,
             quality.aicc,
             quality.largest_relative_error_percent,
-            quality.sum_of_squares
+            digits(quality.sum_of_squares, 6)
         );
     }
     text += &format!(
@@ -98,7 +98,10 @@ fn correlation(fit: &Fit) -> String {
     let mut text = format!("  correlation  {head}\n");
     for (i, key) in keys.enumerate() {
         let row: String = (0..=i)
-            .map(|j| format!("{:>9.4}", matrix[(i, j)]))
+            .map(|j| match matrix[(i, j)] {
+                known if known.is_finite() => format!("{known:>9.4}"),
+                _ => format!("{:>9}", "–"),
+            })
             .collect();
         text += &format!("    {key:<10} {row}\n");
     }
@@ -114,14 +117,14 @@ pub fn curves(
     let samples = samples(law, range);
     let stretches = samples[0].points.iter();
     let stretches: String = stretches
-        .map(|[stretch, _]| format!("{stretch:>10.3}"))
+        .map(|[stretch, _]| format!("{stretch:>12.3}"))
         .collect();
     let mut text = format!("  nominal stress [MPa] at λ, 1 + γ {stretches}\n");
     for sample in samples {
         let stresses: String = sample
             .points
             .iter()
-            .map(|[_, p]| format!("{p:>10.4}"))
+            .map(|[_, p]| format!("{:>12}", digits(*p, 5)))
             .collect();
         text += &format!(
             "    {:<12} {:<15}  {stresses}\n",
@@ -161,33 +164,43 @@ pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
     text + "\n"
 }
 
-/// Refitted parameters that differ by less than this much are the same.
-const SAME_PERCENT: f64 = 1e-4;
+/// Refitted parameters that differ by less than this share of their standard errors are the same.
+const SAME: f64 = 1e-3;
 
 /// The parameters of a card and those found again, and whether they are the same.
 pub fn refit(card: &Card, fit: &Fit, tests: &[TestData]) -> (String, bool) {
     let mut text = format!("{}: {}\n", card.name, card.title);
     let mut worst = 0.0_f64;
-    for (old, new) in card.parameters.iter().zip(&fit.parameters) {
-        let difference = 100.0 * (new.value - old.value).abs() / old.value.abs().max(1e-300);
-        worst = worst.max(difference);
+    let parameters = card.parameters.iter().zip(&fit.parameters);
+    for ((old, new), estimate) in parameters.zip(&fit.quality.estimates) {
+        let change = (new.value - old.value).abs();
+        // A parameter at a bound has no standard error.
+        let scale = match estimate.standard_error {
+            error if error > 0.0 => error,
+            _ => 1e-3 * old.value.abs().max(f64::MIN_POSITIVE),
+        };
+        worst = worst.max(change / scale);
         text += &format!(
-            "  {:<12} card {:.8e}   refitted {:.8e} {}   difference {difference:.1e} %\n",
+            "  {:<12} card {:.8e}   refitted {:.8e} {}   {:.1e} standard errors apart\n",
             old.key,
             old.value,
             new.value,
-            new.unit()
+            new.unit(),
+            change / scale
         );
     }
     for test in tests {
-        let largest = test.largest_stress;
         for one in &test.observations {
             let [old, new] = [&*card.law, &*fit.fitted].map(|law| test.stress_of(law, one));
-            worst = worst.max(100.0 * (old - new).abs() / largest);
+            worst = worst.max((old - new).abs() / (1e-3 * test.largest_stress));
         }
     }
-    let same = worst <= SAME_PERCENT;
-    let verdict = if same { "the same" } else { "DIFFERENT" };
-    text += &format!("  largest difference of parameters and stresses {worst:.1e} %: {verdict}\n");
+    let same = worst <= SAME;
+    let verdict = if same {
+        "the card is the fit of its data"
+    } else {
+        "DIFFERENT: the card is not the fit of its data"
+    };
+    text += &format!("  {verdict}\n");
     (text, same)
 }

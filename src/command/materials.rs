@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand};
+use clap::{ArgGroup, Args, Subcommand};
 
 use super::{Outcome, fit_message, message, print, warn};
 use crate::calibration::{
@@ -27,11 +27,11 @@ pub enum Materials {
         card: String,
     },
     /// Draw the curves of a card: uniaxial, planar and equibiaxial tension, simple shear
-    #[command(after_help = "Sample: gelbench materials plot pva-10    writes pva-10.png")]
+    #[command(after_help = "Sample: gelbench materials plot pva-10    writes pva-10_curves.png")]
     Plot {
         /// Name of a card that comes along, or path of one ending in .toml
         card: String,
-        /// The picture; the card's name with .png where it is not given
+        /// The picture; the card's name with _curves.png where it is not given
         #[arg(long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
@@ -48,7 +48,7 @@ pub enum Materials {
     /// Fit a law to measured curves and write a card, a picture and the figures
     #[command(after_help = FIT_HELP)]
     Fit(Box<FitArguments>),
-    /// Fit a card again to the data that it names, and compare the parameters
+    /// Fit a card again to the data that it names, and tell whether the parameters are the same
     #[command(after_help = "Sample: gelbench materials refit treloar-ogden-3")]
     Refit {
         /// Name of a card that comes along, or path of one ending in .toml
@@ -80,15 +80,16 @@ Samples:
   gelbench materials fit machine.csv --law gent --test uniaxial --area \"20 mm^2\" --length \"5 cm\" --bound jm=5..200";
 
 #[derive(Args)]
+#[command(group = ArgGroup::new("laws").required(true))]
 pub struct FitArguments {
     /// Files of test data; all of them are fitted together
     #[arg(required = true)]
     data: Vec<PathBuf>,
     /// The law
-    #[arg(long, required_unless_present = "all", conflicts_with = "all")]
+    #[arg(long, group = "laws")]
     law: Option<String>,
     /// Fit all laws, rank them, and write the best one that is stable over the data
-    #[arg(long)]
+    #[arg(long, group = "laws")]
     all: bool,
     /// absolute: differences of stress count alike; relative: relative differences do
     #[arg(long, default_value = "absolute")]
@@ -134,13 +135,13 @@ pub struct ConvertArguments {
 #[command(next_help_heading = "What the files do not say")]
 struct ReadingArguments {
     /// uniaxial, planar, equibiaxial, biaxial or compression
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     test: Option<String>,
     /// nominal or cauchy
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     stress: Option<String>,
     /// stretch, nominal or logarithmic
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     strain: Option<String>,
     /// Unit of the stresses, or of the force
     #[arg(long, value_name = "UNIT")]
@@ -149,16 +150,16 @@ struct ReadingArguments {
     #[arg(long, value_name = "UNIT", allow_hyphen_values = true)]
     strain_unit: Option<String>,
     /// Axis of the stress: 1 as the strain, 2 across
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     direction: Option<String>,
     /// ε₂/ε₁ of a biaxial test
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     strain_ratio: Option<String>,
     /// Cross-section of the specimen, where the file has forces
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     area: Option<String>,
     /// Length of the specimen, where the file has displacements
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     length: Option<String>,
 }
 
@@ -219,10 +220,9 @@ fn show(name: &str) -> Outcome {
 
 fn plot(name: &str, file: Option<PathBuf>) -> Outcome {
     let card = load(name)?;
-    let stem = Path::new(name)
-        .file_stem()
-        .map_or_else(PathBuf::new, PathBuf::from);
-    let file = file.unwrap_or_else(|| stem.with_extension("png"));
+    let stem = Path::new(name.strip_suffix(".toml").unwrap_or(name)).file_name();
+    let stem = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let file = file.unwrap_or_else(|| PathBuf::from(format!("{stem}_curves.png")));
     output::save(&file, &output::material_chart(&card).png())?;
     print(&format!("{} written\n", file.display()))?;
     Ok(0)
@@ -274,15 +274,22 @@ fn fit(arguments: FitArguments) -> Outcome {
     let first = arguments.data[0].file_stem().unwrap_or_default();
     let usual = || format!("{}-{}", first.to_string_lossy(), fit.law.name);
     let stem = arguments.name.unwrap_or_else(usual);
+    if Path::new(&stem).file_name().is_none() {
+        return Err(input(
+            format!("--name \"{stem}\" names no file"),
+            "such as --name my-gel",
+        ));
+    }
     let target = |ending: &str| arguments.output.join(format!("{stem}.{ending}"));
     let card = target("toml");
-    guard(&card)?;
-    let relative = |path: &PathBuf| relative(path, &arguments.output);
+    guard(&card, &[target("png"), target("json")])?;
+    let folder = card.parent().unwrap_or(Path::new("."));
+    let relative = |path: &PathBuf| relative(path, folder);
     let provenance = Provenance {
         files: arguments.data.iter().map(relative).collect(),
         reading,
     };
-    output::prepare(&arguments.output)?;
+    output::prepare(folder)?;
     let text = calibration::card_text(&fit, &tests, &provenance);
     output::save(&card, text.as_bytes())?;
     output::save(&target("png"), &output::fit_picture(&fit, &tests))?;
@@ -307,16 +314,21 @@ fn input(message: String, hint: &str) -> Error {
     Error::Input(vec![Diagnostic::error("", message).hint(hint)])
 }
 
-/// A card that was not written by a fit is never replaced by one.
-fn guard(card: &Path) -> Result<(), Error> {
-    match std::fs::read_to_string(card) {
-        Ok(text) if !text.lines().any(|line| line.trim() == "[fit]") => {
-            let cause =
-                "there is a file of this name that no fit has written; choose another --name";
-            Err(Error::write(card, cause))
-        }
-        _ => Ok(()),
+/// What was not written by a fit is never replaced by one.
+fn guard(card: &Path, others: &[PathBuf]) -> Result<(), Error> {
+    let refuse = |path: &Path| {
+        let cause = "there is a file of this name that no fit has written; choose another --name";
+        Err(Error::write(path, cause))
+    };
+    if card.exists() {
+        let text = std::fs::read_to_string(card).unwrap_or_default();
+        let ours = text.lines().any(|line| line.trim() == "[fit]");
+        return if ours { Ok(()) } else { refuse(card) };
     }
+    others
+        .iter()
+        .find(|path| path.exists())
+        .map_or(Ok(()), |path| refuse(path))
 }
 
 /// A file as a card in `folder` names it.
@@ -422,6 +434,12 @@ fn convert(arguments: ConvertArguments) -> Outcome {
     .table(&data)?;
     match arguments.output {
         None => print(&text)?,
+        Some(file) if file.canonicalize().ok() == arguments.data.canonicalize().ok() => {
+            return Err(Error::write(
+                file,
+                "it holds the data that are read; choose another file",
+            ));
+        }
         Some(file) => {
             output::save(&file, text.as_bytes())?;
             print(&format!("{} written\n", file.display()))?;

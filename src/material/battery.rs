@@ -342,6 +342,20 @@ fn the_sheet_reproduces_the_closed_form_curves() {
 }
 
 #[test]
+fn biaxial_stresses_are_those_of_the_sheet() {
+    for_each_law(|name, law| {
+        for strains in [[0.5, 0.2], [1.0, -0.2], [-0.3, 0.1], [1e-8, 3e-9]] {
+            let sheet = stress(law, &gradient([strains[0], 0.0, 0.0, strains[1]]));
+            let found = law.biaxial(strains);
+            for (found, exact) in found.iter().zip([sheet[0], sheet[3]]) {
+                let scale = sheet.norm();
+                assert!((found - exact).abs() < 1e-13 * scale, "{name} {strains:?}");
+            }
+        }
+    });
+}
+
+#[test]
 fn the_tension_curve_is_that_of_a_strip_with_free_edges() {
     for_each_law(|name, law| {
         for x in [-0.3, -0.05, 1e-8, 0.3, 1.0, 1.5] {

@@ -90,7 +90,7 @@ impl Card {
                 format!("cannot read the card {}: {cause}", path.display()),
             );
             Error::Input(vec![
-                fault.hint("a card's path is relative to the file that names it"),
+                fault.hint("look at the path; one in a study is relative to the study"),
             ])
         })?;
         Self::parse(name, &path.display().to_string(), &text)

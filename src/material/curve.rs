@@ -44,20 +44,9 @@ impl Mode {
     pub fn nominal_stress(self, law: &dyn HyperelasticLaw, strain: f64) -> f64 {
         match self {
             Self::Uniaxial => law.tension([1.0, 0.0], strain).nominal_stress,
-            Self::Planar => biaxial(law, [strain, 0.0])[0],
-            Self::Equibiaxial => biaxial(law, [strain, strain])[0],
+            Self::Planar => law.biaxial([strain, 0.0])[0],
+            Self::Equibiaxial => law.biaxial([strain, strain])[0],
         }
-    }
-}
-
-/// Nominal stresses along both axes of a sheet stretched by 1 + ε₁ and 1 + ε₂ along them, in MPa.
-pub fn biaxial(law: &dyn HyperelasticLaw, [first, second]: [f64; 2]) -> [f64; 2] {
-    match Kinematics::new(&Vector4::new(first, 0.0, 0.0, second)) {
-        Ok(kinematics) => {
-            let (_, stress) = law.stress(&kinematics);
-            [stress[0], stress[3]]
-        }
-        Err(_) => [f64::NAN; 2],
     }
 }
 

@@ -19,6 +19,18 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     /// λ = 1 + `strain` while its edges are free; `strain` > −1.
     fn tension(&self, direction: [f64; 2], strain: f64) -> TensionResponse;
 
+    /// Nominal stresses along both axes of a sheet stretched by 1 + ε₁ and 1 + ε₂ along them, in MPa; not
+    /// numbers where a stretch is not positive.
+    fn biaxial(&self, [first, second]: [f64; 2]) -> [f64; 2] {
+        match Kinematics::new(&Gradient::new(first, 0.0, 0.0, second)) {
+            Ok(kinematics) => {
+                let (_, stress) = self.stress(&kinematics);
+                [stress[0], stress[3]]
+            }
+            Err(_) => [f64::NAN; 2],
+        }
+    }
+
     /// Whether all directions of the sheet are alike.
     fn is_isotropic(&self) -> bool {
         true

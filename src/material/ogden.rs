@@ -214,6 +214,22 @@ impl HyperelasticLaw for Ogden {
         }
     }
 
+    /// ```text
+    /// Pᵢ = Σ 2 μ/α (λᵢ^α − λ₃^α)/λᵢ,   λ₃ = 1/(λ₁ λ₂)
+    /// ```
+    fn biaxial(&self, strains: [f64; 2]) -> [f64; 2] {
+        let logarithms = strains.map(f64::ln_1p);
+        let across = -logarithms[0] - logarithms[1];
+        let mut stresses = [0.0; 2];
+        for [mu, alpha] in &self.terms {
+            let lateral = 2.0 * mu / alpha * (alpha * across).exp();
+            for (stress, logarithm) in stresses.iter_mut().zip(logarithms) {
+                *stress += lateral * (alpha * (logarithm - across)).exp_m1();
+            }
+        }
+        [0, 1].map(|axis| stresses[axis] / (1.0 + strains[axis]))
+    }
+
     /// μ₀ = Σ μᵢ.
     fn shear_modulus(&self) -> f64 {
         self.terms.iter().map(|[mu, _]| mu).sum()

@@ -1,7 +1,7 @@
 //! The pictures of a run.
 
 use super::picture::Scale;
-use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel};
+use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel, outlines};
 use super::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::compare::StepComparison;
 use crate::material::Card;
@@ -178,6 +178,35 @@ pub fn comparison_chart(cards: &[Card]) -> LineChart {
         lines: cards.iter().enumerate().map(line).collect(),
         band: None,
     }
+}
+
+/// A mesh; curved edges are drawn through their middles.
+pub fn mesh_picture(title: &str, mesh: &Mesh) -> Vec<u8> {
+    let outline = |cell: usize| {
+        let nodes = mesh.cell(cell);
+        let shape = mesh.shape(cell);
+        let mut places = Vec::new();
+        for edge in shape.edges() {
+            let along = [0, 1, 2, 3].map(|i| f64::from(i) / 4.0);
+            let [from, to] = [edge[0], edge[1]].map(|node| shape.reference_nodes()[node]);
+            for share in along {
+                let local = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+                let values = shape.values(local);
+                places.push([0, 1].map(|axis| {
+                    let shares = nodes.iter().zip(&values);
+                    shares
+                        .map(|(node, value)| value * mesh.nodes[*node][axis])
+                        .sum()
+                }));
+            }
+        }
+        places.extend(places.first().copied());
+        places
+    };
+    outlines(
+        title,
+        &(0..mesh.cell_count()).map(outline).collect::<Vec<_>>(),
+    )
 }
 
 fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {

@@ -143,7 +143,15 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Vec<u8> {
             lines.push(line(label, Vec::new(), INK, stroke));
         }
     }
-    let stress = format!("{} stress [MPa]", fit.stress_measure().title());
+    let highest = tests
+        .iter()
+        .fold(0.0, |most: f64, test| most.max(test.largest_stress));
+    let unit = readable(highest);
+    unit.scale(&mut lines);
+    let stress = format!("{} stress [{}]", fit.stress_measure().title(), unit.name);
+    let left = residuals.iter().flat_map(|line| &line.points);
+    let unit = readable(left.fold(0.0, |most: f64, point| most.max(point[1].abs())));
+    unit.scale(&mut residuals);
     let upper = LineChart {
         title: format!("{} fitted to {}", fit.law.name, names(tests)),
         x: Axis::stretch(),
@@ -155,13 +163,37 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Vec<u8> {
         title: "Residuals: measured less fitted".into(),
         x: Axis::stretch(),
         y: Axis {
-            label: "stress [MPa]".into(),
+            label: format!("stress [{}]", unit.name),
             scale: Scale::Linear,
         },
         lines: residuals,
         band: None,
     };
     stacked(&[(upper, 460), (lower, 250)])
+}
+
+/// A unit of stress in which numbers are neither long nor tiny.
+#[derive(Clone, Copy)]
+struct Unit {
+    name: &'static str,
+    per_mpa: f64,
+}
+
+impl Unit {
+    fn scale(self, lines: &mut [Line]) {
+        for point in lines.iter_mut().flat_map(|line| &mut line.points) {
+            point[1] *= self.per_mpa;
+        }
+    }
+}
+
+fn readable(largest_mpa: f64) -> Unit {
+    let units =
+        [("MPa", 1.0), ("kPa", 1e3), ("Pa", 1e6)].map(|(name, per_mpa)| Unit { name, per_mpa });
+    let large = units
+        .into_iter()
+        .find(|unit| unit.per_mpa * largest_mpa >= 0.1);
+    large.unwrap_or(units[2])
 }
 
 fn line(label: &str, points: Vec<[f64; 2]>, colour: [u8; 3], stroke: Stroke) -> Line {

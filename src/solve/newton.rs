@@ -39,6 +39,10 @@ pub struct Newton {
     cholesky: Cholesky,
 }
 
+/// Forces are negligible below this share of the stiffest unknown's stiffness times the largest displacement:
+/// a body that moves without strain has rounding alone.
+const NEGLIGIBLE: f64 = 1e-4;
+
 /// Relative residual at which a stagnating iteration counts as converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-11;
 
@@ -80,7 +84,8 @@ impl Newton {
                 .assembly
                 .linearise(potential, u, residual, &mut stiffness)
                 .map_err(inverted)?;
-            let relative = self.relative_residual(residual);
+            let stiffest = self.stiffest(&stiffness);
+            let relative = self.relative_residual(residual, NEGLIGIBLE * stiffest * largest(u));
             if !relative.is_finite() {
                 return Err(SolveFault::NotFinite("the residual".into()));
             }
@@ -116,8 +121,54 @@ impl Newton {
         }
     }
 
-    /// Largest residual of a free unknown relative to the largest of all, reactions included.
-    fn relative_residual(&self, residual: &[f64]) -> f64 {
+    /// The change of the free unknowns by the tangent at `u` when the held ones move by `motion` and the
+    /// potential is the one given; nothing at held unknowns.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when `u` is not admissible or the tangent cannot be factorised.
+    pub fn predict(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        motion: &[f64],
+        describe: &dyn Fn(usize) -> String,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let inverted = |fault: Inadmissible| SolveFault::Inverted {
+            element: describe(fault.element),
+        };
+        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+        self.assembly
+            .linearise(potential, u, &mut residual, &mut stiffness)
+            .map_err(inverted)?;
+        // The forces of the moved supports by a difference along their motion, small beside the size of u.
+        let most = largest(motion);
+        if most > 0.0 {
+            let share = 1e-6 * largest(u).max(1e-3 * most) / most;
+            let moved: Vec<f64> = u.iter().zip(motion).map(|(u, m)| u + share * m).collect();
+            let mut there = vec![0.0; u.len()];
+            Assembly::residual(potential, &moved, &mut there).map_err(inverted)?;
+            for (residual, there) in residual.iter_mut().zip(&there) {
+                *residual += (there - *residual) / share;
+            }
+        }
+        self.factorise(&mut stiffness)?;
+        let mut change = vec![0.0; u.len()];
+        let step = self.step(&residual)?;
+        for (unknown, step) in self.assembly.free().iter().zip(step) {
+            change[*unknown] = step;
+        }
+        Ok(change)
+    }
+
+    /// The largest entry of the diagonal of a stiffness.
+    fn stiffest(&self, stiffness: &[f64]) -> f64 {
+        let diagonal = self.cholesky.pattern().diagonal().iter();
+        diagonal.fold(0.0, |most: f64, place| most.max(stiffness[*place].abs()))
+    }
+
+    /// Largest residual of a free unknown relative to the largest of all, reactions included, or to `least`
+    /// where there are next to none.
+    fn relative_residual(&self, residual: &[f64], least: f64) -> f64 {
         let free = self
             .assembly
             .free()
@@ -129,7 +180,7 @@ impl Newton {
         if free == 0.0 {
             0.0
         } else {
-            free / largest(residual)
+            free / largest(residual).max(least)
         }
     }
 

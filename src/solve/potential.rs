@@ -45,6 +45,29 @@ pub trait Potential: Sync {
     ) -> Result<f64, Inadmissible>;
 }
 
+impl<P: Potential + ?Sized> Potential for &P {
+    fn unknowns(&self) -> usize {
+        (**self).unknowns()
+    }
+
+    fn elements(&self) -> usize {
+        (**self).elements()
+    }
+
+    fn element_unknowns(&self, element: usize) -> &[usize] {
+        (**self).element_unknowns(element)
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        (**self).evaluate_element(element, u, local)
+    }
+}
+
 /// The sum of element contributions into a sparse matrix over the free unknowns.
 #[derive(Debug)]
 pub struct Assembly {

@@ -29,8 +29,12 @@ impl Head<'_> {
     pub fn missing(&self, key: &str, example: &str) -> Box<Diagnostic> {
         let option = key.replace(" measure", "").replace(' ', "-");
         let message = format!("{}: the {key} is not stated", self.table.source.name);
+        let quoted = match example.contains(' ') {
+            true => format!("\"{example}\""),
+            false => example.to_owned(),
+        };
         let hint = format!(
-            "write `# {key}: {example}` at the top of the file, or give --{option} {example}"
+            "write `# {key}: {example}` at the top of the file, or give --{option} {quoted}"
         );
         Box::new(Diagnostic::error("", message).hint(hint))
     }

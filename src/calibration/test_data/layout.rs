@@ -91,8 +91,13 @@ fn of_kind(roles: &[Role], kind: Kind) -> impl Iterator<Item = (usize, &Role)> {
 impl Layout {
     /// Finds out what the columns mean.
     pub fn new(head: &Head) -> Faulty<Self> {
+        if let Some((key, place)) = head.table.contradictions.first() {
+            let message = format!("the {key} is said twice in different ways");
+            return Err(head.fault(place.clone(), message, "say it once"));
+        }
         let test = head.choice("test", None, &Test::NAMES)?;
         let roles = roles(head);
+        check_columns(head, &roles, test)?;
         let (strain, strains) = strains(head, &roles)?;
         let (stress_measure, stresses) = stresses(head, &roles)?;
         let strain_ratio = if test == Test::Biaxial && strains[1].is_none() {
@@ -138,12 +143,18 @@ impl Layout {
         }
         let stresses = observations.iter().map(|one| one.stress.abs());
         let largest_stress = stresses.fold(0.0, f64::max);
+        check_signs(head, &observations)?;
+        let widest = |axis: usize| {
+            let strains = observations.iter().map(|one| one.strains[axis].abs());
+            strains.fold(0.0, f64::max)
+        };
         let said = table.head.iter();
         Ok(TestData {
             name: table.source.name.clone(),
             test: self.test,
             stress_measure: self.stress_measure,
             axes: self.stresses.iter().map(|(.., axis)| *axis).collect(),
+            drawn_axis: usize::from(widest(1) > widest(0)),
             observations,
             largest_stress,
             head: said
@@ -173,6 +184,26 @@ impl Layout {
     }
 }
 
+/// Data that say nothing, or a test of compression that counts pressing as positive, are refused.
+fn check_signs(head: &Head, observations: &[Observation]) -> Faulty<()> {
+    let strains = || observations.iter().map(|one| one.strains[one.axis]);
+    let nothing = observations.iter().all(|one| one.stress == 0.0)
+        || observations
+            .iter()
+            .all(|one| one.strains.iter().all(|x| *x == 0.0 || x.is_nan()));
+    if nothing {
+        let hint = "look at the columns and their units";
+        return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
+    }
+    let compression = head.setting("test", None)?.as_deref() == Some("compression");
+    if compression && strains().any(|x| x > 0.0) {
+        let message = "a compression test has positive strains";
+        let hint = "give strains and stresses of compression a minus sign, or stretches below 1";
+        return Err(head.fault(head.place("test"), message, hint));
+    }
+    Ok(())
+}
+
 /// What the names of the columns say; the first two of a file without names are strain and stress.
 fn roles(head: &Head) -> Vec<Role> {
     let columns = &head.table.columns;
@@ -186,6 +217,50 @@ fn roles(head: &Head) -> Vec<Role> {
         .collect()
 }
 
+/// Refuses columns that do not fit together: each axis has one strain and one stress, all strains and all
+/// stresses have one measure, and fields are numbers.
+fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
+    let place = || head.table.columns_place.clone();
+    for (kind, what) in [(Kind::Strain, "strain"), (Kind::Stress, "stress")] {
+        let mut first: Option<&Role> = None;
+        for (column, role) in of_kind(roles, kind) {
+            let name = &head.table.columns[column].name;
+            let earlier = of_kind(roles, kind).find(|(_, other)| other.axis == role.axis);
+            if earlier.is_some_and(|(other, _)| other != column) {
+                let message = format!(
+                    "there are two columns of {what} along axis {}",
+                    role.axis + 1
+                );
+                let hint = "leave one out, or name them with _1 and _2 for the two axes";
+                return Err(head.fault(place(), message, hint));
+            }
+            if first.is_some_and(|first| first.measure != role.measure) {
+                let message = format!("`{name}` has another measure than the column before it");
+                let hint = format!("give every {what} in the same measure");
+                return Err(head.fault(place(), message, &hint));
+            }
+            first = Some(role);
+            if let Some((reason, place)) = head.table.fault(column) {
+                let hint = "every row holds finite numbers; units stand in the line of names";
+                return Err(head.fault(place, format!("column `{name}`: {reason}"), hint));
+            }
+        }
+    }
+    let strains = of_kind(roles, Kind::Strain).count();
+    if strains > 1 && test != Test::Biaxial {
+        let message = format!("the strains of a {} test have one column", test.name());
+        let hint = "leave the other out, or call the test biaxial";
+        return Err(head.fault(place(), message, hint));
+    }
+    let numbered = of_kind(roles, Kind::Stress).any(|(_, role)| role.axis == 1);
+    if numbered && head.setting("direction", None)?.is_some() {
+        let hint = "leave the direction out";
+        let message = "the columns of stress name their axes, and a direction is given too";
+        return Err(head.fault(head.place("direction"), message, hint));
+    }
+    Ok(())
+}
+
 /// Column and factor to a ratio, or to MPa.
 type Scaled = (usize, f64);
 
@@ -193,7 +268,7 @@ type Scaled = (usize, f64);
 type StressColumn = (usize, f64, usize);
 
 fn strains(head: &Head, roles: &[Role]) -> Faulty<(StrainColumn, [Option<Scaled>; 2])> {
-    let Some((first, role)) = of_kind(roles, Kind::Strain).next() else {
+    let Some((first, role)) = of_kind(roles, Kind::Strain).min_by_key(|(_, role)| role.axis) else {
         let names = "`stretch`, `nominal_strain` or `logarithmic_strain`";
         return Err(no_column(head, "strains", names));
     };

@@ -163,3 +163,68 @@ fn a_loop_of_loading_and_unloading_is_told() {
         "{warning}"
     );
 }
+
+/// Columns that do not fit together would be read in the measure of the first of them.
+#[test]
+fn columns_that_do_not_fit_together_are_refused() {
+    for (text, message) in [
+        (
+            "# test: uniaxial\nstretch [-],nominal_stress [MPa],cauchy_stress [MPa]\n1.1,1,1.1",
+            "two columns of stress along axis 1",
+        ),
+        (
+            "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],cauchy_stress_2 [MPa]\n1.1,1.1,1,1",
+            "`cauchy_stress_2` has another measure",
+        ),
+        (
+            "# test: uniaxial; length: 10 mm\ndisplacement [mm],stretch [-],nominal_stress [MPa]\n1,1.1,1",
+            "two columns of strain along axis 1",
+        ),
+        (
+            "# test: equibiaxial\nstretch_1 [-],stretch_2 [-],nominal_stress [MPa]\n1.1,1.2,1",
+            "the strains of a equibiaxial test have one column",
+        ),
+        (
+            "# test: biaxial; direction: 2\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n1.1,1.2,1,1",
+            "a direction is given too",
+        ),
+        (
+            "# test: uniaxial\n# test: planar\nstretch [-],nominal_stress [MPa]\n1.1,1",
+            "the test is said twice",
+        ),
+        (
+            "# test: compression\nnominal_strain [-],nominal_stress [MPa]\n0.1,1",
+            "a compression test has positive strains",
+        ),
+        (
+            "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.1,0\n1.2,0",
+            "all strains or all stresses are zero",
+        ),
+        (
+            "# test: uniaxial\n# a remark\nstretch [-],nominal_stress [Mpa]\n1,0",
+            "a.csv:3: the stress unit has the unknown unit",
+        ),
+    ] {
+        let found = read(text, &[]).unwrap_err();
+        assert!(found.contains(message), "{text}\n{found}");
+    }
+}
+
+#[test]
+fn the_second_axis_may_stand_first_and_other_columns_may_hold_words() {
+    let text = "# test: biaxial\nsample,stretch_2 [-],stretch_1 [-],nominal_stress_1 [kPa],\nA,1.1,1.2,30,\n";
+    let data = read(text, &[]).unwrap();
+    let [first, second] = data.observations[0].strains;
+    assert!((first - 0.2).abs() < 1e-15 && (second - 0.1).abs() < 1e-15);
+}
+
+#[test]
+fn a_test_stretched_across_is_drawn_over_that_axis() {
+    let text =
+        "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [kPa]\n1,1.1,3\n1,1.2,6\n";
+    let data = read(text, &[]).unwrap();
+    assert_eq!(data.drawn_axis, 1);
+    assert!((data.stretch_range()[1] - 1.2).abs() < 1e-15);
+    let path = data.path(0, 10);
+    assert!((path[10].strains[1] - 0.2).abs() < 1e-15 && path[10].strains[0] == 0.0);
+}

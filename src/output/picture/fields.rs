@@ -63,6 +63,23 @@ struct Layout {
 }
 
 impl Layout {
+    /// The layout that shows all places.
+    fn of(places: impl Iterator<Item = [f64; 2]>) -> Self {
+        let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let (low, high) = places.fold(start, |(low, high), place| {
+            let both = |pick: fn(f64, f64) -> f64, limit: [f64; 2]| {
+                [pick(limit[0], place[0]), pick(limit[1], place[1])]
+            };
+            (both(f64::min, low), both(f64::max, high))
+        });
+        Self {
+            low,
+            high,
+            points_per_mm: ((WIDTH - LEFT - RIGHT) / (high[0] - low[0]))
+                .min(HIGHEST_PLATE / (high[1] - low[1])),
+        }
+    }
+
     fn panel_height(&self) -> f64 {
         LABEL_HEIGHT + (self.high[1] - self.low[1]) * self.points_per_mm
     }
@@ -79,6 +96,22 @@ impl Layout {
             top + (self.high[1] - y) * self.points_per_mm,
         ]
     }
+}
+
+/// The outlines of cells, each a closed line, in true proportions as a PNG.
+pub fn outlines(title: &str, cells: &[Vec<[f64; 2]>]) -> Vec<u8> {
+    let layout = Layout::of(cells.iter().flatten().copied());
+    let bottom = layout.panel_top(1);
+    render((WIDTH as u32, (bottom + AXIS_HEIGHT) as u32), |area| {
+        let pen = Pen(area);
+        pen.write(title, [LEFT, 24.0], bold(17), HPos::Left)?;
+        for cell in cells {
+            let places: Vec<_> = cell.iter().map(|place| layout.place(0, *place)).collect();
+            pen.line(&places)?;
+        }
+        draw_width_axis(&pen, &layout, 0)?;
+        draw_length_axis(&pen, &layout, 0)
+    })
 }
 
 impl FieldFigure {
@@ -108,21 +141,7 @@ impl FieldFigure {
 
     fn layout(&self) -> Layout {
         let cells = self.panels.iter().flat_map(|panel| &panel.cells);
-        let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        let (low, high) = cells
-            .flat_map(|cell| cell.0)
-            .fold(start, |(low, high), corner| {
-                let both = |pick: fn(f64, f64) -> f64, limit: [f64; 2]| {
-                    [pick(limit[0], corner[0]), pick(limit[1], corner[1])]
-                };
-                (both(f64::min, low), both(f64::max, high))
-            });
-        Layout {
-            low,
-            high,
-            points_per_mm: ((WIDTH - LEFT - RIGHT) / (high[0] - low[0]))
-                .min(HIGHEST_PLATE / (high[1] - low[1])),
-        }
+        Layout::of(cells.flat_map(|cell| cell.0))
     }
 
     fn range(&self) -> Range {

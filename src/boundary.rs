@@ -1,0 +1,234 @@
+//! The boundary value problem of a sheet of any shape: supports and loads on the named groups of its mesh.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::error::Diagnostic;
+use crate::material::HyperelasticLaw;
+use crate::mesh::{Group, Mesh};
+use crate::sheet_energy::SheetEnergy;
+use crate::solve::{Loading, NewtonSettings, PathEnd, Potential, State, follow};
+
+mod loads;
+
+use loads::Loaded;
+
+/// What holds a group; everything grows with the load factor and is complete at 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Support {
+    /// Displacements ux, uy in mm; one that is not given is free. Both zero: a clamp; one zero: a roller or
+    /// an axis of symmetry.
+    Displacement([Option<f64>; 2]),
+    /// A rigid turn about a point in mm by an angle in rad, counter-clockwise.
+    Rotation {
+        /// The point.
+        centre: [f64; 2],
+        /// The angle.
+        angle: f64,
+    },
+}
+
+/// What loads a group; everything grows with the load factor and is complete at 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Load {
+    /// A traction in MPa on the reference area of the group's edges, of constant direction (dead).
+    Traction([f64; 2]),
+    /// A pressure in MPa on the group's edges that follows them: p t times the deformed length, t the thickness
+    /// at rest, against the outward normal.
+    Pressure(f64),
+    /// A force in N, shared equally by the group's nodes.
+    Force([f64; 2]),
+}
+
+/// A sheet between its supports under its loads.
+#[derive(Clone, Debug)]
+pub struct BoundaryProblem {
+    /// Thickness in mm.
+    pub thickness: f64,
+    /// The material.
+    pub law: Arc<dyn HyperelasticLaw>,
+    /// Supports by group; later ones replace earlier ones on the nodes that they share.
+    pub supports: Vec<(String, Support)>,
+    /// Loads by group.
+    pub loads: Vec<(String, Load)>,
+}
+
+/// A boundary value problem on a mesh, ready to be solved with any energy of its nodes.
+pub struct Discretised<'a> {
+    mesh: &'a Mesh,
+    energy: &'a dyn Potential,
+    /// Motion of each unknown that is held.
+    held: BTreeMap<usize, Motion>,
+    loaded: Loaded,
+}
+
+/// How a held unknown moves.
+#[derive(Clone, Copy)]
+enum Motion {
+    /// In proportion to the load factor, in mm at 1.
+    Straight(f64),
+    /// As a coordinate of a point at a place relative to the centre, in mm, turned by an angle at 1.
+    Turn {
+        place: [f64; 2],
+        axis: usize,
+        angle: f64,
+    },
+}
+
+impl Motion {
+    fn at(self, factor: f64) -> f64 {
+        match self {
+            Self::Straight(displacement) => factor * displacement,
+            Self::Turn { place, axis, angle } => {
+                let (sine, cosine) = (factor * angle).sin_cos();
+                // 1 − cos without cancellation.
+                let lost = 2.0 * (0.5 * factor * angle).sin().powi(2);
+                debug_assert!((lost - (1.0 - cosine)).abs() < 1e-14);
+                let across = [-sine * place[1], sine * place[0]];
+                across[axis] - lost * place[axis]
+            }
+        }
+    }
+}
+
+impl BoundaryProblem {
+    /// The finite-element energy of a mesh.
+    pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
+        SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
+    }
+
+    /// The problem on the nodes of a mesh with an energy of them.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support or a load names no group of the mesh, or when a group cannot carry it.
+    pub fn on<'a>(
+        &self,
+        mesh: &'a Mesh,
+        energy: &'a dyn Potential,
+    ) -> Result<Discretised<'a>, Diagnostic> {
+        let mut held = BTreeMap::new();
+        for (name, support) in &self.supports {
+            for node in &group(mesh, name)?.nodes {
+                for (axis, motion) in motions(support, mesh.nodes[*node]).into_iter().enumerate() {
+                    if let Some(motion) = motion {
+                        held.insert(2 * node + axis, motion);
+                    }
+                }
+            }
+        }
+        let mut loaded = Loaded::new(2 * mesh.nodes.len());
+        for (name, load) in &self.loads {
+            let is_held = |node: usize| [0, 1].map(|axis| held.contains_key(&(2 * node + axis)));
+            let group = group(mesh, name)?;
+            loaded
+                .add(mesh, group, load, self.thickness, &is_held)
+                .map_err(|reason| Diagnostic::error("", format!("the group `{name}` {reason}")))?;
+        }
+        Ok(Discretised {
+            mesh,
+            energy,
+            held,
+            loaded,
+        })
+    }
+}
+
+fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
+    let groups = mesh.groups();
+    groups.get(name).ok_or_else(|| {
+        let known: Vec<_> = groups.keys().map(String::as_str).collect();
+        let fault = Diagnostic::error("", format!("the mesh has no group `{name}`"));
+        fault.hint(format!("its groups are {}", known.join(", ")))
+    })
+}
+
+/// The motions that a support gives a node, along both axes.
+fn motions(support: &Support, node: [f64; 2]) -> [Option<Motion>; 2] {
+    match *support {
+        Support::Displacement(displacement) => displacement.map(|d| d.map(Motion::Straight)),
+        Support::Rotation { centre, angle } => {
+            let place = [node[0] - centre[0], node[1] - centre[1]];
+            [0, 1].map(|axis| Some(Motion::Turn { place, axis, angle }))
+        }
+    }
+}
+
+impl Discretised<'_> {
+    /// Imposes a displacement field in mm, complete at load factor 1, on the nodes of a group.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn impose_field(&mut self, name: &str, field: impl Fn([f64; 2]) -> [f64; 2]) {
+        for node in &self.mesh.groups()[name].nodes {
+            for (axis, value) in field(self.mesh.nodes[*node]).into_iter().enumerate() {
+                self.held.insert(2 * node + axis, Motion::Straight(value));
+            }
+        }
+    }
+
+    /// Adds forces in N at load factor 1, one for each unknown: a body force, for instance.
+    pub fn add_forces(&mut self, forces: &[f64]) {
+        self.loaded.add_forces(forces);
+    }
+
+    /// Solves load factors, one after the other.
+    ///
+    /// # Errors
+    /// [`PathEnd`] with the load factor that could not be reached and the states before it.
+    pub fn solve(
+        &self,
+        factors: &[f64],
+        settings: NewtonSettings,
+        progress: &dyn Fn(f64),
+    ) -> Result<Vec<State>, PathEnd> {
+        follow(self, factors, settings, progress)
+    }
+
+    /// The force of the supports on a group in N, from a state.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn reaction(&self, state: &State, name: &str) -> [f64; 2] {
+        let nodes = &self.mesh.groups()[name].nodes;
+        [0, 1].map(|axis| {
+            let held = nodes.iter().map(|node| 2 * node + axis);
+            let held = held.filter(|unknown| self.held.contains_key(unknown));
+            held.map(|unknown| state.residual[unknown]).sum()
+        })
+    }
+}
+
+impl Loading for Discretised<'_> {
+    fn held(&self) -> Vec<bool> {
+        let unknowns = 0..2 * self.mesh.nodes.len();
+        unknowns
+            .map(|unknown| self.held.contains_key(&unknown))
+            .collect()
+    }
+
+    fn impose(&self, factor: f64, displacement: &mut [f64]) {
+        for (unknown, motion) in &self.held {
+            displacement[*unknown] = motion.at(factor);
+        }
+    }
+
+    fn potential(&self, factor: f64) -> Box<dyn Potential + '_> {
+        if self.loaded.is_empty() {
+            Box::new(self.energy)
+        } else {
+            Box::new(self.loaded.at(self.energy, factor))
+        }
+    }
+
+    fn guess(&self, _: f64, _: Option<&State>) -> Option<Vec<f64>> {
+        None
+    }
+
+    fn describe(&self, element: usize) -> String {
+        if element < self.mesh.cell_count() {
+            self.mesh.describe_cell(element)
+        } else {
+            "a loaded edge".to_owned()
+        }
+    }
+}

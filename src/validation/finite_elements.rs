@@ -1,0 +1,93 @@
+//! The finite elements beside mathematics: what every case of them needs.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use crate::boundary::{BoundaryProblem, Discretised};
+use crate::error::{Diagnostic, Error};
+use crate::material::{HyperelasticLaw, NeoHooke};
+use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
+use crate::solve::{NewtonSettings, PathEnd, State};
+
+pub mod cantilever;
+pub mod cook;
+pub mod hole;
+pub mod manufactured;
+pub mod patch;
+pub mod ring;
+
+/// Every kind of element with its name.
+const ELEMENTS: [(&str, CellShape); 5] = [
+    ("T1", CellShape::Triangle3),
+    ("T2", CellShape::Triangle6),
+    ("Q1", CellShape::Quad4),
+    ("Q2", CellShape::Quad9),
+    ("Q2 serendipity", CellShape::Quad8),
+];
+
+const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-13,
+    max_iterations: 40,
+};
+
+/// A neo-Hookean sheet with μ = 0.1 MPa, E = 0.3 MPa, 2 mm thick, without supports and loads.
+fn sheet() -> BoundaryProblem {
+    BoundaryProblem {
+        thickness: 2.0,
+        law: Arc::new(NeoHooke { c10: 0.05 }),
+        supports: Vec::new(),
+        loads: Vec::new(),
+    }
+}
+
+/// A rectangle of `size` mm whose inner lines are bent: no cell is a parallelogram.
+fn distorted(size: [f64; 2], cells: [usize; 2], shape: CellShape) -> Mesh {
+    let map = move |[s, t]: [f64; 2]| {
+        let bulge = (PI * s).sin() * (PI * t).sin();
+        [size[0] * (s + 0.08 * bulge), size[1] * (t - 0.1 * bulge)]
+    };
+    let block = Block {
+        map: Box::new(map),
+        cells,
+        sides: ["bottom", "right", "top", "left"],
+    };
+    let mut mesh = mesh_of_blocks(&[block], shape);
+    mesh.name_boundary("boundary", |_| true);
+    mesh
+}
+
+/// A fault of a case that is no fault of its user.
+fn misfit(fault: Diagnostic) -> Error {
+    Error::Input(vec![fault])
+}
+
+/// Solves to load factor 1 in some steps; the last state.
+fn solve(model: &Discretised, name: &str, steps: usize) -> Result<State, Error> {
+    let factors: Vec<f64> = (1..=steps).map(|i| i as f64 / steps as f64).collect();
+    let states = model.solve(&factors, NEWTON, &|_| ());
+    let states = states.map_err(|end: PathEnd| Error::Solve {
+        model: name.to_owned(),
+        step: format!("load factor {}", end.factor),
+        fault: end.fault,
+    })?;
+    let last = states.into_iter().last();
+    Ok(last.expect("one state for each factor"))
+}
+
+/// Largest distance of a field from another one at the nodes of a mesh, over the largest size of the other.
+fn largest_error(mesh: &Mesh, found: &[f64], exact: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for (place, u) in mesh.nodes.iter().zip(found.chunks_exact(2)) {
+        let exact = exact(*place);
+        worst = worst.max((u[0] - exact[0]).hypot(u[1] - exact[1]));
+        largest = largest.max(exact[0].hypot(exact[1]));
+    }
+    worst / largest
+}
+
+/// First Piola–Kirchhoff stress of a law at a displacement gradient, components 11, 12, 21, 22, in MPa.
+fn stress(law: &dyn HyperelasticLaw, gradient: [f64; 4]) -> [f64; 4] {
+    use crate::material::sheet::Kinematics;
+    let kinematics = Kinematics::new(&nalgebra::Vector4::from(gradient));
+    kinematics.map_or([f64::NAN; 4], |kinematics| law.stress(&kinematics).1.into())
+}

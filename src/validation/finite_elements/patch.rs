@@ -1,0 +1,188 @@
+//! Patch tests, homogeneous tests and rigid turns on distorted meshes of every element.
+
+use std::path::Path;
+
+use super::{ELEMENTS, distorted, largest_error, misfit, sheet, solve, stress};
+use crate::boundary::Support;
+use crate::document::Section;
+use crate::error::Error;
+use crate::material::curve::Mode;
+use crate::mesh::CellShape;
+use crate::solve::potential::derivative_errors;
+use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
+
+const SIZE: [f64; 2] = [60.0, 40.0];
+
+/// Reads a study of this case.
+pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+    let section = root.section("mesh");
+    let cells = section.count_pair("cells", 2, 60).unwrap_or([2, 2]);
+    section.unknown_keys();
+    let section = root.section("load");
+    let stretch = section.number("stretch", crate::document::Bound::Within(1.0, 3.0));
+    section.unknown_keys();
+    Box::new(move |progress| compute(cells, stretch, progress))
+}
+
+fn compute(cells: [usize; 2], stretch: f64, progress: Progress) -> Result<Outcome, Error> {
+    let mut outcome = Outcome::default();
+    for (name, shape) in ELEMENTS {
+        progress(name);
+        let mut check = |what: String, limit: f64, source, value: f64| {
+            let quantity = format!("{name}: {what}");
+            let wanted = Wanted::AtMost(limit);
+            outcome
+                .checks
+                .push(Check::new(quantity, "–", wanted, source, value));
+        };
+        let error = patch(shape, cells)?;
+        check(
+            "linear field on a distorted patch".into(),
+            1e-12,
+            "linear field",
+            error,
+        );
+        for (mode_name, mode) in Mode::ALL {
+            let error = homogeneous(shape, cells, mode, stretch)?;
+            let what = format!("{mode_name} tension to λ = {stretch}, field and stress");
+            check(what, 1e-12, "closed form", error);
+        }
+        let what = format!("simple shear γ = {}, force", stretch - 1.0);
+        check(
+            what,
+            1e-12,
+            "closed form",
+            simple_shear(shape, cells, stretch - 1.0)?,
+        );
+        check(
+            "rigid turn by 90°, field".into(),
+            1e-12,
+            "rigid turn",
+            turn(shape, cells)?,
+        );
+        let [residual, tangent] = derivatives(shape, cells);
+        check(
+            "residual beside differences of the energy".into(),
+            1e-7,
+            "differences",
+            residual,
+        );
+        check(
+            "tangent beside differences of the residual".into(),
+            1e-7,
+            "differences",
+            tangent,
+        );
+    }
+    Ok(outcome)
+}
+
+/// Error of the nodes inside when the boundary follows a linear field.
+fn patch(shape: CellShape, cells: [usize; 2]) -> Result<f64, Error> {
+    let mesh = distorted(SIZE, cells, shape);
+    let field = |[x, y]: [f64; 2]| [0.3 * x + 0.1 * y, -0.05 * x - 0.2 * y];
+    let problem = sheet();
+    let energy = problem.finite_elements(&mesh);
+    let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+    model.impose_field("boundary", field);
+    let state = solve(&model, "patch test", 2)?;
+    Ok(largest_error(&mesh, &state.displacement, field))
+}
+
+/// Largest error of field and stress in a homogeneous test between rollers.
+fn homogeneous(
+    shape: CellShape,
+    cells: [usize; 2],
+    mode: Mode,
+    stretch: f64,
+) -> Result<f64, Error> {
+    let mesh = distorted(SIZE, cells, shape);
+    let x = stretch - 1.0;
+    let mut problem = sheet();
+    let mut hold = |group: &str, displacement| {
+        let support = Support::Displacement(displacement);
+        problem.supports.push((group.to_owned(), support));
+    };
+    hold("left", [Some(0.0), None]);
+    hold("bottom", [None, Some(0.0)]);
+    hold("right", [Some(x * SIZE[0]), None]);
+    let across = match mode {
+        Mode::Uniaxial => -x / (stretch + stretch.sqrt()),
+        Mode::Planar => 0.0,
+        Mode::Equibiaxial => x,
+    };
+    if mode != Mode::Uniaxial {
+        hold("top", [None, Some(across * SIZE[1])]);
+    }
+    let energy = problem.finite_elements(&mesh);
+    let model = problem.on(&mesh, &energy).map_err(misfit)?;
+    let state = solve(&model, mode.name(), 4)?;
+    let field = largest_error(&mesh, &state.displacement, |[px, py]| [x * px, across * py]);
+    let force = model.reaction(&state, "right")[0];
+    let found = force / (problem.thickness * SIZE[1]);
+    let exact = mode.nominal_stress(&*problem.law, x);
+    Ok(field.max((found / exact - 1.0).abs()))
+}
+
+/// Error of the shear force on the upper side when the boundary is sheared.
+fn simple_shear(shape: CellShape, cells: [usize; 2], amount: f64) -> Result<f64, Error> {
+    let mesh = distorted(SIZE, cells, shape);
+    let problem = sheet();
+    let energy = problem.finite_elements(&mesh);
+    let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+    let field = |[_, y]: [f64; 2]| [amount * y, 0.0];
+    model.impose_field("boundary", field);
+    let state = solve(&model, "simple shear", 2)?;
+    let inside = largest_error(&mesh, &state.displacement, field);
+    // The stress of all cells: forces on the sides share their corners.
+    let exact = stress(&*problem.law, [0.0, amount, 0.0, 0.0])[1];
+    let mean = mean_shear_stress(&mesh, &problem, &state.displacement);
+    Ok(inside.max((mean / exact - 1.0).abs()))
+}
+
+/// P₁₂ averaged over the area.
+fn mean_shear_stress(
+    mesh: &crate::mesh::Mesh,
+    problem: &crate::boundary::BoundaryProblem,
+    displacement: &[f64],
+) -> f64 {
+    let (mut sum, mut area) = (0.0, 0.0);
+    for cell in 0..mesh.cell_count() {
+        for (point, weight) in mesh.shape(cell).quadrature() {
+            let part = weight * mesh.gradients(cell, point).1;
+            let gradient = mesh.gradient_at(displacement, cell, point);
+            sum += part * stress(&*problem.law, gradient)[1];
+            area += part;
+        }
+    }
+    sum / area
+}
+
+/// Error of the nodes when one side turns by 90° and nothing else holds the sheet.
+fn turn(shape: CellShape, cells: [usize; 2]) -> Result<f64, Error> {
+    let mesh = distorted(SIZE, cells, shape);
+    let mut problem = sheet();
+    let angle = std::f64::consts::FRAC_PI_2;
+    let centre = [10.0, 5.0];
+    let support = Support::Rotation { centre, angle };
+    problem.supports.push(("left".into(), support));
+    let energy = problem.finite_elements(&mesh);
+    let model = problem.on(&mesh, &energy).map_err(misfit)?;
+    let state = solve(&model, "rigid turn", 4)?;
+    let exact = |[x, y]: [f64; 2]| {
+        let (dx, dy) = (x - centre[0], y - centre[1]);
+        [-dy - dx, dx - dy]
+    };
+    Ok(largest_error(&mesh, &state.displacement, exact))
+}
+
+/// Relative errors of residual and tangent beside differences, in a bent state.
+fn derivatives(shape: CellShape, cells: [usize; 2]) -> [f64; 2] {
+    let mesh = distorted(SIZE, cells, shape);
+    let energy = sheet().finite_elements(&mesh);
+    let bent = |[x, y]: &[f64; 2]| [0.2 * x + 0.002 * x * y, -0.1 * y + 0.001 * x * x];
+    let u: Vec<f64> = mesh.nodes.iter().flat_map(bent).collect();
+    let way = |i: usize| (1.0 + i as f64 * 0.7).sin();
+    let direction: Vec<f64> = (0..u.len()).map(way).collect();
+    derivative_errors(&energy, &u, &direction)
+}
