@@ -60,6 +60,7 @@ pub struct Discretised<'a> {
     /// Motion of each unknown that is held.
     held: BTreeMap<usize, Motion>,
     loaded: Loaded,
+    names: Box<dyn Fn(usize) -> String + 'a>,
 }
 
 /// How a held unknown moves.
@@ -129,6 +130,7 @@ impl BoundaryProblem {
             energy,
             held,
             loaded,
+            names: Box::new(|cell| mesh.describe_cell(cell)),
         })
     }
 }
@@ -153,7 +155,16 @@ fn motions(support: &Support, node: [f64; 2]) -> [Option<Motion>; 2] {
     }
 }
 
-impl Discretised<'_> {
+impl<'a> Discretised<'a> {
+    /// With names for the elements of an energy whose elements are not the cells.
+    #[must_use]
+    pub fn named(self, names: impl Fn(usize) -> String + 'a) -> Self {
+        Self {
+            names: Box::new(names),
+            ..self
+        }
+    }
+
     /// Imposes a displacement field in mm, complete at load factor 1, on the nodes of a group.
     ///
     /// # Panics
@@ -225,8 +236,8 @@ impl Loading for Discretised<'_> {
     }
 
     fn describe(&self, element: usize) -> String {
-        if element < self.mesh.cell_count() {
-            self.mesh.describe_cell(element)
+        if element < self.energy.elements() {
+            (self.names)(element)
         } else {
             "a loaded edge".to_owned()
         }

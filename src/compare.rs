@@ -176,6 +176,24 @@ pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: 
     100.0 * distance(&areas, field, reference) / distance(&areas, reference, affine)
 }
 
+/// Distance of two fields on the corners of any mesh in relative L2, weighted by area, in %. The area of a cell
+/// belongs to its corners in equal parts.
+pub fn area_weighted_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
+    let mut areas = vec![0.0; mesh.nodes.len()];
+    for cell in 0..mesh.cell_count() {
+        let shape = mesh.shape(cell);
+        let rule = shape.quadrature().into_iter();
+        let area: f64 = rule
+            .map(|(point, weight)| weight * mesh.gradients(cell, point).1)
+            .sum();
+        for corner in &mesh.cell(cell)[..shape.corners()] {
+            areas[*corner] += area / shape.corners() as f64;
+        }
+    }
+    let nothing = vec![0.0; reference.len()];
+    100.0 * distance(&areas, field, reference) / distance(&areas, reference, &nothing)
+}
+
 /// Whether a point lies within a fifth of the width of a corner.
 fn near_corner(size: [f64; 2], point: [f64; 2]) -> bool {
     let [x, y] = [0, 1].map(|axis| point[axis].min(size[axis] - point[axis]));

@@ -32,6 +32,7 @@ pub mod factor;
 pub mod matrix;
 pub mod plate;
 pub mod retained;
+pub mod specimen;
 mod step;
 
 pub use condition::{

@@ -157,7 +157,7 @@ impl SolveFault {
     pub fn advice(&self) -> &'static str {
         match self {
             Self::Inverted { .. } => {
-                "add smaller stretches before this one to `load.stretches`, or refine `plate.cells`"
+                "add smaller stretches or load factors before this one, or refine the cells"
             }
             Self::NotPositiveDefinite => {
                 "look at the card's stable range with `gelbench materials show`, or take smaller load steps"
@@ -165,7 +165,7 @@ impl SolveFault {
             Self::Dependent { .. } => "leave out one of the conditions named",
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
-                "add smaller stretches before this one to `load.stretches`, or raise the iteration limit"
+                "add smaller stretches or load factors before this one, or raise the iteration limit"
             }
             Self::NotFinite(_) => "look at the material's parameters and the load",
         }

@@ -70,12 +70,14 @@ pub struct MassSpring {
 struct Lattice {
     law: Arc<dyn HyperelasticLaw>,
     unknowns: usize,
-    /// Unknowns of the springs, four each, then of the cells, eight each.
+    /// Unknowns of the springs, then of the cells.
     element_unknowns: Vec<usize>,
+    /// Where the unknowns of each element begin.
+    starts: Vec<usize>,
     springs: Vec<(f64, f64)>,
     /// Reference components of each spring's direction, as for `springs`.
     directions: Vec<[f64; 2]>,
-    corners: Vec<[[f64; 2]; 4]>,
+    corners: Vec<Vec<[f64; 2]>>,
     /// κ in N/mm.
     area_stiffness: f64,
 }
@@ -131,7 +133,19 @@ impl MassSpring {
         } else {
             0.0
         };
-        let lattice = Lattice::new(problem, &mesh, &springs, modulus * problem.thickness);
+        let lattice = Lattice::new(&problem.law, &mesh, &springs, modulus * problem.thickness);
+        Self {
+            mesh,
+            springs,
+            lattice,
+        }
+    }
+
+    /// The lattice on the corners of any mesh: springs along the edges of its cells and both diagonals of its
+    /// quadrilaterals, with the cross-sections of [`calibration`].
+    pub fn on_mesh(law: &Arc<dyn HyperelasticLaw>, thickness: f64, mesh: Mesh) -> Self {
+        let springs = calibration::springs(&mesh, thickness);
+        let lattice = Lattice::new(law, &mesh, &springs, 0.0);
         Self {
             mesh,
             springs,
@@ -148,7 +162,12 @@ impl MassSpring {
         };
         let springs = self.springs.into_iter().map(change);
         let springs: Vec<Spring> = springs.filter(|spring| spring.area > 0.0).collect();
-        let lattice = Lattice::new(problem, &self.mesh, &springs, self.lattice.area_stiffness);
+        let lattice = Lattice::new(
+            &problem.law,
+            &self.mesh,
+            &springs,
+            self.lattice.area_stiffness,
+        );
         Self {
             mesh: self.mesh,
             springs,
@@ -173,7 +192,7 @@ impl MassSpring {
     }
 
     /// A spring by its ends, or a cell, for messages.
-    fn describe_element(&self, element: usize) -> String {
+    pub fn describe_element(&self, element: usize) -> String {
         let Some(spring) = self.springs.get(element) else {
             return self.mesh.describe_cell(element - self.springs.len());
         };
@@ -224,27 +243,34 @@ fn strain(direction: [f64; 2], relative: [f64; 2]) -> f64 {
 }
 
 impl Lattice {
-    fn new(problem: &Problem, mesh: &Mesh, springs: &[Spring], area_stiffness: f64) -> Self {
+    fn new(
+        law: &Arc<dyn HyperelasticLaw>,
+        mesh: &Mesh,
+        springs: &[Spring],
+        area_stiffness: f64,
+    ) -> Self {
         let pair = |node: &usize| [2 * node, 2 * node + 1];
-        let mut element_unknowns: Vec<usize> = springs
-            .iter()
-            .flat_map(|spring| spring.nodes.iter().flat_map(pair))
-            .collect();
+        let (mut element_unknowns, mut starts) = (Vec::new(), vec![0]);
+        for spring in springs {
+            element_unknowns.extend(spring.nodes.iter().flat_map(pair));
+            starts.push(element_unknowns.len());
+        }
         let mut corners = Vec::new();
         for cell in 0..mesh.cell_count() {
-            element_unknowns.extend(mesh.cell(cell).iter().flat_map(pair));
-            corners.push(std::array::from_fn(|corner| {
-                mesh.nodes[mesh.cell(cell)[corner]]
-            }));
+            let nodes = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+            element_unknowns.extend(nodes.iter().flat_map(pair));
+            starts.push(element_unknowns.len());
+            corners.push(nodes.iter().map(|node| mesh.nodes[*node]).collect());
         }
         let direction = |spring: &Spring| {
             let [from, to] = spring.nodes.map(|node| mesh.nodes[node]);
             [0, 1].map(|axis| (to[axis] - from[axis]) / spring.rest_length.powi(2))
         };
         Self {
-            law: Arc::clone(&problem.law),
+            law: Arc::clone(law),
             unknowns: 2 * mesh.nodes.len(),
             element_unknowns,
+            starts,
             directions: springs.iter().map(direction).collect(),
             springs: springs
                 .iter()
@@ -294,19 +320,23 @@ impl Lattice {
     }
 
     /// Energy ½ κ A₀ (A/A₀ − 1)² of one cell; refuses a cell that has no positive area.
+    ///
+    /// ```text
+    /// A = ½ Σ (xᵢ yᵢ₊₁ − xᵢ₊₁ yᵢ),   ∂A/∂xᵢ = ½ (yᵢ₊₁ − yᵢ₋₁),   ∂A/∂yᵢ = ½ (xᵢ₋₁ − xᵢ₊₁)
+    /// ```
     fn evaluate_cell(&self, cell: usize, u: &[f64], local: Local<'_>) -> Option<f64> {
         let corners = &self.corners[cell];
-        let [diagonal_1, diagonal_2] = [[2, 0], [3, 1]].map(|[to, from]: [usize; 2]| {
-            [0, 1].map(|axis| {
-                let reference = corners[to][axis] - corners[from][axis];
-                [reference, reference + u[2 * to + axis] - u[2 * from + axis]]
-            })
-        });
-        let area = |which: usize| {
-            0.5 * (diagonal_1[0][which] * diagonal_2[1][which]
-                - diagonal_1[1][which] * diagonal_2[0][which])
+        let count = corners.len();
+        let next = |i: usize| (i + 1) % count;
+        let before = |i: usize| (i + count - 1) % count;
+        // Places relative to the first corner, so that no digit is lost far from the origin.
+        let place = |i: usize| {
+            let at = |axis: usize| corners[i][axis] - corners[0][axis] + u[2 * i + axis] - u[axis];
+            [at(0), at(1)]
         };
-        let (rest, current) = (area(0), area(1));
+        let rest = polygon_area(corners);
+        let places: Vec<[f64; 2]> = (0..count).map(place).collect();
+        let current = polygon_area(&places);
         if current.is_nan() || current <= 0.0 {
             return None;
         }
@@ -314,43 +344,38 @@ impl Lattice {
             return Some(0.0);
         }
         let change = current / rest - 1.0;
-        // ∂A/∂u of the corners: half the opposite diagonal, turned by a right angle.
-        let [d1, d2] = [diagonal_1, diagonal_2].map(|d| [d[0][1], d[1][1]]);
-        let slope =
-            [-d2[1], d2[0], d1[1], -d1[0], d2[1], -d2[0], -d1[1], d1[0]].map(|value| 0.5 * value);
-        local
-            .residual
-            .iter_mut()
-            .zip(slope)
-            .for_each(|(r, slope)| *r += self.area_stiffness * change * slope);
+        let slope: Vec<f64> = (0..count)
+            .flat_map(|i| {
+                let (from, to) = (places[before(i)], places[next(i)]);
+                [0.5 * (to[1] - from[1]), 0.5 * (from[0] - to[0])]
+            })
+            .collect();
+        for (r, slope) in local.residual.iter_mut().zip(&slope) {
+            *r += self.area_stiffness * change * slope;
+        }
         if let Some(stiffness) = local.stiffness {
-            for (i, k) in (0..64).map(|n| (n / 8, n % 8)) {
-                stiffness[n(i, k)] += self.area_stiffness / rest * slope[i] * slope[k];
+            let size = 2 * count;
+            for (i, k) in (0..size * size).map(|n| (n / size, n % size)) {
+                stiffness[i * size + k] += self.area_stiffness / rest * slope[i] * slope[k];
             }
-            for (a, b, sign) in SECOND_AREA_DERIVATIVE {
-                stiffness[n(a, b)] += 0.5 * sign * self.area_stiffness * change;
-                stiffness[n(b, a)] += 0.5 * sign * self.area_stiffness * change;
+            for i in 0..count {
+                for (other, sign) in [(next(i), 0.5), (before(i), -0.5)] {
+                    let value = sign * self.area_stiffness * change;
+                    let (x, y) = (2 * i, 2 * other + 1);
+                    stiffness[x * size + y] += value;
+                    stiffness[y * size + x] += value;
+                }
             }
         }
         Some(0.5 * self.area_stiffness * rest * change * change)
     }
 }
 
-fn n(row: usize, column: usize) -> usize {
-    8 * row + column
+/// Area of a polygon with its corners counter-clockwise.
+fn polygon_area(corners: &[[f64; 2]]) -> f64 {
+    let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
+    0.5 * pairs.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>()
 }
-
-/// 2 ∂²A/∂uₐ∂u_b of a quadrilateral, one triangle.
-const SECOND_AREA_DERIVATIVE: [(usize, usize, f64); 8] = [
-    (0, 3, 1.0),
-    (0, 7, -1.0),
-    (1, 2, -1.0),
-    (1, 6, 1.0),
-    (2, 5, 1.0),
-    (3, 4, -1.0),
-    (4, 7, 1.0),
-    (5, 6, -1.0),
-];
 
 impl Potential for Lattice {
     fn unknowns(&self) -> usize {
@@ -362,13 +387,7 @@ impl Potential for Lattice {
     }
 
     fn element_unknowns(&self, element: usize) -> &[usize] {
-        match element.checked_sub(self.springs.len()) {
-            None => &self.element_unknowns[4 * element..4 * element + 4],
-            Some(cell) => {
-                let start = 4 * self.springs.len() + 8 * cell;
-                &self.element_unknowns[start..start + 8]
-            }
-        }
+        &self.element_unknowns[self.starts[element]..self.starts[element + 1]]
     }
 
     fn evaluate_element(
@@ -386,6 +405,8 @@ impl Potential for Lattice {
             .ok_or(Inadmissible { element })
     }
 }
+
+pub mod calibration;
 
 #[cfg(test)]
 mod tests;

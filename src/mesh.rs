@@ -5,11 +5,16 @@ use std::sync::OnceLock;
 
 mod blocks;
 mod cell_shape;
+mod import;
 mod locate;
+mod refine;
+mod shapes;
 
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, QuadraturePoint};
+pub use import::import;
 use locate::Buckets;
+pub use shapes::Shape;
 
 /// Named sides of the plate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,6 +200,13 @@ impl Mesh {
     pub fn name_edges(&mut self, name: &str, edges: Vec<Vec<usize>>) {
         let nodes: BTreeSet<usize> = edges.iter().flatten().copied().collect();
         let nodes = nodes.into_iter().collect();
+        self.groups.insert(name.to_owned(), Group { nodes, edges });
+    }
+
+    /// Names a group of nodes and edges as they are.
+    fn put_group(&mut self, name: &str, mut nodes: Vec<usize>, edges: Vec<Vec<usize>>) {
+        nodes.sort_unstable();
+        nodes.dedup();
         self.groups.insert(name.to_owned(), Group { nodes, edges });
     }
 

@@ -14,9 +14,9 @@ mod json;
 mod markdown;
 pub mod picture;
 mod report;
-mod vtk;
+pub mod vtk;
 
-pub use figures::{Figure, comparison_chart, material_chart, mesh_picture};
+pub use figures::{Figure, comparison_chart, field_figure, material_chart, mesh_picture};
 pub use fit::{fit_json, fit_picture};
 pub use report::Block;
 

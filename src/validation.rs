@@ -22,6 +22,7 @@ mod plate;
 mod plate_ablation;
 pub mod report;
 mod smoothing;
+mod specimen;
 mod vibrating_spring;
 
 pub use outcome::{Check, Claim, Computed, Outcome, Wanted};
@@ -83,6 +84,13 @@ pub const CASES: &[Case] = &[
         file: "examples/smoothing.toml",
         slow: true,
         prepare: smoothing::prepare,
+    },
+    Case {
+        kind: "specimen",
+        study: include_str!("../examples/strip_with_hole.toml"),
+        file: "examples/strip_with_hole.toml",
+        slow: true,
+        prepare: specimen::prepare,
     },
     Case {
         kind: "cost",

@@ -20,18 +20,18 @@ const LAYERS: &[&[&str]] = &[
     &["command"],
 ];
 
-/// Packages that one place alone may know.
-const SINGLE_DOORS: &[(&str, &str)] = &[
-    ("faer::", "src/solve/sparse.rs"),
-    ("vtkio::", "src/output/vtk.rs"),
-    ("plotters::", "src/output/picture"),
-    ("resvg::", "src/output/picture"),
-    ("maud::", "src/output/html.rs"),
-    ("clap::", "src/command"),
-    ("miette::", "src/command"),
-    ("toml::", "src/document"),
-    ("csv::", "src/calibration/table.rs"),
-    ("rmpfit::", "src/calibration/least_squares.rs"),
+/// Packages that few places may know: one each, but vtkio has one that writes and one that reads.
+const DOORS: &[(&str, &[&str])] = &[
+    ("faer::", &["src/solve/sparse.rs"]),
+    ("vtkio::", &["src/output/vtk.rs", "src/mesh/import/vtk.rs"]),
+    ("plotters::", &["src/output/picture"]),
+    ("resvg::", &["src/output/picture"]),
+    ("maud::", &["src/output/html.rs"]),
+    ("clap::", &["src/command"]),
+    ("miette::", &["src/command"]),
+    ("toml::", &["src/document"]),
+    ("csv::", &["src/calibration/table.rs"]),
+    ("rmpfit::", &["src/calibration/least_squares.rs"]),
 ];
 
 fn layer(module: &str) -> Option<usize> {
@@ -111,16 +111,17 @@ fn an_upward_import_would_be_seen() {
 }
 
 #[test]
-fn packages_have_one_door_each() {
+fn packages_are_named_at_their_doors_only() {
     for file in sources(Path::new("src")) {
         let text = fs::read_to_string(&file).unwrap();
-        for (package, door) in SINGLE_DOORS {
+        for (package, doors) in DOORS {
             let uses = text.match_indices(package).any(|(at, _)| {
                 let before = text[..at].chars().next_back();
                 before.is_none_or(|c| !c.is_alphanumeric() && c != '_' && c != ':')
             });
             let name = file.to_string_lossy();
-            assert!(!uses || name.starts_with(door), "{name} names {package}");
+            let allowed = doors.iter().any(|door| name.starts_with(door));
+            assert!(!uses || allowed, "{name} names {package}");
         }
     }
 }

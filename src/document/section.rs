@@ -79,6 +79,34 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// The tables of a list under `key`, written as `[[key]]`; a missing list is read from the defaults.
+    pub fn tables(&self, key: &'static str) -> Vec<Section<'a>> {
+        let Some(value) = self.value(key) else {
+            return Vec::new();
+        };
+        let DeValue::Array(items) = value.get_ref() else {
+            let hint = format!("write [[{}]] before each", self.full(key));
+            self.fault_at(key, value, "must be a list of tables", &hint);
+            return Vec::new();
+        };
+        let table = |item: &'a Spanned<DeValue<'a>>| match item.get_ref() {
+            DeValue::Table(table) => Some((table, item.span())),
+            _ => None,
+        };
+        let tables = items.iter().filter_map(table).enumerate();
+        tables
+            .map(|(index, (table, span))| Section {
+                path: format!("{}[{}]", self.full(key), index + 1),
+                source: self.source,
+                span,
+                table: Some(table),
+                defaults: None,
+                faults: self.faults,
+                known: RefCell::default(),
+            })
+            .collect()
+    }
+
     /// Whether the file itself holds `key`.
     pub fn has(&self, key: &'static str) -> bool {
         self.written(key).is_some()

@@ -263,12 +263,36 @@ fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
     }
 }
 
+/// Fields on deformed meshes below each other on one colour scale: label, mesh, displacement and a value for
+/// each node.
+pub fn field_figure(
+    title: &str,
+    quantity: &str,
+    scale: Scale,
+    fields: &[(&str, &Mesh, &[f64], Vec<f64>)],
+) -> Vec<u8> {
+    let panel = |(label, mesh, displacement, values): &(&str, &Mesh, &[f64], Vec<f64>)| Panel {
+        label: (*label).to_owned(),
+        cells: cells(mesh, displacement, &|node| values[node]),
+    };
+    let figure = FieldFigure {
+        title: title.to_owned(),
+        quantity: quantity.to_owned(),
+        scale,
+        colours: Colours::Sequential,
+        panels: fields.iter().map(panel).collect(),
+    };
+    figure.png()
+}
+
 /// Deformed cells with the mean of their corners' values.
 fn cells(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec<FieldCell> {
     let place =
         |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + displacement[2 * node + axis]);
     let cell = |cell: usize| {
-        let corners: [usize; 4] = std::array::from_fn(|corner| mesh.cell(cell)[corner]);
+        // A triangle is a quadrilateral whose last two corners are one.
+        let last = mesh.shape(cell).corners() - 1;
+        let corners: [usize; 4] = std::array::from_fn(|corner| mesh.cell(cell)[corner.min(last)]);
         (
             corners.map(place),
             corners.map(value).iter().sum::<f64>() / 4.0,

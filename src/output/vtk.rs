@@ -14,6 +14,8 @@ use vtkio::model::{
 
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
+use crate::mass_spring::{MassSpring, SpringState};
+use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::Problem;
@@ -28,7 +30,9 @@ pub fn files(study: &Study, results: &Results) -> impl Iterator<Item = (String, 
             let grid = model.grid(study, results, step);
             (model.file_name(step), encode(&study.title, grid))
         });
-        let collection = collection(model, &study.problem.stretches);
+        let steps = study.problem.stretches.iter().enumerate();
+        let named = steps.map(|(step, stretch)| (*stretch, model.file_name(step)));
+        let collection = collection(&named.collect::<Vec<_>>());
         grids.chain([(format!("{}.pvd", model.name()), collection)])
     };
     Model::ALL.into_iter().flat_map(model)
@@ -75,7 +79,7 @@ impl Model {
         match self {
             Self::MassSpring => {
                 let u = &results.uncorrected[step].displacement;
-                plate(problem, lattice, u, vec![difference(u)])
+                plate(&problem.into(), lattice, u, vec![difference(u)])
             }
             Self::Corrected => {
                 let state = &results.corrected[step];
@@ -84,7 +88,7 @@ impl Model {
                 let size = u.len();
                 let arrays = multipliers.filter_map(|group| multiplier_array(group, size));
                 plate(
-                    problem,
+                    &problem.into(),
                     lattice,
                     u,
                     [difference(u)].into_iter().chain(arrays).collect(),
@@ -93,20 +97,60 @@ impl Model {
             Self::FiniteElement => {
                 let finest = results.finest();
                 plate(
-                    problem,
+                    &problem.into(),
                     &finest.model.mesh,
                     &finest.solutions[step].displacement,
                     Vec::new(),
                 )
             }
-            Self::Springs => springs(results, step),
+            Self::Springs => springs(&results.springs, &results.uncorrected[step].displacement),
         }
     }
 }
 
+/// What the stresses of a sheet follow from.
+pub struct Sheet<'a> {
+    /// The material.
+    pub law: &'a dyn HyperelasticLaw,
+    /// Thickness in mm.
+    pub thickness: f64,
+}
+
+impl<'a> From<&'a Problem> for Sheet<'a> {
+    fn from(problem: &'a Problem) -> Self {
+        Self {
+            law: &*problem.law,
+            thickness: problem.thickness,
+        }
+    }
+}
+
+/// The `.vtu` file of a displacement field on a mesh, with the stresses that follow and, where there is a
+/// reference field at the nodes, the difference to it.
+pub fn field_file(
+    title: &str,
+    sheet: &Sheet,
+    mesh: &Mesh,
+    displacement: &[f64],
+    reference: Option<&[f64]>,
+) -> Vec<u8> {
+    let difference = reference.map(|reference| {
+        let pairs = displacement.iter().zip(reference);
+        let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
+        planar_vectors("difference_to_finite_elements_mm", &difference)
+    });
+    let more = difference.into_iter().collect();
+    encode(title, plate(sheet, mesh, displacement, more))
+}
+
+/// The `.vtu` file of the springs of a lattice.
+pub fn springs_file(title: &str, model: &MassSpring, displacement: &[f64]) -> Vec<u8> {
+    encode(title, springs(model, displacement))
+}
+
 /// A plate's cells with the fields that follow from its displacement.
 fn plate(
-    problem: &Problem,
+    sheet: &Sheet,
     mesh: &Mesh,
     displacement: &[f64],
     more_point_data: Vec<Attribute>,
@@ -120,7 +164,7 @@ fn plate(
         cells: connect(&cells, kinds.collect()),
         data: Attributes {
             point,
-            cell: material_state(problem, mesh, displacement),
+            cell: material_state(sheet, mesh, displacement),
         },
     }
 }
@@ -135,20 +179,20 @@ fn kind(shape: CellShape) -> CellType {
     }
 }
 
-fn material_state(problem: &Problem, mesh: &Mesh, displacement: &[f64]) -> Vec<Attribute> {
+fn material_state(sheet: &Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Attribute> {
     let (mut nominal, mut cauchy, mut stretches) = (Vec::new(), Vec::new(), Vec::new());
     let (mut i1, mut thickness, mut energy) = (Vec::new(), Vec::new(), Vec::new());
     for cell in 0..mesh.cell_count() {
         let gradient = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
         let kinematics = Kinematics::new(&Vector4::from(gradient))
             .expect("cells with positive corners have a positive centre");
-        let (density, p) = problem.law.stress(&kinematics);
+        let (density, p) = sheet.law.stress(&kinematics);
         nominal.extend([p[0], p[2], 0.0, p[1], p[3], 0.0, 0.0, 0.0, 0.0]);
         let [s11, s12, s22] = kinematics.cauchy_stress(&p);
         cauchy.extend([s11, s12, 0.0, s12, s22, 0.0, 0.0, 0.0, 0.0]);
         stretches.extend(kinematics.principal_stretches());
         i1.push(3.0 + kinematics.invariants.i1_minus_3);
-        thickness.push(problem.thickness / kinematics.area_ratio());
+        thickness.push(sheet.thickness / kinematics.area_ratio());
         energy.push(density);
     }
     vec![
@@ -161,17 +205,14 @@ fn material_state(problem: &Problem, mesh: &Mesh, displacement: &[f64]) -> Vec<A
     ]
 }
 
-fn springs(results: &Results, step: usize) -> UnstructuredGridPiece {
-    let model = &results.springs;
-    let displacement = &results.uncorrected[step].displacement;
+fn springs(model: &MassSpring, displacement: &[f64]) -> UnstructuredGridPiece {
     let cells: Vec<&[usize]> = model
         .springs
         .iter()
         .map(|spring| &spring.nodes[..])
         .collect();
     let states = model.spring_states(displacement);
-    let of =
-        |value: fn(&crate::mass_spring::SpringState) -> f64| states.iter().map(value).collect();
+    let of = |value: fn(&SpringState) -> f64| states.iter().map(value).collect();
     UnstructuredGridPiece {
         points: points(&model.mesh),
         cells: connect(&cells, vec![CellType::Line; cells.len()]),
@@ -257,12 +298,12 @@ fn encode(title: &str, grid: UnstructuredGridPiece) -> Vec<u8> {
     bytes
 }
 
-/// ParaView's collection of a model's files, with the stretch as its time.
-fn collection(model: Model, stretches: &[f64]) -> Vec<u8> {
+/// ParaView's collection of files, with the stretch or the load factor as their times.
+pub fn collection(files: &[(f64, String)]) -> Vec<u8> {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
-    let steps = stretches.iter().enumerate();
-    let data_set = |writer: &mut Writer<Vec<u8>>, (step, stretch): (usize, &f64)| {
-        let (time, file) = (stretch.to_string(), model.file_name(step));
+    let steps = files.iter();
+    let data_set = |writer: &mut Writer<Vec<u8>>, (time, file): &(f64, String)| {
+        let time = time.to_string();
         let attributes = [
             ("timestep", time.as_str()),
             ("part", "0"),

@@ -78,7 +78,7 @@ fn compute(spring: &Spring) -> Result<Outcome, Error> {
         claims: vec![claim(&deviations)],
         blocks: vec![table],
         figures: figures(spring, &exact, &iterates, psi),
-        times: Vec::new(),
+        ..Outcome::default()
     })
 }
 

@@ -88,6 +88,8 @@ pub struct Outcome {
     pub blocks: Vec<Block>,
     /// Pictures.
     pub figures: Vec<Figure>,
+    /// VTK files: name and content.
+    pub vtk: Vec<(String, Vec<u8>)>,
     /// Times that were measured: what, and seconds.
     pub times: Vec<(String, f64)>,
 }

@@ -1,0 +1,94 @@
+//! The corrector of a sheet of any shape: the field nearest to given data that is in equilibrium under the loads
+//! and follows the supports.
+
+use super::condition::{Condition, Equilibrium, Linear};
+use super::plate::{EQUILIBRIUM, GRIPS};
+use super::{Correction, Corrector, CorrectorSettings, Describe};
+use crate::error::SolveFault;
+use crate::mesh::Mesh;
+use crate::solve::{Assembly, Convergence, Loading, State};
+
+/// Cells and nodes of a mesh by their places.
+struct Names<'a> {
+    mesh: &'a Mesh,
+    loading: &'a dyn Loading,
+}
+
+impl Describe for Names<'_> {
+    fn element(&self, element: usize) -> String {
+        self.loading.describe(element)
+    }
+
+    fn unknown(&self, unknown: usize) -> String {
+        let [x, y] = self.mesh.nodes[unknown / 2];
+        let axis = ["x", "y"][unknown % 2];
+        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
+    }
+}
+
+/// A corrected field at one load factor.
+#[derive(Debug)]
+pub struct CorrectedField {
+    /// The field with the residual of the energy that was corrected to.
+    pub state: State,
+    /// How it was reached, with the multipliers.
+    pub correction: Correction,
+}
+
+/// Corrects a displacement field on the nodes of a mesh at a load factor.
+///
+/// # Errors
+/// A [`SolveFault`] when no corrected field was found.
+pub fn correct(
+    mesh: &Mesh,
+    loading: &dyn Loading,
+    data: &[f64],
+    factor: f64,
+    settings: CorrectorSettings,
+) -> Result<CorrectedField, SolveFault> {
+    let potential = loading.potential(factor);
+    let size = potential.unknowns();
+    let assembly = Assembly::new(&*potential, &vec![false; size]);
+    let held = loading.held();
+    let free: Vec<usize> = (0..size).filter(|unknown| !held[*unknown]).collect();
+    let mut imposed = data.to_vec();
+    loading.impose(factor, &mut imposed);
+    let supports = (0..size)
+        .filter(|unknown| held[*unknown])
+        .map(|unknown| (unknown, imposed[unknown]));
+    let conditions: Vec<Box<dyn Condition + '_>> = vec![
+        Box::new(Equilibrium::new(EQUILIBRIUM, &*potential, &assembly, free)),
+        Box::new(Linear::prescribed(GRIPS, size, supports)),
+    ];
+    let names = Names { mesh, loading };
+    let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(&names);
+    let correction = corrector.correct(data, data)?;
+    let displacement = correction.field().to_vec();
+    let mut residual = vec![0.0; size];
+    let energy =
+        Assembly::residual(&*potential, &displacement, &mut residual).map_err(|fault| {
+            SolveFault::Inverted {
+                element: loading.describe(fault.element),
+            }
+        })?;
+    let convergence = Convergence {
+        residuals: correction.steps.iter().map(|step| step.residual).collect(),
+        energy,
+        cut_steps: correction
+            .steps
+            .iter()
+            .filter(|step| step.length < 1.0)
+            .count(),
+        shifted_steps: 0,
+    };
+    Ok(CorrectedField {
+        state: State {
+            factor,
+            displacement,
+            residual,
+            load_steps: 1,
+            convergence,
+        },
+        correction,
+    })
+}

@@ -1,0 +1,237 @@
+//! Gmsh's ASCII files of the versions 2.2 and 4.1.
+
+use std::collections::HashMap;
+use std::str::{FromStr, SplitWhitespace};
+
+use super::{BINARY, Raw};
+use crate::mesh::CellShape;
+
+/// Reads the text of a file.
+///
+/// # Errors
+/// Says what is wrong or cannot be read.
+pub fn read(text: &str) -> Result<Raw, String> {
+    let mut format = section(text, "MeshFormat")?;
+    let version: f64 = format.next()?;
+    if format.next::<i64>()? != 0 {
+        return Err(BINARY.into());
+    }
+    let names = names(text)?;
+    match version {
+        v if (2.0..3.0).contains(&v) => version_2(text, &names),
+        v if (4.1..5.0).contains(&v) => version_4(text, &names),
+        other => Err(format!("has the format {other}; 2.2 and 4.1 can be read")),
+    }
+}
+
+/// Names of physical groups by dimension and number.
+type Names = HashMap<(i64, i64), String>;
+
+/// Words of a section, one after the other.
+struct Words<'a> {
+    name: &'static str,
+    words: SplitWhitespace<'a>,
+}
+
+impl Words<'_> {
+    fn next<T: FromStr>(&mut self) -> Result<T, String> {
+        let word = self.words.next();
+        word.and_then(|word| word.parse().ok())
+            .ok_or_else(|| match word {
+                None => format!("ends within ${}", self.name),
+                Some(word) => format!("has \"{word}\" in ${}, where a number should be", self.name),
+            })
+    }
+
+    fn skip(&mut self, count: usize) -> Result<(), String> {
+        (0..count).try_for_each(|_| self.next::<f64>().map(|_| ()))
+    }
+
+    fn list(&mut self, count: usize) -> Result<Vec<u64>, String> {
+        (0..count).map(|_| self.next()).collect()
+    }
+}
+
+fn body<'a>(text: &'a str, name: &str) -> Option<&'a str> {
+    let (_, rest) = text
+        .split_once(&format!("${name}\n"))
+        .or_else(|| text.split_once(&format!("${name}\r\n")))?;
+    Some(
+        rest.split_once(&format!("$End{name}"))
+            .map_or(rest, |(body, _)| body),
+    )
+}
+
+fn section<'a>(text: &'a str, name: &'static str) -> Result<Words<'a>, String> {
+    let body = body(text, name).ok_or_else(|| format!("has no ${name}"))?;
+    Ok(Words {
+        name,
+        words: body.split_whitespace(),
+    })
+}
+
+fn names(text: &str) -> Result<Names, String> {
+    let Some(body) = body(text, "PhysicalNames") else {
+        return Ok(Names::new());
+    };
+    let mut names = Names::new();
+    for line in body.lines().skip(1).filter(|line| !line.trim().is_empty()) {
+        let mut words = Words {
+            name: "PhysicalNames",
+            words: line.split_whitespace(),
+        };
+        let key = (words.next()?, words.next()?);
+        let name = line
+            .split('"')
+            .nth(1)
+            .ok_or("has a physical group without a name")?;
+        names.insert(key, name.to_owned());
+    }
+    Ok(names)
+}
+
+fn group(names: &Names, dimension: i64, tag: i64) -> String {
+    names
+        .get(&(dimension, tag))
+        .cloned()
+        .unwrap_or_else(|| format!("physical-{tag}"))
+}
+
+/// Number of nodes of an element, and what it is to a flat mesh.
+enum Kind {
+    Point,
+    Line,
+    Cell(CellShape),
+}
+
+fn kind(number: i64) -> Result<(Kind, usize), String> {
+    Ok(match number {
+        15 => (Kind::Point, 1),
+        1 => (Kind::Line, 2),
+        8 => (Kind::Line, 3),
+        2 => (Kind::Cell(CellShape::Triangle3), 3),
+        9 => (Kind::Cell(CellShape::Triangle6), 6),
+        3 => (Kind::Cell(CellShape::Quad4), 4),
+        16 => (Kind::Cell(CellShape::Quad8), 8),
+        10 => (Kind::Cell(CellShape::Quad9), 9),
+        other => {
+            return Err(format!(
+                "has elements of Gmsh's type {other}; triangles with 3 or 6 nodes and quadrilaterals with 4, 8 or 9 can be read"
+            ));
+        }
+    })
+}
+
+impl Raw {
+    /// Adds an element with the groups that it belongs to.
+    fn add(&mut self, kind: &Kind, nodes: Vec<u64>, groups: &[String]) {
+        match kind {
+            Kind::Cell(shape) => self.cells.push((*shape, nodes)),
+            Kind::Line => {
+                for group in groups {
+                    self.lines
+                        .entry(group.clone())
+                        .or_default()
+                        .push([nodes[0], nodes[1]]);
+                }
+            }
+            Kind::Point => {
+                for group in groups {
+                    self.points.entry(group.clone()).or_default().push(nodes[0]);
+                }
+            }
+        }
+    }
+}
+
+fn version_2(text: &str, names: &Names) -> Result<Raw, String> {
+    let mut raw = Raw::default();
+    let mut words = section(text, "Nodes")?;
+    for _ in 0..words.next::<usize>()? {
+        let tag = words.next()?;
+        raw.places
+            .insert(tag, [words.next()?, words.next()?, words.next()?]);
+    }
+    let mut words = section(text, "Elements")?;
+    for _ in 0..words.next::<usize>()? {
+        words.skip(1)?;
+        let (kind, count) = kind(words.next()?)?;
+        let tags: usize = words.next()?;
+        // Some programs write whole numbers with a decimal point.
+        let physical: f64 = if tags > 0 { words.next()? } else { 0.0 };
+        let physical = physical as i64;
+        words.skip(tags.saturating_sub(1))?;
+        let nodes = words.list(count)?;
+        let dimension = i64::from(!matches!(kind, Kind::Point));
+        let groups = if physical == 0 {
+            Vec::new()
+        } else {
+            vec![group(names, dimension, physical)]
+        };
+        raw.add(&kind, nodes, &groups);
+    }
+    Ok(raw)
+}
+
+fn version_4(text: &str, names: &Names) -> Result<Raw, String> {
+    let mut raw = Raw::default();
+    let groups = entities(text, names)?;
+    let mut words = section(text, "Nodes")?;
+    let blocks: usize = words.next()?;
+    words.skip(3)?;
+    for _ in 0..blocks {
+        words.skip(1)?;
+        words.skip(1)?;
+        let parametric: i64 = words.next()?;
+        let count: usize = words.next()?;
+        if parametric != 0 {
+            return Err("has parametric nodes; save it without them".into());
+        }
+        for tag in words.list(count)? {
+            raw.places
+                .insert(tag, [words.next()?, words.next()?, words.next()?]);
+        }
+    }
+    let mut words = section(text, "Elements")?;
+    let blocks: usize = words.next()?;
+    words.skip(3)?;
+    for _ in 0..blocks {
+        let entity: (i64, i64) = (words.next()?, words.next()?);
+        let (kind, nodes) = kind(words.next()?)?;
+        let own = groups.get(&entity).map_or(&[][..], |groups| &groups[..]);
+        for _ in 0..words.next::<usize>()? {
+            words.skip(1)?;
+            let nodes = words.list(nodes)?;
+            raw.add(&kind, nodes, own);
+        }
+    }
+    Ok(raw)
+}
+
+/// The names of the physical groups of points and curves, by dimension and number of the entity.
+fn entities(text: &str, names: &Names) -> Result<HashMap<(i64, i64), Vec<String>>, String> {
+    let mut groups = HashMap::new();
+    if body(text, "Entities").is_none() {
+        return Ok(groups);
+    }
+    let mut words = section(text, "Entities")?;
+    let counts: [usize; 2] = [words.next()?, words.next()?];
+    words.skip(2)?;
+    for (dimension, count) in [(0, counts[0]), (1, counts[1])] {
+        for _ in 0..count {
+            let tag: i64 = words.next()?;
+            // A point's place, or a curve's box.
+            words.skip(if dimension == 0 { 3 } else { 6 })?;
+            let mut own = Vec::new();
+            for _ in 0..words.next::<usize>()? {
+                own.push(group(names, dimension, words.next()?));
+            }
+            if dimension == 1 {
+                let bounding: usize = words.next()?;
+                words.skip(bounding)?;
+            }
+            groups.insert((dimension, tag), own);
+        }
+    }
+    Ok(groups)
+}

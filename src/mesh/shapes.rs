@@ -1,0 +1,386 @@
+//! Flat specimens by their measures, meshed with curved blocks.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+
+use super::{Block, CellShape, Mesh, mesh_of_blocks};
+
+/// A specimen by its measures in mm. All lie along X from 0, with the axis Y = 0 in their middle, except the ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// A rectangle; groups `left`, `right`, `bottom`, `top`.
+    Strip {
+        /// Length and width.
+        size: [f64; 2],
+    },
+    /// A rectangle with a round hole in its middle; groups as a strip, and `hole`.
+    StripWithHole {
+        /// Length and width.
+        size: [f64; 2],
+        /// Radius of the hole.
+        radius: f64,
+    },
+    /// A rectangle with two equal notches, arcs of circles, at mid length; groups as a strip.
+    NotchedStrip {
+        /// Length and width.
+        size: [f64; 2],
+        /// Depth of a notch.
+        depth: f64,
+        /// Half the length of a notch on the edge.
+        half_length: f64,
+    },
+    /// Wide ends, a narrow middle and arcs of circles between them (ISO 37); groups as a strip.
+    DogBone {
+        /// Length and width of the ends.
+        size: [f64; 2],
+        /// Length and width of the narrow part.
+        narrow: [f64; 2],
+        /// Length of an arc's projection on X.
+        shoulder: f64,
+    },
+    /// A sector of a ring about the origin that begins on the X axis; groups `inside`, `outside`, `start`, `end`.
+    RingSector {
+        /// Radii.
+        radii: [f64; 2],
+        /// Angle in rad.
+        angle: f64,
+    },
+}
+
+impl Shape {
+    /// A mesh with so many cells across the specimen, and along it as many as make cells about square.
+    pub fn mesh(self, across: usize, kind: CellShape) -> Mesh {
+        match self {
+            Self::Strip { size } => strip(size, across, kind, |_| size[1] / 2.0),
+            Self::StripWithHole { size, radius } => with_hole(size, radius, across, kind),
+            Self::NotchedStrip {
+                size,
+                depth,
+                half_length,
+            } => {
+                let middle = size[0] / 2.0;
+                strip(size, across, kind, move |x| {
+                    size[1] / 2.0 - notch(x - middle, depth, half_length)
+                })
+            }
+            Self::DogBone {
+                size,
+                narrow,
+                shoulder,
+            } => {
+                let rise = (size[1] - narrow[1]) / 2.0;
+                let from = narrow[0] / 2.0;
+                strip(size, across, kind, move |x| {
+                    let over = (x - size[0] / 2.0).abs() - from;
+                    // An arc that leaves the narrow part smoothly.
+                    let radius = (shoulder * shoulder + rise * rise) / (2.0 * rise);
+                    let risen = match over {
+                        over if over <= 0.0 => 0.0,
+                        over if over >= shoulder => rise,
+                        over => radius - (radius * radius - over * over).sqrt(),
+                    };
+                    narrow[1] / 2.0 + risen
+                })
+            }
+            Self::RingSector { radii, angle } => {
+                let along = angle * (radii[0] + radii[1]) / 2.0;
+                let cells = [across, count(along / (radii[1] - radii[0]) * across as f64)];
+                let block = Block {
+                    map: Box::new(move |[s, t]: [f64; 2]| {
+                        let radius = radii[0] + s * (radii[1] - radii[0]);
+                        let (sine, cosine) = (t * angle).sin_cos();
+                        [radius * cosine, radius * sine]
+                    }),
+                    cells,
+                    sides: ["start", "outside", "end", "inside"],
+                };
+                mesh_of_blocks(&[block], kind)
+            }
+        }
+    }
+
+    /// All measures.
+    pub fn measures(self) -> Vec<f64> {
+        match self {
+            Self::Strip { size } => size.to_vec(),
+            Self::StripWithHole { size, radius } => vec![size[0], size[1], radius],
+            Self::NotchedStrip {
+                size,
+                depth,
+                half_length,
+            } => vec![size[0], size[1], depth, half_length],
+            Self::DogBone {
+                size,
+                narrow,
+                shoulder,
+            } => vec![size[0], size[1], narrow[0], narrow[1], shoulder],
+            Self::RingSector { radii, angle } => vec![radii[0], radii[1], angle],
+        }
+    }
+
+    /// What is wrong with the measures.
+    ///
+    /// # Errors
+    /// Says which measures do not fit together.
+    pub fn check(self) -> Result<(), String> {
+        let fits = |condition: bool, reason: &str| match condition {
+            true => Ok(()),
+            false => Err(reason.to_owned()),
+        };
+        match self {
+            Self::Strip { .. } => Ok(()),
+            Self::StripWithHole { size, radius } => fits(
+                radius < 0.45 * size[0].min(size[1]),
+                "the hole's diameter must be below nine tenths of the length and of the width",
+            ),
+            Self::NotchedStrip {
+                size,
+                depth,
+                half_length,
+            } => {
+                fits(
+                    depth < 0.45 * size[1],
+                    "the notches must leave a tenth of the width",
+                )?;
+                fits(
+                    2.0 * half_length < 0.9 * size[0],
+                    "the notches must be shorter than the strip",
+                )?;
+                fits(
+                    depth < 0.95 * half_length,
+                    "a notch must be shallower than half its length",
+                )
+            }
+            Self::DogBone {
+                size,
+                narrow,
+                shoulder,
+            } => {
+                fits(
+                    narrow[1] < size[1],
+                    "the narrow part must be narrower than the ends",
+                )?;
+                fits(
+                    narrow[0] + 2.0 * shoulder < size[0],
+                    "the narrow part and its shoulders must be shorter than the specimen",
+                )?;
+                fits(
+                    (size[1] - narrow[1]) / 2.0 < shoulder,
+                    "a shoulder must be longer than it is high",
+                )
+            }
+            Self::RingSector { radii, angle } => {
+                fits(
+                    radii[0] < radii[1],
+                    "the inner radius must be smaller than the outer one",
+                )?;
+                fits(angle < TAU, "the sector must be less than a whole ring")
+            }
+        }
+    }
+}
+
+fn count(cells: f64) -> usize {
+    (cells.round() as usize).max(1)
+}
+
+/// Depth of a notch at a distance from its middle: an arc of a circle.
+fn notch(x: f64, depth: f64, half_length: f64) -> f64 {
+    let radius = (half_length * half_length + depth * depth) / (2.0 * depth);
+    if x.abs() >= half_length {
+        return 0.0;
+    }
+    (radius * radius - x * x).sqrt() - (radius - depth)
+}
+
+/// A strip whose half width varies along it.
+fn strip(size: [f64; 2], across: usize, kind: CellShape, half_width: impl Fn(f64) -> f64) -> Mesh {
+    let lengths = Lengths::new(size[0], &half_width);
+    let along = 2 * count(lengths.total() * across as f64 / 2.0);
+    let block = Block {
+        map: Box::new(move |[s, t]| {
+            let x = lengths.place(s);
+            [x, (2.0 * t - 1.0) * half_width(x)]
+        }),
+        cells: [along, across],
+        sides: ["bottom", "right", "top", "left"],
+    };
+    mesh_of_blocks(&[block], kind)
+}
+
+/// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows evenly between them.
+struct Lengths {
+    /// x and l(x).
+    table: Vec<[f64; 2]>,
+}
+
+impl Lengths {
+    fn new(length: f64, half_width: &impl Fn(f64) -> f64) -> Self {
+        const STEPS: usize = 2000;
+        let step = length / STEPS as f64;
+        let mut table = vec![[0.0, 0.0]];
+        for i in 1..=STEPS {
+            let middle = (i as f64 - 0.5) * step;
+            let before = table[i - 1][1];
+            table.push([i as f64 * step, before + step / (2.0 * half_width(middle))]);
+        }
+        Self { table }
+    }
+
+    /// The length over the width, in the mean along the strip.
+    fn total(&self) -> f64 {
+        self.table[self.table.len() - 1][1]
+    }
+
+    /// The place at a share of l.
+    fn place(&self, share: f64) -> f64 {
+        let wanted = share * self.total();
+        let next = self
+            .table
+            .partition_point(|[_, l]| *l < wanted)
+            .clamp(1, self.table.len() - 1);
+        let [[x0, l0], [x1, l1]] = [self.table[next - 1], self.table[next]];
+        x0 + (x1 - x0) * (wanted - l0) / (l1 - l0)
+    }
+}
+
+/// A strip with a hole: four blocks between the hole and a square around it, and a block at each end.
+fn with_hole([length, width]: [f64; 2], radius: f64, across: usize, kind: CellShape) -> Mesh {
+    let half = width.min(length) / 2.0;
+    let middle = length / 2.0;
+    let around = count(across as f64 / 2.0) * 2;
+    let radial = count((half - radius) / width * across as f64 * 1.2).max(2);
+    let ends = count((middle - half) / width * across as f64);
+    // The side of the square that lies in the direction `quarter` · 90°.
+    let spoke = move |quarter: f64, side: [&'static str; 2]| {
+        let [outer, hole] = side;
+        Block {
+            map: Box::new(move |[s, t]: [f64; 2]| {
+                let angle = (2.0 * t - 1.0) * FRAC_PI_4;
+                let (from, to) = (
+                    [radius * angle.cos(), radius * angle.sin()],
+                    [half, half * angle.tan()],
+                );
+                let [x, y] = [0, 1].map(|axis| from[axis] + s * (to[axis] - from[axis]));
+                let (sine, cosine) = (quarter * FRAC_PI_2).sin_cos();
+                [middle + cosine * x - sine * y, sine * x + cosine * y]
+            }),
+            cells: [radial, around],
+            sides: ["", outer, "", hole],
+        }
+    };
+    let whole = |side: &'static str| if middle > half { "" } else { side };
+    let mut blocks = vec![
+        spoke(0.0, [whole("right"), "hole"]),
+        spoke(1.0, ["top", "hole"]),
+        spoke(2.0, [whole("left"), "hole"]),
+        spoke(3.0, ["bottom", "hole"]),
+    ];
+    if middle > half {
+        for (start, sides) in [
+            (0.0, ["bottom", "", "top", "left"]),
+            (middle + half, ["bottom", "right", "top", ""]),
+        ] {
+            blocks.push(Block {
+                map: Box::new(move |[s, t]: [f64; 2]| {
+                    let angle = (2.0 * t - 1.0) * FRAC_PI_4;
+                    [start + s * (middle - half), half * angle.tan()]
+                }),
+                cells: [ends, around],
+                sides,
+            });
+        }
+    }
+    mesh_of_blocks(&blocks, kind)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(mesh: &Mesh) -> f64 {
+        let cell = |cell: usize| -> f64 {
+            let rule = mesh.shape(cell).quadrature().into_iter();
+            rule.map(|(point, weight)| weight * mesh.gradients(cell, point).1)
+                .sum()
+        };
+        (0..mesh.cell_count()).map(cell).sum()
+    }
+
+    const SHAPES: [Shape; 5] = [
+        Shape::Strip { size: [30.0, 10.0] },
+        Shape::StripWithHole {
+            size: [30.0, 10.0],
+            radius: 2.5,
+        },
+        Shape::NotchedStrip {
+            size: [30.0, 10.0],
+            depth: 2.0,
+            half_length: 4.0,
+        },
+        Shape::DogBone {
+            size: [75.0, 12.5],
+            narrow: [25.0, 4.0],
+            shoulder: 8.0,
+        },
+        Shape::RingSector {
+            radii: [10.0, 20.0],
+            angle: FRAC_PI_2,
+        },
+    ];
+
+    #[test]
+    fn every_shape_is_meshed_by_every_kind_of_cell_without_folds() {
+        for shape in SHAPES {
+            shape.check().unwrap();
+            for kind in CellShape::ALL {
+                let mesh = shape.mesh(6, kind);
+                for cell in 0..mesh.cell_count() {
+                    for (point, _) in kind.quadrature() {
+                        assert!(
+                            mesh.gradients(cell, point).1 > 0.0,
+                            "{shape:?} {kind:?} {cell}"
+                        );
+                    }
+                }
+                let edges: usize = mesh.groups().values().map(|group| group.edges.len()).sum();
+                assert_eq!(edges, mesh.boundary().len(), "{shape:?} {kind:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn areas_are_those_of_the_outlines() {
+        let exact = |shape: Shape| match shape {
+            Shape::StripWithHole { size, radius } => {
+                size[0] * size[1] - std::f64::consts::PI * radius * radius
+            }
+            Shape::RingSector { radii, angle } => {
+                angle * (radii[1] * radii[1] - radii[0] * radii[0]) / 2.0
+            }
+            Shape::Strip { size } => size[0] * size[1],
+            _ => f64::NAN,
+        };
+        for shape in SHAPES {
+            let (found, exact) = (area(&shape.mesh(16, CellShape::Quad9)), exact(shape));
+            assert!(
+                exact.is_nan() || (found / exact - 1.0).abs() < 1e-5,
+                "{shape:?}: {found} {exact}"
+            );
+        }
+    }
+
+    #[test]
+    fn measures_that_do_not_fit_are_told() {
+        let hole = Shape::StripWithHole {
+            size: [30.0, 10.0],
+            radius: 5.0,
+        };
+        assert!(hole.check().unwrap_err().contains("hole"));
+        let bone = Shape::DogBone {
+            size: [75.0, 12.5],
+            narrow: [60.0, 4.0],
+            shoulder: 8.0,
+        };
+        assert!(bone.check().unwrap_err().contains("shorter"));
+    }
+}

@@ -1,0 +1,363 @@
+//! A specimen of any shape in all three models: springs, corrected springs, finite elements.
+
+use std::path::Path;
+
+use crate::boundary::{BoundaryProblem, Discretised};
+use crate::compare::area_weighted_percent;
+use crate::corrector::{CorrectorSettings, Solver, specimen::correct};
+use crate::document::Section;
+use crate::error::{Error, SolveFault};
+use crate::finite_element::convergence::{Richardson, richardson};
+use crate::mass_spring::MassSpring;
+use crate::mesh::Mesh;
+use crate::output::picture::Scale;
+use crate::output::{self, Block, Figure, vtk};
+use crate::sheet_energy::SheetEnergy;
+use crate::solve::{NewtonSettings, PathEnd, State};
+use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
+
+mod read;
+
+use read::Specimen;
+
+/// Reads a study of this kind.
+pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+    let specimen = read::read(root, folder);
+    Box::new(move |progress| {
+        specimen.map_or(Ok(Outcome::default()), |read| compute(&read, progress))
+    })
+}
+
+const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
+    max_iterations: 60,
+};
+
+const CORRECTOR: CorrectorSettings = CorrectorSettings {
+    tolerance: 1e-8,
+    movement: 1e-9,
+    max_steps: 60,
+    solver: Solver::Automatic,
+};
+
+/// The states of one model and its force on the measured group at each load factor.
+struct Solved {
+    states: Vec<State>,
+    forces: Vec<f64>,
+}
+
+fn fault(model: &str, factor: f64, fault: SolveFault) -> Error {
+    Error::Solve {
+        model: model.to_owned(),
+        step: format!("load factor {factor}"),
+        fault,
+    }
+}
+
+fn solve(specimen: &Specimen, model: &Discretised, name: &str) -> Result<Solved, Error> {
+    let states = model.solve(&specimen.factors, NEWTON, &|_| ());
+    let states = states.map_err(|end: PathEnd| fault(name, end.factor, end.fault))?;
+    let forces = states
+        .iter()
+        .map(|state| specimen.force(model, state))
+        .collect();
+    Ok(Solved { states, forces })
+}
+
+impl Specimen {
+    /// The size of the force on the measured group in N, with the sign of its larger component.
+    fn force(&self, model: &Discretised, state: &State) -> f64 {
+        let [x, y] = model.reaction(state, &self.measured);
+        if x.abs() >= y.abs() { x } else { y }
+    }
+
+    /// The problem on a mesh; groups were checked when the study was read.
+    fn on<'a>(
+        &self,
+        problem: &BoundaryProblem,
+        mesh: &'a Mesh,
+        energy: &'a dyn crate::solve::Potential,
+    ) -> Result<Discretised<'a>, Error> {
+        problem
+            .on(mesh, energy)
+            .map_err(|found| Error::Input(vec![found]))
+    }
+}
+
+/// The finite elements on three meshes, coarse to fine.
+struct Reference {
+    meshes: [Mesh; 3],
+    solved: [Solved; 3],
+}
+
+fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
+    let problem = &specimen.problem;
+    progress("finite elements");
+    let meshes = specimen.reference_meshes();
+    let mut solved = Vec::new();
+    for mesh in &meshes {
+        let energy: SheetEnergy = problem.finite_elements(mesh);
+        let model = specimen.on(problem, mesh, &energy)?;
+        let name = format!("finite elements ({})", mesh.describe());
+        solved.push(solve(specimen, &model, &name)?);
+    }
+    let solved = solved.try_into().ok().expect("three meshes");
+    let reference = Reference { meshes, solved };
+
+    progress("mass-spring");
+    let springs = MassSpring::on_mesh(&problem.law, problem.thickness, specimen.lattice());
+    let lattice = &springs.mesh;
+    let model = specimen.on(problem, lattice, springs.potential())?;
+    let model = model.named(|element| springs.describe_element(element));
+    let uncorrected = solve(specimen, &model, "mass-spring")?;
+
+    progress("corrector");
+    let energy = problem.finite_elements(lattice);
+    let model = specimen.on(problem, lattice, &energy)?;
+    let mut corrected = Solved {
+        states: Vec::new(),
+        forces: Vec::new(),
+    };
+    for state in &uncorrected.states {
+        let field = correct(
+            lattice,
+            &model,
+            &state.displacement,
+            state.factor,
+            CORRECTOR,
+        );
+        let field = field.map_err(|cause| fault("corrector", state.factor, cause))?;
+        corrected.forces.push(specimen.force(&model, &field.state));
+        corrected.states.push(field.state);
+    }
+    Ok(outcome(
+        specimen,
+        &reference,
+        &springs,
+        [&uncorrected, &corrected],
+    ))
+}
+
+/// Deviations of one model at one load factor, in %.
+struct Deviation {
+    displacement: f64,
+    force: f64,
+}
+
+fn deviation(
+    lattice: &Mesh,
+    solved: &Solved,
+    step: usize,
+    expected: &[f64],
+    force: f64,
+) -> Deviation {
+    Deviation {
+        displacement: area_weighted_percent(lattice, &solved.states[step].displacement, expected),
+        force: 100.0 * (solved.forces[step] / force - 1.0),
+    }
+}
+
+fn outcome(
+    specimen: &Specimen,
+    reference: &Reference,
+    springs: &MassSpring,
+    [uncorrected, corrected]: [&Solved; 2],
+) -> Outcome {
+    let lattice = &springs.mesh;
+    let [_, _, fine] = &reference.meshes;
+    let mut rows = Vec::new();
+    let mut worst = [0.0_f64, 0.0, f64::INFINITY];
+    let mut own_error = 0.0_f64;
+    let mut fields = Vec::new();
+    for (step, factor) in specimen.factors.iter().enumerate() {
+        let expected =
+            fine.displacement_on(&reference.solved[2].states[step].displacement, lattice);
+        let forces = [0, 1, 2].map(|level| reference.solved[level].forces[step]);
+        let own: Richardson = richardson(forces);
+        let before = deviation(lattice, uncorrected, step, &expected, forces[2]);
+        let after = deviation(lattice, corrected, step, &expected, forces[2]);
+        let correction = 100.0 * (1.0 - after.displacement / before.displacement);
+        worst[0] = worst[0].max(after.displacement);
+        worst[1] = worst[1].max(after.force.abs());
+        worst[2] = worst[2].min(correction);
+        own_error = own_error.max(own.error_percent);
+        rows.push(vec![
+            factor.to_string(),
+            format!("{:.3}", before.displacement),
+            format!("{:.4}", after.displacement),
+            format!("{correction:.2}"),
+            format!("{:.2}", before.force),
+            format!("{:.3}", after.force),
+            format!("{:.5}", forces[2]),
+            format!("{:.4}", own.error_percent),
+        ]);
+        fields.push(expected);
+    }
+    let limits = specimen.tolerances;
+    let check = |quantity: &str, wanted, value| {
+        Check::new(quantity, "%", wanted, "the study's tolerance", value)
+    };
+    let checks = vec![
+        check(
+            "corrected displacement from the finite elements",
+            Wanted::AtMost(limits.displacement_percent),
+            worst[0],
+        ),
+        check(
+            "corrected force from the finite elements",
+            Wanted::AtMost(limits.force_percent),
+            worst[1],
+        ),
+        check(
+            "correction of the displacement",
+            Wanted::AtLeast(limits.correction_percent),
+            worst[2],
+        ),
+        check(
+            "finite elements' own error of the force, by three meshes",
+            Wanted::AtMost(limits.force_percent),
+            own_error,
+        ),
+    ];
+    let head = [
+        "load factor [–]",
+        "mass-spring: displacement [%]",
+        "corrected: displacement [%]",
+        "correction [%]",
+        "mass-spring: force [%]",
+        "corrected: force [%]",
+        "finite elements: force [N]",
+        "their own error [%]",
+    ];
+    let text = format!(
+        "Deviations from the finite elements ({} on {}, finest of three meshes) at {} nodes of the lattice ({}). \
+         Displacements in relative L2, weighted by area; the force is that of the supports on the group `{}`.",
+        specimen.element_name,
+        fine.describe(),
+        lattice.nodes.len(),
+        lattice.describe(),
+        specimen.measured
+    );
+    Outcome {
+        checks,
+        blocks: vec![
+            Block::Paragraph(text),
+            Block::Table(head.map(String::from).to_vec(), rows),
+        ],
+        figures: figures(
+            specimen,
+            reference,
+            springs,
+            [uncorrected, corrected],
+            &fields,
+        ),
+        vtk: files(
+            specimen,
+            reference,
+            springs,
+            [uncorrected, corrected],
+            &fields,
+        ),
+        ..Outcome::default()
+    }
+}
+
+fn sizes(u: &[f64]) -> Vec<f64> {
+    u.chunks_exact(2).map(|u| u[0].hypot(u[1])).collect()
+}
+
+fn figures(
+    specimen: &Specimen,
+    reference: &Reference,
+    springs: &MassSpring,
+    [uncorrected, corrected]: [&Solved; 2],
+    expected: &[Vec<f64>],
+) -> Vec<Figure> {
+    let lattice = &springs.mesh;
+    let last = specimen.factors.len() - 1;
+    let fine = &reference.meshes[2];
+    let [before, after] = [uncorrected, corrected].map(|model| &*model.states[last].displacement);
+    let exact = &*reference.solved[2].states[last].displacement;
+    let distance = |u: &[f64]| {
+        let pairs = u.iter().zip(&expected[last]);
+        sizes(&pairs.map(|(u, v)| u - v).collect::<Vec<_>>())
+    };
+    let name = |what: &str| format!("{}_{what}.png", specimen.name);
+    let at = format!("load factor {}", specimen.factors[last]);
+    vec![
+        Figure {
+            name: name("displacement"),
+            caption: format!("Displacement in all three models at {at}, on one colour scale."),
+            png: output::field_figure(
+                &format!("Displacement at {at}"),
+                "displacement [mm]",
+                Scale::Linear,
+                &[
+                    ("mass-spring", lattice, before, sizes(before)),
+                    ("corrected", lattice, after, sizes(after)),
+                    ("finite elements", fine, exact, sizes(exact)),
+                ],
+            ),
+        },
+        Figure {
+            name: name("error"),
+            caption: format!(
+                "Distance to the finite elements at {at}, before and after the correction."
+            ),
+            png: output::field_figure(
+                &format!("Distance to the finite elements at {at}"),
+                "distance [mm]",
+                Scale::Logarithmic,
+                &[
+                    ("mass-spring", lattice, before, distance(before)),
+                    ("corrected", lattice, after, distance(after)),
+                ],
+            ),
+        },
+        Figure {
+            name: name("mesh"),
+            caption: "The cells of the lattice.".into(),
+            png: output::mesh_picture("Lattice", lattice),
+        },
+    ]
+}
+
+fn files(
+    specimen: &Specimen,
+    reference: &Reference,
+    springs: &MassSpring,
+    [uncorrected, corrected]: [&Solved; 2],
+    expected: &[Vec<f64>],
+) -> Vec<(String, Vec<u8>)> {
+    let sheet = vtk::Sheet {
+        law: &*specimen.problem.law,
+        thickness: specimen.problem.thickness,
+    };
+    let lattice = &springs.mesh;
+    let title = &specimen.name;
+    let mut files = Vec::new();
+    let mut series = |name: &str, file: &dyn Fn(usize) -> Vec<u8>| {
+        let steps = specimen.factors.iter().enumerate();
+        let named: Vec<(f64, String)> = steps
+            .map(|(step, factor)| (*factor, format!("{name}_{:03}.vtu", step + 1)))
+            .collect();
+        for (step, (_, file_name)) in named.iter().enumerate() {
+            files.push((file_name.clone(), file(step)));
+        }
+        files.push((format!("{name}.pvd"), vtk::collection(&named)));
+    };
+    for (name, model) in [("mass_spring", uncorrected), ("corrected", corrected)] {
+        series(name, &|step| {
+            let u = &model.states[step].displacement;
+            vtk::field_file(title, &sheet, lattice, u, Some(&expected[step]))
+        });
+    }
+    series("springs", &|step| {
+        vtk::springs_file(title, springs, &uncorrected.states[step].displacement)
+    });
+    series("finite_element", &|step| {
+        let u = &reference.solved[2].states[step].displacement;
+        vtk::field_file(title, &sheet, &reference.meshes[2], u, None)
+    });
+    files
+}

@@ -1,0 +1,326 @@
+//! The study file of a specimen.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::boundary::{BoundaryProblem, Load, Support};
+use crate::document::{Bound, Section};
+use crate::mesh::{CellShape, Mesh, Shape, import};
+use crate::study;
+use crate::units::Dimension;
+
+/// What the corrected field has to reach, in %.
+#[derive(Clone, Copy)]
+pub struct Tolerances {
+    pub displacement_percent: f64,
+    pub force_percent: f64,
+    pub correction_percent: f64,
+}
+
+/// A specimen, its supports and loads, and how finely it is meshed.
+pub struct Specimen {
+    /// For file names.
+    pub name: String,
+    pub problem: BoundaryProblem,
+    pub factors: Vec<f64>,
+    /// The group whose force is compared.
+    pub measured: String,
+    pub element_name: &'static str,
+    pub tolerances: Tolerances,
+    outline: Outline,
+}
+
+/// What is meshed, and how.
+enum Outline {
+    /// A shape by its measures: cells across, cells of the lattice, finite elements.
+    Shape {
+        shape: Shape,
+        cells: usize,
+        lattice: CellShape,
+        element: CellShape,
+    },
+    /// The linear mesh of a file, and whether the finite elements are quadratic.
+    File { mesh: Mesh, quadratic: bool },
+}
+
+/// The shape that is read from a file.
+const MESH: &str = "mesh";
+
+const SHAPES: [&str; 6] = [
+    MESH,
+    "strip",
+    "strip-with-hole",
+    "notched-strip",
+    "dog-bone",
+    "ring-sector",
+];
+
+const ELEMENTS: [(&str, CellShape); 5] = [
+    ("T1", CellShape::Triangle3),
+    ("T2", CellShape::Triangle6),
+    ("Q1", CellShape::Quad4),
+    ("Q2", CellShape::Quad9),
+    ("Q2 serendipity", CellShape::Quad8),
+];
+
+/// Reads a study; nothing where it has faults, which are recorded.
+pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
+    let material = root.section("material");
+    let card = study::read_card(&material, folder);
+    material.unknown_keys();
+
+    let section = root.section("specimen");
+    let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
+    let thickness = section.quantity("thickness", Dimension::Length, Bound::Positive);
+    let source = name.and_then(|name| read_source(&section, name, folder));
+    section.unknown_keys();
+    let supports = root.tables("support");
+    let supports = supports.iter().filter_map(read_support).collect();
+    let loads = if root.has("load") {
+        root.tables("load")
+    } else {
+        Vec::new()
+    };
+    let loads = loads.iter().filter_map(read_load).collect();
+
+    let section = root.section("path");
+    let factors = section.quantities("factors", Dimension::Ratio, Bound::Positive);
+    if factors.is_empty() || factors.windows(2).any(|pair| pair[1] <= pair[0]) {
+        section.fault(
+            "factors",
+            "must be one or more ascending load factors",
+            "such as [0.5, 1.0]",
+        );
+    }
+    let measured = section.text("measured_group");
+    section.unknown_keys();
+    let section = root.section("finite_element");
+    let chosen = section.choice("element", &ELEMENTS.map(|element| (element.0, element)));
+    section.unknown_keys();
+    let section = root.section("tolerances");
+    let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
+    let tolerances = Tolerances {
+        displacement_percent: percent("displacement"),
+        force_percent: percent("force"),
+        correction_percent: percent("correction"),
+    };
+    section.unknown_keys();
+    let (element_name, element) = chosen?;
+    let outline = match source? {
+        Source::Shape(shape, cells, lattice) => Outline::Shape {
+            shape,
+            cells,
+            lattice,
+            element,
+        },
+        Source::File(mesh) => Outline::File {
+            mesh,
+            quadratic: element.degree() == 2,
+        },
+    };
+    let specimen = Specimen {
+        name: name?.replace('-', "_"),
+        problem: BoundaryProblem {
+            thickness,
+            law: Arc::clone(&card?.law),
+            supports,
+            loads,
+        },
+        factors,
+        measured,
+        element_name,
+        tolerances,
+        outline,
+    };
+    specimen.check(root);
+    Some(specimen)
+}
+
+/// A shape with its cells across and the cells of its lattice, or the linear mesh of a file.
+enum Source {
+    Shape(Shape, usize, CellShape),
+    File(Mesh),
+}
+
+fn read_source(section: &Section, name: &str, folder: &Path) -> Option<Source> {
+    if name == MESH {
+        let file = section.text("file");
+        let unit = section.quantity("file_unit", Dimension::Length, Bound::Positive);
+        if file.is_empty() || !unit.is_finite() {
+            return None;
+        }
+        return match import(&folder.join(&file), unit) {
+            Ok(mesh) => Some(Source::File(mesh.linear())),
+            Err(reason) => {
+                let hint =
+                    "Gmsh's .msh (ASCII) of the versions 2.2 and 4.1, .vtu and .vtk can be read";
+                section.fault("file", &format!("{file} {reason}"), hint);
+                None
+            }
+        };
+    }
+    let shape = read_shape(section, name);
+    let cells = section.count("cells", 2, 400);
+    let kinds = [
+        ("quadrilaterals", CellShape::Quad4),
+        ("triangles", CellShape::Triangle3),
+    ];
+    let lattice = section.choice("lattice", &kinds)?;
+    Some(Source::Shape(shape, cells, lattice))
+}
+
+impl Specimen {
+    /// The mesh of the springs and of the corrector.
+    pub fn lattice(&self) -> Mesh {
+        match &self.outline {
+            Outline::Shape {
+                shape,
+                cells,
+                lattice,
+                ..
+            } => shape.mesh(*cells, *lattice),
+            Outline::File { mesh, .. } => mesh.clone(),
+        }
+    }
+
+    /// The meshes of the finite elements, each twice as fine as the one before: the middle one is as fine as the
+    /// lattice of a shape, the first one as that of a file.
+    pub fn reference_meshes(&self) -> [Mesh; 3] {
+        match &self.outline {
+            Outline::Shape {
+                shape,
+                cells,
+                element,
+                ..
+            } => [cells / 2, *cells, 2 * cells].map(|cells| shape.mesh(cells, *element)),
+            Outline::File { mesh, quadratic } => {
+                let fine = mesh.refined();
+                let meshes = [mesh.clone(), fine.clone(), fine.refined()];
+                match quadratic {
+                    true => meshes.map(|mesh| mesh.quadratic()),
+                    false => meshes,
+                }
+            }
+        }
+    }
+
+    /// Records measures that do not fit and groups that the shape does not have.
+    fn check(&self, root: &Section) {
+        if !self.problem.thickness.is_finite() {
+            return; // told already
+        }
+        let mesh = match &self.outline {
+            Outline::Shape { shape, cells, .. } => {
+                if shape.measures().iter().any(|measure| !measure.is_finite()) {
+                    return;
+                }
+                if let Err(reason) = shape.check() {
+                    root.fault("specimen", &reason, "change its measures");
+                    return;
+                }
+                if !cells.is_multiple_of(2) {
+                    let hint = "one of the meshes has half as many";
+                    root.fault("specimen", "cells must be even", hint);
+                }
+                &shape.mesh(2, CellShape::Quad4)
+            }
+            Outline::File { mesh, .. } => mesh,
+        };
+        let energy = self.problem.finite_elements(mesh);
+        if let Err(fault) = self.problem.on(mesh, &energy) {
+            let hint = fault.hint.unwrap_or_default();
+            root.fault("support", &fault.message, &hint);
+            return;
+        }
+        if !mesh.groups().contains_key(&self.measured) {
+            let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
+            let message = format!("the specimen has no group `{}`", self.measured);
+            root.fault(
+                "path",
+                &message,
+                &format!("its groups are {}", known.join(", ")),
+            );
+        }
+    }
+}
+
+fn read_shape(section: &Section, name: &str) -> Shape {
+    let length = |key| section.quantity(key, Dimension::Length, Bound::Positive);
+    if name == "ring-sector" {
+        return Shape::RingSector {
+            radii: [length("inner_radius"), length("outer_radius")],
+            angle: section.quantity("angle", Dimension::Angle, Bound::Positive),
+        };
+    }
+    let size = [length("length"), length("width")];
+    match name {
+        "strip-with-hole" => Shape::StripWithHole {
+            size,
+            radius: 0.5 * length("hole_diameter"),
+        },
+        "notched-strip" => Shape::NotchedStrip {
+            size,
+            depth: length("notch_depth"),
+            half_length: 0.5 * length("notch_length"),
+        },
+        "dog-bone" => Shape::DogBone {
+            size,
+            narrow: [length("narrow_length"), length("narrow_width")],
+            shoulder: length("shoulder_length"),
+        },
+        _ => Shape::Strip { size },
+    }
+}
+
+/// A vector of two quantities under `x` and `y`; one that is missing is nothing.
+fn components(section: &Section, dimension: Dimension) -> [Option<f64>; 2] {
+    ["x", "y"].map(|key| {
+        let given = section.has(key);
+        given.then(|| section.quantity(key, dimension, Bound::Any))
+    })
+}
+
+fn read_support(section: &Section) -> Option<(String, Support)> {
+    let group = section.text("group");
+    let support = match section.choice(
+        "kind",
+        &[("clamp", 0), ("displacement", 1), ("rotation", 2)],
+    )? {
+        0 => Support::Displacement([Some(0.0); 2]),
+        1 => {
+            let displacement = components(section, Dimension::Length);
+            if displacement == [None; 2] {
+                section.fault("kind", "needs x or y", "x = \"0 mm\" is a roller along y");
+            }
+            Support::Displacement(displacement)
+        }
+        _ => {
+            let centre = section.quantities("centre", Dimension::Length, Bound::Any);
+            let centre = centre.try_into().unwrap_or_else(|_| {
+                section.fault(
+                    "centre",
+                    "must be two lengths",
+                    "such as [\"0 mm\", \"0 mm\"]",
+                );
+                [f64::NAN; 2]
+            });
+            Support::Rotation {
+                centre,
+                angle: section.quantity("angle", Dimension::Angle, Bound::Any),
+            }
+        }
+    };
+    section.unknown_keys();
+    Some((group, support))
+}
+
+fn read_load(section: &Section) -> Option<(String, Load)> {
+    let group = section.text("group");
+    let load = match section.choice("kind", &[("traction", 0), ("pressure", 1), ("force", 2)])? {
+        0 => Load::Traction(components(section, Dimension::Stress).map(Option::unwrap_or_default)),
+        1 => Load::Pressure(section.quantity("pressure", Dimension::Stress, Bound::Any)),
+        _ => Load::Force(components(section, Dimension::Force).map(Option::unwrap_or_default)),
+    };
+    section.unknown_keys();
+    Some((group, load))
+}
