@@ -35,7 +35,7 @@ pub struct CorrectedField {
     pub correction: Correction,
 }
 
-/// Corrects a displacement field on the nodes of a mesh at a load factor.
+/// Corrects a displacement field on the nodes of a mesh at a load factor; the iteration begins at `start`.
 ///
 /// # Errors
 /// A [`SolveFault`] when no corrected field was found.
@@ -43,6 +43,7 @@ pub fn correct(
     mesh: &Mesh,
     loading: &dyn Loading,
     data: &[f64],
+    start: &[f64],
     factor: f64,
     settings: CorrectorSettings,
 ) -> Result<CorrectedField, SolveFault> {
@@ -62,7 +63,7 @@ pub fn correct(
     ];
     let names = Names { mesh, loading };
     let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(&names);
-    let correction = corrector.correct(data, data)?;
+    let correction = corrector.correct(data, start)?;
     let displacement = correction.field().to_vec();
     let mut residual = vec![0.0; size];
     let energy =

@@ -118,16 +118,20 @@ fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
         states: Vec::new(),
         forces: Vec::new(),
     };
+    let mut change = vec![0.0; 2 * lattice.nodes.len()];
     for state in &uncorrected.states {
-        let field = correct(
-            lattice,
-            &model,
-            &state.displacement,
-            state.factor,
-            CORRECTOR,
-        );
+        // What the correction has changed at the load factor before is nearly right at this one.
+        let data = &state.displacement;
+        let start: Vec<f64> = data
+            .iter()
+            .zip(&change)
+            .map(|(u, change)| u + change)
+            .collect();
+        let field = correct(lattice, &model, data, &start, state.factor, CORRECTOR);
         let field = field.map_err(|cause| fault("corrector", state.factor, cause))?;
         corrected.forces.push(specimen.force(&model, &field.state));
+        let pairs = field.state.displacement.iter().zip(data);
+        change = pairs.map(|(corrected, u)| corrected - u).collect();
         corrected.states.push(field.state);
     }
     Ok(outcome(

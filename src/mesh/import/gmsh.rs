@@ -47,8 +47,20 @@ impl Words<'_> {
         (0..count).try_for_each(|_| self.next::<f64>().map(|_| ()))
     }
 
+    /// A whole number; some programs write it with a decimal point.
+    fn whole(&mut self) -> Result<u64, String> {
+        let number: f64 = self.next()?;
+        if number < 0.0 || number.fract() != 0.0 {
+            return Err(format!(
+                "has {number} in ${}, where a whole number should be",
+                self.name
+            ));
+        }
+        Ok(number as u64)
+    }
+
     fn list(&mut self, count: usize) -> Result<Vec<u64>, String> {
-        (0..count).map(|_| self.next()).collect()
+        (0..count).map(|_| self.whole()).collect()
     }
 }
 
@@ -148,7 +160,7 @@ fn version_2(text: &str, names: &Names) -> Result<Raw, String> {
     let mut raw = Raw::default();
     let mut words = section(text, "Nodes")?;
     for _ in 0..words.next::<usize>()? {
-        let tag = words.next()?;
+        let tag = words.whole()?;
         raw.places
             .insert(tag, [words.next()?, words.next()?, words.next()?]);
     }
@@ -157,9 +169,7 @@ fn version_2(text: &str, names: &Names) -> Result<Raw, String> {
         words.skip(1)?;
         let (kind, count) = kind(words.next()?)?;
         let tags: usize = words.next()?;
-        // Some programs write whole numbers with a decimal point.
-        let physical: f64 = if tags > 0 { words.next()? } else { 0.0 };
-        let physical = physical as i64;
+        let physical = if tags > 0 { words.whole()? as i64 } else { 0 };
         words.skip(tags.saturating_sub(1))?;
         let nodes = words.list(count)?;
         let dimension = i64::from(!matches!(kind, Kind::Point));

@@ -41,7 +41,9 @@ fn refuse_legacy_5(path: &Path) -> Result<(), String> {
     // A file that is no text has no such line.
     let _ = BufReader::new(file).take(100).read_line(&mut first);
     match first.trim().strip_prefix("# vtk DataFile Version 5") {
-        Some(_) => Err("is a legacy VTK file of the version 5; save it as .vtu or in version 4.2".into()),
+        Some(_) => {
+            Err("is a legacy VTK file of the version 5; save it as .vtu or in version 4.2".into())
+        }
         None => Ok(()),
     }
 }
