@@ -43,6 +43,9 @@ pub struct Newton {
 /// a body that moves without strain has rounding alone.
 const NEGLIGIBLE: f64 = 1e-4;
 
+/// Relative residual below which the tangent no longer changes its kind.
+const SMALL: f64 = 1e-3;
+
 /// Relative residual at which a stagnating iteration counts as converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-11;
 
@@ -114,10 +117,18 @@ impl Newton {
             }
             log.shifted_steps += usize::from(shifted);
             let step = self.step(residual)?;
-            let length = self
+            let (length, energy) = self
                 .search(potential, u, residual, energy, &step)
                 .map_err(inverted)?;
             log.cut_steps += usize::from(length < 1.0);
+            // A last small step needs no tangent of its own: the one before it was positive definite.
+            let least = NEGLIGIBLE * stiffest * largest(u);
+            let after = self.relative_residual(residual, least);
+            if !shifted && relative <= SMALL && after <= settings.tolerance {
+                log.residuals.push(after);
+                log.energy = energy;
+                return Ok(log);
+            }
         }
     }
 
@@ -220,7 +231,8 @@ impl Newton {
 
     /// Goes along `step` as far as the energy falls (Armijo) and all elements stay admissible.
     ///
-    /// Where the energy no longer resolves the step, a falling residual is taken instead.
+    /// Where the energy no longer resolves the step, a falling residual is taken instead. Returns the length and the
+    /// energy there; `residual` is that of the new place.
     fn search(
         &self,
         potential: &dyn Potential,
@@ -228,7 +240,7 @@ impl Newton {
         residual: &mut [f64],
         energy: f64,
         step: &[f64],
-    ) -> Result<f64, Inadmissible> {
+    ) -> Result<(f64, f64), Inadmissible> {
         const SHORTEST: f64 = 1e-6;
         let free = self.assembly.free();
         let start: Vec<f64> = free.iter().map(|i| u[*i]).collect();
@@ -252,10 +264,10 @@ impl Newton {
                     .fold(0.0, |worst: f64, i| worst.max(residual[*i].abs()));
                 let falls = moved <= energy + 1e-4 * length * slope;
                 if moved.is_finite() && (falls || after < before || length < SHORTEST) {
-                    return Ok(length);
+                    return Ok((length, moved));
                 }
             } else if length < SHORTEST {
-                return outcome.map(|_| length);
+                return outcome.map(|energy| (length, energy));
             }
             length *= 0.5;
         }
