@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn blocks_are_merged_and_their_sides_named() {
-        for shape in CellShape::ALL {
+        for (_, shape) in CellShape::NAMES {
             let block = |left: f64, sides| Block {
                 map: Box::new(move |[s, t]| [left + s, 2.0 * t]),
                 cells: [2, 2],

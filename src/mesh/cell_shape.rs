@@ -39,13 +39,13 @@ const TRIANGLE: [[f64; 2]; 6] = [
 ];
 
 impl CellShape {
-    /// All kinds.
-    pub const ALL: [Self; 5] = [
-        Self::Triangle3,
-        Self::Triangle6,
-        Self::Quad4,
-        Self::Quad8,
-        Self::Quad9,
+    /// All kinds by the names of the finite elements that they are.
+    pub const NAMES: [(&'static str, Self); 5] = [
+        ("T1", Self::Triangle3),
+        ("T2", Self::Triangle6),
+        ("Q1", Self::Quad4),
+        ("Q2", Self::Quad9),
+        ("Q2 serendipity", Self::Quad8),
     ];
 
     /// Nodes of a cell.
@@ -241,7 +241,7 @@ mod tests {
 
     #[test]
     fn shape_functions_are_one_at_their_node_and_sum_up_to_one() {
-        for shape in CellShape::ALL {
+        for (_, shape) in CellShape::NAMES {
             for (i, node) in shape.reference_nodes().iter().enumerate() {
                 for (j, value) in shape.values(*node).into_iter().enumerate() {
                     let expected = if i == j { 1.0 } else { 0.0 };
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_the_values() {
         let (point, step) = ([0.21, 0.34], 1e-6);
-        for shape in CellShape::ALL {
+        for (_, shape) in CellShape::NAMES {
             let derivatives = shape.derivatives(point);
             for axis in 0..2 {
                 let at = |sign: f64| {
@@ -276,7 +276,7 @@ mod tests {
 
     #[test]
     fn quadrature_has_the_area_of_the_reference_cell() {
-        for shape in CellShape::ALL {
+        for (_, shape) in CellShape::NAMES {
             let area: f64 = shape.quadrature().iter().map(|(_, weight)| weight).sum();
             let expected = if shape.is_triangle() { 0.5 } else { 4.0 };
             assert!((area - expected).abs() < 1e-14, "{shape:?}");

@@ -1,8 +1,8 @@
 //! The pictures of a run.
 
-use super::picture::Scale;
 use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel, outlines};
 use super::picture::lines::{Axis, Line, LineChart, Stroke};
+use super::picture::{PALETTE, Scale};
 use crate::compare::StepComparison;
 use crate::material::Card;
 use crate::material::curve::{Mode, simple_shear};
@@ -23,12 +23,9 @@ pub struct Figure {
     pub png: Vec<u8>,
 }
 
-const MASS_SPRING: [u8; 3] = [213, 94, 0];
-const CORRECTED: [u8; 3] = [0, 114, 178];
+const CORRECTED: [u8; 3] = PALETTE[0];
+const MASS_SPRING: [u8; 3] = PALETTE[1];
 const FINITE_ELEMENT: [u8; 3] = [30, 30, 30];
-const SECOND: [u8; 3] = [0, 158, 115];
-const THIRD: [u8; 3] = [204, 121, 167];
-const AMBER: [u8; 3] = [230, 159, 0];
 
 /// All pictures of a run, in the order of the report.
 pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
@@ -110,7 +107,9 @@ pub fn material_chart(card: &Card) -> LineChart {
         points.filter(|point| point[1].abs() <= highest).collect()
     };
     let mut lines = Vec::new();
-    for ((name, points, stable), colour) in curves.iter().zip([CORRECTED, SECOND, THIRD, AMBER]) {
+    for ((name, points, stable), colour) in
+        curves.iter().zip([0, 2, 3, 4].map(|index| PALETTE[index]))
+    {
         lines.extend(Line::within(name, &shown(points), colour, *stable));
     }
     if lines.iter().any(|line| line.stroke == Stroke::Dashed) {
@@ -144,15 +143,6 @@ pub fn material_chart(card: &Card) -> LineChart {
 
 /// The uniaxial curves of several cards, each over its own range.
 pub fn comparison_chart(cards: &[Card]) -> LineChart {
-    const COLOURS: [[u8; 3]; 7] = [
-        CORRECTED,
-        MASS_SPRING,
-        SECOND,
-        THIRD,
-        FINITE_ELEMENT,
-        AMBER,
-        [86, 180, 233],
-    ];
     let line = |(index, card): (usize, &Card)| {
         let [low, high] = card.stretch_range;
         let stretch = |i: i32| low + (high - low) * f64::from(i) / 100.0;
@@ -162,9 +152,9 @@ pub fn comparison_chart(cards: &[Card]) -> LineChart {
             points: (0..=100)
                 .map(|i| [stretch(i), stress(stretch(i))])
                 .collect(),
-            colour: COLOURS[index % COLOURS.len()],
+            colour: PALETTE[index % PALETTE.len()],
             // A colour that comes again is dashed.
-            stroke: if index < COLOURS.len() {
+            stroke: if index < PALETTE.len() {
                 Stroke::Solid
             } else {
                 Stroke::Dashed

@@ -4,19 +4,11 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::picture::Scale;
 use super::picture::lines::{Axis, Line, LineChart, Stroke, stacked};
+use super::picture::{PALETTE, Scale};
 use crate::calibration::{Fit, Observation, Test, TestData};
 use crate::material::curve::{Mode, samples};
 
-const COLOURS: [[u8; 3]; 6] = [
-    [0, 114, 178],
-    [213, 94, 0],
-    [0, 158, 115],
-    [204, 121, 167],
-    [230, 159, 0],
-    [86, 180, 233],
-];
 const INK: [u8; 3] = [60, 60, 60];
 
 /// The observations of one file along one axis.
@@ -44,7 +36,7 @@ fn groups(tests: &[TestData]) -> Vec<Group<'_>> {
                 data,
                 axis,
                 label,
-                colour: COLOURS[groups.len() % COLOURS.len()],
+                colour: PALETTE[groups.len() % PALETTE.len()],
             });
         }
     }

@@ -11,6 +11,16 @@ use resvg::{tiny_skia, usvg};
 pub mod fields;
 pub mod lines;
 
+/// Colours that most people tell apart (Okabe and Ito).
+pub const PALETTE: [[u8; 3]; 6] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+];
+
 /// Units of the drawing for each point of the design. plotters rounds to whole units: they must be small.
 const FINE: u32 = 8;
 /// Pixels of the picture for each point of the design.

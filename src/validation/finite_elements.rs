@@ -16,15 +16,6 @@ pub mod manufactured;
 pub mod patch;
 pub mod ring;
 
-/// Every kind of element with its name.
-const ELEMENTS: [(&str, CellShape); 5] = [
-    ("T1", CellShape::Triangle3),
-    ("T2", CellShape::Triangle6),
-    ("Q1", CellShape::Quad4),
-    ("Q2", CellShape::Quad9),
-    ("Q2 serendipity", CellShape::Quad8),
-];
-
 const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-13,
     max_iterations: 40,

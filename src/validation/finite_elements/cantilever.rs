@@ -12,7 +12,7 @@
 
 use std::path::Path;
 
-use super::{ELEMENTS, distorted, misfit, sheet, solve};
+use super::{distorted, misfit, sheet, solve};
 use crate::boundary::Load;
 use crate::document::Section;
 use crate::error::Error;
@@ -32,7 +32,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
 
 fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
-    for (name, shape) in ELEMENTS {
+    for (name, shape) in CellShape::NAMES {
         if shape.degree() == 1 {
             continue;
         }

@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use super::{ELEMENTS, misfit, sheet, solve};
+use super::{misfit, sheet, solve};
 use crate::boundary::{Load, Support};
 use crate::document::Section;
 use crate::error::Error;
@@ -33,7 +33,7 @@ fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     };
     progress("Q2");
     let reference = extrapolated(CellShape::Quad9)?;
-    for (name, shape) in ELEMENTS {
+    for (name, shape) in CellShape::NAMES {
         if shape == CellShape::Quad9 {
             continue;
         }

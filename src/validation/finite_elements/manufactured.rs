@@ -8,11 +8,12 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use super::{ELEMENTS, distorted, misfit, sheet, solve, stress};
+use super::{distorted, misfit, sheet, solve, stress};
 use crate::boundary::BoundaryProblem;
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, Mesh, QuadraturePoint};
+use crate::output::picture::PALETTE;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, figure};
 
@@ -77,14 +78,7 @@ impl Field {
 fn compute(coarsest: usize, amplitude: f64, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     let mut lines = Vec::new();
-    let colours = [
-        [213, 94, 0],
-        [204, 121, 167],
-        [0, 114, 178],
-        [30, 30, 30],
-        [0, 158, 115],
-    ];
-    for ((name, shape), colour) in ELEMENTS.into_iter().zip(colours) {
+    for ((name, shape), colour) in CellShape::NAMES.into_iter().zip(PALETTE) {
         progress(name);
         let meshes = [1, 2, 4].map(|finer| coarsest * finer);
         let mut errors = Vec::new();

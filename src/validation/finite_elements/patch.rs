@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{ELEMENTS, distorted, largest_error, misfit, sheet, solve, stress};
+use super::{distorted, largest_error, misfit, sheet, solve, stress};
 use crate::boundary::Support;
 use crate::document::Section;
 use crate::error::Error;
@@ -26,7 +26,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
 
 fn compute(cells: [usize; 2], stretch: f64, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
-    for (name, shape) in ELEMENTS {
+    for (name, shape) in CellShape::NAMES {
         progress(name);
         let mut check = |what: String, limit: f64, source, value: f64| {
             let quantity = format!("{name}: {what}");

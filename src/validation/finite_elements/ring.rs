@@ -10,7 +10,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
-use super::{ELEMENTS, misfit, sheet, solve};
+use super::{misfit, sheet, solve};
 use crate::boundary::{Load, Support};
 use crate::document::Section;
 use crate::error::Error;
@@ -34,7 +34,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     let pressure = 1e-6 * modulus;
     let squares = (OUTER * OUTER + INNER * INNER) / (OUTER * OUTER - INNER * INNER);
     let exact = pressure * INNER / modulus * (squares + 0.5);
-    for (name, shape) in ELEMENTS {
+    for (name, shape) in CellShape::NAMES {
         progress(name);
         let mesh = quarter(cells, shape);
         let found = inflate(&mesh, pressure, 1)?[0];

@@ -55,14 +55,6 @@ const SHAPES: [&str; 6] = [
     "ring-sector",
 ];
 
-const ELEMENTS: [(&str, CellShape); 5] = [
-    ("T1", CellShape::Triangle3),
-    ("T2", CellShape::Triangle6),
-    ("Q1", CellShape::Quad4),
-    ("Q2", CellShape::Quad9),
-    ("Q2 serendipity", CellShape::Quad8),
-];
-
 /// Reads a study; nothing where it has faults, which are recorded.
 pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let material = root.section("material");
@@ -95,7 +87,10 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let measured = section.text("measured_group");
     section.unknown_keys();
     let section = root.section("finite_element");
-    let chosen = section.choice("element", &ELEMENTS.map(|element| (element.0, element)));
+    let chosen = section.choice(
+        "element",
+        &CellShape::NAMES.map(|element| (element.0, element)),
+    );
     section.unknown_keys();
     let section = root.section("tolerances");
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
