@@ -168,9 +168,11 @@ fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Ou
     bar.finish_and_clear();
     let computed = computed.inspect_err(|_| output::abandon(&folder))?;
     let (title, json) = (computed.title.clone(), computed.json());
+    let mut written = Vec::new();
     for (name, bytes) in &computed.outcome.vtk {
-        output::save(&folder.join("vtk").join(name), bytes)?;
+        written.push(output::save(&folder.join("vtk").join(name), bytes)?);
     }
+    output::remove_stale(&folder, &written)?;
     let cases = [computed];
     let (blocks, figures) = validation::report::report(&title, &cases);
     output::write_pictures(&folder, &figures)?;

@@ -50,8 +50,12 @@ pub fn write(study: &Study, results: &Results, folder: &Path) -> Result<Vec<Path
     Ok(written)
 }
 
-/// Removes what an earlier run of a study with more stretches has left among the files of this one.
-fn remove_stale(folder: &Path, written: &[PathBuf]) -> Result<(), Error> {
+/// Removes what an earlier run of a study with more stretches or load factors has left among the files of this
+/// one.
+///
+/// # Errors
+/// [`Error::Write`] with the file that could not be removed.
+pub fn remove_stale(folder: &Path, written: &[PathBuf]) -> Result<(), Error> {
     for (part, prefixes, ending) in [
         ("", &["plates_", "error_"][..], "png"),
         (

@@ -533,3 +533,24 @@ fn faults_of_a_specimen_are_told_with_their_place() {
         assert!(found.contains(told), "{told}: {found}");
     }
 }
+
+/// The states before the end of a path are written, and the end is told as a requirement that is not met.
+#[test]
+fn what_was_reached_before_a_path_ends_is_not_lost() {
+    let shape = "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6";
+    // The second load factor presses the strip through itself.
+    let pressed = PULLED
+        .replace("factors = [0.5, 1.0]", "factors = [0.1, 30.0]")
+        .replace("x = \"6 mm\"", "x = \"-2 mm\"");
+    let folder = folder_with(&specimen(shape, PULLED));
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    assert!(folder.path().join("out/vtk/corrected_002.vtu").exists());
+    fs::write(folder.path().join("small.toml"), specimen(shape, &pressed)).unwrap();
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
+    let printed = words(&done.get_output().stdout);
+    assert!(printed.contains("load factor 30"), "{printed}");
+    let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+    assert!(report.contains("| 0.1 |"), "{report}");
+    assert!(folder.path().join("out/vtk/corrected_001.vtu").exists());
+    assert!(!folder.path().join("out/vtk/corrected_002.vtu").exists());
+}

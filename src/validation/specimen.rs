@@ -24,7 +24,7 @@ use read::Specimen;
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
     let specimen = read::read(root, folder);
     Box::new(move |progress| {
-        specimen.map_or(Ok(Outcome::default()), |read| compute(&read, progress))
+        specimen.map_or(Ok(Outcome::default()), |read| compute(read, progress))
     })
 }
 
@@ -54,9 +54,21 @@ fn fault(model: &str, factor: f64, fault: SolveFault) -> Error {
     }
 }
 
-fn solve(specimen: &Specimen, model: &Discretised, name: &str) -> Result<Solved, Error> {
-    let states = model.solve(&specimen.factors, NEWTON, &|_| ());
-    let states = states.map_err(|end: PathEnd| fault(name, end.factor, end.fault))?;
+/// Solves as many load factors as can be reached; the others are taken from the specimen, and why is told.
+fn solve(
+    specimen: &mut Specimen,
+    model: &Discretised,
+    name: &str,
+    ends: &mut Vec<String>,
+) -> Result<Solved, Error> {
+    let states = match model.solve(&specimen.factors, NEWTON, &|_| ()) {
+        Ok(states) => states,
+        Err(PathEnd {
+            factor,
+            fault: cause,
+            states,
+        }) => specimen.end(states, fault(name, factor, cause), ends)?,
+    };
     let forces = states
         .iter()
         .map(|state| specimen.force(model, state))
@@ -65,6 +77,21 @@ fn solve(specimen: &Specimen, model: &Discretised, name: &str) -> Result<Solved,
 }
 
 impl Specimen {
+    /// Ends the path after the states that were reached; a fault before the first of them is one of the study.
+    fn end(
+        &mut self,
+        states: Vec<State>,
+        fault: Error,
+        ends: &mut Vec<String>,
+    ) -> Result<Vec<State>, Error> {
+        if states.is_empty() {
+            return Err(fault);
+        }
+        self.factors.truncate(states.len());
+        ends.push(fault.to_string());
+        Ok(states)
+    }
+
     /// The size of the force on the measured group in N, with the sign of its larger component.
     fn force(&self, model: &Discretised, state: &State) -> f64 {
         let [x, y] = model.reaction(state, &self.measured);
@@ -90,8 +117,9 @@ struct Reference {
     solved: [Solved; 3],
 }
 
-fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
-    let problem = &specimen.problem;
+fn compute(mut specimen: Specimen, progress: Progress) -> Result<Outcome, Error> {
+    let (specimen, mut ends) = (&mut specimen, Vec::new());
+    let problem = &specimen.problem.clone();
     progress("finite elements");
     let meshes = specimen.reference_meshes();
     let mut solved = Vec::new();
@@ -99,7 +127,7 @@ fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
         let energy: SheetEnergy = problem.finite_elements(mesh);
         let model = specimen.on(problem, mesh, &energy)?;
         let name = format!("finite elements ({})", mesh.describe());
-        solved.push(solve(specimen, &model, &name)?);
+        solved.push(solve(specimen, &model, &name, &mut ends)?);
     }
     let solved = solved.try_into().ok().expect("three meshes");
     let reference = Reference { meshes, solved };
@@ -109,37 +137,54 @@ fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
     let lattice = &springs.mesh;
     let model = specimen.on(problem, lattice, springs.potential())?;
     let model = model.named(|element| springs.describe_element(element));
-    let uncorrected = solve(specimen, &model, "mass-spring")?;
+    let uncorrected = solve(specimen, &model, "mass-spring", &mut ends)?;
 
     progress("corrector");
     let energy = problem.finite_elements(lattice);
     let model = specimen.on(problem, lattice, &energy)?;
-    let mut corrected = Solved {
-        states: Vec::new(),
-        forces: Vec::new(),
-    };
+    let corrected = correct_all(specimen, &model, lattice, &uncorrected, &mut ends)?;
+    let mut outcome = outcome(specimen, &reference, &springs, [&uncorrected, &corrected]);
+    for end in ends {
+        let wanted = Wanted::AtMost(0.0);
+        let check = Check::new(end, "–", wanted, "the whole path", f64::NAN);
+        outcome.checks.push(check);
+    }
+    Ok(outcome)
+}
+
+/// Corrects the states of the springs as far as they can be.
+fn correct_all(
+    specimen: &mut Specimen,
+    model: &Discretised,
+    lattice: &Mesh,
+    uncorrected: &Solved,
+    ends: &mut Vec<String>,
+) -> Result<Solved, Error> {
+    let mut states: Vec<State> = Vec::new();
     let mut change = vec![0.0; 2 * lattice.nodes.len()];
-    for state in &uncorrected.states {
+    for state in &uncorrected.states[..specimen.factors.len()] {
         // What the correction has changed at the load factor before is nearly right at this one.
         let data = &state.displacement;
-        let start: Vec<f64> = data
-            .iter()
-            .zip(&change)
-            .map(|(u, change)| u + change)
-            .collect();
-        let field = correct(lattice, &model, data, &start, state.factor, CORRECTOR);
-        let field = field.map_err(|cause| fault("corrector", state.factor, cause))?;
-        corrected.forces.push(specimen.force(&model, &field.state));
-        let pairs = field.state.displacement.iter().zip(data);
-        change = pairs.map(|(corrected, u)| corrected - u).collect();
-        corrected.states.push(field.state);
+        let pairs = data.iter().zip(&change);
+        let start: Vec<f64> = pairs.map(|(u, change)| u + change).collect();
+        match correct(lattice, model, data, &start, state.factor, CORRECTOR) {
+            Ok(field) => {
+                let pairs = field.state.displacement.iter().zip(data);
+                change = pairs.map(|(corrected, u)| corrected - u).collect();
+                states.push(field.state);
+            }
+            Err(cause) => {
+                let fault = fault("corrector", state.factor, cause);
+                states = specimen.end(states, fault, ends)?;
+                break;
+            }
+        }
     }
-    Ok(outcome(
-        specimen,
-        &reference,
-        &springs,
-        [&uncorrected, &corrected],
-    ))
+    let forces = states
+        .iter()
+        .map(|state| specimen.force(model, state))
+        .collect();
+    Ok(Solved { states, forces })
 }
 
 /// Deviations of one model at one load factor, in %.
