@@ -21,7 +21,7 @@
 
 use crate::error::SolveFault;
 use crate::solve::sparse::largest;
-use crate::solve::{Inadmissible, NotPositiveDefinite, SparseRows};
+use crate::solve::{Convergence, Inadmissible, NotPositiveDefinite, SparseRows};
 
 mod acceleration;
 pub mod condition;
@@ -125,6 +125,17 @@ impl Correction {
     /// The corrected field.
     pub fn field(&self) -> &[f64] {
         &self.steps[self.steps.len() - 1].field
+    }
+
+    /// How the field was reached, with the energy there in mJ.
+    pub fn convergence(&self, energy: f64) -> Convergence {
+        let steps = self.steps.iter();
+        Convergence {
+            residuals: steps.clone().map(|step| step.residual).collect(),
+            energy,
+            cut_steps: steps.filter(|step| step.length < 1.0).count(),
+            shifted_steps: 0,
+        }
     }
 }
 

@@ -82,6 +82,12 @@ impl<'a> Document<'a> {
     }
 }
 
+/// The first name of a choice in a list such as [`Section::choice`] takes.
+pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], choice: T) -> &'static str {
+    let found = names.iter().find(|(_, known)| *known == choice);
+    found.map_or("", |(name, _)| name)
+}
+
 /// A text in quotes, as a document has it.
 pub fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()

@@ -207,6 +207,11 @@ fn list(diagnostics: &[Diagnostic]) -> String {
 }
 
 impl Error {
+    /// One fault of the input that has no place in a file, and its remedy.
+    pub fn input(message: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self::Input(vec![Diagnostic::error("", message).hint(hint)])
+    }
+
     /// A write error for `path`.
     pub fn write(path: impl Into<PathBuf>, cause: impl fmt::Display) -> Self {
         Self::Write {
@@ -222,6 +227,14 @@ impl Error {
             Self::Solve { .. } => 3,
             Self::Write { .. } => 4,
         }
+    }
+}
+
+/// A hint for an unknown name: the known one that was probably meant, else all of them after some words.
+pub fn suggestion(name: &str, known: &[&str], otherwise: &str) -> String {
+    match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("{otherwise} {}", known.join(", ")),
     }
 }
 

@@ -74,6 +74,7 @@ pub struct Mesh {
     groups: BTreeMap<String, Group>,
     grid: Option<Grid>,
     buckets: OnceLock<Buckets>,
+    boundary: OnceLock<Vec<Vec<usize>>>,
 }
 
 impl Mesh {
@@ -100,6 +101,7 @@ impl Mesh {
             groups: BTreeMap::new(),
             grid: None,
             buckets: OnceLock::new(),
+            boundary: OnceLock::new(),
         }
     }
 
@@ -180,27 +182,21 @@ impl Mesh {
 
     /// Names a group of nodes; the boundary edges that lie within it belong to it.
     pub fn name_nodes(&mut self, name: &str, nodes: &BTreeSet<usize>) {
-        let edges = self.boundary().into_iter();
-        let edges = edges.filter(|edge| edge.iter().all(|node| nodes.contains(node)));
-        let group = Group {
-            edges: edges.collect(),
-            nodes: nodes.iter().copied().collect(),
-        };
-        self.groups.insert(name.to_owned(), group);
+        let within = |edge: &&Vec<usize>| edge.iter().all(|node| nodes.contains(node));
+        let edges = self.boundary().iter().filter(within).cloned().collect();
+        self.put_group(name, nodes.iter().copied().collect(), edges);
     }
 
     /// Names the part of the boundary whose edges have all nodes where `inside` holds.
     pub fn name_boundary(&mut self, name: &str, inside: impl Fn([f64; 2]) -> bool) {
-        let edges = self.boundary().into_iter();
-        let edges = edges.filter(|edge| edge.iter().all(|node| inside(self.nodes[*node])));
-        self.name_edges(name, edges.collect());
+        let within = |edge: &&Vec<usize>| edge.iter().all(|node| inside(self.nodes[*node]));
+        let edges = self.boundary().iter().filter(within).cloned().collect();
+        self.name_edges(name, edges);
     }
 
     /// Names a group of boundary edges.
     pub fn name_edges(&mut self, name: &str, edges: Vec<Vec<usize>>) {
-        let nodes: BTreeSet<usize> = edges.iter().flatten().copied().collect();
-        let nodes = nodes.into_iter().collect();
-        self.groups.insert(name.to_owned(), Group { nodes, edges });
+        self.put_group(name, edges.iter().flatten().copied().collect(), edges);
     }
 
     /// Names a group of nodes and edges as they are.
@@ -211,7 +207,11 @@ impl Mesh {
     }
 
     /// The edges that belong to one cell alone, each with the specimen to its left.
-    pub fn boundary(&self) -> Vec<Vec<usize>> {
+    pub fn boundary(&self) -> &[Vec<usize>] {
+        self.boundary.get_or_init(|| self.lonely_edges())
+    }
+
+    fn lonely_edges(&self) -> Vec<Vec<usize>> {
         let mut edges: BTreeMap<[usize; 2], (usize, Vec<usize>)> = BTreeMap::new();
         for cell in 0..self.cell_count() {
             let nodes = self.cell(cell);
@@ -357,6 +357,13 @@ impl Mesh {
         let [length, width] = self.grid().size;
         let lateral = |y: f64| self.displacement_at(displacement, [length / 2.0, y])[1];
         width + lateral(width) - lateral(0.0)
+    }
+
+    /// `node 12 (35.0, 7.3) mm along x`, for messages.
+    pub fn describe_unknown(&self, unknown: usize) -> String {
+        let [x, y] = self.nodes[unknown / 2];
+        let axis = ["x", "y"][unknown % 2];
+        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
     }
 
     /// `cell 80 near (150.0, 0.0) mm`, for messages.

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::document::{Document, Faults, Section};
-use crate::error::{Diagnostic, Error, nearest};
+use crate::error::{Diagnostic, Error, suggestion};
 use crate::mesh::Mesh;
 use crate::output::picture::lines::LineChart;
 use crate::output::{Figure, mesh_picture};
@@ -172,10 +172,7 @@ pub fn choose(names: &[String], quick: bool) -> Result<Vec<&'static Case>, Error
     let faults: Vec<Diagnostic> = unknown
         .map(|name| {
             let fault = Diagnostic::error("", format!("there is no case `{name}`"));
-            match nearest(name, known()) {
-                Some(near) => fault.hint(format!("did you mean `{near}`?")),
-                None => fault.hint(format!("cases: {}", known().collect::<Vec<_>>().join(", "))),
-            }
+            fault.hint(suggestion(name, &known().collect::<Vec<_>>(), "cases:"))
         })
         .collect();
     if !faults.is_empty() {

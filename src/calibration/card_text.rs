@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::fit::{Fit, Weighting};
+use super::fit::Fit;
 use super::test_data::{Reading, TestData};
 use crate::document::quoted;
 use crate::material::registry::MARLOW_TABLE;
@@ -143,10 +143,7 @@ fn note(fit: &Fit) -> String {
     let mut note = if fit.parameters.is_empty() {
         format!("the curve of {} points as it was measured", quality.points)
     } else {
-        let residuals = match fit.settings.weighting {
-            Weighting::Absolute => "absolute",
-            Weighting::Relative => "relative",
-        };
+        let residuals = fit.settings.weighting.name();
         format!(
             "least squares of {residuals} residuals over {} points: RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.5}",
             quality.points, quality.rmse, quality.nmad_percent, quality.r_squared

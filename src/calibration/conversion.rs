@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::test_data::{StrainColumn, Test, TestData};
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
 use crate::material::parameters::StressMeasure;
 use crate::units::{self, Dimension};
 
@@ -28,9 +28,7 @@ impl Conversion {
         let factor = factor.map_err(|fault| {
             let known: Vec<_> = Dimension::Stress.units().collect();
             let hint = format!("known units: {}", known.join(", "));
-            Error::Input(vec![
-                Diagnostic::error("", format!("the unit to write {fault}")).hint(hint),
-            ])
+            Error::input(format!("the unit to write {fault}"), hint)
         })?;
         let mut text = String::new();
         for (key, value) in &data.head {

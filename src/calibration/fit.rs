@@ -16,12 +16,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::least_squares::{self, Precision};
+use super::least_squares::{self, Precision, Residuals};
 use super::misfit::Misfit;
 use super::quality::{self, Quality};
 use super::test_data::{Observation, Test, TestData};
-use crate::document::Bound;
-use crate::error::{Diagnostic, Error, nearest};
+use crate::document::{Bound, name_of};
+use crate::error::{Error, suggestion};
 use crate::material::HyperelasticLaw;
 use crate::material::marlow::{Marlow, TableCurve};
 use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
@@ -43,10 +43,7 @@ impl Weighting {
 
     /// The name that cards use.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Absolute => "absolute",
-            Self::Relative => "relative",
-        }
+        name_of(&Self::NAMES, self)
     }
 
     /// The weight of an observation.
@@ -124,38 +121,42 @@ impl Fit {
     /// Half the widths of the 95 % intervals of the fitted curve at some observations, in MPa.
     pub fn half_widths(&self, data: &TestData, at: &[Observation]) -> Vec<f64> {
         let values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
-        let gradients = self
-            .parameters
-            .iter()
-            .enumerate()
-            .map(|(index, parameter)| {
-                let step = 6e-6 * parameter.value.abs().max(1e-9);
-                let stresses = |sign: f64| {
-                    let mut moved = values.clone();
-                    moved[index] += sign * step;
-                    let law = self.law.with_values(&moved, self.stress_measure, MEASURE).0;
-                    at.iter()
-                        .map(|one| data.stress_of(&*law, one))
-                        .collect::<Vec<_>>()
-                };
-                let (above, below) = (stresses(1.0), stresses(-1.0));
-                let pairs = above.iter().zip(&below);
-                pairs
-                    .map(|(a, b)| (a - b) / (2.0 * step))
-                    .collect::<Vec<f64>>()
-            });
-        let gradients: Vec<Vec<f64>> = gradients.collect();
-        let variance = |point: usize| -> f64 {
-            let covariance = &self.quality.covariance;
-            let term =
-                |i: usize, j: usize| gradients[i][point] * covariance[(i, j)] * gradients[j][point];
-            let all = 0..gradients.len();
-            all.clone()
-                .map(|i| all.clone().map(|j| term(i, j)).sum::<f64>())
-                .sum()
+        let curve = Curve {
+            fit: self,
+            data,
+            at,
         };
+        let gradients = least_squares::jacobian(&curve, &values, &vec![false; values.len()]);
+        let spread = &gradients * &self.quality.covariance;
+        let variance = |point: usize| spread.row(point).dot(&gradients.row(point));
         let half = |point: usize| self.quality.student * variance(point).max(0.0).sqrt();
         (0..at.len()).map(half).collect()
+    }
+}
+
+/// The stresses of the fitted law at some observations as a function of its parameters.
+struct Curve<'a> {
+    fit: &'a Fit,
+    data: &'a TestData,
+    at: &'a [Observation],
+}
+
+impl Residuals for Curve<'_> {
+    fn count(&self) -> usize {
+        self.at.len()
+    }
+
+    fn evaluate(&self, parameters: &[f64], stresses: &mut [f64]) -> bool {
+        let Fit {
+            law,
+            stress_measure,
+            ..
+        } = self.fit;
+        let (law, _) = law.with_values(parameters, *stress_measure, MEASURE);
+        for (stress, one) in stresses.iter_mut().zip(self.at) {
+            *stress = self.data.stress_of(&*law, one);
+        }
+        stresses.iter().all(|stress| stress.is_finite())
     }
 }
 
@@ -179,7 +180,7 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
             other.name,
             other.stress_measure.name()
         );
-        return Err(refused(
+        return Err(Error::input(
             message,
             "turn one of them with `gelbench materials convert`",
         ));
@@ -199,7 +200,7 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
             parameters.len() + 1,
             points
         );
-        return Err(refused(
+        return Err(Error::input(
             message,
             "measure more points, or choose a law with fewer parameters",
         ));
@@ -230,7 +231,10 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
             "{}: no parameters within the bounds describe the data",
             law.name
         );
-        return Err(refused(message, "widen the bounds, or choose another law"));
+        return Err(Error::input(
+            message,
+            "widen the bounds, or choose another law",
+        ));
     };
     let best = ordered(&parameters, best);
     let (fitted, asked) = whole.build(&best);
@@ -314,17 +318,17 @@ fn take_curve(
 ) -> Result<Fit, Error> {
     let [test] = tests else {
         let hint = "the others can be compared with `gelbench materials plot`";
-        return Err(refused(format!("{}: takes one file", law.name), hint));
+        return Err(Error::input(format!("{}: takes one file", law.name), hint));
     };
     if test.test != Test::Uniaxial {
         let hint = "give the file of a uniaxial test, or choose another law";
-        return Err(refused(
+        return Err(Error::input(
             format!("{}: takes a uniaxial test", law.name),
             hint,
         ));
     }
     if let Some((key, _)) = settings.bounds.first() {
-        return Err(refused(
+        return Err(Error::input(
             format!("{} has no parameter `{key}`", law.name),
             "leave the bound out",
         ));
@@ -337,7 +341,7 @@ fn take_curve(
     let points: Vec<[f64; 2]> = test.observations.iter().map(point).collect();
     let curve = TableCurve::new(&points, true).map_err(|reason| {
         let hint = "cut the file to the loading branch from rest on, or fit another law";
-        refused(format!("{}: {reason}", law.name), hint)
+        Error::input(format!("{}: {reason}", law.name), hint)
     })?;
     let fitted: Box<dyn HyperelasticLaw> = Box::new(Marlow { curve });
     let mut quality = quality::assess(misfit, settings.weighting, tests, &*fitted, &[], &[], None);
@@ -370,11 +374,11 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
             .flat_map(|test| &test.observations)
             .any(|one| one.axis == axis)
     };
-    let both_axes = axis(0) && axis(1);
+    let (both_axes, measure) = (axis(0) && axis(1), StressMeasure::Nominal);
     let eligible: Vec<&'static Law> = LAWS
         .iter()
         .filter(|law| law.name != MARLOW_TABLE)
-        .filter(|law| both_axes || law.name != "holzapfel-gasser-ogden")
+        .filter(|law| both_axes || law.with_values(&[], measure, MEASURE).0.is_isotropic())
         .collect();
     let outcomes: Vec<Result<Fit, Error>> = eligible
         .into_par_iter()
@@ -391,10 +395,6 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
     (fits, reasons)
 }
 
-fn refused(message: String, hint: &str) -> Error {
-    Error::Input(vec![Diagnostic::error("", message).hint(hint)])
-}
-
 /// Lower and upper limit of each parameter.
 fn limits(
     law: &Law,
@@ -405,21 +405,18 @@ fn limits(
     for (key, [low, high]) in bounds {
         let known: Vec<_> = parameters.iter().map(|parameter| parameter.key).collect();
         if !known.contains(&&**key) {
-            let hint = match nearest(key, known.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("its parameters are {}", known.join(", ")),
-            };
-            return Err(refused(
-                format!("{} has no parameter `{key}`", law.name),
-                &hint,
+            let message = format!("{} has no parameter `{key}`", law.name);
+            return Err(Error::input(
+                message,
+                suggestion(key, &known, "its parameters are"),
             ));
         }
         if bounds.iter().filter(|(other, _)| other == key).count() > 1 {
-            return Err(refused(format!("{key} has two bounds"), "give one"));
+            return Err(Error::input(format!("{key} has two bounds"), "give one"));
         }
         if low >= high {
             let message = format!("the bounds {low} … {high} of {key} are not in order");
-            return Err(refused(message, "write the lower one first"));
+            return Err(Error::input(message, "write the lower one first"));
         }
     }
     let limit = |parameter: &Parameter| {
@@ -435,9 +432,9 @@ fn limits(
         let [from, to] = given.map_or([low, high], |(_, [l, h])| [low.max(*l), high.min(*h)]);
         if from >= to {
             let message = format!("the bounds of {} leave no value of the law", parameter.key);
-            return Err(refused(
+            return Err(Error::input(
                 message,
-                &format!("the law takes values from {low:.1e} to {high:.1e}"),
+                format!("the law takes values from {low:.1e} to {high:.1e}"),
             ));
         }
         Ok([from, to])

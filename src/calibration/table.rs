@@ -56,11 +56,8 @@ impl Table {
     /// [`Error::Input`] with file, line and reason.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let name = path.display().to_string();
-        let refuse = |message: String, hint: &str| {
-            Error::Input(vec![Diagnostic::error("", message).hint(hint)])
-        };
         let bytes = std::fs::read(path).map_err(|cause| {
-            refuse(
+            Error::input(
                 format!("cannot read {name}: {cause}"),
                 "a file of test data has columns of strain and stress",
             )
@@ -70,7 +67,7 @@ impl Table {
                 .iter()
                 .filter(|byte| **byte == b'\n')
                 .count();
-            refuse(
+            Error::input(
                 format!("{name}: line {line} is not UTF-8 text"),
                 "save the table as CSV in UTF-8",
             )

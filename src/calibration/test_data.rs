@@ -5,6 +5,7 @@ use std::path::Path;
 
 pub use super::table::KEYS;
 use super::table::Table;
+use crate::document::name_of;
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
@@ -41,8 +42,7 @@ impl Test {
 
     /// The name of the test.
     pub fn name(self) -> &'static str {
-        let found = Self::NAMES.iter().find(|(_, test)| *test == self);
-        found.map_or("", |(name, _)| name)
+        name_of(&Self::NAMES, self)
     }
 }
 

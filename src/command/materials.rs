@@ -9,7 +9,7 @@ use crate::calibration::{
     self, Bounds, Conversion, Fit, FitSettings, Provenance, Reading, StrainColumn, TestData,
     Weighting,
 };
-use crate::error::{Diagnostic, Error, nearest};
+use crate::error::{Error, suggestion};
 use crate::material::Card;
 use crate::material::card::FitRecord;
 use crate::material::parameters::StressMeasure;
@@ -275,7 +275,7 @@ fn fit(arguments: FitArguments) -> Outcome {
     let usual = || format!("{}-{}", first.to_string_lossy(), fit.law.name);
     let stem = arguments.name.unwrap_or_else(usual);
     if Path::new(&stem).file_name().is_none() {
-        return Err(input(
+        return Err(Error::input(
             format!("--name \"{stem}\" names no file"),
             "such as --name my-gel",
         ));
@@ -307,11 +307,7 @@ fn fit(arguments: FitArguments) -> Outcome {
 fn best(fits: Vec<Fit>) -> Result<Fit, Error> {
     let stable = fits.iter().position(|fit| fit.quality.is_stable());
     let chosen = fits.into_iter().nth(stable.unwrap_or(0));
-    chosen.ok_or_else(|| input("no law could be fitted".into(), "look at the reasons above"))
-}
-
-fn input(message: String, hint: &str) -> Error {
-    Error::Input(vec![Diagnostic::error("", message).hint(hint)])
+    chosen.ok_or_else(|| Error::input("no law could be fitted", "look at the reasons above"))
 }
 
 /// What was not written by a fit is never replaced by one.
@@ -342,11 +338,8 @@ fn relative(path: &Path, folder: &Path) -> String {
 fn law(name: &str) -> Result<&'static Law, Error> {
     Law::named(name).ok_or_else(|| {
         let known: Vec<_> = LAWS.iter().map(|law| law.name).collect();
-        let hint = match nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("laws: {}", known.join(", ")),
-        };
-        input(format!("there is no law `{name}`"), &hint)
+        let message = format!("there is no law `{name}`");
+        Error::input(message, suggestion(name, &known, "laws:"))
     })
 }
 
@@ -355,7 +348,7 @@ fn chosen<T: Copy>(option: &str, name: &str, names: &[(&'static str, T)]) -> Res
     found.map(|(_, choice)| *choice).ok_or_else(|| {
         let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
         let hint = format!("it must be one of {}", known.join(", "));
-        input(format!("{option} {name} is not known"), &hint)
+        Error::input(format!("{option} {name} is not known"), hint)
     })
 }
 
@@ -369,7 +362,7 @@ fn bounds(texts: &[String]) -> Result<Bounds, Error> {
     };
     let each = texts.iter().map(|text| {
         bound(text).ok_or_else(|| {
-            input(
+            Error::input(
                 format!("the bound `{text}` cannot be read"),
                 "write it as key=low..high, such as jm=5..200",
             )
@@ -382,7 +375,7 @@ fn refit(name: &str) -> Outcome {
     let card = load(name)?;
     let Some(record) = &card.fit else {
         let hint = "cards written by `gelbench materials fit` have one";
-        return Err(input(format!("the card {name} has no [fit]"), hint));
+        return Err(Error::input(format!("the card {name} has no [fit]"), hint));
     };
     let shipped = CARDS.iter().any(|(known, _)| *known == name);
     let folder = Path::new(name).parent().filter(|_| !shipped);

@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::mesh::{Mesh, Side};
 use crate::problem::{Problem, Solution};
 use crate::sheet_energy::SheetEnergy;
-use crate::solve::{Assembly, Convergence, SparseRows};
+use crate::solve::{Assembly, SparseRows};
 
 /// Name of the condition F.
 pub const EQUILIBRIUM: &str = "equilibrium";
@@ -66,9 +66,7 @@ impl Describe for PlateNames<'_> {
     }
 
     fn unknown(&self, unknown: usize) -> String {
-        let [x, y] = self.0.nodes[unknown / 2];
-        let axis = ["x", "y"][unknown % 2];
-        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
+        self.0.describe_unknown(unknown)
     }
 }
 
@@ -186,13 +184,7 @@ impl<'a> PlateCorrector<'a> {
         let mut residual = vec![0.0; displacement.len()];
         let energy = Assembly::residual(&self.energy, &displacement, &mut residual)
             .expect("a corrected field is admissible");
-        let steps = &correction.steps;
-        let convergence = Convergence {
-            residuals: steps.iter().map(|step| step.residual).collect(),
-            energy,
-            cut_steps: steps.iter().filter(|step| step.length < 1.0).count(),
-            shifted_steps: 0,
-        };
+        let convergence = correction.convergence(energy);
         Solution {
             stretch,
             force: self.problem.grip_force(self.mesh, &residual),

@@ -6,7 +6,7 @@ use super::plate::{EQUILIBRIUM, GRIPS};
 use super::{Correction, Corrector, CorrectorSettings, Describe};
 use crate::error::SolveFault;
 use crate::mesh::Mesh;
-use crate::solve::{Assembly, Convergence, Loading, State};
+use crate::solve::{Assembly, Loading, State};
 
 /// Cells and nodes of a mesh by their places.
 struct Names<'a> {
@@ -20,9 +20,7 @@ impl Describe for Names<'_> {
     }
 
     fn unknown(&self, unknown: usize) -> String {
-        let [x, y] = self.mesh.nodes[unknown / 2];
-        let axis = ["x", "y"][unknown % 2];
-        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
+        self.mesh.describe_unknown(unknown)
     }
 }
 
@@ -72,16 +70,7 @@ pub fn correct(
                 element: loading.describe(fault.element),
             }
         })?;
-    let convergence = Convergence {
-        residuals: correction.steps.iter().map(|step| step.residual).collect(),
-        energy,
-        cut_steps: correction
-            .steps
-            .iter()
-            .filter(|step| step.length < 1.0)
-            .count(),
-        shifted_steps: 0,
-    };
+    let convergence = correction.convergence(energy);
     Ok(CorrectedField {
         state: State {
             factor,

@@ -8,7 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{Bound, Faults};
-use crate::error::{Diagnostic, Source, nearest};
+use crate::error::{Diagnostic, Source, nearest, suggestion};
 use crate::units::{self, Dimension, QuantityFault};
 
 /// One table of a document.
@@ -257,13 +257,10 @@ impl<'a> Section<'a> {
         let quantity = match value.get_ref() {
             DeValue::String(text) => units::parse(text, dimension).map_err(|fault| {
                 let hint = match &fault {
-                    QuantityFault::UnknownUnit(unit) => match nearest(unit, dimension.units()) {
-                        Some(near) => format!("did you mean `{near}`?"),
-                        None => format!(
-                            "known units: {}",
-                            dimension.units().collect::<Vec<_>>().join(", ")
-                        ),
-                    },
+                    QuantityFault::UnknownUnit(unit) => {
+                        let known: Vec<_> = dimension.units().collect();
+                        suggestion(unit, &known, "known units:")
+                    }
                     _ => format!("write a {} such as {example}", dimension.name()),
                 };
                 (format!("\"{text}\" {fault}"), hint)
@@ -352,10 +349,10 @@ impl<'a> Section<'a> {
             if known.contains(&key) {
                 continue;
             }
-            let hint = match nearest(key, known.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None if known.is_empty() => "nothing is expected here".to_owned(),
-                None => format!("known here: {}", known.join(", ")),
+            let hint = if known.is_empty() {
+                "nothing is expected here".to_owned()
+            } else {
+                suggestion(key, &known, "known here:")
             };
             let span = name.span().start..name.span().end.max(name.span().start + 1);
             let kind = if matches!(value.get_ref(), DeValue::Table(_)) {

@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Vector2, Vector4};
 
 use super::law::{HyperelasticLaw, TensionResponse};
 use super::sheet::{Gradient, Kinematics, SheetResponse};
+use crate::document::name_of;
 
 /// The usual tests of a sheet, stretched by λ along its first axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,8 +27,7 @@ impl Mode {
 
     /// The name of the test.
     pub fn name(self) -> &'static str {
-        let found = Self::ALL.iter().find(|(_, mode)| *mode == self);
-        found.map_or("", |(name, _)| name)
+        name_of(&Self::ALL, self)
     }
 
     /// The displacement gradient of the test at λ = 1 + `strain`; nothing where the edges of a strip find

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use crate::document::{Bound, Section};
+use crate::document::{Bound, Section, name_of};
 use crate::units::Dimension;
 
 /// Which stress a curve or a card speaks of.
@@ -109,12 +109,6 @@ impl OffsetTreatment {
     pub fn name(self) -> &'static str {
         name_of(&Self::NAMES, self)
     }
-}
-
-/// The name of a choice that a list of names holds.
-fn name_of<T: PartialEq>(names: &[(&'static str, T)], choice: T) -> &'static str {
-    let found = names.iter().find(|(_, known)| *known == choice);
-    found.map_or("", |(name, _)| name)
 }
 
 /// One parameter of a law.

@@ -103,8 +103,8 @@ impl Raw {
         }
         let edges: HashMap<[usize; 2], Vec<usize>> = mesh
             .boundary()
-            .into_iter()
-            .map(|edge| ([edge[0].min(edge[1]), edge[0].max(edge[1])], edge))
+            .iter()
+            .map(|edge| ([edge[0].min(edge[1]), edge[0].max(edge[1])], edge.clone()))
             .collect();
         for (name, lines) in &self.lines {
             let ends = lines

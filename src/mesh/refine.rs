@@ -65,19 +65,9 @@ impl Mesh {
                 }
             }
         }
-        let mut mesh = Self::new(Vec::new(), cells);
-        for (name, group) in self.groups() {
-            let mut nodes = group.nodes.clone();
-            let mut edges = Vec::new();
-            for edge in &group.edges {
-                let middle = middles.of(edge[0], edge[1]);
-                nodes.push(middle);
-                edges.extend([vec![edge[0], middle], vec![middle, edge[1]]]);
-            }
-            mesh.put_group(name, nodes, edges);
-        }
-        mesh.nodes = middles.nodes;
-        mesh
+        middles.finish(self, cells, |[from, to], middle| {
+            vec![vec![from, middle], vec![middle, to]]
+        })
     }
 
     /// A mesh of linear cells with nodes in the middle of its straight edges: six-node triangles and nine-node
@@ -97,19 +87,9 @@ impl Mesh {
             (CellShape::Quad9, nodes)
         });
         let cells: Vec<_> = cells.collect();
-        let mut mesh = Self::new(Vec::new(), cells);
-        for (name, group) in self.groups() {
-            let mut nodes = group.nodes.clone();
-            let mut edges = Vec::new();
-            for edge in &group.edges {
-                let middle = middles.of(edge[0], edge[1]);
-                nodes.push(middle);
-                edges.push(vec![edge[0], edge[1], middle]);
-            }
-            mesh.put_group(name, nodes, edges);
-        }
-        mesh.nodes = middles.nodes;
-        mesh
+        middles.finish(self, cells, |[from, to], middle| {
+            vec![vec![from, to, middle]]
+        })
     }
 }
 
@@ -133,6 +113,31 @@ impl Middles {
             nodes.push([0, 1].map(|axis| 0.5 * (nodes[a][axis] + nodes[b][axis])));
             nodes.len() - 1
         })
+    }
+
+    /// The mesh of some cells with the groups of the one that they were made from; `edges` makes an edge with its
+    /// middle into those of the new mesh.
+    fn finish(
+        mut self,
+        from: &Mesh,
+        cells: Vec<(CellShape, Vec<usize>)>,
+        edges: impl Fn([usize; 2], usize) -> Vec<Vec<usize>>,
+    ) -> Mesh {
+        let mut groups = Vec::new();
+        for (name, group) in from.groups() {
+            let (mut nodes, mut own) = (group.nodes.clone(), Vec::new());
+            for edge in &group.edges {
+                let middle = self.of(edge[0], edge[1]);
+                nodes.push(middle);
+                own.extend(edges([edge[0], edge[1]], middle));
+            }
+            groups.push((name, nodes, own));
+        }
+        let mut mesh = Mesh::new(self.nodes, cells);
+        for (name, nodes, edges) in groups {
+            mesh.put_group(name, nodes, edges);
+        }
+        mesh
     }
 
     fn centre(&mut self, corners: &[usize]) -> usize {

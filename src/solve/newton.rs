@@ -1,7 +1,7 @@
 //! Newton's method for the minimum of a potential, with a line search that keeps every element admissible.
 
 use super::potential::{Assembly, Inadmissible, Potential};
-use super::sparse::{Cholesky, NotPositiveDefinite, largest};
+use super::sparse::{Cholesky, NotPositiveDefinite, largest, moved};
 use crate::error::SolveFault;
 
 /// When to stop.
@@ -155,9 +155,9 @@ impl Newton {
         let most = largest(motion);
         if most > 0.0 {
             let share = 1e-6 * largest(u).max(1e-3 * most) / most;
-            let moved: Vec<f64> = u.iter().zip(motion).map(|(u, m)| u + share * m).collect();
             let mut there = vec![0.0; u.len()];
-            Assembly::residual(potential, &moved, &mut there).map_err(inverted)?;
+            Assembly::residual(potential, &moved(u, share, motion), &mut there)
+                .map_err(inverted)?;
             for (residual, there) in residual.iter_mut().zip(&there) {
                 *residual += (there - *residual) / share;
             }

@@ -1,6 +1,6 @@
 //! A potential energy that is a sum over elements, and its assembly.
 
-use super::sparse::SymmetricPattern;
+use super::sparse::{SymmetricPattern, moved};
 
 /// An element that has turned inside out, collapsed, or left the range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -236,12 +236,10 @@ pub fn derivative_errors(potential: &dyn Potential, u: &[f64], direction: &[f64]
     let size = potential.unknowns();
     let assembly = Assembly::new(potential, &vec![false; size]);
     let (mut residual, mut stiffness) = (vec![0.0; size], Vec::new());
-    let moved =
-        |step: f64| -> Vec<f64> { u.iter().zip(direction).map(|(u, d)| u + step * d).collect() };
     let at = |step: f64| {
         let mut residual = vec![0.0; size];
-        let energy =
-            Assembly::residual(potential, &moved(step), &mut residual).expect("admissible");
+        let energy = Assembly::residual(potential, &moved(u, step, direction), &mut residual)
+            .expect("admissible");
         (energy, residual)
     };
     assembly

@@ -301,6 +301,11 @@ impl SparseLu {
     }
 }
 
+/// x + step · direction.
+pub fn moved(x: &[f64], step: f64, direction: &[f64]) -> Vec<f64> {
+    x.iter().zip(direction).map(|(x, d)| x + step * d).collect()
+}
+
 /// Euclidean norm.
 pub fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::boundary::{BoundaryProblem, Discretised};
+use crate::boundary::{BoundaryProblem, Discretised, Support};
 use crate::error::{Diagnostic, Error};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
@@ -28,6 +28,17 @@ fn sheet() -> BoundaryProblem {
         law: Arc::new(NeoHooke { c10: 0.05 }),
         supports: Vec::new(),
         loads: Vec::new(),
+    }
+}
+
+/// The sheet with some groups at given displacements in mm.
+fn held(supports: &[(&str, [Option<f64>; 2])]) -> BoundaryProblem {
+    let support = |(group, displacement): &(&str, [Option<f64>; 2])| {
+        ((*group).to_owned(), Support::Displacement(*displacement))
+    };
+    BoundaryProblem {
+        supports: supports.iter().map(support).collect(),
+        ..sheet()
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Reading;
 use crate::calibration::table::{Column, Table};
-use crate::error::{Diagnostic, nearest};
+use crate::error::{Diagnostic, suggestion};
 use crate::units::{self, Dimension};
 
 pub type Faulty<T> = Result<T, Box<Diagnostic>>;
@@ -80,10 +80,7 @@ impl Head<'_> {
             return Ok(*choice);
         }
         let known: Vec<_> = names.iter().map(|(name, _)| *name).collect();
-        let hint = match nearest(&value, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("it must be one of {}", known.join(", ")),
-        };
+        let hint = suggestion(&value, &known, "it must be one of");
         let place = self.place(key);
         Err(self.fault(place, format!("the {key} `{value}` is not known"), &hint))
     }

@@ -1,7 +1,7 @@
 //! Conditions on the internal forces of a potential.
 
 use super::{Condition, Linearised};
-use crate::solve::sparse::largest;
+use crate::solve::sparse::{largest, moved};
 use crate::solve::{Assembly, Inadmissible, Potential, SparseRows};
 
 /// Balance of forces ∂Π/∂uᵢ − fᵢ = 0 at the chosen unknowns, in N.
@@ -69,9 +69,7 @@ impl Condition for Equilibrium<'_> {
     }
 
     fn values(&self, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
-        let mut residual = vec![0.0; u.len()];
-        Assembly::residual(self.potential, u, &mut residual)?;
-        Ok(self.unbalanced(&residual))
+        residual(self.potential, u).map(|residual| self.unbalanced(&residual))
     }
 
     fn curvature(
@@ -145,9 +143,7 @@ impl Condition for TotalForce<'_> {
     }
 
     fn values(&self, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
-        let mut residual = vec![0.0; u.len()];
-        Assembly::residual(self.potential, u, &mut residual)?;
-        Ok(self.unbalanced(&residual))
+        residual(self.potential, u).map(|residual| self.unbalanced(&residual))
     }
 
     fn curvature(
@@ -158,6 +154,12 @@ impl Condition for TotalForce<'_> {
         let rows = self.unknowns.iter().zip(std::iter::repeat(&multipliers[0]));
         stiffness_change(self.potential, self.assembly, u, rows).map(Some)
     }
+}
+
+fn residual(potential: &dyn Potential, u: &[f64]) -> Result<Vec<f64>, Inadmissible> {
+    let mut residual = vec![0.0; u.len()];
+    Assembly::residual(potential, u, &mut residual)?;
+    Ok(residual)
 }
 
 /// The rows of a full tangent: (column, value).
@@ -192,14 +194,7 @@ fn stiffness_change<'a>(
         true => SHARE * largest(u) / most,
         false => 1.0,
     };
-    let at = |step: f64| {
-        let moved: Vec<f64> = u
-            .iter()
-            .zip(&direction)
-            .map(|(u, d)| u + step * d)
-            .collect();
-        internal_forces(potential, assembly, &moved)
-    };
+    let at = |step: f64| internal_forces(potential, assembly, &moved(u, step, &direction));
     let ((_, up), (_, down)) = (at(step)?, at(-step)?);
     let mut change = SparseRows::new(u.len());
     for (up, down) in up.iter().zip(&down) {

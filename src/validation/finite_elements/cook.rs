@@ -6,8 +6,8 @@
 
 use std::path::Path;
 
-use super::{misfit, sheet, solve};
-use crate::boundary::{Load, Support};
+use super::{held, misfit, solve};
+use crate::boundary::Load;
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;
@@ -69,9 +69,7 @@ fn panel(cells: usize, shape: CellShape) -> Mesh {
 
 /// Upward displacement of the upper right corner in mm.
 fn deflection(mesh: &Mesh) -> Result<f64, Error> {
-    let mut problem = sheet();
-    let clamp = Support::Displacement([Some(0.0); 2]);
-    problem.supports.push(("left".into(), clamp));
+    let mut problem = held(&[("left", [Some(0.0); 2])]);
     problem
         .loads
         .push(("right".into(), Load::Traction([0.0, 0.01])));

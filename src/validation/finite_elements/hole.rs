@@ -10,8 +10,7 @@
 use std::f64::consts::FRAC_PI_4;
 use std::path::Path;
 
-use super::{misfit, sheet, solve, stress};
-use crate::boundary::Support;
+use super::{held, misfit, solve, stress};
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
@@ -101,15 +100,11 @@ fn quarter(radius: f64, cells: usize, shape: CellShape) -> Mesh {
 }
 
 fn concentration(mesh: &Mesh, radius: f64) -> Result<f64, Error> {
-    let mut problem = sheet();
-    for (group, displacement) in [
+    let problem = held(&[
         ("symmetry_x", [Some(0.0), None]),
         ("symmetry_y", [None, Some(0.0)]),
         ("right", [Some(STRAIN * LENGTH), None]),
-    ] {
-        let support = Support::Displacement(displacement);
-        problem.supports.push((group.to_owned(), support));
-    }
+    ]);
     let energy = problem.finite_elements(mesh);
     let model = problem.on(mesh, &energy).map_err(misfit)?;
     let state = solve(&model, "strip with a hole", 1)?;

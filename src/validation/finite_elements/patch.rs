@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{distorted, largest_error, misfit, sheet, solve, stress};
+use super::{distorted, held, largest_error, misfit, sheet, solve, stress};
 use crate::boundary::Support;
 use crate::document::Section;
 use crate::error::Error;
@@ -98,22 +98,20 @@ fn homogeneous(
 ) -> Result<f64, Error> {
     let mesh = distorted(SIZE, cells, shape);
     let x = stretch - 1.0;
-    let mut problem = sheet();
-    let mut hold = |group: &str, displacement| {
-        let support = Support::Displacement(displacement);
-        problem.supports.push((group.to_owned(), support));
-    };
-    hold("left", [Some(0.0), None]);
-    hold("bottom", [None, Some(0.0)]);
-    hold("right", [Some(x * SIZE[0]), None]);
     let across = match mode {
         Mode::Uniaxial => -x / (stretch + stretch.sqrt()),
         Mode::Planar => 0.0,
         Mode::Equibiaxial => x,
     };
+    let mut supports = vec![
+        ("left", [Some(0.0), None]),
+        ("bottom", [None, Some(0.0)]),
+        ("right", [Some(x * SIZE[0]), None]),
+    ];
     if mode != Mode::Uniaxial {
-        hold("top", [None, Some(across * SIZE[1])]);
+        supports.push(("top", [None, Some(across * SIZE[1])]));
     }
+    let problem = held(&supports);
     let energy = problem.finite_elements(&mesh);
     let model = problem.on(&mesh, &energy).map_err(misfit)?;
     let state = solve(&model, mode.name(), 4)?;

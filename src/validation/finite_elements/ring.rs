@@ -10,8 +10,8 @@
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
-use super::{misfit, sheet, solve};
-use crate::boundary::{Load, Support};
+use super::{held, misfit, sheet, solve};
+use crate::boundary::Load;
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
@@ -82,14 +82,10 @@ fn quarter(cells: usize, shape: CellShape) -> Mesh {
 
 /// The mean radial displacement of the inner edge in mm, and how far it is from round, relative.
 fn inflate(mesh: &Mesh, pressure: f64, steps: usize) -> Result<[f64; 2], Error> {
-    let mut problem = sheet();
-    for (group, displacement) in [
+    let mut problem = held(&[
         ("symmetry_x", [Some(0.0), None]),
         ("symmetry_y", [None, Some(0.0)]),
-    ] {
-        let support = Support::Displacement(displacement);
-        problem.supports.push((group.to_owned(), support));
-    }
+    ]);
     problem
         .loads
         .push(("inside".into(), Load::Pressure(pressure)));

@@ -40,7 +40,7 @@ enum Outline {
         element: CellShape,
     },
     /// The linear mesh of a file, and whether the finite elements are quadratic.
-    File { mesh: Mesh, quadratic: bool },
+    File { mesh: Box<Mesh>, quadratic: bool },
 }
 
 /// The shape that is read from a file.
@@ -61,10 +61,17 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let card = study::read_card(&material, folder);
     material.unknown_keys();
 
+    let section = root.section("finite_element");
+    let chosen = section.choice(
+        "element",
+        &CellShape::NAMES.map(|element| (element.0, element)),
+    );
+    section.unknown_keys();
     let section = root.section("specimen");
     let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
     let thickness = section.quantity("thickness", Dimension::Length, Bound::Positive);
-    let source = name.and_then(|name| read_source(&section, name, folder));
+    let element = chosen.map_or(CellShape::Quad9, |(_, element)| element);
+    let outline = name.and_then(|name| read_outline(&section, name, folder, element));
     section.unknown_keys();
     let supports = root.tables("support");
     let supports = supports.iter().filter_map(read_support).collect();
@@ -86,12 +93,6 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     }
     let measured = section.text("measured_group");
     section.unknown_keys();
-    let section = root.section("finite_element");
-    let chosen = section.choice(
-        "element",
-        &CellShape::NAMES.map(|element| (element.0, element)),
-    );
-    section.unknown_keys();
     let section = root.section("tolerances");
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
     let tolerances = Tolerances {
@@ -100,19 +101,6 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         correction_percent: percent("correction"),
     };
     section.unknown_keys();
-    let (element_name, element) = chosen?;
-    let outline = match source? {
-        Source::Shape(shape, cells, lattice) => Outline::Shape {
-            shape,
-            cells,
-            lattice,
-            element,
-        },
-        Source::File(mesh) => Outline::File {
-            mesh,
-            quadratic: element.degree() == 2,
-        },
-    };
     let specimen = Specimen {
         name: name?.replace('-', "_"),
         problem: BoundaryProblem {
@@ -123,21 +111,20 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         },
         factors,
         measured,
-        element_name,
+        element_name: chosen?.0,
         tolerances,
-        outline,
+        outline: outline?,
     };
     specimen.check(root);
     Some(specimen)
 }
 
-/// A shape with its cells across and the cells of its lattice, or the linear mesh of a file.
-enum Source {
-    Shape(Shape, usize, CellShape),
-    File(Mesh),
-}
-
-fn read_source(section: &Section, name: &str, folder: &Path) -> Option<Source> {
+fn read_outline(
+    section: &Section,
+    name: &str,
+    folder: &Path,
+    element: CellShape,
+) -> Option<Outline> {
     if name == MESH {
         let file = section.text("file");
         let unit = section.quantity("file_unit", Dimension::Length, Bound::Positive);
@@ -145,7 +132,10 @@ fn read_source(section: &Section, name: &str, folder: &Path) -> Option<Source> {
             return None;
         }
         return match import(&folder.join(&file), unit) {
-            Ok(mesh) => Some(Source::File(mesh.linear())),
+            Ok(mesh) => Some(Outline::File {
+                mesh: Box::new(mesh.linear()),
+                quadratic: element.degree() == 2,
+            }),
             Err(reason) => {
                 let hint =
                     "Gmsh's .msh (ASCII) of the versions 2.2 and 4.1, .vtu and .vtk can be read";
@@ -161,7 +151,12 @@ fn read_source(section: &Section, name: &str, folder: &Path) -> Option<Source> {
         ("triangles", CellShape::Triangle3),
     ];
     let lattice = section.choice("lattice", &kinds)?;
-    Some(Source::Shape(shape, cells, lattice))
+    Some(Outline::Shape {
+        shape,
+        cells,
+        lattice,
+        element,
+    })
 }
 
 impl Specimen {
@@ -174,7 +169,7 @@ impl Specimen {
                 lattice,
                 ..
             } => shape.mesh(*cells, *lattice),
-            Outline::File { mesh, .. } => mesh.clone(),
+            Outline::File { mesh, .. } => (**mesh).clone(),
         }
     }
 
@@ -190,7 +185,7 @@ impl Specimen {
             } => [cells / 2, *cells, 2 * cells].map(|cells| shape.mesh(cells, *element)),
             Outline::File { mesh, quadratic } => {
                 let fine = mesh.refined();
-                let meshes = [mesh.clone(), fine.clone(), fine.refined()];
+                let meshes = [(**mesh).clone(), fine.clone(), fine.refined()];
                 match quadratic {
                     true => meshes.map(|mesh| mesh.quadratic()),
                     false => meshes,
