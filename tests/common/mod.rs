@@ -1,0 +1,51 @@
+//! What the tests of the command share.
+#![allow(dead_code, reason = "every test uses a part of it")]
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use assert_cmd::assert::Assert;
+use serde_json::Value;
+use tempfile::TempDir;
+
+pub fn gelbench(folder: &Path, arguments: &[&str]) -> Assert {
+    let mut command = Command::cargo_bin("gelbench").unwrap();
+    command.current_dir(folder).args(arguments).assert()
+}
+
+pub fn words(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+pub fn folder_with(study: &str) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("small.toml"), study).unwrap();
+    folder
+}
+
+pub fn number(value: &Value, path: &[&str]) -> f64 {
+    path.iter()
+        .fold(value, |value, key| &value[*key])
+        .as_f64()
+        .unwrap_or(f64::NAN)
+}
+
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A plate study with little to compute.
+pub const SMALL: &str = r#"
+[plate]
+cells = [12, 4]
+[load]
+stretches = ["20 %"]
+[finite_element]
+cells = [12, 4]
+[tolerances]
+displacement = "5 %"
+departure = "20 %"
+force = "5 %"
+correction = "10 %"
+"#;

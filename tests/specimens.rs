@@ -1,0 +1,147 @@
+//! Specimens of any shape, as a user meets them.
+
+use std::fs;
+
+use serde_json::Value;
+
+mod common;
+
+use common::{folder_with, gelbench, words};
+
+/// A specimen study with little to compute; `shape` gives the measures, `rest` the supports and loads.
+fn specimen(shape: &str, rest: &str) -> String {
+    format!(
+        "kind = \"specimen\"\ntitle = \"small\"\n[material]\ncard = \"pva-10-yeoh\"\n\
+         [specimen]\nthickness = \"2 mm\"\n{shape}\n{rest}\n\
+         [tolerances]\ndisplacement = \"5 %\"\nforce = \"5 %\"\ncorrection = \"10 %\"\n"
+    )
+}
+
+const PULLED: &str = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"left\"\n\
+    [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
+    [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"6 mm\"\ny = \"0 mm\"\n";
+
+#[test]
+fn specimens_of_every_shape_run_in_all_three_models() {
+    let turned = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"start\"\n\
+        [[support]]\ngroup = \"start\"\nkind = \"clamp\"\n\
+        [[support]]\ngroup = \"end\"\nkind = \"rotation\"\ncentre = [\"0 mm\", \"0 mm\"]\nangle = \"15 deg\"\n\
+        [[load]]\ngroup = \"outside\"\nkind = \"pressure\"\npressure = \"-0.5 kPa\"\n";
+    let drawn = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"left\"\n\
+        [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
+        [[load]]\ngroup = \"right\"\nkind = \"traction\"\nx = \"20 kPa\"\n";
+    for (shape, rest) in [
+        (
+            "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6\nlattice = \"triangles\"",
+            PULLED,
+        ),
+        (
+            "shape = \"strip-with-hole\"\nlength = \"30 mm\"\nwidth = \"10 mm\"\nhole_diameter = \"4 mm\"\ncells = 8",
+            drawn,
+        ),
+        (
+            "shape = \"notched-strip\"\nlength = \"30 mm\"\nwidth = \"10 mm\"\nnotch_depth = \"2 mm\"\nnotch_length = \"6 mm\"\ncells = 8",
+            PULLED,
+        ),
+        (
+            "shape = \"dog-bone\"\nlength = \"75 mm\"\nwidth = \"12.5 mm\"\nnarrow_length = \"25 mm\"\nnarrow_width = \"4 mm\"\nshoulder_length = \"8 mm\"\ncells = 6",
+            PULLED,
+        ),
+        (
+            "shape = \"ring-sector\"\ninner_radius = \"10 mm\"\nouter_radius = \"15 mm\"\nangle = \"90 deg\"\ncells = 8",
+            turned,
+        ),
+    ] {
+        let folder = folder_with(&specimen(shape, rest));
+        let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+        let printed = words(&done.get_output().stdout);
+        assert!(
+            printed.contains("4 of 4 checks passed"),
+            "{shape}: {printed}"
+        );
+        let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+        assert!(report.contains("corrected: displacement [%]"), "{shape}");
+        for file in [
+            "mass_spring_002.vtu",
+            "corrected.pvd",
+            "springs_001.vtu",
+            "finite_element_002.vtu",
+        ] {
+            assert!(
+                folder.path().join("out/vtk").join(file).exists(),
+                "{shape} {file}"
+            );
+        }
+    }
+}
+
+/// A mesh that goes out as VTK comes in again and gives the same figures.
+#[test]
+fn a_mesh_of_another_program_is_a_specimen() {
+    let shape = "shape = \"strip-with-hole\"\nlength = \"30 mm\"\nwidth = \"10 mm\"\nhole_diameter = \"4 mm\"\ncells = 8";
+    let folder = folder_with(&specimen(shape, PULLED));
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    let file = "shape = \"mesh\"\nfile = \"out/vtk/mass_spring_001.vtu\"\nfile_unit = \"1 mm\"";
+    fs::write(folder.path().join("file.toml"), specimen(file, PULLED)).unwrap();
+    gelbench(folder.path(), &["run", "file.toml", "--output", "again"]).code(0);
+    let figure = |folder_name: &str| {
+        let path = folder.path().join(folder_name).join("report.json");
+        let report: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+        report["checks"][0]["computed"].as_f64().unwrap()
+    };
+    // The outline of the file is a polygon: its finite elements are not those of the circle.
+    assert!(
+        (figure("out") - figure("again")).abs() < 0.5,
+        "{} {}",
+        figure("out"),
+        figure("again")
+    );
+}
+
+#[test]
+fn faults_of_a_specimen_are_told_with_their_place() {
+    let strip = "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6";
+    for (shape, rest, told) in [
+        (strip, PULLED.replace("group = \"right\"", "group = \"rihgt\""), "the mesh has no group `rihgt`"),
+        (strip, PULLED.replace("\"clamp\"", "\"clmp\""), "did you mean \"clamp\""),
+        (strip, PULLED.replace("measured_group = \"left\"", "measured_group = \"hole\""), "the specimen has no group `hole`"),
+        ("shape = \"strip-with-hole\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\nhole_diameter = \"10 mm\"\ncells = 6", PULLED.into(), "nine tenths"),
+        ("shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 7", PULLED.into(), "cells must be even"),
+        ("shape = \"mesh\"\nfile = \"nothing.msh\"\nfile_unit = \"1 mm\"", PULLED.into(), "nothing.msh"),
+        (
+            strip,
+            format!("{PULLED}[[load]]\ngroup = \"top\"\nkind = \"pressure\"\npressure = \"1 kPa\"\n").replace(
+                "[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"6 mm\"\ny = \"0 mm\"\n",
+                "",
+            ),
+            "under pressure and ends freely",
+        ),
+    ] {
+        let folder = folder_with(&specimen(shape, &rest));
+        let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
+        let found = words(&done.get_output().stderr);
+        let found = found.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(found.contains(told), "{told}: {found}");
+    }
+}
+
+/// The states before the end of a path are written, and the end is told as a requirement that is not met.
+#[test]
+fn what_was_reached_before_a_path_ends_is_not_lost() {
+    let shape = "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6";
+    // The second load factor presses the strip through itself.
+    let pressed = PULLED
+        .replace("factors = [0.5, 1.0]", "factors = [0.1, 30.0]")
+        .replace("x = \"6 mm\"", "x = \"-2 mm\"");
+    let folder = folder_with(&specimen(shape, PULLED));
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    assert!(folder.path().join("out/vtk/corrected_002.vtu").exists());
+    fs::write(folder.path().join("small.toml"), specimen(shape, &pressed)).unwrap();
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
+    let printed = words(&done.get_output().stdout);
+    assert!(printed.contains("load factor 30"), "{printed}");
+    let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+    assert!(report.contains("| 0.1 |"), "{report}");
+    assert!(folder.path().join("out/vtk/corrected_001.vtu").exists());
+    assert!(!folder.path().join("out/vtk/corrected_002.vtu").exists());
+}
