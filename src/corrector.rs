@@ -24,6 +24,7 @@ use crate::solve::sparse::largest;
 use crate::solve::{Convergence, Inadmissible, NotPositiveDefinite, SparseRows};
 
 mod acceleration;
+pub mod climb;
 pub mod condition;
 mod dependence;
 mod difference_scheme;

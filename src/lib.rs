@@ -13,6 +13,7 @@ pub mod finite_element;
 pub mod mass_spring;
 pub mod material;
 pub mod mesh;
+pub mod multigrid;
 pub mod output;
 pub mod problem;
 pub mod results;

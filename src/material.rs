@@ -6,6 +6,7 @@
 mod arruda_boyce;
 pub mod card;
 pub mod curve;
+mod exponential;
 mod fung_demiray;
 mod gent;
 mod holzapfel_gasser_ogden;

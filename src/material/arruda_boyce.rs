@@ -51,6 +51,7 @@ impl ArrudaBoyce {
 }
 
 impl InvariantLaw for ArrudaBoyce {
+    #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let (y, i1) = (invariants.i1_minus_3, 3.0 + invariants.i1_minus_3);
         let mut sum = EnergyDerivatives::default();

@@ -1,5 +1,6 @@
 //! The exponential law of Fung and Demiray.
 
+use super::exponential::{exponential, exponential_less_one};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
@@ -39,11 +40,12 @@ impl FungDemiray {
 }
 
 impl InvariantLaw for FungDemiray {
+    #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let exponent = self.b * invariants.i1_minus_3;
-        let growth = exponent.exp();
+        let growth = exponential(exponent);
         EnergyDerivatives {
-            energy: 0.5 * self.mu / self.b * exponent.exp_m1(),
+            energy: 0.5 * self.mu / self.b * exponential_less_one(exponent),
             d1: 0.5 * self.mu * growth,
             d11: 0.5 * self.mu * self.b * growth,
             ..EnergyDerivatives::default()

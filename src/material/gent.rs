@@ -39,6 +39,7 @@ impl Gent {
 }
 
 impl InvariantLaw for Gent {
+    #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let share = invariants.i1_minus_3 / self.jm;
         let left = 1.0 - share;

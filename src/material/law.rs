@@ -1,5 +1,8 @@
 //! What a hyperelastic law is: energy, stress and tangent of an incompressible thin sheet.
 
+use nalgebra::Matrix4;
+use pulp::{Arch, NullaryFnOnce};
+
 use super::sheet::{Gradient, Kinematics, SheetResponse};
 
 /// An incompressible hyperelastic law, as a thin sheet in plane stress sees it.
@@ -29,6 +32,41 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
             }
             Err(_) => [f64::NAN; 2],
         }
+    }
+
+    /// P at many points at once; whether J is positive at all of them.
+    ///
+    /// All slices have one length.
+    fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
+        let [p11, p12, p21, p22] = stresses;
+        for point in 0..p11.len() {
+            let h = gradients.map(|component| component[point]);
+            let Ok(kinematics) = Kinematics::new(&h.into()) else {
+                return false;
+            };
+            let (_, p) = self.stress(&kinematics);
+            (p11[point], p12[point]) = (p[0], p[1]);
+            (p21[point], p22[point]) = (p[2], p[3]);
+        }
+        true
+    }
+
+    /// The components of ∂P/∂F on and below the diagonal, column by column, at many points at once; whether
+    /// J is positive at all of them.
+    ///
+    /// All slices have one length.
+    fn tangents(&self, gradients: [&[f64]; 4], mut tangents: [&mut [f64]; 10]) -> bool {
+        for point in 0..gradients[0].len() {
+            let h = gradients.map(|component| component[point]);
+            let Ok(kinematics) = Kinematics::new(&h.into()) else {
+                return false;
+            };
+            let lower = lower_triangle(&self.response(&kinematics).tangent);
+            for (component, value) in tangents.iter_mut().zip(lower) {
+                component[point] = value;
+            }
+        }
+        true
     }
 
     /// Whether all directions of the sheet are alike.
@@ -103,7 +141,31 @@ pub trait InvariantLaw: Send + Sync + std::fmt::Debug {
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives;
 }
 
+/// The components on and below the diagonal, column by column.
+#[inline(always)]
+fn lower_triangle(a: &Matrix4<f64>) -> [f64; 10] {
+    [
+        a[0], a[1], a[2], a[3], a[5], a[6], a[7], a[10], a[11], a[15],
+    ]
+}
+
 impl<L: InvariantLaw> HyperelasticLaw for L {
+    fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
+        Arch::new().dispatch(StressLoop {
+            law: self,
+            gradients,
+            stresses,
+        })
+    }
+
+    fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
+        Arch::new().dispatch(TangentLoop {
+            law: self,
+            gradients,
+            tangents,
+        })
+    }
+
     fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
         kinematics.stress(&self.evaluate(kinematics.invariants))
     }
@@ -149,5 +211,66 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
 
     fn youngs_modulus(&self) -> f64 {
         3.0 * self.shear_modulus()
+    }
+}
+
+/// Straight-line code for each point: the compiler makes one instruction of several points, with the widest
+/// vectors that the machine has. No operation is fused with another, so that all machines give the same bits.
+struct StressLoop<'a, L> {
+    law: &'a L,
+    gradients: [&'a [f64]; 4],
+    stresses: [&'a mut [f64]; 4],
+}
+
+impl<L: InvariantLaw> NullaryFnOnce for StressLoop<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let points = self.gradients[0].len();
+        let [h11, h12, h21, h22] = self.gradients.map(|component| &component[..points]);
+        let [p11, p12, p21, p22] = self.stresses.map(|component| &mut component[..points]);
+        let mut inverted = 0_u64;
+        for point in 0..points {
+            let h = Gradient::new(h11[point], h12[point], h21[point], h22[point]);
+            let kinematics = Kinematics::unchecked(&h);
+            let (_, p) = kinematics.stress(&self.law.evaluate(kinematics.invariants));
+            (p11[point], p12[point]) = (p[0], p[1]);
+            (p21[point], p22[point]) = (p[2], p[3]);
+            inverted |= u64::from(!kinematics.is_admissible());
+        }
+        inverted == 0
+    }
+}
+
+/// As [`StressLoop`].
+struct TangentLoop<'a, L> {
+    law: &'a L,
+    gradients: [&'a [f64]; 4],
+    tangents: [&'a mut [f64]; 10],
+}
+
+impl<L: InvariantLaw> NullaryFnOnce for TangentLoop<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let points = self.gradients[0].len();
+        let [h11, h12, h21, h22] = self.gradients.map(|component| &component[..points]);
+        let [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] =
+            self.tangents.map(|component| &mut component[..points]);
+        let mut inverted = 0_u64;
+        for point in 0..points {
+            let h = Gradient::new(h11[point], h12[point], h21[point], h22[point]);
+            let kinematics = Kinematics::unchecked(&h);
+            let response = kinematics.response(&self.law.evaluate(kinematics.invariants));
+            let lower = lower_triangle(&response.tangent);
+            (a0[point], a1[point], a2[point]) = (lower[0], lower[1], lower[2]);
+            (a3[point], a4[point], a5[point]) = (lower[3], lower[4], lower[5]);
+            (a6[point], a7[point]) = (lower[6], lower[7]);
+            (a8[point], a9[point]) = (lower[8], lower[9]);
+            inverted |= u64::from(!kinematics.is_admissible());
+        }
+        inverted == 0
     }
 }

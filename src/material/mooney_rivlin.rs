@@ -40,6 +40,7 @@ impl MooneyRivlin {
 }
 
 impl InvariantLaw for MooneyRivlin {
+    #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         EnergyDerivatives {
             energy: self.c10 * invariants.i1_minus_3 + self.c01 * invariants.i2_minus_3,

@@ -35,6 +35,7 @@ impl NeoHooke {
 }
 
 impl InvariantLaw for NeoHooke {
+    #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         EnergyDerivatives {
             energy: self.c10 * invariants.i1_minus_3,

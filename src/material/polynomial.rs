@@ -59,6 +59,7 @@ impl Polynomial {
 }
 
 impl InvariantLaw for Polynomial {
+    #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let (a, b) = (invariants.i1_minus_3, invariants.i2_minus_3);
         EnergyDerivatives {

@@ -67,13 +67,21 @@ impl Kinematics {
     ///
     /// # Errors
     /// [`Inadmissible`] when J is not positive.
+    #[inline]
     pub fn new(h: &Gradient) -> Result<Self, Inadmissible> {
+        let kinematics = Self::unchecked(h);
+        match kinematics.is_admissible() {
+            true => Ok(kinematics),
+            false => Err(Inadmissible),
+        }
+    }
+
+    /// Kinematics of a displacement gradient, without meaning where J is not positive.
+    #[inline(always)]
+    pub fn unchecked(h: &Gradient) -> Self {
         let [h11, h12, h21, h22] = [h[0], h[1], h[2], h[3]];
         let j = h11 + h22 + (h11 * h22 - h12 * h21); // J − 1
         let jacobian = 1.0 + j;
-        if !(jacobian > 0.0 && jacobian.is_finite()) {
-            return Err(Inadmissible);
-        }
         let cofactor_h = Vector4::new(h22, -h21, -h12, h11);
         let f = identity() + h;
         let cofactor = identity() + cofactor_h;
@@ -84,11 +92,12 @@ impl Kinematics {
         let a = e11 + e22; // tr C − 2
         let determinant = e11 * e22 - e12 * e12;
         let d = j * (2.0 + j); // det C − 1
-        let s = j * (3.0 + j * (3.0 + j)) / jacobian.powi(3); // 1 − J⁻³
+        let cube = jacobian * jacobian * jacobian;
+        let s = j * (3.0 + j * (3.0 + j)) / cube; // 1 − J⁻³
         let q = d / (1.0 + d); // 1 − J⁻²
         let m = j - a + s * (2.0 + a); // 1 + J − tr C/J³
         let distortion = h - cofactor_h;
-        Ok(Self {
+        Self {
             invariants: Invariants {
                 i1_minus_3: (a * d - determinant) / (1.0 + d),
                 i2_minus_3: (d * d - determinant) / (1.0 + d),
@@ -99,10 +108,17 @@ impl Kinematics {
             distortion,
             half_d1: distortion + s * cofactor,
             half_d2: distortion - q * f + m * cofactor,
-        })
+        }
+    }
+
+    /// Whether J is a positive number.
+    #[inline(always)]
+    pub fn is_admissible(&self) -> bool {
+        (self.area_ratio() > 0.0) & (self.area_ratio() < f64::INFINITY)
     }
 
     /// J = det F, the in-plane area ratio.
+    #[inline(always)]
     pub fn area_ratio(&self) -> f64 {
         1.0 + self.area_change
     }
@@ -127,11 +143,13 @@ impl Kinematics {
     }
 
     /// Energy and stress of a law Ψ(I₁, I₂) with the derivatives `w`.
+    #[inline(always)]
     pub fn stress(&self, w: &EnergyDerivatives) -> (f64, Gradient) {
         (w.energy, 2.0 * (w.d1 * self.half_d1 + w.d2 * self.half_d2))
     }
 
     /// Energy, stress and consistent tangent of a law Ψ(I₁, I₂) with the derivatives `w`.
+    #[inline(always)]
     pub fn response(&self, w: &EnergyDerivatives) -> SheetResponse {
         let (g1, g2) = (&self.half_d1, &self.half_d2);
         let mixed = g1 * g2.transpose();
@@ -151,6 +169,7 @@ impl Kinematics {
     }
 
     /// ½ ∂²I₁/∂F² = 𝟙 + 3 J⁻⁴ cof F ⊗ cof F − J⁻³ 𝔼, where 𝔼 = ∂ cof F/∂F.
+    #[inline(always)]
     pub fn second_derivative_1(&self) -> Matrix4<f64> {
         let jacobian = self.area_ratio();
         let cofactor = cofactor(&self.deformation_gradient);
@@ -160,6 +179,7 @@ impl Kinematics {
     }
 
     /// ½ ∂²I₂/∂F² from ½ ∂I₂/∂F = J⁻² F + k cof F with k = J − tr C/J³.
+    #[inline(always)]
     fn second_derivative_2(&self) -> Matrix4<f64> {
         let f = &self.deformation_gradient;
         let jacobian = self.area_ratio();
@@ -174,16 +194,19 @@ impl Kinematics {
     }
 }
 
+#[inline(always)]
 fn identity() -> Gradient {
     Vector4::new(1.0, 0.0, 0.0, 1.0)
 }
 
 /// cof F = ∂J/∂F.
+#[inline(always)]
 pub fn cofactor(f: &Gradient) -> Gradient {
     Vector4::new(f[3], -f[2], -f[1], f[0])
 }
 
 /// 𝔼 = ∂ cof F/∂F = ∂²J/∂F².
+#[inline(always)]
 pub fn cofactor_derivative() -> Matrix4<f64> {
     let mut e = Matrix4::zeros();
     (e[(0, 3)], e[(3, 0)], e[(1, 2)], e[(2, 1)]) = (1.0, 1.0, -1.0, -1.0);

@@ -1,5 +1,6 @@
 //! The law of Veronda and Westmann.
 
+use super::exponential::{exponential, exponential_less_one};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
@@ -41,11 +42,12 @@ impl VerondaWestmann {
 }
 
 impl InvariantLaw for VerondaWestmann {
+    #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let exponent = self.beta * invariants.i1_minus_3;
-        let (growth, slope) = (exponent.exp(), self.c * self.beta);
+        let (growth, slope) = (exponential(exponent), self.c * self.beta);
         EnergyDerivatives {
-            energy: self.c * exponent.exp_m1() - 0.5 * slope * invariants.i2_minus_3,
+            energy: self.c * exponential_less_one(exponent) - 0.5 * slope * invariants.i2_minus_3,
             d1: slope * growth,
             d2: -0.5 * slope,
             d11: slope * self.beta * growth,

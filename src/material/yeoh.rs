@@ -41,6 +41,7 @@ impl Yeoh {
 }
 
 impl InvariantLaw for Yeoh {
+    #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let ([c1, c2, c3], y) = (self.coefficients, invariants.i1_minus_3);
         EnergyDerivatives {

@@ -2,6 +2,7 @@
 
 use super::{Marlow, TensionCurve};
 use crate::document::Bound;
+use crate::material::exponential::second_quotient;
 use crate::material::law::HyperelasticLaw;
 use crate::material::parameters::{Parameters, StrainMeasure, StressMeasure};
 
@@ -28,10 +29,6 @@ pub struct ExponentialCurve {
     pub amplitude: f64,
     /// b.
     pub exponent: f64,
-    /// Which stress the curve gives.
-    pub stress_measure: StressMeasure,
-    /// Which strain the curve takes.
-    pub strain_measure: StrainMeasure,
 }
 
 impl ExponentialCurve {
@@ -40,15 +37,45 @@ impl ExponentialCurve {
         let curve = Self {
             amplitude: parameters.stress("amplitude", Bound::Positive),
             exponent: parameters.number("exponent", Bound::Positive, [1e-2, 20.0]),
-            stress_measure: parameters.stress_measure,
-            strain_measure: parameters.strain_measure,
         };
         parameters.remark("offset");
-        Box::new(Marlow { curve })
+        match (parameters.stress_measure, parameters.strain_measure) {
+            (StressMeasure::Nominal, StrainMeasure::Nominal) => Box::new(Marlow { curve }),
+            (stress_measure, strain_measure) => Box::new(Marlow {
+                curve: ConvertedCurve {
+                    curve,
+                    stress_measure,
+                    strain_measure,
+                },
+            }),
+        }
     }
 }
 
+/// The curve in nominal measures, as most tests are published.
 impl TensionCurve for ExponentialCurve {
+    #[inline(always)]
+    fn secant(&self, x: f64) -> (f64, f64) {
+        let modulus = self.amplitude * self.exponent;
+        let (phi, dphi, _) = exponential_quotients(self.exponent * x);
+        (modulus * phi, modulus * self.exponent * dphi)
+    }
+
+    #[inline(always)]
+    fn energy(&self, x: f64) -> f64 {
+        self.amplitude * self.exponent * x * x * second_quotient(self.exponent * x)
+    }
+}
+
+/// An exponential curve of true stress or logarithmic strain.
+#[derive(Clone, Copy, Debug)]
+struct ConvertedCurve {
+    curve: ExponentialCurve,
+    stress_measure: StressMeasure,
+    strain_measure: StrainMeasure,
+}
+
+impl TensionCurve for ConvertedCurve {
     fn secant(&self, x: f64) -> (f64, f64) {
         // ε = q x
         let (q, dq) = match self.strain_measure {
@@ -60,23 +87,17 @@ impl TensionCurve for ExponentialCurve {
             StressMeasure::Nominal => (1.0, 0.0),
             StressMeasure::Cauchy => (1.0 / (1.0 + x), -1.0 / (1.0 + x).powi(2)),
         };
-        let z = self.exponent * q * x;
-        let dz = self.exponent * (q + x * dq);
+        let z = self.curve.exponent * q * x;
+        let dz = self.curve.exponent * (q + x * dq);
         let (phi, dphi, _) = exponential_quotients(z);
-        let modulus = self.amplitude * self.exponent;
+        let modulus = self.curve.amplitude * self.curve.exponent;
         let secant = modulus * phi * q * c;
         let slope = modulus * (dphi * dz * q * c + phi * dq * c + phi * q * dc);
         (secant, slope)
     }
 
     fn energy(&self, x: f64) -> f64 {
-        if self.stress_measure == StressMeasure::Nominal
-            && self.strain_measure == StrainMeasure::Nominal
-        {
-            let (.., phi2) = exponential_quotients(self.exponent * x);
-            return self.amplitude * self.exponent * x * x * phi2;
-        }
-        let panels = (self.exponent * x).ceil().clamp(1.0, 64.0);
+        let panels = (self.curve.exponent * x).ceil().clamp(1.0, 64.0);
         let width = x / panels;
         (0..panels as usize)
             .flat_map(|panel| GAUSS_LEGENDRE.map(|(point, weight)| (panel as f64 + point, weight)))
@@ -88,15 +109,9 @@ impl TensionCurve for ExponentialCurve {
 }
 
 /// φ = (eᶻ − 1)/z, φ′ and φ₂ = (eᶻ − 1 − z)/z², without cancellation: φ = 1 + z φ₂, φ′ = φ − φ₂.
+#[inline(always)]
 fn exponential_quotients(z: f64) -> (f64, f64, f64) {
-    let phi2 = if z.abs() < 1.0 {
-        // Σ zᵏ/(k + 2)!
-        (0..18)
-            .rev()
-            .fold(0.0, |sum, k| (1.0 + z * sum) / f64::from(k + 2))
-    } else {
-        (z.exp_m1() - z) / (z * z)
-    };
+    let phi2 = second_quotient(z);
     let phi = 1.0 + z * phi2;
     (phi, phi - phi2, phi2)
 }

@@ -1,0 +1,358 @@
+//! The corrector's fast path: few springs first, then climb.
+//!
+//! The springs are solved on a very coarse lattice and corrected there. The field then climbs from grid to grid,
+//! each with about twice as many cells along both axes: it is interpolated by cubics, the governing equation is
+//! linearised once, and a few conjugate-gradient iterations, each preconditioned by one V-cycle and each with
+//! one evaluation of F, bring the correction that the finer grid asks for. No load steps, no factorisation.
+//!
+//! **When to stop.** The first correction d on a grid is what the grid adds to the one before. With the ratio
+//! q of two grids' corrections, what the grids that follow would add is d q/(1 − q): the discretisation error.
+//! The iteration ends when its last correction is below a stated share of that.
+
+use crate::error::{Error, SolveFault};
+use crate::multigrid::{Multigrid, NotPositiveDefinite};
+use crate::problem::Problem;
+
+mod forces;
+mod grid;
+mod level;
+mod multipliers;
+mod path;
+mod start;
+mod tangents;
+
+pub use grid::{Field, Grid};
+use level::{Inverted, Level, Reached, Sheet};
+pub use level::{Order, Work};
+pub use path::{Grips, Interactive, RigidMotion};
+
+/// How exactly the climb solves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClimbSettings {
+    /// The last correction on each grid relative to the grid's discretisation error.
+    pub tolerance: f64,
+    /// Iterations allowed after a linearisation.
+    pub max_iterations: usize,
+}
+
+impl Default for ClimbSettings {
+    fn default() -> Self {
+        Self {
+            tolerance: 0.2,
+            max_iterations: 20,
+        }
+    }
+}
+
+/// A corrected field at one stretch.
+#[derive(Clone, Debug)]
+pub struct Climbed {
+    /// Displacements in mm on the finest grid.
+    pub field: Field,
+    /// Force on the moving grip in N.
+    pub force: f64,
+    /// The field on the grid before, where the finest one is not the only one.
+    coarser: Option<Field>,
+    /// The estimated discretisation error of the field, root mean square over the nodes in mm; not a number where
+    /// there is one grid alone.
+    pub discretisation_error: f64,
+    /// The last correction, root mean square over the nodes in mm.
+    pub last_correction: f64,
+    /// What was done on each grid, coarse to fine: its nodes, and the work.
+    pub work: Vec<(usize, Work)>,
+}
+
+impl Climbed {
+    /// All evaluations of F, linearisations and cycles as fractions of one on a grid with so many nodes.
+    pub fn fine_work(&self, nodes: usize) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for (own, work) in &self.work {
+            let share = *own as f64 / nodes as f64;
+            let counts = [work.evaluations, work.linearisations, work.cycles];
+            for (sum, count) in sums.iter_mut().zip(counts) {
+                *sum += share * count as f64;
+            }
+        }
+        sums
+    }
+}
+
+/// A plate's grids, ready to correct at any stretch.
+#[derive(Debug)]
+pub struct Climb<'a> {
+    problem: &'a Problem,
+    order: Order,
+    settings: ClimbSettings,
+    levels: Vec<Level>,
+    multigrid: Multigrid,
+    start: usize,
+}
+
+/// Unknowns of the coarsest grid at most.
+const COARSEST: usize = 100;
+/// Nodes of the lattice of springs at least, where the finest grid has as many.
+const SPRINGS: usize = 90;
+/// The ratio of the corrections of two grids where it is not known yet, and the ratios that are believed.
+const RATIO: f64 = 1.0 / 3.0;
+const RATIOS: [f64; 2] = [0.15, 0.7];
+/// Times that a grid's equation is linearised anew before it is given up.
+const LINEARISATIONS: usize = 6;
+/// The last correction relative to the first one on the lattice of springs.
+const START_TOLERANCE: f64 = 1e-3;
+
+impl<'a> Climb<'a> {
+    /// Prepares the grids of a plate with so many equal cells.
+    ///
+    /// # Panics
+    /// When the order is quadratic and a number of cells is odd.
+    pub fn even(
+        problem: &'a Problem,
+        cells: [usize; 2],
+        order: Order,
+        settings: ClimbSettings,
+    ) -> Self {
+        let boundaries = [0, 1].map(|axis| {
+            assert!(cells[axis].is_multiple_of(order.cells()), "pairs of cells");
+            let elements = cells[axis] / order.cells();
+            let at = |index: usize| problem.size[axis] * index as f64 / elements as f64;
+            (0..=elements).map(at).collect()
+        });
+        Self::new(problem, boundaries, order, settings)
+    }
+
+    /// Prepares the grids of a plate between the given coordinates of element boundaries along X and Y, which
+    /// begin at zero and end at the plate's size.
+    pub fn new(
+        problem: &'a Problem,
+        boundaries: [Vec<f64>; 2],
+        order: Order,
+        settings: ClimbSettings,
+    ) -> Self {
+        let mut all = vec![boundaries];
+        while let Some(coarser) = coarser(&all[all.len() - 1], order) {
+            all.push(coarser);
+        }
+        let grids: Vec<Grid> = all
+            .iter()
+            .rev()
+            .map(|[x, y]| Grid::new([x, y], order.cells()))
+            .collect();
+        let start = grids.iter().position(|grid| grid.nodes() >= SPRINGS);
+        let coordinates: Vec<_> = grids.iter().map(|grid| grid.coordinates.clone()).collect();
+        let levels = grids.into_iter().enumerate();
+        let levels: Vec<Level> = levels
+            .map(|(index, grid)| Level::new(grid, index))
+            .collect();
+        Self {
+            problem,
+            order,
+            settings,
+            multigrid: Multigrid::new(&coordinates),
+            start: start.unwrap_or(levels.len() - 1),
+            levels,
+        }
+    }
+
+    /// The finest grid.
+    pub fn grid(&self) -> &Grid {
+        &self.levels[self.levels.len() - 1].grid
+    }
+
+    /// Corrects at one stretch.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when no field was found.
+    pub fn correct(&mut self, stretch: f64) -> Result<Climbed, Error> {
+        let (field, work) = self.first_field(stretch)?;
+        self.ascend(field, work).map_err(|fault| Error::Solve {
+            model: "corrector (climb)".into(),
+            step: Problem::describe_step(stretch),
+            fault,
+        })
+    }
+
+    fn sheet(&self) -> Sheet<'a> {
+        Sheet {
+            law: &*self.problem.law,
+            thickness: self.problem.thickness,
+            order: self.order,
+        }
+    }
+
+    /// From the corrected field on the lattice of springs to the finest grid.
+    fn ascend(
+        &mut self,
+        mut field: Field,
+        mut work: Vec<(usize, Work)>,
+    ) -> Result<Climbed, SolveFault> {
+        let mut previous: Option<f64> = None;
+        let (mut own_error, mut last_correction) = (f64::NAN, f64::NAN);
+        let tolerance = self.settings.tolerance;
+        let mut coarser = None;
+        for index in self.start + 1..self.levels.len() {
+            let finer = field.onto(&self.levels[index - 1].grid, &self.levels[index].grid);
+            coarser = Some(std::mem::replace(&mut field, finer));
+            let ratio = |first: f64| {
+                let [least, most] = RATIOS;
+                previous.map_or(RATIO, |previous| (first / previous).clamp(least, most))
+            };
+            let error = |first: f64| first * ratio(first) / (1.0 - ratio(first));
+            let enough = |first: f64, last: f64| last <= tolerance * error(first);
+            let reached = self.solve(index, &mut field, &enough)?;
+            own_error = error(reached.first);
+            last_correction = reached.last;
+            previous = Some(reached.first);
+            work.push((self.levels[index].grid.nodes(), reached.work));
+        }
+        let force = self.force(&field).map_err(|Inverted| inverted())?;
+        if let Some((_, work)) = work.last_mut() {
+            work.evaluations += 1;
+        }
+        Ok(Climbed {
+            field,
+            force,
+            coarser,
+            discretisation_error: own_error,
+            last_correction,
+            work,
+        })
+    }
+
+    /// Linearises a grid's equation and iterates, again where the iteration does not end.
+    fn solve(
+        &mut self,
+        index: usize,
+        field: &mut Field,
+        enough: &dyn Fn(f64, f64) -> bool,
+    ) -> Result<Reached, SolveFault> {
+        let (sheet, most) = (self.sheet(), self.settings.max_iterations);
+        let mut whole: Option<Reached> = None;
+        for _ in 0..LINEARISATIONS {
+            let level = &mut self.levels[index];
+            level
+                .linearise(sheet, field, &mut self.multigrid)
+                .map_err(|Inverted| inverted())?;
+            let first = whole.map(|whole| whole.first);
+            let enough = |own: f64, last: f64| enough(first.unwrap_or(own), last);
+            let mut reached = level
+                .iterate(sheet, field, &mut self.multigrid, most, &enough)
+                .map_err(|Inverted| inverted())?;
+            reached.work.linearisations += 1;
+            if let Some(whole) = whole {
+                reached.work.add(whole.work);
+                reached.first = whole.first;
+            }
+            if enough(reached.first, reached.last) {
+                return Ok(reached);
+            }
+            whole = Some(reached);
+        }
+        Err(SolveFault::Stalled {
+            iterations: LINEARISATIONS * most,
+            residual: whole.map_or(f64::NAN, |whole| whole.last / whole.first),
+            tolerance: self.settings.tolerance,
+        })
+    }
+
+    /// Writes the operators of a grid and of all coarser ones at a field on it.
+    fn linearise_below(&mut self, index: usize, field: &Field) -> Result<(), SolveFault> {
+        let sheet = self.sheet();
+        let mut field = field.clone();
+        for index in (0..=index).rev() {
+            self.levels[index]
+                .linearise(sheet, &field, &mut self.multigrid)
+                .map_err(|Inverted| inverted())?;
+            if index > 0 {
+                field = field.onto(&self.levels[index].grid, &self.levels[index - 1].grid);
+            }
+        }
+        let inverted = self.multigrid.invert_coarsest();
+        inverted.map_err(|NotPositiveDefinite| SolveFault::NotPositiveDefinite)
+    }
+
+    /// The force on the moving grip: the virtual work of all forces in a uniform stretch, in N.
+    fn force(&mut self, field: &Field) -> Result<f64, Inverted> {
+        let sheet = self.sheet();
+        let length = self.problem.size[0];
+        let level = self.levels.last_mut().expect("a grid");
+        level.evaluate_residual(sheet, field)?;
+        let forces = &level.residual.components[0];
+        let lines = forces.chunks_exact(field.width);
+        let places = lines.zip(&level.grid.coordinates[0]);
+        Ok(places
+            .map(|(line, x)| x / length * line.iter().sum::<f64>())
+            .sum())
+    }
+
+    /// The field extrapolated after Richardson from the finest grid and the one before it; nothing where there is
+    /// one grid alone.
+    pub fn extrapolated(&self, climbed: &Climbed) -> Option<Field> {
+        let coarser = climbed.coarser.as_ref()?;
+        let before = &self.levels[self.levels.len() - 2].grid;
+        let mut field = climbed.field.clone();
+        field.add(-1.0, &coarser.onto(before, self.grid()));
+        let factor = climbed.discretisation_error / field.size();
+        field.scale(factor);
+        field.add(1.0, &climbed.field);
+        Some(field)
+    }
+}
+
+fn inverted() -> SolveFault {
+    SolveFault::Inverted {
+        element: "a cell on the way; use the direct method or more cells".into(),
+    }
+}
+
+/// Boundaries of about half as many elements along the axes on which they are short; nothing where there are few.
+fn coarser(boundaries: &[Vec<f64>; 2], order: Order) -> Option<[Vec<f64>; 2]> {
+    let elements = boundaries.each_ref().map(|boundaries| boundaries.len() - 1);
+    let cells = elements.map(|elements| elements * order.cells());
+    if 2 * (cells[0] - 1) * (cells[1] + 1) <= COARSEST {
+        return None;
+    }
+    let length = |axis: usize| boundaries[axis][elements[axis]] / elements[axis] as f64;
+    let longer = [0, 1].map(|axis| length(axis) > 1.6 * length(1 - axis));
+    let halve = [0, 1].map(|axis| !longer[axis] && elements[axis] > 1);
+    if halve == [false, false] {
+        return None;
+    }
+    Some([0, 1].map(|axis| match halve[axis] {
+        true => thin_out(&boundaries[axis]),
+        false => boundaries[axis].clone(),
+    }))
+}
+
+/// Every second one of some places; where their number is odd, places between them.
+fn thin_out(places: &[f64]) -> Vec<f64> {
+    let fine = places.len() - 1;
+    let coarse = fine.div_ceil(2);
+    let at = |index: usize| {
+        let position = (index * fine) as f64 / coarse as f64;
+        let before = (position as usize).min(fine - 1);
+        let share = position - before as f64;
+        places[before] + share * (places[before + 1] - places[before])
+    };
+    (0..=coarse).map(at).collect()
+}
+
+impl Climb<'_> {
+    /// scaffold
+    pub fn time_evaluations(&mut self, u: &Field) -> [f64; 3] {
+        let sheet = self.sheet();
+        let level = self.levels.last_mut().expect("a grid");
+        let mut best = [f64::INFINITY; 3];
+        for _ in 0..5 {
+            let start = std::time::Instant::now();
+            let _ = level.evaluate_residual(sheet, u);
+            best[0] = best[0].min(start.elapsed().as_secs_f64());
+            let start = std::time::Instant::now();
+            let _ = level.linearise(sheet, u, &mut self.multigrid);
+            best[1] = best[1].min(start.elapsed().as_secs_f64());
+            let start = std::time::Instant::now();
+            let _ = self.multigrid.cycle(level.index);
+            best[2] = best[2].min(start.elapsed().as_secs_f64());
+        }
+        best
+    }
+}

@@ -1,0 +1,202 @@
+//! A plate's grid: where its nodes are, and fields on them.
+
+use crate::multigrid::{Interpolation, Lines};
+
+/// Where the energy of an element is sampled along one axis, and the functions there.
+///
+/// ```text
+/// order 1: two nodes along each axis, 2 × 2 Gauss points: the equations of bilinear differences
+/// order 2: three nodes along each axis, 3 × 3 Gauss points: those of biquadratic ones, two cells at a time
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Rule<const NODES: usize> {
+    /// Share of the element's length.
+    pub weights: [f64; NODES],
+    /// Values of the functions: point, node.
+    pub values: [[f64; NODES]; NODES],
+    /// Their derivatives by the element's unit coordinate.
+    pub derivatives: [[f64; NODES]; NODES],
+}
+
+impl Rule<2> {
+    /// Linear functions at two Gauss points.
+    pub fn linear() -> Self {
+        let gauss = 0.5 / 3.0_f64.sqrt();
+        let points = [0.5 - gauss, 0.5 + gauss];
+        Self {
+            weights: [0.5; 2],
+            values: points.map(|x| [1.0 - x, x]),
+            derivatives: [[-1.0, 1.0]; 2],
+        }
+    }
+}
+
+impl Rule<3> {
+    /// Quadratic functions at three Gauss points.
+    pub fn quadratic() -> Self {
+        let gauss = 0.5 * 0.6_f64.sqrt();
+        let points = [0.5 - gauss, 0.5, 0.5 + gauss];
+        Self {
+            weights: [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0],
+            values: points.map(|x| {
+                [
+                    (1.0 - x) * (1.0 - 2.0 * x),
+                    4.0 * x * (1.0 - x),
+                    x * (2.0 * x - 1.0),
+                ]
+            }),
+            derivatives: points.map(|x| [4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0]),
+        }
+    }
+}
+
+/// The nodes of a plate along both axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Coordinates in mm.
+    pub coordinates: [Vec<f64>; 2],
+}
+
+impl Grid {
+    /// A grid whose element boundaries are the given coordinates, each element with `order` cells of one size.
+    pub fn new(boundaries: [&[f64]; 2], order: usize) -> Self {
+        let divide = |boundaries: &[f64]| {
+            let within = |pair: &[f64]| -> Vec<f64> {
+                let step = (pair[1] - pair[0]) / order as f64;
+                (0..order)
+                    .map(|part| pair[0] + part as f64 * step)
+                    .collect()
+            };
+            let mut nodes: Vec<f64> = boundaries.windows(2).flat_map(within).collect();
+            nodes.extend(boundaries.last());
+            nodes
+        };
+        Self {
+            coordinates: boundaries.map(divide),
+        }
+    }
+
+    /// A grid of equal cells.
+    pub fn even(size: [f64; 2], cells: [usize; 2]) -> Self {
+        let boundaries = [0, 1].map(|axis| -> Vec<f64> {
+            let at = |node: usize| size[axis] * node as f64 / cells[axis] as f64;
+            (0..=cells[axis]).map(at).collect()
+        });
+        Self::new(boundaries.each_ref().map(|places| &places[..]), 1)
+    }
+
+    /// The grid's lines.
+    pub fn lines(&self) -> Lines {
+        Lines {
+            count: self.coordinates[0].len(),
+            nodes: self.coordinates[1].len(),
+        }
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.coordinates[0].len() * self.coordinates[1].len()
+    }
+
+    /// Length of a span of nodes along an axis in mm.
+    pub fn span(&self, axis: usize, from: usize, to: usize) -> f64 {
+        self.coordinates[axis][to] - self.coordinates[axis][from]
+    }
+}
+
+/// Both components of a field at the nodes of a grid, line by line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Nodes on a line.
+    pub width: usize,
+    /// ux, uy or the forces along X, Y.
+    pub components: [Vec<f64>; 2],
+}
+
+impl Field {
+    /// Zeros.
+    pub fn zeros(grid: &Grid) -> Self {
+        let nodes = grid.nodes();
+        Self {
+            width: grid.coordinates[1].len(),
+            components: [vec![0.0; nodes], vec![0.0; nodes]],
+        }
+    }
+
+    /// From ux, uy of node after node.
+    pub fn of_nodes(grid: &Grid, values: &[f64]) -> Self {
+        let mut field = Self::zeros(grid);
+        for (node, value) in values.chunks_exact(2).enumerate() {
+            for (component, value) in field.components.iter_mut().zip(value) {
+                component[node] = *value;
+            }
+        }
+        field
+    }
+
+    /// ux, uy of node after node.
+    pub fn to_nodes(&self) -> Vec<f64> {
+        let [x, y] = &self.components;
+        x.iter().zip(y).flat_map(|(x, y)| [*x, *y]).collect()
+    }
+
+    /// Multiplies all values.
+    pub fn scale(&mut self, factor: f64) {
+        for component in &mut self.components {
+            component.iter_mut().for_each(|u| *u *= factor);
+        }
+    }
+
+    /// Adds another field, multiplied.
+    pub fn add(&mut self, factor: f64, other: &Self) {
+        for (own, other) in self.components.iter_mut().zip(&other.components) {
+            for (u, other) in own.iter_mut().zip(other) {
+                *u += factor * other;
+            }
+        }
+    }
+
+    /// The sum of products of all values.
+    pub fn product(&self, other: &Self) -> f64 {
+        let pairs = self.components.iter().zip(&other.components);
+        pairs
+            .map(|(own, other)| own.iter().zip(other).map(|(a, b)| a * b).sum::<f64>())
+            .sum()
+    }
+
+    /// The root mean square over the nodes.
+    pub fn size(&self) -> f64 {
+        (self.product(self) / self.components[0].len() as f64).sqrt()
+    }
+
+    /// The nodes between the two grips.
+    pub fn free(&self) -> std::ops::Range<usize> {
+        self.width..self.components[0].len() - self.width
+    }
+
+    /// Interpolates the field on `grid` at the nodes of `finer` by cubics.
+    pub fn onto(&self, grid: &Grid, finer: &Grid) -> Self {
+        let [along_x, along_y] = [0, 1]
+            .map(|axis| Interpolation::cubic(&grid.coordinates[axis], &finer.coordinates[axis]));
+        let mut field = Self::zeros(finer);
+        let mut line = vec![0.0; self.width];
+        for (from, to) in self.components.iter().zip(&mut field.components) {
+            for ((first, shares), to) in along_x.shares().zip(to.chunks_exact_mut(field.width)) {
+                line.fill(0.0);
+                for (share, from) in shares
+                    .iter()
+                    .zip(from[first * self.width..].chunks_exact(self.width))
+                {
+                    for (sum, value) in line.iter_mut().zip(from) {
+                        *sum += share * value;
+                    }
+                }
+                for ((first, shares), to) in along_y.shares().zip(to) {
+                    let pairs = shares.iter().zip(&line[first..]);
+                    *to = pairs.map(|(share, value)| share * value).sum();
+                }
+            }
+        }
+        field
+    }
+}

@@ -1,0 +1,339 @@
+//! One grid of the climb: its equation, and the iteration that solves it.
+
+use super::forces::forces;
+use super::grid::{Field, Grid, Rule};
+use super::tangents::linearise;
+use crate::material::HyperelasticLaw;
+use crate::multigrid::{Multigrid, Vector};
+
+/// Iterations of a linear system at most.
+const LINEAR_ITERATIONS: usize = 200;
+
+/// Size of the step of a difference of F relative to the displacements.
+const DIFFERENCE: f64 = 1e-7;
+
+/// The order of the difference scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The equations of bilinear differences, [`crate::corrector::DifferenceScheme::Gauss`].
+    Linear,
+    /// Those of biquadratic differences over two by two cells.
+    Quadratic,
+}
+
+impl Order {
+    /// Cells along each axis that are evaluated together.
+    pub fn cells(self) -> usize {
+        match self {
+            Self::Linear => 1,
+            Self::Quadratic => 2,
+        }
+    }
+}
+
+/// The sheet whose equation is solved.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheet<'a> {
+    /// The material.
+    pub law: &'a dyn HyperelasticLaw,
+    /// Thickness in mm.
+    pub thickness: f64,
+    /// The order of the differences.
+    pub order: Order,
+}
+
+impl Sheet<'_> {
+    /// F(u) in N at all nodes of a grid.
+    fn forces(self, grid: &Grid, u: &Field, target: &mut Field) -> Result<(), Inverted> {
+        let Sheet { law, thickness, .. } = self;
+        let admissible = match self.order {
+            Order::Linear => forces(law, thickness, grid, &Rule::linear(), u, target),
+            Order::Quadratic => forces(law, thickness, grid, &Rule::quadratic(), u, target),
+        };
+        admissible.then_some(()).ok_or(Inverted)
+    }
+}
+
+/// A field turned a cell inside out: J is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inverted;
+
+/// A grid with the vectors of its iteration.
+#[derive(Debug)]
+pub struct Level {
+    /// The grid.
+    pub grid: Grid,
+    /// Which of the multigrid's grids it is.
+    pub index: usize,
+    /// F at the field that was evaluated last.
+    pub residual: Field,
+    trial: Field,
+    trial_residual: Field,
+    direction: Field,
+    correction: Field,
+}
+
+/// What an iteration did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Evaluations of F on this grid.
+    pub evaluations: usize,
+    /// Linearisations of F on this grid.
+    pub linearisations: usize,
+    /// V-cycles that began on this grid.
+    pub cycles: usize,
+}
+
+impl Work {
+    /// Adds other work on the same grid.
+    pub fn add(&mut self, other: Self) {
+        self.evaluations += other.evaluations;
+        self.linearisations += other.linearisations;
+        self.cycles += other.cycles;
+    }
+}
+
+/// How far an iteration came; root mean squares over the nodes in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// Of the first correction: how far the start was away.
+    pub first: f64,
+    /// Of the last correction, which has been applied.
+    pub last: f64,
+    /// What it took.
+    pub work: Work,
+}
+
+impl Level {
+    /// Vectors for a grid.
+    pub fn new(grid: Grid, index: usize) -> Self {
+        let field = Field::zeros(&grid);
+        Self {
+            grid,
+            index,
+            residual: field.clone(),
+            trial: field.clone(),
+            trial_residual: field.clone(),
+            direction: field.clone(),
+            correction: field,
+        }
+    }
+
+    /// F(u) in N at all nodes into [`Self::residual`]: the reactions at the grips.
+    ///
+    /// # Errors
+    /// [`Inverted`].
+    pub fn evaluate_residual(&mut self, sheet: Sheet, u: &Field) -> Result<(), Inverted> {
+        sheet.forces(&self.grid, u, &mut self.residual)
+    }
+
+    /// Writes the operator at `u`.
+    ///
+    /// # Errors
+    /// [`Inverted`].
+    pub fn linearise(
+        &self,
+        sheet: Sheet,
+        u: &Field,
+        multigrid: &mut Multigrid,
+    ) -> Result<(), Inverted> {
+        let stencil = multigrid.stencil(self.index);
+        let admissible = linearise(sheet.law, sheet.thickness, &self.grid, u, stencil);
+        admissible.then_some(()).ok_or(Inverted)
+    }
+
+    /// Moves the free nodes of `u` towards F(u) = 0 by conjugate gradients, whose products with the Jacobian are
+    /// differences of F and whose preconditioner is one V-cycle with the operators written before.
+    ///
+    /// Ends when `enough` says so of the first and the last correction, or after so many iterations.
+    ///
+    /// # Errors
+    /// [`Inverted`] when `u` or every step from it turns a cell inside out.
+    pub fn iterate(
+        &mut self,
+        sheet: Sheet,
+        u: &mut Field,
+        multigrid: &mut Multigrid,
+        max_iterations: usize,
+        enough: &dyn Fn(f64, f64) -> bool,
+    ) -> Result<Reached, Inverted> {
+        let mut work = Work {
+            evaluations: 1,
+            ..Work::default()
+        };
+        self.evaluate_residual(sheet, u)?;
+        let mut steepness = self.precondition(multigrid, &mut work);
+        let first = self.correction.size();
+        for component in &mut self.direction.components {
+            component.fill(0.0);
+        }
+        let mut share = 0.0;
+        let mut last = first;
+        for _ in 0..max_iterations {
+            if enough(first, last) {
+                break;
+            }
+            self.turn(share);
+            self.step(sheet, u, &mut work)?;
+            let before = steepness;
+            steepness = self.precondition(multigrid, &mut work);
+            share = steepness / before;
+            last = self.correction.size();
+        }
+        let free = u.free();
+        for (u, correction) in u.components.iter_mut().zip(&self.correction.components) {
+            let pairs = u[free.clone()].iter_mut().zip(&correction[free.clone()]);
+            pairs.for_each(|(u, correction)| *u -= correction);
+        }
+        Ok(Reached { first, last, work })
+    }
+
+    /// The correction z = M⁻¹ r of the residual; returns r · z.
+    fn precondition(&mut self, multigrid: &mut Multigrid, work: &mut Work) -> f64 {
+        work.cycles += 1;
+        let width = self.residual.width;
+        let residual = &self.residual;
+        let right = multigrid.right_hand_side(self.index);
+        right.for_each_free_line(|line, b_x, b_y| {
+            for (b, r) in [b_x, b_y].into_iter().zip(&residual.components) {
+                let pairs = b[1..=width].iter_mut().zip(&r[line * width..]);
+                pairs.for_each(|(b, r)| *b = *r as f32);
+            }
+        });
+        let z: &Vector = multigrid.cycle(self.index);
+        let mut product = 0.0;
+        for line in 1..z.lines().count - 1 {
+            for (axis, z) in z.line(line).into_iter().enumerate() {
+                let here = line * width..(line + 1) * width;
+                let target = &mut self.correction.components[axis][here.clone()];
+                let residual = &self.residual.components[axis][here];
+                let mut sum = 0.0;
+                for ((target, z), r) in target.iter_mut().zip(&z[1..=width]).zip(residual) {
+                    *target = f64::from(*z);
+                    sum += *target * r;
+                }
+                product += sum;
+            }
+        }
+        product
+    }
+
+    /// p = β p − z.
+    fn turn(&mut self, share: f64) {
+        let pairs = self
+            .direction
+            .components
+            .iter_mut()
+            .zip(&self.correction.components);
+        for (direction, correction) in pairs {
+            for (p, z) in direction.iter_mut().zip(correction) {
+                *p = share * *p - z;
+            }
+        }
+    }
+
+    /// x with K x = b at the free nodes and nothing at the grips but −K x + b, where K is the Jacobian of F at `u`,
+    /// by the same iteration as [`Self::iterate`]; nothing where K is not positive definite.
+    ///
+    /// # Errors
+    /// [`Inverted`] when `u` is not admissible.
+    pub fn solve_linear(
+        &mut self,
+        sheet: Sheet,
+        u: &Field,
+        b: &Field,
+        multigrid: &mut Multigrid,
+        tolerance: f64,
+    ) -> Result<Option<Field>, Inverted> {
+        let mut at_rest = Field::zeros(&self.grid);
+        sheet.forces(&self.grid, u, &mut at_rest)?;
+        let mut x = Field::zeros(&self.grid);
+        let mut image = Field::zeros(&self.grid);
+        self.residual.clone_from(b);
+        self.residual.scale(-1.0);
+        let mut work = Work::default();
+        let mut steepness = self.precondition(multigrid, &mut work);
+        let first = self.correction.size();
+        self.direction.scale(0.0);
+        let mut share = 0.0;
+        for _ in 0..LINEAR_ITERATIONS {
+            self.turn(share);
+            let scale = DIFFERENCE * u.size() / self.direction.size().max(f64::MIN_POSITIVE);
+            self.trial.clone_from(u);
+            self.trial.add(scale, &self.direction);
+            sheet.forces(&self.grid, &self.trial, &mut self.trial_residual)?;
+            self.trial_residual.add(-1.0, &at_rest);
+            self.trial_residual.scale(1.0 / scale);
+            let curvature = self.direction.product(&self.trial_residual);
+            if curvature <= 0.0 {
+                return Ok(None);
+            }
+            let length = -self.direction.product(&self.residual) / curvature;
+            x.add(length, &self.direction);
+            image.add(length, &self.trial_residual);
+            self.residual.add(length, &self.trial_residual);
+            let before = steepness;
+            steepness = self.precondition(multigrid, &mut work);
+            share = steepness / before;
+            if self.correction.size() <= tolerance * first {
+                let free = u.free();
+                for (axis, x) in x.components.iter_mut().enumerate() {
+                    let held = (0..x.len()).filter(|node| !free.contains(node));
+                    for node in held {
+                        x[node] = b.components[axis][node] - image.components[axis][node];
+                    }
+                }
+                return Ok(Some(x));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Goes along the direction to where the residual is orthogonal to it.
+    fn step(&mut self, sheet: Sheet, u: &mut Field, work: &mut Work) -> Result<(), Inverted> {
+        let free = u.free();
+        let mut length = 1.0;
+        loop {
+            for axis in [0, 1] {
+                let trial = &mut self.trial.components[axis];
+                trial.copy_from_slice(&u.components[axis]);
+                let pairs = trial[free.clone()]
+                    .iter_mut()
+                    .zip(&self.direction.components[axis][free.clone()]);
+                pairs.for_each(|(trial, p)| *trial += length * p);
+            }
+            work.evaluations += 1;
+            let done = sheet.forces(&self.grid, &self.trial, &mut self.trial_residual);
+            match done {
+                Ok(()) => break,
+                Err(Inverted) if length > 0.1 => length *= 0.5,
+                Err(Inverted) => return Err(Inverted),
+            }
+        }
+        let (mut against, mut curvature) = (0.0, 0.0);
+        for axis in [0, 1] {
+            let p = &self.direction.components[axis][free.clone()];
+            let r = &self.residual.components[axis][free.clone()];
+            let there = &self.trial_residual.components[axis][free.clone()];
+            for ((p, r), there) in p.iter().zip(r).zip(there) {
+                against += p * r;
+                curvature += p * (there - r);
+            }
+        }
+        let share = match curvature > 0.0 {
+            true => (-against / curvature).min(2.0),
+            false => 1.0,
+        };
+        for axis in [0, 1] {
+            let u = &mut u.components[axis][free.clone()];
+            let p = &self.direction.components[axis][free.clone()];
+            let r = &mut self.residual.components[axis][free.clone()];
+            let there = &self.trial_residual.components[axis][free.clone()];
+            for (((u, p), r), there) in u.iter_mut().zip(p).zip(r).zip(there) {
+                *u += share * length * p;
+                *r += share * (there - *r);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,252 @@
+//! Many states, each near the one before: a path of stretches, and grips that are moved by hand.
+
+use super::{Climb, Climbed, Field, Inverted, Work, inverted};
+use crate::error::{Error, SolveFault};
+use crate::problem::Problem;
+
+/// States that the next one is extrapolated from.
+const HISTORY: usize = 5;
+
+/// Cycles for one state above which the operators are written anew for the next one.
+const CYCLES: usize = 4;
+
+/// A rigid motion of a grip in its plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidMotion {
+    /// Displacement of the grip's middle in mm.
+    pub displacement: [f64; 2],
+    /// Turn about its middle in rad, from X to Y.
+    pub angle: f64,
+}
+
+impl RigidMotion {
+    /// The displacement of a point at a distance of `offset` along Y from the grip's middle.
+    fn at(self, offset: f64) -> [f64; 2] {
+        let (sine, cosine) = self.angle.sin_cos();
+        let [x, y] = self.displacement;
+        [x - offset * sine, y + offset * (cosine - 1.0)]
+    }
+}
+
+/// Where both grips are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Grips {
+    /// The grip at X = 0.
+    pub left: RigidMotion,
+    /// The grip at X = length.
+    pub right: RigidMotion,
+}
+
+/// A state of a path or of a plate in the hand.
+#[derive(Clone, Debug)]
+struct Known {
+    parameter: f64,
+    field: Field,
+}
+
+impl Climb<'_> {
+    /// Corrects at many stretches, one after the other: the first by a climb, the others from the states before
+    /// them, extrapolated, with the operators of an earlier state as long as they serve.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] with the stretch at which no field was found.
+    pub fn follow(
+        &mut self,
+        stretches: &[f64],
+        told: &mut dyn FnMut(&Climbed),
+    ) -> Result<(), Error> {
+        let mut known: Vec<Known> = Vec::new();
+        let mut relative_error = f64::NAN;
+        let finest = self.levels.len() - 1;
+        let mut written = false;
+        for stretch in stretches.iter().copied() {
+            let climbed = match known.len() {
+                0 => {
+                    let climbed = self.correct(stretch)?;
+                    relative_error = climbed.discretisation_error / climbed.field.size();
+                    climbed
+                }
+                _ => {
+                    let guess = extrapolate(&known, stretch);
+                    let fault = |fault| Error::Solve {
+                        model: "corrector (climb)".into(),
+                        step: Problem::describe_step(stretch),
+                        fault,
+                    };
+                    if !written {
+                        self.linearise_below(finest, &guess).map_err(fault)?;
+                    }
+                    let climbed = self.near(guess, relative_error).map_err(fault)?;
+                    written = climbed.work[0].1.cycles <= CYCLES;
+                    climbed
+                }
+            };
+            told(&climbed);
+            if known.len() == HISTORY {
+                known.remove(0);
+            }
+            known.push(Known {
+                parameter: stretch,
+                field: climbed.field,
+            });
+        }
+        Ok(())
+    }
+
+    /// Corrects a field that is near the result, with the operators written before.
+    fn near(&mut self, mut field: Field, relative_error: f64) -> Result<Climbed, SolveFault> {
+        let finest = self.levels.len() - 1;
+        let error = relative_error * field.size();
+        let limit = self.settings.tolerance * error;
+        let (sheet, most) = (self.sheet(), self.settings.max_iterations);
+        let level = &mut self.levels[finest];
+        let iterated = level.iterate(sheet, &mut field, &mut self.multigrid, most, &|_, last| {
+            last <= limit
+        });
+        let reached = iterated.map_err(|Inverted| inverted())?;
+        if reached.last > limit {
+            return Err(SolveFault::Stalled {
+                iterations: most,
+                residual: reached.last,
+                tolerance: limit,
+            });
+        }
+        let force = self.force(&field).map_err(|Inverted| inverted())?;
+        let mut work = reached.work;
+        work.evaluations += 1;
+        Ok(Climbed {
+            field,
+            force,
+            coarser: None,
+            discretisation_error: error,
+            last_correction: reached.last,
+            work: vec![(self.grid().nodes(), work)],
+        })
+    }
+}
+
+/// The polynomial through the known states at another parameter.
+fn extrapolate(known: &[Known], parameter: f64) -> Field {
+    let share = |own: usize| -> f64 {
+        let others = known.iter().enumerate().filter(|(other, _)| *other != own);
+        others
+            .map(|(_, other)| {
+                (parameter - other.parameter) / (known[own].parameter - other.parameter)
+            })
+            .product()
+    };
+    let first = &known[0];
+    let mut field = first.field.clone();
+    let scale = match known.len() {
+        // One state alone is scaled with the motion of the grip.
+        1 => parameter / first.parameter,
+        _ => share(0),
+    };
+    field.scale(scale);
+    for (index, state) in known.iter().enumerate().skip(1) {
+        field.add(share(index), &state.field);
+    }
+    field
+}
+
+/// A plate in the hand: its grips are moved, the corrected field follows.
+#[derive(Debug)]
+pub struct Interactive<'a> {
+    climb: Climb<'a>,
+    grips: Grips,
+    climbed: Climbed,
+    relative_error: f64,
+}
+
+impl<'a> Interactive<'a> {
+    /// Begins at one stretch.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when no field was found there.
+    pub fn new(mut climb: Climb<'a>, stretch: f64) -> Result<Self, Error> {
+        let climbed = climb.correct(stretch)?;
+        let grips = Grips {
+            right: RigidMotion {
+                displacement: [stretch * climb.problem.size[0], 0.0],
+                angle: 0.0,
+            },
+            ..Grips::default()
+        };
+        Ok(Self {
+            relative_error: climbed.discretisation_error / climbed.field.size(),
+            climb,
+            grips,
+            climbed,
+        })
+    }
+
+    /// The corrected field and the forces at the grips as they are.
+    pub fn state(&self) -> &Climbed {
+        &self.climbed
+    }
+
+    /// Where the grips are.
+    pub fn grips(&self) -> Grips {
+        self.grips
+    }
+
+    /// Moves the grips by a few mm or degrees; the field between them follows. A motion that is too large for
+    /// one go is made in parts.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when the field cannot follow; the state before is kept.
+    pub fn move_grips(&mut self, grips: Grips) -> Result<&Climbed, Error> {
+        let mut found = Err(SolveFault::Singular);
+        for parts in [1, 2, 4, 8] {
+            found = self.move_in(parts, grips);
+            if found.is_ok() {
+                break;
+            }
+        }
+        self.climbed = found.map_err(|fault| Error::Solve {
+            model: "corrector (climb)".into(),
+            step: "a motion of the grips".into(),
+            fault,
+        })?;
+        self.grips = grips;
+        Ok(&self.climbed)
+    }
+
+    fn move_in(&mut self, parts: usize, grips: Grips) -> Result<Climbed, SolveFault> {
+        let mut field = self.climbed.field.clone();
+        let mut work = Work::default();
+        let mut climbed = None;
+        for part in 1..=parts {
+            let share = 1.0 / (parts - part + 1) as f64;
+            self.impose(grips, share, &mut field);
+            self.climb
+                .linearise_below(self.climb.levels.len() - 1, &field)?;
+            let found = self.climb.near(field, self.relative_error)?;
+            work.add(found.work[0].1);
+            field = found.field.clone();
+            climbed = Some(found);
+        }
+        let mut climbed = climbed.expect("one part at least");
+        climbed.work[0].1 = work;
+        Ok(climbed)
+    }
+
+    /// Moves the grips by a share of the way that is left, and the nodes between them in proportion.
+    fn impose(&self, grips: Grips, share: f64, field: &mut Field) {
+        let grid = self.climb.grid();
+        let [length, width] = self.climb.problem.size;
+        let last = grid.lines().count - 1;
+        for (node, y) in grid.coordinates[1].iter().enumerate() {
+            let targets = [grips.left, grips.right].map(|grip| grip.at(y - 0.5 * width));
+            for axis in [0, 1] {
+                let component = &mut field.components[axis];
+                let at = |line: usize| line * grid.lines().nodes + node;
+                let left = share * (targets[0][axis] - component[at(0)]);
+                let right = share * (targets[1][axis] - component[at(last)]);
+                for (line, x) in grid.coordinates[0].iter().enumerate() {
+                    component[at(line)] += left + (right - left) * x / length;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! Systems of two unknowns a node on the nodes of a rectangular grid, solved by multigrid.
+//!
+//! Each node is coupled with its eight neighbours. The nodes of one X make up a *line*; the first and the last
+//! line are held, all others are free. Numbers are of single precision: this is the inside of a preconditioner,
+//! whose rounding the iteration around it takes away again.
+//!
+//! | step | how |
+//! |---|---|
+//! | smoother | block Gauss–Seidel in four colours, once down and once, in the reverse order, up: symmetric |
+//! | restriction | the transpose of the prolongation |
+//! | prolongation | linear between the coarser grid's nodes, whatever their number |
+//! | coarser operators | discretised anew on the coarser grid, not by products of matrices |
+//! | coarsest grid | a dense inverse |
+//!
+//! All sums run in an order that does not depend on the number of threads.
+
+mod coarsest;
+mod cycle;
+pub mod stencil;
+pub mod transfer;
+mod vector;
+
+pub use cycle::{Multigrid, NotPositiveDefinite};
+pub use stencil::{CellStiffness, Stencil};
+pub use transfer::Interpolation;
+pub use vector::{Lines, Vector};
+
+/// Grids with fewer nodes are done by one thread: handing out work takes longer than the work.
+pub const NODES_WORTH_A_THREAD: usize = 4_096;

@@ -1,0 +1,116 @@
+//! The V-cycle.
+
+use super::coarsest::Inverse;
+use super::stencil::Stencil;
+use super::transfer::Transfer;
+use super::vector::{Lines, Vector};
+
+/// An operator that has no positive definite inverse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotPositiveDefinite;
+
+/// One grid with its operator and the vectors of a cycle.
+#[derive(Debug)]
+struct Level {
+    /// To the next coarser grid; none on the coarsest.
+    transfer: Option<Transfer>,
+    stencil: Stencil,
+    x: Vector,
+    b: Vector,
+    r: Vector,
+}
+
+/// Grids from coarse to fine, whose V-cycle is a symmetric approximate inverse.
+#[derive(Debug)]
+pub struct Multigrid {
+    levels: Vec<Level>,
+    coarsest: Option<Inverse>,
+}
+
+impl Multigrid {
+    /// Grids with the given coordinates along X and Y, coarse to fine; their operators are written later.
+    pub fn new(grids: &[[Vec<f64>; 2]]) -> Self {
+        let level = |index: usize| {
+            let grid = &grids[index];
+            let lines = Lines {
+                count: grid[0].len(),
+                nodes: grid[1].len(),
+            };
+            let coarser = index.checked_sub(1);
+            Level {
+                transfer: coarser.map(|coarser| Transfer::new(&grids[coarser], grid)),
+                stencil: Stencil::zeros(lines),
+                x: Vector::zeros(lines),
+                b: Vector::zeros(lines),
+                r: Vector::zeros(lines),
+            }
+        };
+        Self {
+            levels: (0..grids.len()).map(level).collect(),
+            coarsest: None,
+        }
+    }
+
+    /// The operator of a grid, to be written.
+    pub fn stencil(&mut self, level: usize) -> &mut Stencil {
+        &mut self.levels[level].stencil
+    }
+
+    /// Inverts the operator of the coarsest grid, which has been written.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when it has no inverse.
+    pub fn invert_coarsest(&mut self) -> Result<(), NotPositiveDefinite> {
+        self.coarsest = Inverse::of(&self.levels[0].stencil);
+        self.coarsest
+            .as_ref()
+            .map(|_| ())
+            .ok_or(NotPositiveDefinite)
+    }
+
+    /// The right-hand side of a grid, to be written.
+    pub fn right_hand_side(&mut self, level: usize) -> &mut Vector {
+        &mut self.levels[level].b
+    }
+
+    /// One V-cycle from zero on a grid and all coarser ones; the result.
+    pub fn cycle(&mut self, level: usize) -> &Vector {
+        self.descend(level);
+        &self.levels[level].x
+    }
+
+    fn descend(&mut self, index: usize) {
+        let (coarser, finer) = self.levels.split_at_mut(index);
+        let Level {
+            transfer,
+            stencil,
+            x,
+            b,
+            r,
+        } = &mut finer[0];
+        let Some(transfer) = transfer else {
+            let inverse = self
+                .coarsest
+                .as_mut()
+                .expect("the coarsest grid is inverted");
+            inverse.solve(b, x);
+            return;
+        };
+        x.clear();
+        stencil.smooth(x, b, false);
+        stencil.residual(x, b, r);
+        transfer.restrict(r, &mut coarser[index - 1].b);
+        self.descend(index - 1);
+        let (coarser, finer) = self.levels.split_at_mut(index);
+        let Level {
+            transfer,
+            stencil,
+            x,
+            b,
+            ..
+        } = &mut finer[0];
+        let transfer = transfer.as_ref().expect("not the coarsest grid");
+        transfer.prolong(&coarser[index - 1].x, x);
+        stencil.smooth(x, b, true);
+    }
+}

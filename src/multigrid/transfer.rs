@@ -1,0 +1,151 @@
+//! Between two grids on one rectangle, along one axis at a time.
+
+use super::vector::Vector;
+
+/// Values at given places as combinations of those at the nodes of a grid, along one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interpolation {
+    /// For each place the first node and the shares of it and of those that follow.
+    shares: Vec<(usize, [f64; 4])>,
+    width: usize,
+}
+
+impl Interpolation {
+    /// Linear between the two nodes beside each place.
+    pub fn linear(nodes: &[f64], places: &[f64]) -> Self {
+        Self::lagrange(nodes, places, 2)
+    }
+
+    /// By cubics through the four nodes around each place, or through all where there are fewer.
+    pub fn cubic(nodes: &[f64], places: &[f64]) -> Self {
+        Self::lagrange(nodes, places, 4.min(nodes.len()))
+    }
+
+    fn lagrange(nodes: &[f64], places: &[f64], width: usize) -> Self {
+        let share = |place: &f64| {
+            let after = nodes.partition_point(|node| node <= place);
+            let first = after.saturating_sub(width / 2).min(nodes.len() - width);
+            let mut shares = [0.0; 4];
+            for (i, share) in shares[..width].iter_mut().enumerate() {
+                let own = nodes[first + i];
+                let others = (0..width)
+                    .filter(|other| *other != i)
+                    .map(|other| nodes[first + other]);
+                *share = others
+                    .map(|other| (place - other) / (own - other))
+                    .product();
+            }
+            (first, shares)
+        };
+        Self {
+            shares: places.iter().map(share).collect(),
+            width,
+        }
+    }
+
+    /// For each place the first node and the shares of it and of those that follow.
+    pub fn shares(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        let shares = self.shares.iter();
+        shares.map(|(first, shares)| (*first, &shares[..self.width]))
+    }
+}
+
+/// The linear prolongation between two grids, along one axis, and its transpose.
+#[derive(Clone, Debug)]
+struct Axis {
+    /// For each fine node the coarse one before it and the share of the next one.
+    fine: Vec<(usize, f32)>,
+    /// For each coarse node the first fine one that it has a share in, and the shares.
+    coarse: Vec<(usize, Vec<f32>)>,
+}
+
+impl Axis {
+    fn new(coarse: &[f64], fine: &[f64]) -> Self {
+        let linear = Interpolation::linear(coarse, fine);
+        let places: Vec<(usize, f32)> = linear
+            .shares()
+            .map(|(first, shares)| (first, shares[1] as f32))
+            .collect();
+        let share = |node: usize, &(before, next): &(usize, f32)| match node.wrapping_sub(before) {
+            0 => 1.0 - next,
+            1 => next,
+            _ => 0.0,
+        };
+        let gather = |node: usize| {
+            let shares = places.iter().map(|place| share(node, place));
+            let mut shares: Vec<f32> = shares.collect();
+            let first = shares.iter().position(|share| *share != 0.0).unwrap_or(0);
+            shares.drain(..first);
+            let end = shares.iter().rposition(|share| *share != 0.0);
+            shares.truncate(end.map_or(0, |end| end + 1));
+            (first, shares)
+        };
+        Self {
+            coarse: (0..coarse.len()).map(gather).collect(),
+            fine: places,
+        }
+    }
+}
+
+/// The linear prolongation from a coarser grid and its transpose.
+#[derive(Clone, Debug)]
+pub struct Transfer([Axis; 2]);
+
+impl Transfer {
+    /// Between two grids with the given coordinates along X and Y.
+    pub fn new(coarse: &[Vec<f64>; 2], fine: &[Vec<f64>; 2]) -> Self {
+        Self([0, 1].map(|axis| Axis::new(&coarse[axis], &fine[axis])))
+    }
+
+    /// b = Pᵀ r on the coarser grid's free lines.
+    pub fn restrict(&self, r: &Vector, b: &mut Vector) {
+        let [along_x, along_y] = &self.0;
+        b.for_each_free_line(|line, b_x, b_y| {
+            let (first, shares) = &along_x.coarse[line];
+            for (axis, b) in [b_x, b_y].into_iter().enumerate() {
+                b.fill(0.0);
+                for (offset, share) in shares.iter().enumerate() {
+                    let from = &r.line(first + offset)[axis][1..];
+                    for ((before, next), r) in along_y.fine.iter().zip(from) {
+                        let value = share * r;
+                        b[before + 1] += (1.0 - next) * value;
+                        b[before + 2] += next * value;
+                    }
+                }
+            }
+        });
+    }
+
+    /// x += P c on the finer grid's free lines.
+    pub fn prolong(&self, c: &Vector, x: &mut Vector) {
+        let [along_x, along_y] = &self.0;
+        x.for_each_free_line(|line, x_x, x_y| {
+            let (before, share) = along_x.fine[line];
+            for (axis, x) in [x_x, x_y].into_iter().enumerate() {
+                let (first, second) = (c.line(before)[axis], c.line(before + 1)[axis]);
+                for ((before, next), x) in along_y.fine.iter().zip(&mut x[1..]) {
+                    let at = |place: usize| first[place] + share * (second[place] - first[place]);
+                    *x += (1.0 - next) * at(before + 1) + next * at(before + 2);
+                }
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubics_are_reproduced_between_uneven_nodes() {
+        let cubic = |x: f64| 1.0 - x + 2.0 * x * x - 0.3 * x * x * x;
+        let nodes = [0.0, 0.4, 1.0, 1.3, 2.5, 3.0];
+        let places = [0.0, 0.1, 0.4, 0.9, 1.2, 2.6, 3.0];
+        let interpolation = Interpolation::cubic(&nodes, &places);
+        for (place, (first, shares)) in places.iter().zip(interpolation.shares()) {
+            let pairs = shares.iter().zip(&nodes[first..]);
+            let value: f64 = pairs.map(|(share, node)| share * cubic(*node)).sum();
+            assert!((value - cubic(*place)).abs() < 1e-13, "{place}");
+        }
+    }
+}
