@@ -270,16 +270,21 @@ impl<'a> Climb<'a> {
         inverted.map_err(|NotPositiveDefinite| SolveFault::NotPositiveDefinite)
     }
 
-    /// The force on the moving grip: the virtual work of all forces in a uniform stretch, in N.
-    fn force(&mut self, field: &Field) -> Result<f64, Inverted> {
+    /// F(u) in N at the nodes of the finest grid, the reactions at the grips; nothing where J is not positive.
+    pub fn forces(&mut self, field: &Field) -> Option<&Field> {
         let sheet = self.sheet();
+        let level = self.levels.last_mut()?;
+        level.evaluate_residual(sheet, field).ok()?;
+        Some(&level.residual)
+    }
+
+    /// The force on the moving grip in N: the virtual work of all forces in a uniform stretch.
+    fn force(&mut self, field: &Field) -> Result<f64, Inverted> {
         let length = self.problem.size[0];
-        let level = self.levels.last_mut().expect("a grid");
-        level.evaluate_residual(sheet, field)?;
-        let forces = &level.residual.components[0];
-        let lines = forces.chunks_exact(field.width);
-        let places = lines.zip(&level.grid.coordinates[0]);
-        Ok(places
+        let places = self.grid().coordinates[0].clone();
+        let forces = self.forces(field).ok_or(Inverted)?;
+        let lines = forces.components[0].chunks_exact(field.width).zip(places);
+        Ok(lines
             .map(|(line, x)| x / length * line.iter().sum::<f64>())
             .sum())
     }
@@ -334,25 +339,4 @@ fn thin_out(places: &[f64]) -> Vec<f64> {
         places[before] + share * (places[before + 1] - places[before])
     };
     (0..=coarse).map(at).collect()
-}
-
-impl Climb<'_> {
-    /// scaffold
-    pub fn time_evaluations(&mut self, u: &Field) -> [f64; 3] {
-        let sheet = self.sheet();
-        let level = self.levels.last_mut().expect("a grid");
-        let mut best = [f64::INFINITY; 3];
-        for _ in 0..5 {
-            let start = std::time::Instant::now();
-            let _ = level.evaluate_residual(sheet, u);
-            best[0] = best[0].min(start.elapsed().as_secs_f64());
-            let start = std::time::Instant::now();
-            let _ = level.linearise(sheet, u, &mut self.multigrid);
-            best[1] = best[1].min(start.elapsed().as_secs_f64());
-            let start = std::time::Instant::now();
-            let _ = self.multigrid.cycle(level.index);
-            best[2] = best[2].min(start.elapsed().as_secs_f64());
-        }
-        best
-    }
 }

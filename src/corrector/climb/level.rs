@@ -65,7 +65,7 @@ pub struct Level {
     pub grid: Grid,
     /// Which of the multigrid's grids it is.
     pub index: usize,
-    /// F at the field that was evaluated last.
+    /// F at the field that was evaluated last, or before the last correction of an iteration.
     pub residual: Field,
     trial: Field,
     trial_residual: Field,
@@ -324,13 +324,14 @@ impl Level {
             true => (-against / curvature).min(2.0),
             false => 1.0,
         };
-        for axis in [0, 1] {
-            let u = &mut u.components[axis][free.clone()];
-            let p = &self.direction.components[axis][free.clone()];
-            let r = &mut self.residual.components[axis][free.clone()];
-            let there = &self.trial_residual.components[axis][free.clone()];
-            for (((u, p), r), there) in u.iter_mut().zip(p).zip(r).zip(there) {
-                *u += share * length * p;
+        u.add(share * length, &self.direction);
+        for (r, there) in self
+            .residual
+            .components
+            .iter_mut()
+            .zip(&self.trial_residual.components)
+        {
+            for (r, there) in r.iter_mut().zip(there) {
                 *r += share * (there - *r);
             }
         }

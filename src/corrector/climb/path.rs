@@ -5,10 +5,10 @@ use crate::error::{Error, SolveFault};
 use crate::problem::Problem;
 
 /// States that the next one is extrapolated from.
-const HISTORY: usize = 5;
+const HISTORY: usize = 3;
 
 /// Cycles for one state above which the operators are written anew for the next one.
-const CYCLES: usize = 4;
+const CYCLES: usize = 1;
 
 /// A rigid motion of a grip in its plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,8 +45,9 @@ struct Known {
 }
 
 impl Climb<'_> {
-    /// Corrects at many stretches, one after the other: the first by a climb, the others from the states before
-    /// them, extrapolated, with the operators of an earlier state as long as they serve.
+    /// Corrects at many stretches, one after the other: the first and the last by a climb, which also tell the
+    /// discretisation error, the others from the states before them, extrapolated, with the operators of an
+    /// earlier state as long as they serve.
     ///
     /// # Errors
     /// [`Error::Solve`] with the stretch at which no field was found.
@@ -55,32 +56,39 @@ impl Climb<'_> {
         stretches: &[f64],
         told: &mut dyn FnMut(&Climbed),
     ) -> Result<(), Error> {
-        let mut known: Vec<Known> = Vec::new();
-        let mut relative_error = f64::NAN;
-        let finest = self.levels.len() - 1;
+        let [first, between @ .., last] = stretches else {
+            for stretch in stretches {
+                told(&self.correct(*stretch)?);
+            }
+            return Ok(());
+        };
+        let ends = [self.correct(*first)?, self.correct(*last)?];
+        let [at_first, at_last] = [0, 1].map(|end| {
+            let stretch = [first, last][end];
+            ends[end].discretisation_error / self.departure(&ends[end].field, *stretch)
+        });
+        let relative_error = at_first.min(at_last);
+        let [first_state, last_state] = ends;
+        told(&first_state);
+        let mut known = vec![Known {
+            parameter: *first,
+            field: first_state.field,
+        }];
         let mut written = false;
-        for stretch in stretches.iter().copied() {
-            let climbed = match known.len() {
-                0 => {
-                    let climbed = self.correct(stretch)?;
-                    relative_error = climbed.discretisation_error / climbed.field.size();
-                    climbed
-                }
-                _ => {
-                    let guess = extrapolate(&known, stretch);
-                    let fault = |fault| Error::Solve {
-                        model: "corrector (climb)".into(),
-                        step: Problem::describe_step(stretch),
-                        fault,
-                    };
-                    if !written {
-                        self.linearise_below(finest, &guess).map_err(fault)?;
-                    }
-                    let climbed = self.near(guess, relative_error).map_err(fault)?;
-                    written = climbed.work[0].1.cycles <= CYCLES;
-                    climbed
-                }
+        for stretch in between.iter().copied() {
+            let fault = |fault| Error::Solve {
+                model: "corrector (climb)".into(),
+                step: Problem::describe_step(stretch),
+                fault,
             };
+            let guess = extrapolate(&known, stretch);
+            if !written {
+                let finest = self.levels.len() - 1;
+                self.linearise_below(finest, &guess).map_err(fault)?;
+            }
+            let error = relative_error * self.departure(&guess, stretch);
+            let climbed = self.near(guess, error).map_err(fault)?;
+            written = climbed.work[0].1.cycles <= CYCLES;
             told(&climbed);
             if known.len() == HISTORY {
                 known.remove(0);
@@ -90,13 +98,25 @@ impl Climb<'_> {
                 field: climbed.field,
             });
         }
+        told(&last_state);
         Ok(())
     }
 
-    /// Corrects a field that is near the result, with the operators written before.
-    fn near(&mut self, mut field: Field, relative_error: f64) -> Result<Climbed, SolveFault> {
+    /// The root mean square over the nodes of a field's departure from the affine stretch in mm.
+    fn departure(&self, field: &Field, stretch: f64) -> f64 {
+        let places = &self.grid().coordinates[0];
+        let lines = field.components[0].chunks_exact(field.width).zip(places);
+        let along: f64 = lines
+            .map(|(line, x)| line.iter().map(|u| (u - stretch * x).powi(2)).sum::<f64>())
+            .sum();
+        let across: f64 = field.components[1].iter().map(|u| u * u).sum();
+        ((along + across) / self.grid().nodes() as f64).sqrt()
+    }
+
+    /// Corrects a field that is near the result, with the operators written before, to a share of its
+    /// discretisation error.
+    fn near(&mut self, mut field: Field, error: f64) -> Result<Climbed, SolveFault> {
         let finest = self.levels.len() - 1;
-        let error = relative_error * field.size();
         let limit = self.settings.tolerance * error;
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
         let level = &mut self.levels[finest];
@@ -111,9 +131,9 @@ impl Climb<'_> {
                 tolerance: limit,
             });
         }
-        let force = self.force(&field).map_err(|Inverted| inverted())?;
         let mut work = reached.work;
         work.evaluations += 1;
+        let force = self.force(&field).map_err(|Inverted| inverted())?;
         Ok(Climbed {
             field,
             force,
@@ -155,6 +175,7 @@ pub struct Interactive<'a> {
     climb: Climb<'a>,
     grips: Grips,
     climbed: Climbed,
+    /// The discretisation error relative to the size of the field.
     relative_error: f64,
 }
 
@@ -221,7 +242,8 @@ impl<'a> Interactive<'a> {
             self.impose(grips, share, &mut field);
             self.climb
                 .linearise_below(self.climb.levels.len() - 1, &field)?;
-            let found = self.climb.near(field, self.relative_error)?;
+            let error = self.relative_error * field.size();
+            let found = self.climb.near(field, error)?;
             work.add(found.work[0].1);
             field = found.field.clone();
             climbed = Some(found);
