@@ -17,6 +17,8 @@
 mod coarsest;
 mod cycle;
 pub mod stencil;
+#[cfg(test)]
+mod tests;
 pub mod transfer;
 mod vector;
 

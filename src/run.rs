@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::compare::{Reference, StepComparison};
 use crate::corrector::PlateCorrector;
+use crate::corrector::climb::Climb;
 use crate::corrector::plate::KnownConditions;
 use crate::error::Error;
 use crate::finite_element::FiniteElements;
@@ -32,9 +33,15 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     })?;
     let corrected = timed(&mut times, "corrector", || {
         let corrector = PlateCorrector::new(problem, &springs.mesh, study.scheme, study.corrector);
+        let mut climb = study
+            .climb
+            .map(|settings| Climb::even(problem, study.cells, study.scheme, settings));
         let correct = |field: &Solution| {
-            let state =
-                corrector.correct(&field.displacement, field.stretch, KnownConditions::ALL)?;
+            let (data, stretch) = (&field.displacement, field.stretch);
+            let state = match &mut climb {
+                Some(climb) => corrector.climb(climb, data, stretch)?,
+                None => corrector.correct(data, stretch, KnownConditions::ALL)?,
+            };
             progress("corrector", field.stretch);
             Ok(state)
         };

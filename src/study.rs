@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::corrector::climb::ClimbSettings;
 use crate::corrector::{CorrectorSettings, DifferenceScheme, Solver};
 use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error};
@@ -41,7 +42,9 @@ pub struct Study {
     pub mass_spring: NewtonSettings,
     /// The corrector's finite differences.
     pub scheme: DifferenceScheme,
-    /// When the corrector stops.
+    /// How exactly the corrector climbs; nothing where it is direct.
+    pub climb: Option<ClimbSettings>,
+    /// When the direct corrector stops.
     pub corrector: CorrectorSettings,
     /// The element of the reference.
     pub element: Element,
@@ -159,6 +162,18 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
 
     let section = root.section("corrector");
     let scheme = section.choice("scheme", &DifferenceScheme::NAMES);
+    if let Some(scheme) = scheme {
+        check_pairs(&section, scheme, cells);
+    }
+    let climb = section.choice("method", &[("climb", true), ("direct", false)]);
+    let settings = ClimbSettings {
+        tolerance: section.quantity(
+            "climb_tolerance",
+            Dimension::Ratio,
+            Bound::Within(1e-6, 1.0),
+        ),
+        ..ClimbSettings::default()
+    };
     let corrector = CorrectorSettings {
         tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
         movement: 1e-9,
@@ -188,6 +203,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
         lattice,
         mass_spring,
         scheme: scheme?,
+        climb: climb?.then_some(settings),
         corrector,
         element: element?,
         reference_cells,
@@ -244,6 +260,20 @@ fn read_reference_cells(section: &Section<'_>) -> [usize; 2] {
         );
     }
     cells
+}
+
+/// A scheme that takes cells two by two needs even numbers of them.
+fn check_pairs(section: &Section, scheme: DifferenceScheme, cells: [usize; 2]) {
+    if let Some(odd) = cells
+        .iter()
+        .find(|cells| !cells.is_multiple_of(scheme.side()))
+    {
+        section.fault(
+            "scheme",
+            &format!("takes the cells of the plate two by two, and {odd} is odd"),
+            "give an even number of cells along both axes, or take scheme = \"gauss\"",
+        );
+    }
 }
 
 fn read_tolerances(section: &Section<'_>) -> Tolerances {

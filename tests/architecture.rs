@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: &[&[&str]] = &[
     &["error", "units"],
     &["document"],
-    &["mesh", "material", "solve"],
+    &["mesh", "material", "solve", "multigrid"],
     &["problem", "sheet_energy", "calibration"],
     &["mass_spring", "finite_element", "boundary"],
     &["corrector"],
@@ -32,6 +32,14 @@ const DOORS: &[(&str, &[&str])] = &[
     ("toml::", &["src/document"]),
     ("csv::", &["src/calibration/table.rs"]),
     ("rmpfit::", &["src/calibration/least_squares.rs"]),
+    (
+        "pulp::",
+        &[
+            "src/material/law.rs",
+            "src/multigrid/stencil.rs",
+            "src/corrector/climb/forces.rs",
+        ],
+    ),
 ];
 
 fn layer(module: &str) -> Option<usize> {

@@ -9,6 +9,7 @@
 //! q of two grids' corrections, what the grids that follow would add is d q/(1 − q): the discretisation error.
 //! The iteration ends when its last correction is below a stated share of that.
 
+use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};
 use crate::multigrid::{Multigrid, NotPositiveDefinite};
 use crate::problem::Problem;
@@ -20,10 +21,12 @@ mod multipliers;
 mod path;
 mod start;
 mod tangents;
+#[cfg(test)]
+mod tests;
 
 pub use grid::{Field, Grid};
+pub use level::Work;
 use level::{Inverted, Level, Reached, Sheet};
-pub use level::{Order, Work};
 pub use path::{Grips, Interactive, RigidMotion};
 
 /// How exactly the climb solves.
@@ -58,6 +61,8 @@ pub struct Climbed {
     pub discretisation_error: f64,
     /// The last correction, root mean square over the nodes in mm.
     pub last_correction: f64,
+    /// The last correction on each grid, coarse to fine, root mean square over the nodes in mm.
+    pub corrections: Vec<f64>,
     /// What was done on each grid, coarse to fine: its nodes, and the work.
     pub work: Vec<(usize, Work)>,
 }
@@ -81,7 +86,7 @@ impl Climbed {
 #[derive(Debug)]
 pub struct Climb<'a> {
     problem: &'a Problem,
-    order: Order,
+    scheme: DifferenceScheme,
     settings: ClimbSettings,
     levels: Vec<Level>,
     multigrid: Multigrid,
@@ -104,20 +109,20 @@ impl<'a> Climb<'a> {
     /// Prepares the grids of a plate with so many equal cells.
     ///
     /// # Panics
-    /// When the order is quadratic and a number of cells is odd.
+    /// When the scheme takes cells two by two and their number is odd.
     pub fn even(
         problem: &'a Problem,
         cells: [usize; 2],
-        order: Order,
+        scheme: DifferenceScheme,
         settings: ClimbSettings,
     ) -> Self {
         let boundaries = [0, 1].map(|axis| {
-            assert!(cells[axis].is_multiple_of(order.cells()), "pairs of cells");
-            let elements = cells[axis] / order.cells();
+            assert!(cells[axis].is_multiple_of(scheme.side()), "pairs of cells");
+            let elements = cells[axis] / scheme.side();
             let at = |index: usize| problem.size[axis] * index as f64 / elements as f64;
             (0..=elements).map(at).collect()
         });
-        Self::new(problem, boundaries, order, settings)
+        Self::new(problem, boundaries, scheme, settings)
     }
 
     /// Prepares the grids of a plate between the given coordinates of element boundaries along X and Y, which
@@ -125,17 +130,17 @@ impl<'a> Climb<'a> {
     pub fn new(
         problem: &'a Problem,
         boundaries: [Vec<f64>; 2],
-        order: Order,
+        scheme: DifferenceScheme,
         settings: ClimbSettings,
     ) -> Self {
         let mut all = vec![boundaries];
-        while let Some(coarser) = coarser(&all[all.len() - 1], order) {
+        while let Some(coarser) = coarser(&all[all.len() - 1], scheme) {
             all.push(coarser);
         }
         let grids: Vec<Grid> = all
             .iter()
             .rev()
-            .map(|[x, y]| Grid::new([x, y], order.cells()))
+            .map(|[x, y]| Grid::new([x, y], scheme.side()))
             .collect();
         let start = grids.iter().position(|grid| grid.nodes() >= SPRINGS);
         let coordinates: Vec<_> = grids.iter().map(|grid| grid.coordinates.clone()).collect();
@@ -145,7 +150,7 @@ impl<'a> Climb<'a> {
             .collect();
         Self {
             problem,
-            order,
+            scheme,
             settings,
             multigrid: Multigrid::new(&coordinates),
             start: start.unwrap_or(levels.len() - 1),
@@ -175,7 +180,7 @@ impl<'a> Climb<'a> {
         Sheet {
             law: &*self.problem.law,
             thickness: self.problem.thickness,
-            order: self.order,
+            scheme: self.scheme,
         }
     }
 
@@ -188,7 +193,7 @@ impl<'a> Climb<'a> {
         let mut previous: Option<f64> = None;
         let (mut own_error, mut last_correction) = (f64::NAN, f64::NAN);
         let tolerance = self.settings.tolerance;
-        let mut coarser = None;
+        let (mut coarser, mut corrections) = (None, Vec::new());
         for index in self.start + 1..self.levels.len() {
             let finer = field.onto(&self.levels[index - 1].grid, &self.levels[index].grid);
             coarser = Some(std::mem::replace(&mut field, finer));
@@ -201,6 +206,7 @@ impl<'a> Climb<'a> {
             let reached = self.solve(index, &mut field, &enough)?;
             own_error = error(reached.first);
             last_correction = reached.last;
+            corrections.push(reached.last);
             previous = Some(reached.first);
             work.push((self.levels[index].grid.nodes(), reached.work));
         }
@@ -214,6 +220,7 @@ impl<'a> Climb<'a> {
             coarser,
             discretisation_error: own_error,
             last_correction,
+            corrections,
             work,
         })
     }
@@ -310,9 +317,9 @@ fn inverted() -> SolveFault {
 }
 
 /// Boundaries of about half as many elements along the axes on which they are short; nothing where there are few.
-fn coarser(boundaries: &[Vec<f64>; 2], order: Order) -> Option<[Vec<f64>; 2]> {
+fn coarser(boundaries: &[Vec<f64>; 2], scheme: DifferenceScheme) -> Option<[Vec<f64>; 2]> {
     let elements = boundaries.each_ref().map(|boundaries| boundaries.len() - 1);
-    let cells = elements.map(|elements| elements * order.cells());
+    let cells = elements.map(|elements| elements * scheme.side());
     if 2 * (cells[0] - 1) * (cells[1] + 1) <= COARSEST {
         return None;
     }

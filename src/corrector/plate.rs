@@ -6,13 +6,17 @@
 //! | T: grips | on the short sides | known displacement in mm | η in mm |
 //! | T: traction-free edges | on the long sides, without corners | balance of forces in N | η in mm²/N |
 
+use super::climb::Climb;
 use super::condition::{Condition, Equilibrium, Linear};
-use super::{Correction, Corrector, CorrectorSettings, Describe, DifferenceScheme};
+use super::{
+    Correction, Corrector, CorrectorSettings, Describe, DifferenceScheme, Multipliers, Step,
+};
 use crate::error::Error;
 use crate::mesh::{Mesh, Side};
 use crate::problem::{Problem, Solution};
 use crate::sheet_energy::SheetEnergy;
-use crate::solve::{Assembly, SparseRows};
+use crate::solve::sparse::largest;
+use crate::solve::{Assembly, Convergence, SparseRows};
 
 /// Name of the condition F.
 pub const EQUILIBRIUM: &str = "equilibrium";
@@ -43,8 +47,10 @@ impl KnownConditions {
 pub struct CorrectedState {
     /// The corrected field and what follows from it; its residual is that of the difference scheme.
     pub solution: Solution,
-    /// How it was reached, with the multipliers.
-    pub correction: Correction,
+    /// The start and the field after each step of the direct method; none where the field climbed.
+    pub steps: Vec<Step>,
+    /// The multipliers, condition after condition.
+    pub multipliers: Vec<Multipliers>,
 }
 
 /// The difference scheme of a plate on the nodes of a lattice, ready to correct fields on them.
@@ -54,13 +60,13 @@ pub struct PlateCorrector<'a> {
     energy: SheetEnergy,
     assembly: Assembly,
     settings: CorrectorSettings,
-    names: PlateNames<'a>,
+    names: PlateNames,
 }
 
 /// Cells and nodes of a plate by their places.
-struct PlateNames<'a>(&'a Mesh);
+struct PlateNames(Mesh);
 
-impl Describe for PlateNames<'_> {
+impl Describe for PlateNames {
     fn element(&self, element: usize) -> String {
         self.0.describe_cell(element)
     }
@@ -103,7 +109,7 @@ impl<'a> PlateCorrector<'a> {
             energy,
             assembly,
             settings,
-            names: PlateNames(mesh),
+            names: PlateNames(scheme.mesh(mesh)),
         }
     }
 
@@ -133,7 +139,8 @@ impl<'a> PlateCorrector<'a> {
             .map_err(fault)?;
         Ok(CorrectedState {
             solution: self.solution(&correction, stretch),
-            correction,
+            steps: correction.steps,
+            multipliers: correction.multipliers,
         })
     }
 
@@ -179,12 +186,60 @@ impl<'a> PlateCorrector<'a> {
         conditions
     }
 
+    /// Corrects a displacement field at one stretch by the climb, which finds the result by itself: the field has
+    /// a say in the multipliers only, because everything is known.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when no corrected field was found.
+    pub fn climb(
+        &self,
+        climb: &mut Climb,
+        data: &[f64],
+        stretch: f64,
+    ) -> Result<CorrectedState, Error> {
+        let climbed = climb.correct(stretch)?;
+        let all = climb.multipliers(data, &climbed, stretch)?;
+        let of_condition = |condition: &dyn Condition| {
+            let unknowns = condition.unknowns().unwrap_or_default();
+            Multipliers {
+                name: condition.name().to_owned(),
+                values: unknowns.iter().map(|unknown| all[*unknown]).collect(),
+                unknowns: Some(unknowns.to_vec()),
+            }
+        };
+        let conditions = self.conditions(stretch, KnownConditions::ALL);
+        let multipliers = conditions.iter().map(|c| of_condition(&**c)).collect();
+        let field = climbed.field.to_nodes();
+        let size = largest(&field);
+        let convergence = Convergence {
+            residuals: climbed.corrections.iter().map(|z| z / size).collect(),
+            ..Convergence::default()
+        };
+        let mut solution = self.solved(field, stretch, convergence);
+        solution.force = climbed.force;
+        Ok(CorrectedState {
+            solution,
+            steps: Vec::new(),
+            multipliers,
+        })
+    }
+
     fn solution(&self, correction: &Correction, stretch: f64) -> Solution {
-        let displacement = correction.field().to_vec();
+        let convergence = correction.convergence(f64::NAN);
+        self.solved(correction.field().to_vec(), stretch, convergence)
+    }
+
+    /// What follows from a corrected field.
+    fn solved(
+        &self,
+        displacement: Vec<f64>,
+        stretch: f64,
+        mut convergence: Convergence,
+    ) -> Solution {
         let mut residual = vec![0.0; displacement.len()];
         let energy = Assembly::residual(&self.energy, &displacement, &mut residual)
             .expect("a corrected field is admissible");
-        let convergence = correction.convergence(energy);
+        convergence.energy = energy;
         Solution {
             stretch,
             force: self.problem.grip_force(self.mesh, &residual),

@@ -566,3 +566,40 @@ fn a_law_without_the_second_invariant_is_its_limit() {
         assert_eq!(stress(&limit, &h), stress(&neo_hooke, &h));
     }
 }
+
+/// Many points at once have the bits of each point by itself, whatever the machine's vectors.
+#[test]
+fn many_points_at_once_are_each_point_by_itself() {
+    for_each_law(|name, law| {
+        let gradient = |point: usize| {
+            let x = |k: usize| ((point * 37 + k * 11) % 101) as f64 / 101.0;
+            Gradient::new(0.4 * x(0), 0.2 * x(1) - 0.1, 0.2 * x(2) - 0.1, -0.2 * x(3))
+        };
+        let points = 53;
+        let lines: [Vec<f64>; 4] =
+            std::array::from_fn(|k| (0..points).map(|point| gradient(point)[k]).collect());
+        let gradients = lines.each_ref().map(|line| &line[..]);
+        let mut stresses: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; points]);
+        let mut tangents: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; points]);
+        assert!(law.stresses(gradients, stresses.each_mut().map(|p| &mut p[..])));
+        assert!(law.tangents(gradients, tangents.each_mut().map(|a| &mut a[..])));
+        for point in 0..points {
+            let kinematics = Kinematics::new(&gradient(point)).unwrap();
+            let (_, stress) = law.stress(&kinematics);
+            let tangent = law.response(&kinematics).tangent;
+            for k in 0..4 {
+                assert_eq!(stresses[k][point], stress[k], "{name}");
+            }
+            let entries = (0..4).flat_map(|column| (column..4).map(move |row| (row, column)));
+            for (entry, values) in entries.zip(&tangents) {
+                assert_eq!(values[point], tangent[entry], "{name} {entry:?}");
+            }
+        }
+        let inverted = [&[0.0, -2.0][..], &[0.0; 2], &[0.0; 2], &[0.0; 2]];
+        let mut two: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; 2]);
+        assert!(
+            !law.stresses(inverted, two.each_mut().map(|p| &mut p[..])),
+            "{name}"
+        );
+    });
+}

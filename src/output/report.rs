@@ -234,6 +234,8 @@ fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
             match study.scheme {
                 DifferenceScheme::Gauss =>
                     ", whose equations are those of bilinear finite elements there",
+                DifferenceScheme::Biquadratic =>
+                    ", whose equations are those of biquadratic finite elements there",
                 DifferenceScheme::Corners => "",
             }
         )),

@@ -84,7 +84,7 @@ impl Model {
             Self::Corrected => {
                 let state = &results.corrected[step];
                 let u = &state.solution.displacement;
-                let multipliers = state.correction.multipliers.iter();
+                let multipliers = state.multipliers.iter();
                 let size = u.len();
                 let arrays = multipliers.filter_map(|group| multiplier_array(group, size));
                 plate(

@@ -121,7 +121,7 @@ fn known_conditions(
     for ((name, known), colour) in ABLATIONS.into_iter().zip(colours) {
         progress(&format!("known: {name}"));
         let corrected = corrector.correct(&fields.uncorrected, plate.stretch(), known)?;
-        let steps = &corrected.correction.steps;
+        let steps = &corrected.steps;
         let departures: Vec<f64> = steps
             .iter()
             .map(|step| fields.departure(&step.field))
@@ -132,7 +132,7 @@ fn known_conditions(
                 .get(step)
                 .map_or("–".into(), |value| number(*value))
         };
-        let displacement = fields.displacement(corrected.correction.field());
+        let displacement = fields.displacement(&corrected.solution.displacement);
         rows.push(vec![
             name.to_owned(),
             number(before),
@@ -277,15 +277,15 @@ fn other_lattices(
         let field = plate.solve(&lattice)?;
         let corrected =
             corrector.correct(&field.displacement, plate.stretch(), KnownConditions::ALL)?;
-        let steps = &corrected.correction.steps;
-        let far = fields.far(corrected.correction.field());
+        let steps = &corrected.steps;
+        let far = fields.far(&corrected.solution.displacement);
         worst = worst.max(far);
         rows.push(vec![
             name.to_owned(),
             number(fields.departure(&field.displacement)),
             number(fields.departure(&steps[1].field)),
             number(fields.departure(&steps[2.min(steps.len() - 1)].field)),
-            number(fields.departure(corrected.correction.field())),
+            number(fields.departure(&corrected.solution.displacement)),
             (steps.len() - 1).to_string(),
         ]);
     }
@@ -335,7 +335,7 @@ fn plain_newton(plate: &Plate, fields: &Fields, outcome: &mut Outcome) -> Result
             })
         })
         .map_err(|fault| plate.fault(fault))?;
-    let steps = fields.corrected.correction.steps.len() - 1;
+    let steps = fields.corrected.steps.len() - 1;
     outcome.blocks.push(Block::Paragraph(format!(
         "With all of T imposed there are as many conditions as unknowns and each step is a Newton step. From the \
          mass-spring field it takes {steps} steps; plain Newton on the same equations from the affine stretch takes {}.",

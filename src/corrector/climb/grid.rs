@@ -5,8 +5,8 @@ use crate::multigrid::{Interpolation, Lines};
 /// Where the energy of an element is sampled along one axis, and the functions there.
 ///
 /// ```text
-/// order 1: two nodes along each axis, 2 × 2 Gauss points: the equations of bilinear differences
-/// order 2: three nodes along each axis, 3 × 3 Gauss points: those of biquadratic ones, two cells at a time
+/// one cell         two nodes along each axis, sampled at the corners or at 2 × 2 Gauss points
+/// two by two cells three nodes along each axis, sampled at 3 × 3 Gauss points
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Rule<const NODES: usize> {
@@ -19,6 +19,15 @@ pub struct Rule<const NODES: usize> {
 }
 
 impl Rule<2> {
+    /// Linear functions at both ends.
+    pub fn corners() -> Self {
+        Self {
+            weights: [0.5; 2],
+            values: [[1.0, 0.0], [0.0, 1.0]],
+            derivatives: [[-1.0, 1.0]; 2],
+        }
+    }
+
     /// Linear functions at two Gauss points.
     pub fn linear() -> Self {
         let gauss = 0.5 / 3.0_f64.sqrt();
@@ -58,14 +67,13 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid whose element boundaries are the given coordinates, each element with `order` cells of one size.
-    pub fn new(boundaries: [&[f64]; 2], order: usize) -> Self {
+    /// A grid whose element boundaries are the given coordinates, each element with `side` cells of one size along
+    /// each axis.
+    pub fn new(boundaries: [&[f64]; 2], side: usize) -> Self {
         let divide = |boundaries: &[f64]| {
             let within = |pair: &[f64]| -> Vec<f64> {
-                let step = (pair[1] - pair[0]) / order as f64;
-                (0..order)
-                    .map(|part| pair[0] + part as f64 * step)
-                    .collect()
+                let step = (pair[1] - pair[0]) / side as f64;
+                (0..side).map(|part| pair[0] + part as f64 * step).collect()
             };
             let mut nodes: Vec<f64> = boundaries.windows(2).flat_map(within).collect();
             nodes.extend(boundaries.last());

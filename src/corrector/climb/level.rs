@@ -3,6 +3,7 @@
 use super::forces::forces;
 use super::grid::{Field, Grid, Rule};
 use super::tangents::linearise;
+use crate::corrector::DifferenceScheme;
 use crate::material::HyperelasticLaw;
 use crate::multigrid::{Multigrid, Vector};
 
@@ -12,25 +13,6 @@ const LINEAR_ITERATIONS: usize = 200;
 /// Size of the step of a difference of F relative to the displacements.
 const DIFFERENCE: f64 = 1e-7;
 
-/// The order of the difference scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
-    /// The equations of bilinear differences, [`crate::corrector::DifferenceScheme::Gauss`].
-    Linear,
-    /// Those of biquadratic differences over two by two cells.
-    Quadratic,
-}
-
-impl Order {
-    /// Cells along each axis that are evaluated together.
-    pub fn cells(self) -> usize {
-        match self {
-            Self::Linear => 1,
-            Self::Quadratic => 2,
-        }
-    }
-}
-
 /// The sheet whose equation is solved.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheet<'a> {
@@ -38,17 +20,20 @@ pub struct Sheet<'a> {
     pub law: &'a dyn HyperelasticLaw,
     /// Thickness in mm.
     pub thickness: f64,
-    /// The order of the differences.
-    pub order: Order,
+    /// How its differences are taken.
+    pub scheme: DifferenceScheme,
 }
 
 impl Sheet<'_> {
     /// F(u) in N at all nodes of a grid.
     fn forces(self, grid: &Grid, u: &Field, target: &mut Field) -> Result<(), Inverted> {
         let Sheet { law, thickness, .. } = self;
-        let admissible = match self.order {
-            Order::Linear => forces(law, thickness, grid, &Rule::linear(), u, target),
-            Order::Quadratic => forces(law, thickness, grid, &Rule::quadratic(), u, target),
+        let admissible = match self.scheme {
+            DifferenceScheme::Corners => forces(law, thickness, grid, &Rule::corners(), u, target),
+            DifferenceScheme::Gauss => forces(law, thickness, grid, &Rule::linear(), u, target),
+            DifferenceScheme::Biquadratic => {
+                forces(law, thickness, grid, &Rule::quadratic(), u, target)
+            }
         };
         admissible.then_some(()).ok_or(Inverted)
     }

@@ -1,7 +1,8 @@
 //! The Lagrange multipliers of a climbed field.
 
-use super::{Climb, Field, Inverted, inverted};
-use crate::error::SolveFault;
+use super::{Climb, Climbed, Field, Inverted, inverted};
+use crate::error::{Error, SolveFault};
+use crate::problem::Problem;
 
 /// The multipliers' iteration ends at this share of its first correction.
 const TOLERANCE: f64 = 1e-7;
@@ -15,23 +16,40 @@ impl Climb<'_> {
     /// grips        ψ = (ū − u) − K ψ                           [mm]
     /// ```
     ///
+    /// ux, uy of node after node both in `data` and in the result.
+    ///
     /// # Errors
-    /// A [`SolveFault`] when the corrected field is not admissible or the iteration stalls.
-    pub fn multipliers(&mut self, data: &Field, corrected: &Field) -> Result<Field, SolveFault> {
+    /// [`Error::Solve`] when the equation cannot be solved at the corrected field.
+    pub fn multipliers(
+        &mut self,
+        data: &[f64],
+        climbed: &Climbed,
+        stretch: f64,
+    ) -> Result<Vec<f64>, Error> {
+        let found = self.solve_multipliers(data, &climbed.field);
+        let fault = |fault| Error::Solve {
+            model: "multipliers".into(),
+            step: Problem::describe_step(stretch),
+            fault,
+        };
+        found.map(|field| field.to_nodes()).map_err(fault)
+    }
+
+    fn solve_multipliers(&mut self, data: &[f64], corrected: &Field) -> Result<Field, SolveFault> {
         let finest = self.levels.len() - 1;
         self.linearise_below(finest, corrected)?;
         let sheet = self.sheet();
-        let mut difference = data.clone();
+        let mut difference = Field::of_nodes(self.grid(), data);
         difference.add(-1.0, corrected);
         let level = &mut self.levels[finest];
-        level
-            .solve_linear(
-                sheet,
-                corrected,
-                &difference,
-                &mut self.multigrid,
-                TOLERANCE,
-            )
+        let solved = level.solve_linear(
+            sheet,
+            corrected,
+            &difference,
+            &mut self.multigrid,
+            TOLERANCE,
+        );
+        solved
             .map_err(|Inverted| inverted())?
             .ok_or(SolveFault::NotPositiveDefinite)
     }

@@ -140,6 +140,7 @@ impl Climb<'_> {
             coarser: None,
             discretisation_error: error,
             last_correction: reached.last,
+            corrections: vec![reached.last],
             work: vec![(self.grid().nodes(), work)],
         })
     }

@@ -52,7 +52,7 @@ impl Climb<'_> {
     }
 
     /// The same in equal load steps, each from the field before, scaled with the motion of the grip.
-    fn load_steps(
+    pub(super) fn load_steps(
         &mut self,
         stretch: f64,
         steps: usize,

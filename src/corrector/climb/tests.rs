@@ -1,0 +1,314 @@
+use std::path::Path;
+use std::sync::Arc;
+
+use super::*;
+use crate::corrector::CorrectorSettings;
+use crate::corrector::Solver;
+use crate::corrector::plate::{KnownConditions, PlateCorrector};
+use crate::finite_element::{Element, FiniteElements};
+use crate::mass_spring::{LatticeSettings, MassSpring};
+use crate::material::Card;
+use crate::mesh::{CellShape, Mesh};
+use crate::solve::NewtonSettings;
+
+const TIGHT: ClimbSettings = ClimbSettings {
+    tolerance: 1e-6,
+    max_iterations: 60,
+};
+
+fn problem(card: &str, size: [f64; 2], stretch: f64) -> Problem {
+    let card = Card::load(card, Path::new(".")).unwrap();
+    Problem {
+        size,
+        thickness: 2.0,
+        law: Arc::clone(&card.law),
+        stretches: vec![stretch],
+    }
+}
+
+fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b);
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// The direct corrector's field and force; its multipliers are compared with the climb's.
+fn direct(problem: &Problem, cells: [usize; 2], scheme: DifferenceScheme) -> (Vec<f64>, f64) {
+    let springs = MassSpring::new(problem, cells, LatticeSettings { area_term: false });
+    let newton = NewtonSettings {
+        tolerance: 1e-10,
+        max_iterations: 60,
+    };
+    let data = springs.solve(problem, newton, &|_| ()).unwrap().remove(0);
+    let settings = CorrectorSettings {
+        tolerance: 1e-11,
+        movement: 1e-9,
+        max_steps: 60,
+        solver: Solver::Automatic,
+    };
+    let corrector = PlateCorrector::new(problem, &springs.mesh, scheme, settings);
+    let stretch = problem.stretches[0];
+    let state = corrector
+        .correct(&data.displacement, stretch, KnownConditions::ALL)
+        .unwrap();
+    let multipliers: Vec<f64> = state
+        .multipliers
+        .into_iter()
+        .flat_map(|m| m.values)
+        .collect();
+    let mut climb = Climb::even(problem, cells, scheme, TIGHT);
+    let climbed = corrector
+        .climb(&mut climb, &data.displacement, stretch)
+        .unwrap();
+    let own: Vec<f64> = climbed
+        .multipliers
+        .into_iter()
+        .flat_map(|m| m.values)
+        .collect();
+    let most = own.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    assert!(largest_difference(&own, &multipliers) < 1e-4 * most);
+    (state.solution.displacement, state.solution.force)
+}
+
+#[test]
+fn the_climb_reaches_the_direct_corrector_with_every_scheme_law_and_number_of_cells() {
+    let cases = [
+        (
+            "pva-10",
+            [150.0, 50.0],
+            [60, 20],
+            1.0,
+            DifferenceScheme::Gauss,
+        ),
+        (
+            "pva-10",
+            [150.0, 50.0],
+            [36, 12],
+            0.5,
+            DifferenceScheme::Biquadratic,
+        ),
+        (
+            "pva-10",
+            [150.0, 50.0],
+            [31, 11],
+            0.5,
+            DifferenceScheme::Corners,
+        ),
+        (
+            "neo-hooke",
+            [60.0, 90.0],
+            [17, 23],
+            0.3,
+            DifferenceScheme::Gauss,
+        ),
+        (
+            "treloar-ogden-3",
+            [40.0, 40.0],
+            [18, 14],
+            0.4,
+            DifferenceScheme::Biquadratic,
+        ),
+        (
+            "pva-10-yeoh",
+            [200.0, 20.0],
+            [50, 7],
+            0.2,
+            DifferenceScheme::Gauss,
+        ),
+    ];
+    for (card, size, cells, stretch, scheme) in cases {
+        let problem = problem(card, size, stretch);
+        let (expected, force) = direct(&problem, cells, scheme);
+        let climbed = Climb::even(&problem, cells, scheme, TIGHT)
+            .correct(stretch)
+            .unwrap();
+        let off = largest_difference(&climbed.field.to_nodes(), &expected);
+        assert!(
+            off < 1e-6 * size[0],
+            "{card} {cells:?} {scheme:?}: {off} mm"
+        );
+        assert!(
+            (climbed.force / force - 1.0).abs() < 1e-7,
+            "{card} {cells:?}"
+        );
+    }
+}
+
+#[test]
+fn it_stops_at_a_tenth_of_the_discretisation_error_and_knows_how_large_that_is() {
+    let problem = problem("pva-10", [150.0, 50.0], 0.5);
+    let scheme = DifferenceScheme::Gauss;
+    let mut fine = Climb::even(&problem, [240, 80], DifferenceScheme::Biquadratic, TIGHT);
+    let truth = fine.correct(0.5).unwrap().field;
+    for cells in [[30, 10], [60, 20], [120, 40]] {
+        let mut climb = Climb::even(&problem, cells, scheme, ClimbSettings::default());
+        let climbed = climb.correct(0.5).unwrap();
+        let mut solved = Climb::even(&problem, cells, scheme, TIGHT)
+            .correct(0.5)
+            .unwrap()
+            .field;
+        let mut iteration = climbed.field.clone();
+        iteration.add(-1.0, &solved);
+        solved.add(-1.0, &truth.onto(fine.grid(), climb.grid()));
+        let error = solved.size();
+        let ratio = climbed.discretisation_error / error;
+        assert!((0.5..2.0).contains(&ratio), "{cells:?}: {ratio}");
+        assert!(
+            iteration.size() < 0.1 * error,
+            "{cells:?}: {} of {error}",
+            iteration.size()
+        );
+    }
+}
+
+#[test]
+fn graded_grids_have_the_equations_of_finite_elements_on_them() {
+    let problem = problem("neo-hooke", [90.0, 30.0], 0.4);
+    let graded = |length: f64, elements: usize| -> Vec<f64> {
+        let place = |i: usize| {
+            let x = i as f64 / elements as f64;
+            length * (x - 0.6 * (std::f64::consts::TAU * x).sin() / std::f64::consts::TAU)
+        };
+        (0..=elements).map(place).collect()
+    };
+    let boundaries = [graded(90.0, 24), graded(30.0, 10)];
+    let mut climb = Climb::new(&problem, boundaries, DifferenceScheme::Gauss, TIGHT);
+    let climbed = climb.correct(0.4).unwrap();
+    let [x, y] = &climb.grid().coordinates;
+    let nodes = x
+        .iter()
+        .flat_map(|x| y.iter().map(move |y| [*x, *y]))
+        .collect();
+    let cells = (0..24).flat_map(|i| {
+        (0..10).map(move |j| {
+            let node = |di: usize, dj: usize| (i + di) * 11 + j + dj;
+            (
+                CellShape::Quad4,
+                vec![node(0, 0), node(1, 0), node(1, 1), node(0, 1)],
+            )
+        })
+    });
+    let mesh = Mesh::new(nodes, cells);
+    let energy = crate::sheet_energy::SheetEnergy::of_mesh(Arc::clone(&problem.law), &mesh, 2.0);
+    let u = climbed.field.to_nodes();
+    let mut residual = vec![0.0; u.len()];
+    crate::solve::Assembly::residual(&energy, &u, &mut residual).unwrap();
+    let free = 2 * 11..u.len() - 2 * 11;
+    let worst = residual[free]
+        .iter()
+        .fold(0.0, |most: f64, r| most.max(r.abs()));
+    assert!(worst < 1e-6 * climbed.force, "{worst} N");
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let problem = problem("pva-10", [150.0, 50.0], 0.7);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let scheme = DifferenceScheme::Biquadratic;
+            let mut climb = Climb::even(&problem, [210, 70], scheme, ClimbSettings::default());
+            let climbed = climb.correct(0.7).unwrap();
+            (climbed.field, climbed.force)
+        })
+    };
+    let [one, two, three] = [1, 2, 3].map(run);
+    assert!(one == two && one == three);
+}
+
+#[test]
+fn load_steps_reach_the_same_field() {
+    let problem = problem("pva-10", [150.0, 50.0], 1.0);
+    let mut climb = Climb::even(&problem, [60, 20], DifferenceScheme::Gauss, TIGHT);
+    let (at_once, _) = climb.first_field(1.0).unwrap();
+    let (in_steps, _) = climb.load_steps(1.0, 4).unwrap().unwrap();
+    let mut difference = at_once;
+    difference.add(-1.0, &in_steps);
+    assert!(difference.size() < 1e-4, "{} mm", difference.size());
+}
+
+#[test]
+fn a_path_has_the_states_that_climbs_have() {
+    let problem = problem("pva-10", [150.0, 50.0], 1.0);
+    let cells = [60, 20];
+    let stretches: Vec<f64> = (1..=20).map(|step| f64::from(step) / 20.0).collect();
+    let scheme = DifferenceScheme::Biquadratic;
+    let mut path = Vec::new();
+    let mut climb = Climb::even(&problem, cells, scheme, ClimbSettings::default());
+    climb
+        .follow(&stretches, &mut |climbed| path.push(climbed.clone()))
+        .unwrap();
+    assert_eq!(path.len(), stretches.len());
+    let mut exact = Climb::even(&problem, cells, scheme, TIGHT);
+    for (state, stretch) in path.iter().zip(&stretches) {
+        let expected = exact.correct(*stretch).unwrap();
+        let mut difference = state.field.clone();
+        difference.add(-1.0, &expected.field);
+        let limit = 0.2 * state.discretisation_error;
+        assert!(
+            difference.size() < limit,
+            "{stretch}: {} mm",
+            difference.size()
+        );
+        assert!(
+            (state.force / expected.force - 1.0).abs() < 1e-4,
+            "{stretch}"
+        );
+    }
+}
+
+#[test]
+fn grips_in_the_hand_turn_the_plate_and_bring_it_back() {
+    let problem = problem("pva-10", [150.0, 50.0], 0.3);
+    let climb = Climb::even(&problem, [60, 20], DifferenceScheme::Gauss, TIGHT);
+    let mut hand = Interactive::new(climb, 0.3).unwrap();
+    let (start, grips) = (hand.state().clone(), hand.grips());
+    let mut sheared = grips;
+    sheared.right.displacement[1] += 6.0;
+    sheared.right.angle += 0.05;
+    let force = hand.move_grips(sheared).unwrap().force;
+    assert!(force > start.force, "shear stretches it further");
+    let back = hand.move_grips(grips).unwrap();
+    assert!((back.force / start.force - 1.0).abs() < 1e-6);
+    // Both grips turned about the plate's middle: no strain is added.
+    let angle = 0.1_f64;
+    let arm = 0.5 * 150.0;
+    let reach = 0.5 * 150.0 * 1.3;
+    let middle = 0.5 * 150.0 * 1.3;
+    let turned = Grips {
+        left: RigidMotion {
+            displacement: [middle - reach * angle.cos(), -reach * angle.sin()],
+            angle,
+        },
+        right: RigidMotion {
+            displacement: [
+                middle + reach * angle.cos() - 2.0 * arm,
+                reach * angle.sin(),
+            ],
+            angle,
+        },
+    };
+    let forces = hand.move_grips(turned).unwrap().clone();
+    let expected = start.force * angle.cos();
+    assert!(
+        (forces.force / expected - 1.0).abs() < 1e-5,
+        "{} {expected}",
+        forces.force
+    );
+}
+
+#[test]
+fn finite_elements_of_nine_nodes_have_the_biquadratic_equations() {
+    let problem = problem("pva-10", [150.0, 50.0], 0.5);
+    let model = FiniteElements::new(&problem, [15, 5], Element::Q2);
+    let settings = NewtonSettings {
+        tolerance: 1e-11,
+        max_iterations: 60,
+    };
+    let solved = model.solve(&problem, settings, &|_| ()).unwrap();
+    let mut climb = Climb::even(&problem, [30, 10], DifferenceScheme::Biquadratic, TIGHT);
+    let field = climb.correct(0.5).unwrap().field.to_nodes();
+    assert!(largest_difference(&field, &solved[0].displacement) < 1e-6);
+}
