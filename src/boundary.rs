@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::error::Diagnostic;
+use crate::error::{Diagnostic, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Group, Mesh};
 use crate::sheet_energy::SheetEnergy;
-use crate::solve::{Loading, NewtonSettings, PathEnd, Potential, State, follow};
+use crate::solve::{Loading, NewtonSettings, PathEnd, Potential, State, follow, influence};
 
 mod loads;
 
@@ -193,6 +193,30 @@ impl<'a> Discretised<'a> {
         progress: &dyn Fn(f64),
     ) -> Result<Vec<State>, PathEnd> {
         follow(self, factors, settings, progress)
+    }
+
+    /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
+    /// state, while everything else that is held rests.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when the tangent cannot be factorised.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn influence(
+        &self,
+        state: &State,
+        name: &str,
+        axis: usize,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let mut motion = vec![0.0; state.displacement.len()];
+        for node in &self.mesh.groups()[name].nodes {
+            let unknown = 2 * node + axis;
+            if self.held.contains_key(&unknown) {
+                motion[unknown] = 1.0;
+            }
+        }
+        influence(self, (state.factor, &state.displacement), &motion)
     }
 
     /// The force of the supports on a group in N, from a state.

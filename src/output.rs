@@ -16,7 +16,9 @@ pub mod picture;
 mod report;
 pub mod vtk;
 
-pub use figures::{Figure, comparison_chart, field_figure, material_chart, mesh_picture};
+pub use figures::{
+    Figure, cell_figure, comparison_chart, field_figure, material_chart, mesh_picture,
+};
 pub use fit::{fit_json, fit_picture};
 pub use report::Block;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Mesh, Side};
-use crate::solve::{Convergence, Loading, NewtonSettings, Potential, State, follow};
+use crate::solve::{Convergence, Loading, NewtonSettings, Potential, State, follow, influence};
 
 /// A rectangular plate between two rigid grips that clamp its short sides.
 ///
@@ -153,6 +153,26 @@ impl Problem {
             .into_iter()
             .map(|state| self.solution(model.mesh, state))
             .collect())
+    }
+
+    /// The field in mm/mm that a motion of the right grip along X brings about, by the tangent at a solution.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when the tangent cannot be factorised.
+    pub fn influence(&self, model: &Model, solution: &Solution) -> Result<Vec<f64>, Error> {
+        let plate = PlateLoading {
+            problem: self,
+            model,
+        };
+        let nodes = 0..model.mesh.nodes.len();
+        let moves = |node| [f64::from(u8::from(model.mesh.on(Side::Right, node))), 0.0];
+        let motion: Vec<f64> = nodes.flat_map(moves).collect();
+        let state = (solution.stretch, &*solution.displacement);
+        influence(&plate, state, &motion).map_err(|fault| Error::Solve {
+            model: model.name.clone(),
+            step: Problem::describe_step(solution.stretch),
+            fault,
+        })
     }
 
     fn solution(&self, mesh: &Mesh, state: State) -> Solution {

@@ -44,6 +44,12 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
             .collect::<Result<Vec<_>, Error>>()
     })?;
     let reference = finite_elements(study, &mut times, progress)?;
+    let estimates = timed(&mut times, "finite elements' error", || {
+        let [.., finest] = &reference;
+        let solutions = finest.solutions.iter();
+        let estimates = solutions.map(|solution| finest.model.estimate(problem, solution));
+        estimates.collect::<Result<Vec<_>, Error>>()
+    })?;
 
     let measure = Reference::new(
         problem,
@@ -66,6 +72,7 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
         uncorrected,
         corrected,
         reference,
+        estimates,
         comparison,
         times,
     })
@@ -83,7 +90,7 @@ fn finite_elements(
     progress: Progress,
 ) -> Result<[ReferenceMesh; 3], Error> {
     let mut solve = |name, cells| -> Result<ReferenceMesh, Error> {
-        let model = FiniteElements::new(&study.problem, cells, study.element);
+        let model = FiniteElements::graded(&study.problem, cells, study.element, study.grading);
         let told = |stretch: f64| progress(name, stretch);
         let solve = || model.solve(&study.problem, study.finite_element, &told);
         let solutions = timed(times, name, solve)?;

@@ -9,7 +9,7 @@ pub mod rows;
 pub mod sparse;
 
 pub use newton::{Convergence, Newton, NewtonSettings};
-pub use path::{Loading, PathEnd, State, follow};
+pub use path::{Loading, PathEnd, State, follow, influence};
 pub use potential::{Assembly, Inadmissible, Local, Potential};
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu, SymmetricPattern};

@@ -155,6 +155,13 @@ pub const CASES: &[Case] = &[
         slow: false,
         prepare: finite_elements::cook::prepare,
     },
+    Case {
+        kind: "own-error",
+        study: include_str!("../validation/cases/own_error.toml"),
+        file: "validation/cases/own_error.toml",
+        slow: true,
+        prepare: finite_elements::own_error::prepare,
+    },
 ];
 
 /// The cases of some kinds, or all; without the slow ones where `quick` is wanted and none is named.

@@ -14,6 +14,7 @@ use vtkio::model::{
 
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
+use crate::finite_element::error_estimate::EnergyError;
 use crate::mass_spring::{MassSpring, SpringState};
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
@@ -21,6 +22,9 @@ use crate::mesh::{CellShape, Mesh};
 use crate::problem::Problem;
 use crate::results::Results;
 use crate::study::Study;
+
+/// η_c/‖u_h‖ of each cell: the root of the sum of their squares is the error of the field in %.
+const ESTIMATED_ERROR: &str = "estimated_error_percent_of_energy_norm";
 
 /// All VTK files of a run: name and content, one after the other.
 pub fn files(study: &Study, results: &Results) -> impl Iterator<Item = (String, Vec<u8>)> {
@@ -79,7 +83,7 @@ impl Model {
         match self {
             Self::MassSpring => {
                 let u = &results.uncorrected[step].displacement;
-                plate(&problem.into(), lattice, u, vec![difference(u)])
+                plate(&problem.into(), lattice, u, vec![difference(u)], None)
             }
             Self::Corrected => {
                 let state = &results.corrected[step];
@@ -92,6 +96,7 @@ impl Model {
                     lattice,
                     u,
                     [difference(u)].into_iter().chain(arrays).collect(),
+                    None,
                 )
             }
             Self::FiniteElement => {
@@ -101,6 +106,7 @@ impl Model {
                     &finest.model.mesh,
                     &finest.solutions[step].displacement,
                     Vec::new(),
+                    Some(&results.estimates[step].energy),
                 )
             }
             Self::Springs => springs(&results.springs, &results.uncorrected[step].displacement),
@@ -125,22 +131,36 @@ impl<'a> From<&'a Problem> for Sheet<'a> {
     }
 }
 
-/// The `.vtu` file of a displacement field on a mesh, with the stresses that follow and, where there is a
-/// reference field at the nodes, the difference to it.
+/// The `.vtu` file of a displacement field on a mesh, with the stresses that follow and the difference to a reference
+/// field at the nodes.
 pub fn field_file(
     title: &str,
     sheet: &Sheet,
     mesh: &Mesh,
     displacement: &[f64],
-    reference: Option<&[f64]>,
+    reference: &[f64],
 ) -> Vec<u8> {
-    let difference = reference.map(|reference| {
-        let pairs = displacement.iter().zip(reference);
-        let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
-        planar_vectors("difference_to_finite_elements_mm", &difference)
-    });
-    let more = difference.into_iter().collect();
-    encode(title, plate(sheet, mesh, displacement, more))
+    let pairs = displacement.iter().zip(reference);
+    let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
+    let difference = planar_vectors("difference_to_finite_elements_mm", &difference);
+    encode(
+        title,
+        plate(sheet, mesh, displacement, vec![difference], None),
+    )
+}
+
+/// The `.vtu` file of a finite-element field, with the stresses that follow and its estimated error.
+pub fn finite_element_file(
+    title: &str,
+    sheet: &Sheet,
+    mesh: &Mesh,
+    displacement: &[f64],
+    error: &EnergyError,
+) -> Vec<u8> {
+    encode(
+        title,
+        plate(sheet, mesh, displacement, Vec::new(), Some(error)),
+    )
 }
 
 /// The `.vtu` file of the springs of a lattice.
@@ -154,18 +174,18 @@ fn plate(
     mesh: &Mesh,
     displacement: &[f64],
     more_point_data: Vec<Attribute>,
+    error: Option<&EnergyError>,
 ) -> UnstructuredGridPiece {
     let cells: Vec<&[usize]> = (0..mesh.cell_count()).map(|cell| mesh.cell(cell)).collect();
     let kinds = (0..mesh.cell_count()).map(|cell| kind(mesh.shape(cell)));
     let mut point = vec![planar_vectors("displacement_mm", displacement)];
     point.extend(more_point_data);
+    let mut cell = material_state(sheet, mesh, displacement);
+    cell.extend(error.map(|error| array(ESTIMATED_ERROR, scalars(), error.cell_percents())));
     UnstructuredGridPiece {
         points: points(mesh),
         cells: connect(&cells, kinds.collect()),
-        data: Attributes {
-            point,
-            cell: material_state(sheet, mesh, displacement),
-        },
+        data: Attributes { point, cell },
     }
 }
 

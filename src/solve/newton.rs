@@ -1,7 +1,7 @@
 //! Newton's method for the minimum of a potential, with a line search that keeps every element admissible.
 
 use super::potential::{Assembly, Inadmissible, Potential};
-use super::sparse::{Cholesky, NotPositiveDefinite, largest, moved};
+use super::sparse::{Cholesky, NotPositiveDefinite, largest};
 use crate::error::SolveFault;
 
 /// When to stop.
@@ -151,17 +151,7 @@ impl Newton {
         self.assembly
             .linearise(potential, u, &mut residual, &mut stiffness)
             .map_err(inverted)?;
-        // The forces of the moved supports by a difference along their motion, small beside the size of u.
-        let most = largest(motion);
-        if most > 0.0 {
-            let share = 1e-6 * largest(u).max(1e-3 * most) / most;
-            let mut there = vec![0.0; u.len()];
-            Assembly::residual(potential, &moved(u, share, motion), &mut there)
-                .map_err(inverted)?;
-            for (residual, there) in residual.iter_mut().zip(&there) {
-                *residual += (there - *residual) / share;
-            }
-        }
+        Assembly::add_product(potential, u, motion, &mut residual).map_err(inverted)?;
         self.factorise(&mut stiffness)?;
         let mut change = vec![0.0; u.len()];
         let step = self.step(&residual)?;

@@ -91,6 +91,25 @@ pub fn follow(
     Ok(states)
 }
 
+/// The change of an equilibrium by its tangent while held unknowns move as `motion` says and the others follow:
+/// the sensitivity of the field to a support's motion, and, as the tangent is symmetric, the influence of a
+/// disturbance of the field on the support's reaction.
+///
+/// # Errors
+/// A [`SolveFault`] when the tangent cannot be factorised.
+pub fn influence(
+    loading: &dyn Loading,
+    state: (f64, &[f64]),
+    motion: &[f64],
+) -> Result<Vec<f64>, SolveFault> {
+    let (factor, displacement) = state;
+    let potential = loading.potential(factor);
+    let mut newton = Newton::new(&*potential, &loading.held())?;
+    let describe = |element| loading.describe(element);
+    let change = newton.predict(&*potential, displacement, motion, &describe)?;
+    Ok(motion.iter().zip(change).map(|(m, c)| m + c).collect())
+}
+
 struct Path<'a> {
     loading: &'a dyn Loading,
     settings: NewtonSettings,

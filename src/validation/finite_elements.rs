@@ -13,6 +13,7 @@ pub mod cantilever;
 pub mod cook;
 pub mod hole;
 pub mod manufactured;
+pub mod own_error;
 pub mod patch;
 pub mod ring;
 

@@ -7,18 +7,18 @@ use crate::compare::area_weighted_percent;
 use crate::corrector::{CorrectorSettings, Solver, specimen::correct};
 use crate::document::Section;
 use crate::error::{Error, SolveFault};
-use crate::finite_element::convergence::{Richardson, richardson};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::output::picture::Scale;
 use crate::output::{self, Block, Figure, vtk};
-use crate::sheet_energy::SheetEnergy;
 use crate::solve::{NewtonSettings, PathEnd, State};
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
 
 mod read;
+mod reference;
 
 use read::Specimen;
+use reference::Reference;
 
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
@@ -92,10 +92,14 @@ impl Specimen {
         Ok(states)
     }
 
-    /// The size of the force on the measured group in N, with the sign of its larger component.
-    fn force(&self, model: &Discretised, state: &State) -> f64 {
+    /// The larger component of the force on the measured group: its axis, and its size in N with its sign.
+    fn component(&self, model: &Discretised, state: &State) -> (usize, f64) {
         let [x, y] = model.reaction(state, &self.measured);
-        if x.abs() >= y.abs() { x } else { y }
+        if x.abs() >= y.abs() { (0, x) } else { (1, y) }
+    }
+
+    fn force(&self, model: &Discretised, state: &State) -> f64 {
+        self.component(model, state).1
     }
 
     /// The problem on a mesh; groups were checked when the study was read.
@@ -111,26 +115,11 @@ impl Specimen {
     }
 }
 
-/// The finite elements on three meshes, coarse to fine.
-struct Reference {
-    meshes: [Mesh; 3],
-    solved: [Solved; 3],
-}
-
 fn compute(mut specimen: Specimen, progress: Progress) -> Result<Outcome, Error> {
     let (specimen, mut ends) = (&mut specimen, Vec::new());
     let problem = &specimen.problem.clone();
     progress("finite elements");
-    let meshes = specimen.reference_meshes();
-    let mut solved = Vec::new();
-    for mesh in &meshes {
-        let energy: SheetEnergy = problem.finite_elements(mesh);
-        let model = specimen.on(problem, mesh, &energy)?;
-        let name = format!("finite elements ({})", mesh.describe());
-        solved.push(solve(specimen, &model, &name, &mut ends)?);
-    }
-    let solved = solved.try_into().ok().expect("three meshes");
-    let reference = Reference { meshes, solved };
+    let reference = Reference::solve(specimen, &mut ends)?;
 
     progress("mass-spring");
     let springs = MassSpring::on_mesh(&problem.law, problem.thickness, specimen.lattice());
@@ -213,23 +202,21 @@ fn outcome(
     [uncorrected, corrected]: [&Solved; 2],
 ) -> Outcome {
     let lattice = &springs.mesh;
-    let [_, _, fine] = &reference.meshes;
+    let fine = &reference.mesh;
     let mut rows = Vec::new();
     let mut worst = [0.0_f64, 0.0, f64::INFINITY];
     let mut own_error = 0.0_f64;
     let mut fields = Vec::new();
     for (step, factor) in specimen.factors.iter().enumerate() {
-        let expected =
-            fine.displacement_on(&reference.solved[2].states[step].displacement, lattice);
-        let forces = [0, 1, 2].map(|level| reference.solved[level].forces[step]);
-        let own: Richardson = richardson(forces);
-        let before = deviation(lattice, uncorrected, step, &expected, forces[2]);
-        let after = deviation(lattice, corrected, step, &expected, forces[2]);
+        let expected = fine.displacement_on(&reference.solved.states[step].displacement, lattice);
+        let force = reference.solved.forces[step];
+        let before = deviation(lattice, uncorrected, step, &expected, force);
+        let after = deviation(lattice, corrected, step, &expected, force);
         let correction = 100.0 * (1.0 - after.displacement / before.displacement);
         worst[0] = worst[0].max(after.displacement);
         worst[1] = worst[1].max(after.force.abs());
         worst[2] = worst[2].min(correction);
-        own_error = own_error.max(own.error_percent);
+        own_error = own_error.max(reference.force_percent(step));
         rows.push(vec![
             factor.to_string(),
             format!("{:.3}", before.displacement),
@@ -237,8 +224,12 @@ fn outcome(
             format!("{correction:.2}"),
             format!("{:.2}", before.force),
             format!("{:.3}", after.force),
-            format!("{:.5}", forces[2]),
-            format!("{:.4}", own.error_percent),
+            format!("{force:.5}"),
+            reference
+                .three_meshes_percent(step)
+                .map_or("–".into(), |error| format!("{error:.4}")),
+            format!("{:.4}", reference.estimated_force_percent(step)),
+            format!("{:.4}", reference.estimates[step].energy.percent()),
         ]);
         fields.push(expected);
     }
@@ -246,7 +237,7 @@ fn outcome(
     let check = |quantity: &str, wanted, value| {
         Check::new(quantity, "%", wanted, "the study's tolerance", value)
     };
-    let checks = vec![
+    let mut checks = vec![
         check(
             "corrected displacement from the finite elements",
             Wanted::AtMost(limits.displacement_percent),
@@ -263,11 +254,15 @@ fn outcome(
             worst[2],
         ),
         check(
-            "finite elements' own error of the force, by three meshes",
+            &format!(
+                "finite elements' own error of the force, {}",
+                reference.by_what()
+            ),
             Wanted::AtMost(limits.force_percent),
             own_error,
         ),
     ];
+    checks.extend(reference.goal_check(specimen));
     let head = [
         "load factor [–]",
         "mass-spring: displacement [%]",
@@ -276,23 +271,29 @@ fn outcome(
         "mass-spring: force [%]",
         "corrected: force [%]",
         "finite elements: force [N]",
-        "their own error [%]",
+        "their own error, by three meshes [%]",
+        "their own error, by recovery [%]",
+        "their field's own error by recovery, energy norm [%]",
     ];
     let text = format!(
-        "Deviations from the finite elements ({} on {}, finest of three meshes) at {} nodes of the lattice ({}). \
+        "Deviations from the finite elements ({} on {}, {}) at {} nodes of the lattice ({}). \
          Displacements in relative L2, weighted by area; the force is that of the supports on the group `{}`.",
         specimen.element_name,
         fine.describe(),
+        reference.kind(),
         lattice.nodes.len(),
         lattice.describe(),
         specimen.measured
     );
     Outcome {
         checks,
-        blocks: vec![
+        blocks: [
             Block::Paragraph(text),
             Block::Table(head.map(String::from).to_vec(), rows),
-        ],
+        ]
+        .into_iter()
+        .chain(reference.history())
+        .collect(),
         figures: figures(
             specimen,
             reference,
@@ -324,9 +325,9 @@ fn figures(
 ) -> Vec<Figure> {
     let lattice = &springs.mesh;
     let last = specimen.factors.len() - 1;
-    let fine = &reference.meshes[2];
+    let fine = &reference.mesh;
     let [before, after] = [uncorrected, corrected].map(|model| &*model.states[last].displacement);
-    let exact = &*reference.solved[2].states[last].displacement;
+    let exact = &*reference.solved.states[last].displacement;
     let distance = |u: &[f64]| {
         let pairs = u.iter().zip(&expected[last]);
         sizes(&pairs.map(|(u, v)| u - v).collect::<Vec<_>>())
@@ -368,6 +369,19 @@ fn figures(
             caption: "The cells of the lattice.".into(),
             png: output::mesh_picture("Lattice", lattice),
         },
+        Figure {
+            name: name("estimated_error"),
+            caption: format!(
+                "Estimated error of every finite element at {at}, in % of the solution's energy norm."
+            ),
+            png: output::cell_figure(
+                (&format!("Estimated error at {at}"), "error of a cell [%]"),
+                Scale::Logarithmic,
+                fine,
+                exact,
+                &reference.estimates[last].energy.cell_percents(),
+            ),
+        },
     ]
 }
 
@@ -398,15 +412,16 @@ fn files(
     for (name, model) in [("mass_spring", uncorrected), ("corrected", corrected)] {
         series(name, &|step| {
             let u = &model.states[step].displacement;
-            vtk::field_file(title, &sheet, lattice, u, Some(&expected[step]))
+            vtk::field_file(title, &sheet, lattice, u, &expected[step])
         });
     }
     series("springs", &|step| {
         vtk::springs_file(title, springs, &uncorrected.states[step].displacement)
     });
     series("finite_element", &|step| {
-        let u = &reference.solved[2].states[step].displacement;
-        vtk::field_file(title, &sheet, &reference.meshes[2], u, None)
+        let u = &reference.solved.states[step].displacement;
+        let error = &reference.estimates[step].energy;
+        vtk::finite_element_file(title, &sheet, &reference.mesh, u, error)
     });
     files
 }

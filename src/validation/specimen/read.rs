@@ -17,6 +17,15 @@ pub struct Tolerances {
     pub correction_percent: f64,
 }
 
+/// When local refinement ends.
+#[derive(Clone, Copy)]
+pub struct Refinement {
+    /// Estimated error in the energy norm in % at the worst load factor.
+    pub error_percent: f64,
+    /// Cells that are not exceeded.
+    pub most_cells: usize,
+}
+
 /// A specimen, its supports and loads, and how finely it is meshed.
 pub struct Specimen {
     /// For file names.
@@ -27,6 +36,8 @@ pub struct Specimen {
     pub measured: String,
     pub element_name: &'static str,
     pub tolerances: Tolerances,
+    /// How far the finite elements are refined locally; nothing where they have three meshes.
+    pub refinement: Option<Refinement>,
     outline: Outline,
 }
 
@@ -66,6 +77,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         "element",
         &CellShape::NAMES.map(|element| (element.0, element)),
     );
+    let refinement = read_refinement(&section, chosen.map(|(_, element)| element));
     section.unknown_keys();
     let section = root.section("specimen");
     let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
@@ -113,6 +125,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         measured,
         element_name: chosen?.0,
         tolerances,
+        refinement,
         outline: outline?,
     };
     specimen.check(root);
@@ -194,6 +207,34 @@ impl Specimen {
         }
     }
 
+    /// The three-node triangles that local refinement begins with: as coarse as the coarsest of three meshes.
+    pub fn first_triangles(&self) -> Mesh {
+        match &self.outline {
+            Outline::Shape { shape, cells, .. } => shape.mesh(*cells / 2, CellShape::Triangle3),
+            Outline::File { mesh, .. } => mesh.triangulated(),
+        }
+    }
+
+    /// The mesh of the study's elements on some triangles.
+    pub fn elements_on(&self, triangles: &Mesh) -> Mesh {
+        let quadratic = match &self.outline {
+            Outline::Shape { element, .. } => element.degree() == 2,
+            Outline::File { quadratic, .. } => *quadratic,
+        };
+        match quadratic {
+            true => self.fitted(triangles.quadratic()),
+            false => triangles.clone(),
+        }
+    }
+
+    /// A refined mesh with its sides on the outline; that of a file is the polygon of its mesh.
+    pub fn fitted(&self, mut mesh: Mesh) -> Mesh {
+        if let Outline::Shape { shape, .. } = &self.outline {
+            shape.fit(&mut mesh);
+        }
+        mesh
+    }
+
     /// Records measures that do not fit and groups that the shape does not have.
     fn check(&self, root: &Section) {
         if !self.problem.thickness.is_finite() {
@@ -222,6 +263,16 @@ impl Specimen {
             root.fault("support", &fault.message, &hint);
             return;
         }
+        let forces = |(_, load): &(String, Load)| matches!(load, Load::Force(_));
+        if self.refinement.is_some() && self.problem.loads.iter().any(forces) {
+            let message =
+                "a force is shared by the nodes of its group, which local refinement changes";
+            root.fault(
+                "load",
+                message,
+                "write it as a traction, or leave out `adaptive`",
+            );
+        }
         if !mesh.groups().contains_key(&self.measured) {
             let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
             let message = format!("the specimen has no group `{}`", self.measured);
@@ -232,6 +283,22 @@ impl Specimen {
             );
         }
     }
+}
+
+fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refinement> {
+    let error = section.quantity("error", Dimension::Ratio, Bound::Within(1e-6, 0.5));
+    let most_cells = section.count("most_cells", 10, 200_000);
+    if !section.flag("adaptive") {
+        return None;
+    }
+    if element.is_some_and(|element| !element.is_triangle()) {
+        let message = "adaptive refinement is that of triangles";
+        section.fault("element", message, "take \"T2\" or \"T1\"");
+    }
+    Some(Refinement {
+        error_percent: 100.0 * error,
+        most_cells,
+    })
 }
 
 fn read_shape(section: &Section, name: &str) -> Shape {
