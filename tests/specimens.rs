@@ -110,6 +110,17 @@ fn faults_of_a_specimen_are_told_with_their_place() {
         ("shape = \"mesh\"\nfile = \"nothing.msh\"\nfile_unit = \"1 mm\"", PULLED.into(), "nothing.msh"),
         (
             strip,
+            format!("{PULLED}[finite_element]\nadaptive = true\n"),
+            "adaptive refinement is that of triangles",
+        ),
+        (
+            strip,
+            format!("{PULLED}[[load]]\ngroup = \"top\"\nkind = \"force\"\ny = \"1 N\"\n\
+                [finite_element]\nelement = \"T1\"\nadaptive = true\n"),
+            "a force is shared by the nodes of its group",
+        ),
+        (
+            strip,
             format!("{PULLED}[[load]]\ngroup = \"top\"\nkind = \"pressure\"\npressure = \"1 kPa\"\n").replace(
                 "[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"6 mm\"\ny = \"0 mm\"\n",
                 "",
@@ -123,6 +134,30 @@ fn faults_of_a_specimen_are_told_with_their_place() {
         let found = found.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(found.contains(told), "{told}: {found}");
     }
+}
+
+/// A specimen refines itself to the error that the study wants; where the cells do not suffice, that is told.
+#[test]
+fn local_refinement_ends_at_its_goal_or_at_its_limit() {
+    let shape = "shape = \"notched-strip\"\nlength = \"30 mm\"\nwidth = \"10 mm\"\nnotch_depth = \"2 mm\"\n\
+        notch_length = \"6 mm\"\ncells = 8\n[finite_element]\nelement = \"T2\"\nadaptive = true\n";
+    let folder = folder_with(&specimen(&format!("{shape}error = \"1 %\""), PULLED));
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    let printed = words(&done.get_output().stdout);
+    assert!(printed.contains("5 of 5 checks passed"), "{printed}");
+    let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+    assert!(report.contains("refined locally in"), "{report}");
+    let finest = fs::read_to_string(folder.path().join("out/vtk/finite_element_002.vtu")).unwrap();
+    assert!(finest.contains("estimated_error_percent_of_energy_norm"));
+
+    let text = specimen(
+        &format!("{shape}error = \"0.1 %\"\nmost_cells = 200"),
+        PULLED,
+    );
+    fs::write(folder.path().join("small.toml"), text).unwrap();
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
+    let printed = words(&done.get_output().stdout);
+    assert!(printed.contains("most_cells = 200"), "{printed}");
 }
 
 /// The states before the end of a path are written, and the end is told as a requirement that is not met.
