@@ -6,7 +6,7 @@ use crate::boundary::{BoundaryProblem, Discretised};
 use crate::compare::area_weighted_percent;
 use crate::corrector::{CorrectorSettings, Solver, specimen::correct};
 use crate::document::Section;
-use crate::error::{Error, SolveFault};
+use crate::error::{Diagnostic, Error, SolveFault};
 use crate::finite_element::convergence::{Richardson, richardson};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
@@ -14,11 +14,28 @@ use crate::output::picture::Scale;
 use crate::output::{self, Block, Figure, vtk};
 use crate::sheet_energy::SheetEnergy;
 use crate::solve::{NewtonSettings, PathEnd, State};
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
+use crate::validation::{Case, Check, Outcome, Prepared, Progress, Wanted};
 
 mod read;
 
-use read::Specimen;
+pub use read::{Specimen, Tolerances};
+
+/// The `kind` of these studies.
+pub const KIND: &str = "specimen";
+
+/// A specimen's study: its title, the specimen, and what deserves attention.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn load(
+    case: &Case,
+    file: &Path,
+    text: &str,
+) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
+    let (title, specimen, warnings) = case.read_with(file, text, read::read)?;
+    let specimen = specimen.expect("a study without faults has a specimen");
+    Ok((title, specimen, warnings))
+}
 
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
