@@ -272,6 +272,9 @@ impl<'a> Model<'a> {
                     .into(),
             );
         }
+        if self.code == Code::CalculiX && self.cells.iter().any(|(own, _)| own.degree() == 1) {
+            remarks.push("CalculiX makes linear solids of its own kind of CPS3 and CPS4: compare quadratic elements, or fine meshes".into());
+        }
         if self.code != Code::Abaqus {
             remarks.push(format!(
                 "{code} has no incompressible sheet: the bulk modulus is {} MPa, {} times the initial shear modulus",

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::boundary::{BoundaryProblem, Discretised};
 use crate::compare::area_weighted_percent;
+use crate::compare::imported::ModelField;
 use crate::corrector::{CorrectorSettings, Solver, specimen::correct};
 use crate::document::Section;
 use crate::error::{Diagnostic, Error, SolveFault};
@@ -76,7 +77,7 @@ fn solve(
     specimen: &mut Specimen,
     model: &Discretised,
     name: &str,
-    ends: &mut Vec<String>,
+    ends: &mut Vec<Error>,
 ) -> Result<Solved, Error> {
     let states = match model.solve(&specimen.factors, NEWTON, &|_| ()) {
         Ok(states) => states,
@@ -99,13 +100,13 @@ impl Specimen {
         &mut self,
         states: Vec<State>,
         fault: Error,
-        ends: &mut Vec<String>,
+        ends: &mut Vec<Error>,
     ) -> Result<Vec<State>, Error> {
         if states.is_empty() {
             return Err(fault);
         }
         self.factors.truncate(states.len());
-        ends.push(fault.to_string());
+        ends.push(fault);
         Ok(states)
     }
 
@@ -126,6 +127,51 @@ impl Specimen {
             .on(mesh, energy)
             .map_err(|found| Error::Input(vec![found]))
     }
+}
+
+/// The fields of all models at a load factor: finite elements on the finest mesh, springs, corrected springs. The
+/// study's load factors before it are steps on the way.
+///
+/// # Errors
+/// [`Error::Solve`] when a model has no solution.
+pub fn fields(
+    mut specimen: Specimen,
+    factor: f64,
+    progress: Progress,
+) -> Result<[ModelField; 3], Error> {
+    let (specimen, mut ends) = (&mut specimen, Vec::new());
+    specimen.factors.retain(|before| *before < factor);
+    specimen.factors.push(factor);
+    let problem = &specimen.problem.clone();
+    let [_, _, mesh] = specimen.reference_meshes();
+    progress("finite elements");
+    let energy = problem.finite_elements(&mesh);
+    let model = specimen.on(problem, &mesh, &energy)?;
+    let reference = solve(specimen, &model, "finite elements", &mut ends)?;
+    drop(model);
+    progress("mass-spring");
+    let springs = MassSpring::on_mesh(&problem.law, problem.thickness, specimen.lattice());
+    let lattice = &springs.mesh;
+    let model = specimen.on(problem, lattice, springs.potential())?;
+    let model = model.named(|element| springs.describe_element(element));
+    let uncorrected = solve(specimen, &model, "mass-spring", &mut ends)?;
+    progress("corrector");
+    let energy = problem.finite_elements(lattice);
+    let model = specimen.on(problem, lattice, &energy)?;
+    let corrected = correct_all(specimen, &model, lattice, &uncorrected, &mut ends)?;
+    if let Some(end) = ends.pop() {
+        return Err(end);
+    }
+    let field = |model, mesh: &Mesh, mut solved: Solved| ModelField {
+        model,
+        mesh: mesh.clone(),
+        displacement: solved.states.pop().expect("the last factor").displacement,
+    };
+    Ok([
+        field("finite elements", &mesh, reference),
+        field("mass-spring", lattice, uncorrected),
+        field("corrected", lattice, corrected),
+    ])
 }
 
 /// The finite elements on three meshes, coarse to fine.
@@ -163,7 +209,7 @@ fn compute(mut specimen: Specimen, progress: Progress) -> Result<Outcome, Error>
     let mut outcome = outcome(specimen, &reference, &springs, [&uncorrected, &corrected]);
     for end in ends {
         let wanted = Wanted::AtMost(0.0);
-        let check = Check::new(end, "–", wanted, "the whole path", f64::NAN);
+        let check = Check::new(end.to_string(), "–", wanted, "the whole path", f64::NAN);
         outcome.checks.push(check);
     }
     Ok(outcome)
@@ -175,7 +221,7 @@ fn correct_all(
     model: &Discretised,
     lattice: &Mesh,
     uncorrected: &Solved,
-    ends: &mut Vec<String>,
+    ends: &mut Vec<Error>,
 ) -> Result<Solved, Error> {
     let mut states: Vec<State> = Vec::new();
     let mut change = vec![0.0; 2 * lattice.nodes.len()];
