@@ -8,7 +8,8 @@
 //!
 //! Both codes write Ogden's law as Σ 2 μ/α² (…) and a neo-Hookean volume energy as (J − 1)²/D₁, so that the bulk
 //! modulus is K = 2/D₁. Abaqus' plane-stress elements are incompressible with D = 0. CalculiX makes solids of them
-//! and needs a finite K.
+//! and needs a finite K; its eight-node elements go out with reduced integration (`CPS8R`), which halves their
+//! distance to the sheet on coarse meshes.
 //!
 //! # References
 //! Abaqus 2016 Analysis User's Guide, 22.5.1 and 22.5.3; G. Dhondt, CalculiX `CrunchiX` User's Manual 2.20, `*HYPERELASTIC`
@@ -68,6 +69,11 @@ pub fn write(model: &Model) -> Result<String, Error> {
 }
 
 fn mesh(model: &Model, deck: &mut Deck) {
+    // Nearly incompressible solids on eight nodes are too stiff with all integration points.
+    let eight = match model.code {
+        Code::CalculiX => "CPS8R",
+        _ => "CPS8",
+    };
     deck.line("*NODE, NSET=ALL_NODES");
     for node in &model.nodes {
         let [x, y] = model.given.mesh.nodes[*node].map(number);
@@ -77,7 +83,7 @@ fn mesh(model: &Model, deck: &mut Deck) {
         (CellShape::Triangle3, "CPS3"),
         (CellShape::Triangle6, "CPS6"),
         (CellShape::Quad4, "CPS4"),
-        (CellShape::Quad8, "CPS8"),
+        (CellShape::Quad8, eight),
     ] {
         let cells = model.cells.iter().enumerate();
         let mut cells = cells.filter(|(_, (own, _))| *own == shape).peekable();
