@@ -92,10 +92,50 @@ impl Motion {
     }
 }
 
+impl Support {
+    /// The displacement in mm of a node at a place in mm, at a load factor; none along an axis that stays free.
+    pub fn displacement(&self, place: [f64; 2], factor: f64) -> [Option<f64>; 2] {
+        motions(self, place).map(|motion| motion.map(|motion| motion.at(factor)))
+    }
+}
+
 impl BoundaryProblem {
     /// The finite-element energy of a mesh.
     pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
         SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
+    }
+
+    /// The unknowns of a mesh that are held, each with the number of the support that holds it: the last one of
+    /// several.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support names no group of the mesh.
+    pub fn held_by(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+        let mut held = BTreeMap::new();
+        for (number, (name, support)) in self.supports.iter().enumerate() {
+            for node in &group(mesh, name)?.nodes {
+                let motions = motions(support, mesh.nodes[*node]);
+                let axes = [0, 1].into_iter().filter(|axis| motions[*axis].is_some());
+                held.extend(axes.map(|axis| (2 * node + axis, number)));
+            }
+        }
+        Ok(held)
+    }
+
+    /// The dead forces on the unknowns of a mesh in N at load factor 1: all loads but pressures.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a load names no group of the mesh, or when a group cannot carry it.
+    pub fn dead_forces(&self, mesh: &Mesh) -> Result<Vec<f64>, Diagnostic> {
+        let mut sum = vec![0.0; 2 * mesh.nodes.len()];
+        for (name, load) in &self.loads {
+            let forces = loads::dead_forces(mesh, group(mesh, name)?, load, self.thickness)
+                .map_err(|reason| refused(name, &reason))?;
+            for (sum, force) in sum.iter_mut().zip(forces) {
+                *sum += force;
+            }
+        }
+        Ok(sum)
     }
 
     /// The problem on the nodes of a mesh with an energy of them.
@@ -107,23 +147,21 @@ impl BoundaryProblem {
         mesh: &'a Mesh,
         energy: &'a dyn Potential,
     ) -> Result<Discretised<'a>, Diagnostic> {
-        let mut held = BTreeMap::new();
-        for (name, support) in &self.supports {
-            for node in &group(mesh, name)?.nodes {
-                for (axis, motion) in motions(support, mesh.nodes[*node]).into_iter().enumerate() {
-                    if let Some(motion) = motion {
-                        held.insert(2 * node + axis, motion);
-                    }
-                }
-            }
-        }
+        let held = self.held_by(mesh)?.into_iter();
+        let held: BTreeMap<usize, Motion> = held
+            .filter_map(|(unknown, support)| {
+                let (_, support) = &self.supports[support];
+                let motion = motions(support, mesh.nodes[unknown / 2])[unknown % 2]?;
+                Some((unknown, motion))
+            })
+            .collect();
         let mut loaded = Loaded::new(2 * mesh.nodes.len());
         for (name, load) in &self.loads {
             let is_held = |node: usize| [0, 1].map(|axis| held.contains_key(&(2 * node + axis)));
             let group = group(mesh, name)?;
             loaded
                 .add(mesh, group, load, self.thickness, &is_held)
-                .map_err(|reason| Diagnostic::error("", format!("the group `{name}` {reason}")))?;
+                .map_err(|reason| refused(name, &reason))?;
         }
         Ok(Discretised {
             mesh,
@@ -133,6 +171,11 @@ impl BoundaryProblem {
             names: Box::new(|cell| mesh.describe_cell(cell)),
         })
     }
+}
+
+/// A load that a group cannot carry.
+fn refused(group: &str, reason: &str) -> Diagnostic {
+    Diagnostic::error("", format!("the group `{group}` {reason}"))
 }
 
 fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {

@@ -23,6 +23,8 @@ use crate::material::sheet::Kinematics;
 use crate::mesh::Mesh;
 use crate::problem::{Problem, Solution};
 
+pub mod imported;
+
 /// Deviation of one field from the reference at one stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
@@ -179,6 +181,13 @@ pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: 
 /// Distance of two fields on the corners of any mesh in relative L2, weighted by area, in %. The area of a cell
 /// belongs to its corners in equal parts.
 pub fn area_weighted_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
+    let areas = corner_areas(mesh);
+    let nothing = vec![0.0; reference.len()];
+    100.0 * distance(&areas, field, reference) / distance(&areas, reference, &nothing)
+}
+
+/// The area in mm² that belongs to each node: that of a cell to its corners in equal parts.
+fn corner_areas(mesh: &Mesh) -> Vec<f64> {
     let mut areas = vec![0.0; mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
         let shape = mesh.shape(cell);
@@ -190,8 +199,7 @@ pub fn area_weighted_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f
             areas[*corner] += area / shape.corners() as f64;
         }
     }
-    let nothing = vec![0.0; reference.len()];
-    100.0 * distance(&areas, field, reference) / distance(&areas, reference, &nothing)
+    areas
 }
 
 /// Whether a point lies within a fifth of the width of a corner.

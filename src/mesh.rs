@@ -15,7 +15,7 @@ mod shapes;
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, GAUSS_3, GAUSS_5, QuadraturePoint};
 pub use grid::{Grid, Side};
-pub use import::import;
+pub use import::{ImportedField, import, import_field};
 use locate::Buckets;
 pub use shapes::Shape;
 
@@ -155,6 +155,25 @@ impl Mesh {
                 buckets.locate(self, point)
             }
         }
+    }
+
+    /// How far a point lies outside of the mesh, in sizes of its nearest cell; zero inside.
+    pub fn outside(&self, point: [f64; 2]) -> f64 {
+        let (cell, local) = self.locate(point);
+        let shape = self.shape(cell);
+        let size = if shape.is_triangle() { 1.0 } else { 2.0 };
+        shape.outside(local) / size
+    }
+
+    /// Lower left and upper right corner of the box around all nodes, in mm.
+    pub fn bounding_box(&self) -> [[f64; 2]; 2] {
+        let limit = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
+            self.nodes.iter().map(|node| node[axis]).fold(start, pick)
+        };
+        [
+            [0, 1].map(|axis| limit(axis, f64::min, f64::INFINITY)),
+            [0, 1].map(|axis| limit(axis, f64::max, f64::NEG_INFINITY)),
+        ]
     }
 
     /// The reference coordinates of a point in a cell, by Newton's method; nothing where it finds none.

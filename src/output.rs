@@ -9,6 +9,7 @@ use crate::study::Study;
 
 mod figures;
 mod fit;
+pub mod hand_over;
 mod html;
 mod json;
 mod markdown;

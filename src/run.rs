@@ -2,12 +2,14 @@
 
 use std::time::Instant;
 
+use crate::compare::imported::ModelField;
 use crate::compare::{Reference, StepComparison};
 use crate::corrector::PlateCorrector;
 use crate::corrector::plate::KnownConditions;
 use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::MassSpring;
+use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::{ReferenceMesh, Results};
 use crate::study::Study;
@@ -76,6 +78,39 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
         comparison,
         times,
     })
+}
+
+/// The fields of all models of a plate at a stretch: finite elements on the finest mesh, springs, corrected springs.
+/// The study's stretches before it are steps on the way.
+///
+/// # Errors
+/// [`Error::Solve`] with the model and the stretch at which no solution was found.
+pub fn fields(
+    mut study: Study,
+    stretch: f64,
+    progress: Progress,
+) -> Result<[ModelField; 3], Error> {
+    let stretches = &mut study.problem.stretches;
+    stretches.retain(|before| *before < stretch);
+    stretches.push(stretch);
+    let results = run(&study, progress)?;
+    let finest = results.finest();
+    let field = |model, mesh: &Mesh, solution: Option<&Solution>| ModelField {
+        model,
+        mesh: mesh.clone(),
+        displacement: solution.expect("the last stretch").displacement.clone(),
+    };
+    let lattice = &results.springs.mesh;
+    let corrected = results.corrected.last().map(|state| &state.solution);
+    Ok([
+        field(
+            "finite elements",
+            &finest.model.mesh,
+            finest.solutions.last(),
+        ),
+        field("mass-spring", lattice, results.uncorrected.last()),
+        field("corrected", lattice, corrected),
+    ])
 }
 
 /// Is told each model and stretch that is done.

@@ -75,11 +75,7 @@ impl Model {
         let problem = &study.problem;
         let lattice = &results.springs.mesh;
         let reference = &results.reference_on_lattice[step];
-        let difference = |u: &[f64]| {
-            let pairs = u.iter().zip(reference);
-            let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
-            planar_vectors("difference_to_finite_elements_mm", &difference)
-        };
+        let difference = |u: &[f64]| difference(TO_FINITE_ELEMENTS, u, reference);
         match self {
             Self::MassSpring => {
                 let u = &results.uncorrected[step].displacement;
@@ -140,9 +136,7 @@ pub fn field_file(
     displacement: &[f64],
     reference: &[f64],
 ) -> Vec<u8> {
-    let pairs = displacement.iter().zip(reference);
-    let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
-    let difference = planar_vectors("difference_to_finite_elements_mm", &difference);
+    let difference = difference(TO_FINITE_ELEMENTS, displacement, reference);
     encode(
         title,
         plate(sheet, mesh, displacement, vec![difference], None),
@@ -161,6 +155,54 @@ pub fn finite_element_file(
         title,
         plate(sheet, mesh, displacement, Vec::new(), Some(error)),
     )
+}
+
+/// The `.vtu` file of a displacement field on a mesh beside an imported one at the same nodes.
+pub fn imported_file(
+    title: &str,
+    sheet: &Sheet,
+    mesh: &Mesh,
+    displacement: &[f64],
+    imported: &[f64],
+) -> Vec<u8> {
+    let more = vec![
+        planar_vectors("imported_displacement_mm", imported),
+        difference(TO_IMPORTED, displacement, imported),
+    ];
+    encode(title, plate(sheet, mesh, displacement, more, None))
+}
+
+/// The `.vtu` file of scattered points with a displacement field and an imported one at them.
+pub fn points_file(
+    title: &str,
+    places: &[[f64; 2]],
+    displacement: &[f64],
+    imported: &[f64],
+) -> Vec<u8> {
+    let nodes: Vec<usize> = (0..places.len()).collect();
+    let cells: Vec<&[usize]> = nodes.chunks(1).collect();
+    let grid = UnstructuredGridPiece {
+        points: IOBuffer::F64(places.iter().flat_map(|[x, y]| [*x, *y, 0.0]).collect()),
+        cells: connect(&cells, vec![CellType::Vertex; cells.len()]),
+        data: Attributes {
+            point: vec![
+                planar_vectors("displacement_mm", displacement),
+                planar_vectors("imported_displacement_mm", imported),
+                difference(TO_IMPORTED, displacement, imported),
+            ],
+            cell: Vec::new(),
+        },
+    };
+    encode(title, grid)
+}
+
+const TO_FINITE_ELEMENTS: &str = "difference_to_finite_elements_mm";
+const TO_IMPORTED: &str = "difference_to_imported_mm";
+
+fn difference(name: &str, displacement: &[f64], reference: &[f64]) -> Attribute {
+    let pairs = displacement.iter().zip(reference);
+    let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
+    planar_vectors(name, &difference)
 }
 
 /// The `.vtu` file of the springs of a lattice.

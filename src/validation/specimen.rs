@@ -4,21 +4,39 @@ use std::path::Path;
 
 use crate::boundary::{BoundaryProblem, Discretised};
 use crate::compare::area_weighted_percent;
+use crate::compare::imported::ModelField;
 use crate::corrector::{CorrectorSettings, Solver, specimen::correct};
 use crate::document::Section;
-use crate::error::{Error, SolveFault};
+use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::output::picture::Scale;
 use crate::output::{self, Block, Figure, vtk};
 use crate::solve::{NewtonSettings, PathEnd, State};
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
+use crate::validation::{Case, Check, Outcome, Prepared, Progress, Wanted};
 
 mod read;
 mod reference;
 
-use read::Specimen;
+pub use read::{Refinement, Specimen, Tolerances};
 use reference::Reference;
+
+/// The `kind` of these studies.
+pub const KIND: &str = "specimen";
+
+/// A specimen's study: its title, the specimen, and what deserves attention.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn load(
+    case: &Case,
+    file: &Path,
+    text: &str,
+) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
+    let (title, specimen, warnings) = case.read_with(file, text, read::read)?;
+    let specimen = specimen.expect("a study without faults has a specimen");
+    Ok((title, specimen, warnings))
+}
 
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
@@ -59,7 +77,7 @@ fn solve(
     specimen: &mut Specimen,
     model: &Discretised,
     name: &str,
-    ends: &mut Vec<String>,
+    ends: &mut Vec<Error>,
 ) -> Result<Solved, Error> {
     let states = match model.solve(&specimen.factors, NEWTON, &|_| ()) {
         Ok(states) => states,
@@ -82,13 +100,13 @@ impl Specimen {
         &mut self,
         states: Vec<State>,
         fault: Error,
-        ends: &mut Vec<String>,
+        ends: &mut Vec<Error>,
     ) -> Result<Vec<State>, Error> {
         if states.is_empty() {
             return Err(fault);
         }
         self.factors.truncate(states.len());
-        ends.push(fault.to_string());
+        ends.push(fault);
         Ok(states)
     }
 
@@ -115,30 +133,86 @@ impl Specimen {
     }
 }
 
+/// The mesh of the finest finite elements; a specimen that refines itself is solved for it.
+///
+/// # Errors
+/// [`Error::Solve`] when it must be solved and has no solution.
+pub fn finest_mesh(specimen: &mut Specimen) -> Result<Mesh, Error> {
+    if specimen.refinement.is_none() {
+        let [_, _, mesh] = specimen.reference_meshes();
+        return Ok(mesh);
+    }
+    let mut ends = Vec::new();
+    let (mesh, _) = reference::finest(specimen, &mut ends)?;
+    ends.pop().map_or(Ok(mesh), Err)
+}
+
+/// The fields of all models at a load factor: finite elements on the finest mesh, springs, corrected springs. The
+/// study's load factors before it are steps on the way.
+///
+/// # Errors
+/// [`Error::Solve`] when a model has no solution.
+pub fn fields(
+    mut specimen: Specimen,
+    factor: f64,
+    progress: Progress,
+) -> Result<[ModelField; 3], Error> {
+    let (specimen, mut ends) = (&mut specimen, Vec::new());
+    specimen.factors.retain(|before| *before < factor);
+    specimen.factors.push(factor);
+    progress("finite elements");
+    let (mesh, reference) = reference::finest(specimen, &mut ends)?;
+    let (springs, [uncorrected, corrected]) = on_lattice(specimen, &mut ends, progress)?;
+    if let Some(end) = ends.pop() {
+        return Err(end);
+    }
+    let field = |model, mesh: Mesh, mut solved: Solved| ModelField {
+        model,
+        mesh,
+        displacement: solved.states.pop().expect("the last factor").displacement,
+    };
+    Ok([
+        field("finite elements", mesh, reference),
+        field("mass-spring", springs.mesh.clone(), uncorrected),
+        field("corrected", springs.mesh, corrected),
+    ])
+}
+
 fn compute(mut specimen: Specimen, progress: Progress) -> Result<Outcome, Error> {
     let (specimen, mut ends) = (&mut specimen, Vec::new());
-    let problem = &specimen.problem.clone();
     progress("finite elements");
     let reference = Reference::solve(specimen, &mut ends)?;
+    let (springs, [uncorrected, corrected]) = on_lattice(specimen, &mut ends, progress)?;
+    let mut outcome = outcome(specimen, &reference, &springs, [&uncorrected, &corrected]);
+    for end in ends {
+        let wanted = Wanted::AtMost(0.0);
+        let check = Check::new(end.to_string(), "–", wanted, "the whole path", f64::NAN);
+        outcome.checks.push(check);
+    }
+    Ok(outcome)
+}
 
+/// The springs, and the states of them before and after the correction.
+fn on_lattice(
+    specimen: &mut Specimen,
+    ends: &mut Vec<Error>,
+    progress: Progress,
+) -> Result<(MassSpring, [Solved; 2]), Error> {
+    let problem = &specimen.problem.clone();
     progress("mass-spring");
     let springs = MassSpring::on_mesh(&problem.law, problem.thickness, specimen.lattice());
     let lattice = &springs.mesh;
     let model = specimen.on(problem, lattice, springs.potential())?;
     let model = model.named(|element| springs.describe_element(element));
-    let uncorrected = solve(specimen, &model, "mass-spring", &mut ends)?;
+    let uncorrected = solve(specimen, &model, "mass-spring", ends)?;
+    drop(model);
 
     progress("corrector");
     let energy = problem.finite_elements(lattice);
     let model = specimen.on(problem, lattice, &energy)?;
-    let corrected = correct_all(specimen, &model, lattice, &uncorrected, &mut ends)?;
-    let mut outcome = outcome(specimen, &reference, &springs, [&uncorrected, &corrected]);
-    for end in ends {
-        let wanted = Wanted::AtMost(0.0);
-        let check = Check::new(end, "–", wanted, "the whole path", f64::NAN);
-        outcome.checks.push(check);
-    }
-    Ok(outcome)
+    let corrected = correct_all(specimen, &model, lattice, &uncorrected, ends)?;
+    drop(model);
+    Ok((springs, [uncorrected, corrected]))
 }
 
 /// Corrects the states of the springs as far as they can be.
@@ -147,7 +221,7 @@ fn correct_all(
     model: &Discretised,
     lattice: &Mesh,
     uncorrected: &Solved,
-    ends: &mut Vec<String>,
+    ends: &mut Vec<Error>,
 ) -> Result<Solved, Error> {
     let mut states: Vec<State> = Vec::new();
     let mut change = vec![0.0; 2 * lattice.nodes.len()];

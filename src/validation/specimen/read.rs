@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::boundary::{BoundaryProblem, Load, Support};
 use crate::document::{Bound, Section};
+use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Shape, import};
 use crate::study;
 use crate::units::Dimension;
@@ -12,8 +13,11 @@ use crate::units::Dimension;
 /// What the corrected field has to reach, in %.
 #[derive(Clone, Copy)]
 pub struct Tolerances {
+    /// Largest deviation in displacement from the finite elements.
     pub displacement_percent: f64,
+    /// Largest deviation in force.
     pub force_percent: f64,
+    /// Smallest correction of the springs' deviation in displacement.
     pub correction_percent: f64,
 }
 
@@ -30,11 +34,17 @@ pub struct Refinement {
 pub struct Specimen {
     /// For file names.
     pub name: String,
+    /// Thickness, material, supports and loads.
     pub problem: BoundaryProblem,
+    /// The card of its material.
+    pub card: Card,
+    /// Load factors, ascending.
     pub factors: Vec<f64>,
     /// The group whose force is compared.
     pub measured: String,
+    /// The finite elements' name.
     pub element_name: &'static str,
+    /// What the corrected field has to reach.
     pub tolerances: Tolerances,
     /// How far the finite elements are refined locally; nothing where they have three meshes.
     pub refinement: Option<Refinement>,
@@ -113,14 +123,16 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         correction_percent: percent("correction"),
     };
     section.unknown_keys();
+    let card = card?;
     let specimen = Specimen {
         name: name?.replace('-', "_"),
         problem: BoundaryProblem {
             thickness,
-            law: Arc::clone(&card?.law),
+            law: Arc::clone(&card.law),
             supports,
             loads,
         },
+        card,
         factors,
         measured,
         element_name: chosen?.0,

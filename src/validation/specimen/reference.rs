@@ -43,14 +43,14 @@ type Estimated = (Mesh, Solved, Vec<ErrorEstimate>);
 
 impl Reference {
     /// Solves the specimen on three meshes, or on as many as the goal of local refinement takes.
-    pub fn solve(specimen: &mut Specimen, ends: &mut Vec<String>) -> Result<Self, Error> {
+    pub fn solve(specimen: &mut Specimen, ends: &mut Vec<Error>) -> Result<Self, Error> {
         match specimen.refinement {
             Some(goal) => Self::adaptive(specimen, goal, ends),
             None => Self::halved(specimen, ends),
         }
     }
 
-    fn halved(specimen: &mut Specimen, ends: &mut Vec<String>) -> Result<Self, Error> {
+    fn halved(specimen: &mut Specimen, ends: &mut Vec<Error>) -> Result<Self, Error> {
         let [coarse, middle, fine] = specimen.reference_meshes();
         let [coarse, middle] = [coarse, middle].map(|mesh| on_mesh(specimen, &mesh, ends));
         let (coarse, middle) = (coarse?, middle?);
@@ -66,7 +66,7 @@ impl Reference {
     fn adaptive(
         specimen: &mut Specimen,
         goal: Refinement,
-        ends: &mut Vec<String>,
+        ends: &mut Vec<Error>,
     ) -> Result<Self, Error> {
         let mut triangles = specimen.first_triangles();
         let mut rounds = Vec::new();
@@ -184,6 +184,17 @@ impl Reference {
     }
 }
 
+/// The finest finite elements alone: without the coarser meshes that an error by three of them takes.
+pub fn finest(specimen: &mut Specimen, ends: &mut Vec<Error>) -> Result<(Mesh, Solved), Error> {
+    if let Some(goal) = specimen.refinement {
+        let reference = Reference::adaptive(specimen, goal, ends)?;
+        return Ok((reference.mesh, reference.solved));
+    }
+    let [_, _, mesh] = specimen.reference_meshes();
+    let solved = on_mesh(specimen, &mesh, ends)?;
+    Ok((mesh, solved))
+}
+
 impl Round {
     fn of(mesh: &Mesh, solved: &Solved, estimates: &[ErrorEstimate]) -> Self {
         let worst = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
@@ -215,7 +226,7 @@ fn indicators(estimates: &[ErrorEstimate]) -> Vec<f64> {
     sums
 }
 
-fn on_mesh(specimen: &mut Specimen, mesh: &Mesh, ends: &mut Vec<String>) -> Result<Solved, Error> {
+fn on_mesh(specimen: &mut Specimen, mesh: &Mesh, ends: &mut Vec<Error>) -> Result<Solved, Error> {
     let problem = specimen.problem.clone();
     let energy = problem.finite_elements(mesh);
     let model = specimen.on(&problem, mesh, &energy)?;
@@ -229,7 +240,7 @@ fn name(mesh: &Mesh) -> String {
 fn estimated(
     specimen: &mut Specimen,
     mesh: Mesh,
-    ends: &mut Vec<String>,
+    ends: &mut Vec<Error>,
 ) -> Result<Estimated, Error> {
     let solved = on_mesh(specimen, &mesh, ends)?;
     let problem = &specimen.problem;
