@@ -242,4 +242,8 @@ impl Loading for Discretised<'_> {
             "a loaded edge".to_owned()
         }
     }
+
+    fn describe_unknown(&self, unknown: usize) -> String {
+        self.mesh.describe_unknown(unknown)
+    }
 }

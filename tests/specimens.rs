@@ -125,6 +125,29 @@ fn faults_of_a_specimen_are_told_with_their_place() {
     }
 }
 
+/// Not even the first load factor is reached: the last equilibrium on the way is written all the same.
+#[test]
+fn a_path_that_ends_before_its_first_load_factor_leaves_its_last_state() {
+    let shape = "shape = \"strip\"\nlength = \"60 mm\"\nwidth = \"6 mm\"\ncells = 4";
+    let squeezed = PULLED.replace("x = \"6 mm\"", "x = \"-20 mm\"");
+    let folder = folder_with(&specimen(shape, &squeezed));
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
+    let printed = words(&done.get_output().stdout);
+    assert!(printed.contains("buckling or wrinkling"), "{printed}");
+    assert!(
+        folder
+            .path()
+            .join("out/vtk/finite_element_end.vtu")
+            .exists()
+    );
+    assert!(
+        !folder
+            .path()
+            .join("out/vtk/finite_element_001.vtu")
+            .exists()
+    );
+}
+
 /// The states before the end of a path are written, and the end is told as a requirement that is not met.
 #[test]
 fn what_was_reached_before_a_path_ends_is_not_lost() {
@@ -139,9 +162,18 @@ fn what_was_reached_before_a_path_ends_is_not_lost() {
     fs::write(folder.path().join("small.toml"), specimen(shape, &pressed)).unwrap();
     let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
     let printed = words(&done.get_output().stdout);
-    assert!(printed.contains("load factor 30"), "{printed}");
+    assert!(printed.contains("load factor 30 (reached 8."), "{printed}");
+    assert!(printed.contains("buckling or wrinkling"), "{printed}");
     let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
     assert!(report.contains("| 0.1 |"), "{report}");
     assert!(folder.path().join("out/vtk/corrected_001.vtu").exists());
     assert!(!folder.path().join("out/vtk/corrected_002.vtu").exists());
+    // The last equilibrium on the way to the second load factor is kept apart, and said to be.
+    assert!(report.contains("| finite_element_end.vtu |"), "{report}");
+    assert!(
+        folder
+            .path()
+            .join("out/vtk/finite_element_end.vtu")
+            .exists()
+    );
 }

@@ -301,4 +301,9 @@ impl Potential for LoadedPotential<'_> {
         }
         Ok(energy)
     }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        let own = element < self.energy.elements();
+        own.then(|| self.energy.instability(element, u)).flatten()
+    }
 }

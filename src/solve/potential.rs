@@ -43,6 +43,12 @@ pub trait Potential: Sync {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible>;
+
+    /// The state of an element that is unstable by itself at its own unknowns `u`, in words; nothing where it is
+    /// stable, or where only the sum has a stability.
+    fn instability(&self, _element: usize, _u: &[f64]) -> Option<String> {
+        None
+    }
 }
 
 impl<P: Potential + ?Sized> Potential for &P {
@@ -65,6 +71,10 @@ impl<P: Potential + ?Sized> Potential for &P {
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
         (**self).evaluate_element(element, u, local)
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        (**self).instability(element, u)
     }
 }
 

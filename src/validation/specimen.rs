@@ -6,18 +6,20 @@ use crate::boundary::{BoundaryProblem, Discretised};
 use crate::compare::area_weighted_percent;
 use crate::corrector::{CorrectorSettings, Solver, specimen::correct};
 use crate::document::Section;
-use crate::error::{Error, SolveFault};
+use crate::error::Error;
 use crate::finite_element::convergence::{Richardson, richardson};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::output::picture::Scale;
 use crate::output::{self, Block, Figure, vtk};
 use crate::sheet_energy::SheetEnergy;
-use crate::solve::{NewtonSettings, PathEnd, State};
+use crate::solve::{NewtonSettings, State};
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
 
+mod end;
 mod read;
 
+use end::End;
 use read::Specimen;
 
 /// Reads a study of this kind.
@@ -46,56 +48,49 @@ struct Solved {
     forces: Vec<f64>,
 }
 
-fn fault(model: &str, factor: f64, fault: SolveFault) -> Error {
-    Error::Solve {
-        model: model.to_owned(),
-        step: format!("load factor {factor}"),
-        fault,
+impl Solved {
+    fn new(specimen: &Specimen, model: &Discretised, states: Vec<State>) -> Self {
+        let forces = states.iter().map(|state| specimen.force(model, state));
+        Self {
+            forces: forces.collect(),
+            states,
+        }
     }
 }
 
-/// Solves as many load factors as can be reached; the others are taken from the specimen, and why is told.
+/// Solves as many load factors as can be reached; where others cannot, the end is told.
 fn solve(
-    specimen: &mut Specimen,
+    specimen: &Specimen,
     model: &Discretised,
-    name: &str,
-    ends: &mut Vec<String>,
-) -> Result<Solved, Error> {
+    names: [&str; 2],
+    mesh: &Mesh,
+    ends: &mut Vec<End>,
+) -> Solved {
     let states = match model.solve(&specimen.factors, NEWTON, &|_| ()) {
         Ok(states) => states,
-        Err(PathEnd {
-            factor,
-            fault: cause,
-            states,
-        }) => specimen.end(states, fault(name, factor, cause), ends)?,
+        Err(end) => {
+            let last = end.last.as_deref().or(end.states.last());
+            let force = last.map_or(0.0, |state| specimen.force(model, state));
+            ends.push(End::of_path(names, mesh, &end, force));
+            end.states
+        }
     };
-    let forces = states
-        .iter()
-        .map(|state| specimen.force(model, state))
-        .collect();
-    Ok(Solved { states, forces })
+    Solved::new(specimen, model, states)
 }
 
 impl Specimen {
-    /// Ends the path after the states that were reached; a fault before the first of them is one of the study.
-    fn end(
-        &mut self,
-        states: Vec<State>,
-        fault: Error,
-        ends: &mut Vec<String>,
-    ) -> Result<Vec<State>, Error> {
-        if states.is_empty() {
-            return Err(fault);
-        }
-        self.factors.truncate(states.len());
-        ends.push(fault.to_string());
-        Ok(states)
-    }
-
     /// The size of the force on the measured group in N, with the sign of its larger component.
     fn force(&self, model: &Discretised, state: &State) -> f64 {
         let [x, y] = model.reaction(state, &self.measured);
         if x.abs() >= y.abs() { x } else { y }
+    }
+
+    /// What stresses follow from.
+    fn sheet(&self) -> vtk::Sheet<'_> {
+        vtk::Sheet {
+            law: &*self.problem.law,
+            thickness: self.problem.thickness,
+        }
     }
 
     /// The problem on a mesh; groups were checked when the study was read.
@@ -117,17 +112,24 @@ struct Reference {
     solved: [Solved; 3],
 }
 
+/// File names of the finite elements' ends, coarse to fine.
+const REFERENCES: [&str; 3] = [
+    "finite_element_coarse",
+    "finite_element_middle",
+    "finite_element",
+];
+
 fn compute(mut specimen: Specimen, progress: Progress) -> Result<Outcome, Error> {
     let (specimen, mut ends) = (&mut specimen, Vec::new());
     let problem = &specimen.problem.clone();
     progress("finite elements");
     let meshes = specimen.reference_meshes();
     let mut solved = Vec::new();
-    for mesh in &meshes {
+    for (mesh, file) in meshes.iter().zip(REFERENCES) {
         let energy: SheetEnergy = problem.finite_elements(mesh);
         let model = specimen.on(problem, mesh, &energy)?;
         let name = format!("finite elements ({})", mesh.describe());
-        solved.push(solve(specimen, &model, &name, &mut ends)?);
+        solved.push(solve(specimen, &model, [&name, file], mesh, &mut ends));
     }
     let solved = solved.try_into().ok().expect("three meshes");
     let reference = Reference { meshes, solved };
@@ -137,32 +139,36 @@ fn compute(mut specimen: Specimen, progress: Progress) -> Result<Outcome, Error>
     let lattice = &springs.mesh;
     let model = specimen.on(problem, lattice, springs.potential())?;
     let model = model.named(|element| springs.describe_element(element));
-    let uncorrected = solve(specimen, &model, "mass-spring", &mut ends)?;
+    let names = ["mass-spring", "mass_spring"];
+    let uncorrected = solve(specimen, &model, names, lattice, &mut ends);
 
     progress("corrector");
     let energy = problem.finite_elements(lattice);
     let model = specimen.on(problem, lattice, &energy)?;
-    let corrected = correct_all(specimen, &model, lattice, &uncorrected, &mut ends)?;
-    let mut outcome = outcome(specimen, &reference, &springs, [&uncorrected, &corrected]);
-    for end in ends {
-        let wanted = Wanted::AtMost(0.0);
-        let check = Check::new(end, "–", wanted, "the whole path", f64::NAN);
-        outcome.checks.push(check);
-    }
+    let corrected = correct_all(specimen, &model, lattice, &uncorrected, &mut ends);
+    let all = reference.solved.iter().chain([&uncorrected, &corrected]);
+    let reached = all.map(|solved| solved.states.len()).min();
+    specimen.factors.truncate(reached.unwrap_or(0));
+    let mut outcome = if specimen.factors.is_empty() {
+        end::without_state(&ends)?
+    } else {
+        outcome(specimen, &reference, &springs, [&uncorrected, &corrected])
+    };
+    end::tell(specimen, ends, &mut outcome);
     Ok(outcome)
 }
 
 /// Corrects the states of the springs as far as they can be.
 fn correct_all(
-    specimen: &mut Specimen,
+    specimen: &Specimen,
     model: &Discretised,
     lattice: &Mesh,
     uncorrected: &Solved,
-    ends: &mut Vec<String>,
-) -> Result<Solved, Error> {
+    ends: &mut Vec<End>,
+) -> Solved {
     let mut states: Vec<State> = Vec::new();
     let mut change = vec![0.0; 2 * lattice.nodes.len()];
-    for state in &uncorrected.states[..specimen.factors.len()] {
+    for state in &uncorrected.states {
         // What the correction has changed at the load factor before is nearly right at this one.
         let data = &state.displacement;
         let pairs = data.iter().zip(&change);
@@ -173,18 +179,13 @@ fn correct_all(
                 change = pairs.map(|(corrected, u)| corrected - u).collect();
                 states.push(field.state);
             }
-            Err(cause) => {
-                let fault = fault("corrector", state.factor, cause);
-                states = specimen.end(states, fault, ends)?;
+            Err(fault) => {
+                ends.push(End::at("corrector", state.factor, fault));
                 break;
             }
         }
     }
-    let forces = states
-        .iter()
-        .map(|state| specimen.force(model, state))
-        .collect();
-    Ok(Solved { states, forces })
+    Solved::new(specimen, model, states)
 }
 
 /// Deviations of one model at one load factor, in %.
@@ -378,10 +379,7 @@ fn files(
     [uncorrected, corrected]: [&Solved; 2],
     expected: &[Vec<f64>],
 ) -> Vec<(String, Vec<u8>)> {
-    let sheet = vtk::Sheet {
-        law: &*specimen.problem.law,
-        thickness: specimen.problem.thickness,
-    };
+    let sheet = specimen.sheet();
     let lattice = &springs.mesh;
     let title = &specimen.name;
     let mut files = Vec::new();
