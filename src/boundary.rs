@@ -1,6 +1,5 @@
 //! The boundary value problem of a sheet of any shape: supports and loads on the named groups of its mesh.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::error::Diagnostic;
@@ -10,8 +9,12 @@ use crate::sheet_energy::SheetEnergy;
 use crate::solve::{Loading, NewtonSettings, PathEnd, Potential, State, follow};
 
 mod loads;
+mod supports;
+mod ties;
 
 use loads::Loaded;
+use supports::{Motion, Supported};
+use ties::Tied;
 
 /// What holds a group; everything grows with the load factor and is complete at 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +22,9 @@ pub enum Support {
     /// Displacements ux, uy in mm; one that is not given is free. Both zero: a clamp; one zero: a roller or
     /// an axis of symmetry.
     Displacement([Option<f64>; 2]),
+    /// Free to slide along the straight line on which the group lies, parallel to an axis: a roller, or an axis of
+    /// symmetry.
+    Roller,
     /// A rigid turn about a point in mm by an angle in rad, counter-clockwise.
     Rotation {
         /// The point.
@@ -26,6 +32,17 @@ pub enum Support {
         /// The angle.
         angle: f64,
     },
+    /// A rigid grip that does not turn: all nodes have the same displacement along each axis.
+    Grip([Drive; 2]),
+}
+
+/// What moves a rigid grip along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// A displacement in mm.
+    Displacement(f64),
+    /// A total force in N of constant direction (dead).
+    Force(f64),
 }
 
 /// What loads a group; everything grows with the load factor and is complete at 1.
@@ -57,39 +74,9 @@ pub struct BoundaryProblem {
 pub struct Discretised<'a> {
     mesh: &'a Mesh,
     energy: &'a dyn Potential,
-    /// Motion of each unknown that is held.
-    held: BTreeMap<usize, Motion>,
+    supported: Supported,
     loaded: Loaded,
     names: Box<dyn Fn(usize) -> String + 'a>,
-}
-
-/// How a held unknown moves.
-#[derive(Clone, Copy)]
-enum Motion {
-    /// In proportion to the load factor, in mm at 1.
-    Straight(f64),
-    /// As a coordinate of a point at a place relative to the centre, in mm, turned by an angle at 1.
-    Turn {
-        place: [f64; 2],
-        axis: usize,
-        angle: f64,
-    },
-}
-
-impl Motion {
-    fn at(self, factor: f64) -> f64 {
-        match self {
-            Self::Straight(displacement) => factor * displacement,
-            Self::Turn { place, axis, angle } => {
-                let (sine, cosine) = (factor * angle).sin_cos();
-                // 1 − cos without cancellation.
-                let lost = 2.0 * (0.5 * factor * angle).sin().powi(2);
-                debug_assert!((lost - (1.0 - cosine)).abs() < 1e-14);
-                let across = [-sine * place[1], sine * place[0]];
-                across[axis] - lost * place[axis]
-            }
-        }
-    }
 }
 
 impl BoundaryProblem {
@@ -107,28 +94,29 @@ impl BoundaryProblem {
         mesh: &'a Mesh,
         energy: &'a dyn Potential,
     ) -> Result<Discretised<'a>, Diagnostic> {
-        let mut held = BTreeMap::new();
+        let unfit = |name: &str, reason: String| {
+            Diagnostic::error("", format!("the group `{name}` {reason}"))
+        };
+        let mut supported = Supported::default();
         for (name, support) in &self.supports {
-            for node in &group(mesh, name)?.nodes {
-                for (axis, motion) in motions(support, mesh.nodes[*node]).into_iter().enumerate() {
-                    if let Some(motion) = motion {
-                        held.insert(2 * node + axis, motion);
-                    }
-                }
-            }
+            let group = group(mesh, name)?;
+            let added = supported.add(mesh, group, support);
+            added.map_err(|reason| unfit(name, reason))?;
         }
+        let held = &supported.held;
         let mut loaded = Loaded::new(2 * mesh.nodes.len());
         for (name, load) in &self.loads {
             let is_held = |node: usize| [0, 1].map(|axis| held.contains_key(&(2 * node + axis)));
             let group = group(mesh, name)?;
             loaded
                 .add(mesh, group, load, self.thickness, &is_held)
-                .map_err(|reason| Diagnostic::error("", format!("the group `{name}` {reason}")))?;
+                .map_err(|reason| unfit(name, reason))?;
         }
+        loaded.pull(&supported);
         Ok(Discretised {
             mesh,
             energy,
-            held,
+            supported,
             loaded,
             names: Box::new(|cell| mesh.describe_cell(cell)),
         })
@@ -142,17 +130,6 @@ fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
         let fault = Diagnostic::error("", format!("the mesh has no group `{name}`"));
         fault.hint(format!("its groups are {}", known.join(", ")))
     })
-}
-
-/// The motions that a support gives a node, along both axes.
-fn motions(support: &Support, node: [f64; 2]) -> [Option<Motion>; 2] {
-    match *support {
-        Support::Displacement(displacement) => displacement.map(|d| d.map(Motion::Straight)),
-        Support::Rotation { centre, angle } => {
-            let place = [node[0] - centre[0], node[1] - centre[1]];
-            [0, 1].map(|axis| Some(Motion::Turn { place, axis, angle }))
-        }
-    }
 }
 
 impl<'a> Discretised<'a> {
@@ -172,7 +149,8 @@ impl<'a> Discretised<'a> {
     pub fn impose_field(&mut self, name: &str, field: impl Fn([f64; 2]) -> [f64; 2]) {
         for node in &self.mesh.groups()[name].nodes {
             for (axis, value) in field(self.mesh.nodes[*node]).into_iter().enumerate() {
-                self.held.insert(2 * node + axis, Motion::Straight(value));
+                let motion = Motion::Straight(value);
+                self.supported.held.insert(2 * node + axis, motion);
             }
         }
     }
@@ -195,6 +173,21 @@ impl<'a> Discretised<'a> {
         follow(self, factors, settings, progress)
     }
 
+    /// The mean displacement of a group in mm, from a state.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn displacement(&self, state: &State, name: &str) -> [f64; 2] {
+        let nodes = &self.mesh.groups()[name].nodes;
+        [0, 1].map(|axis| {
+            let sum: f64 = nodes
+                .iter()
+                .map(|node| state.displacement[2 * node + axis])
+                .sum();
+            sum / nodes.len() as f64
+        })
+    }
+
     /// The force of the supports on a group in N, from a state.
     ///
     /// # Panics
@@ -202,8 +195,8 @@ impl<'a> Discretised<'a> {
     pub fn reaction(&self, state: &State, name: &str) -> [f64; 2] {
         let nodes = &self.mesh.groups()[name].nodes;
         [0, 1].map(|axis| {
-            let held = nodes.iter().map(|node| 2 * node + axis);
-            let held = held.filter(|unknown| self.held.contains_key(unknown));
+            let unknowns = nodes.iter().map(|node| 2 * node + axis);
+            let held = unknowns.filter(|unknown| self.supported.held.contains_key(unknown));
             held.map(|unknown| state.residual[unknown]).sum()
         })
     }
@@ -213,21 +206,32 @@ impl Loading for Discretised<'_> {
     fn held(&self) -> Vec<bool> {
         let unknowns = 0..2 * self.mesh.nodes.len();
         unknowns
-            .map(|unknown| self.held.contains_key(&unknown))
+            .map(|unknown| {
+                let Supported { held, ties, .. } = &self.supported;
+                held.contains_key(&unknown) || ties.contains_key(&unknown)
+            })
             .collect()
     }
 
     fn impose(&self, factor: f64, displacement: &mut [f64]) {
-        for (unknown, motion) in &self.held {
+        for (unknown, motion) in &self.supported.held {
             displacement[*unknown] = motion.at(factor);
+        }
+        for (unknown, master) in &self.supported.ties {
+            displacement[*unknown] = displacement[*master];
         }
     }
 
     fn potential(&self, factor: f64) -> Box<dyn Potential + '_> {
-        if self.loaded.is_empty() {
+        let loaded: Box<dyn Potential + '_> = if self.loaded.is_empty() {
             Box::new(self.energy)
         } else {
             Box::new(self.loaded.at(self.energy, factor))
+        };
+        if self.supported.ties.is_empty() {
+            loaded
+        } else {
+            Box::new(Tied::new(loaded, &self.supported.ties))
         }
     }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use gelbench::boundary::{BoundaryProblem, Load, Support};
+use gelbench::boundary::{BoundaryProblem, Drive, Load, Support};
 use gelbench::error::SolveFault;
 use gelbench::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 use gelbench::mesh::{CellShape, Shape};
@@ -129,4 +129,95 @@ fn an_unstable_material_is_named_with_its_cell_and_state() {
         assert_eq!(state, invariant);
     }
     assert!(strip(size, 4, law(0.3, 0.0), &right).is_ok());
+}
+
+/// A strip held in `supports`, to the load factors 0.5 and 1; the states, the displacement and the force of its
+/// right side.
+fn held(supports: &[(&str, Support)]) -> (Vec<State>, [f64; 2], [f64; 2]) {
+    let size = [30.0, 10.0];
+    let mesh = Shape::Strip { size }.mesh(4, CellShape::Quad9);
+    let support = |(group, support): &(&str, Support)| ((*group).to_owned(), *support);
+    let problem = BoundaryProblem {
+        thickness: 1.0,
+        law: Arc::new(NEO_HOOKE),
+        supports: supports.iter().map(support).collect(),
+        loads: Vec::new(),
+    };
+    let energy = problem.finite_elements(&mesh);
+    let model = problem.on(&mesh, &energy).unwrap();
+    let states = model.solve(&[0.5, 1.0], NEWTON, &|_| ()).unwrap();
+    let last = &states[1];
+    let (moved, force) = (
+        model.displacement(last, "right"),
+        model.reaction(last, "right"),
+    );
+    (states, moved, force)
+}
+
+/// What the moved grip needs as force, given as force, moves it as far.
+#[test]
+fn a_rigid_grip_is_moved_by_its_force() {
+    let clamp = ("left", Support::Displacement([Some(0.0); 2]));
+    let moved = Support::Grip([Drive::Displacement(12.0), Drive::Displacement(4.0)]);
+    let (by_motion, _, force) = held(&[clamp, ("right", moved)]);
+    assert!(force[0] > 0.1 && force[1] > 0.01, "{force:?}");
+    let pulled = Support::Grip(force.map(Drive::Force));
+    let (by_force, displacement, _) = held(&[clamp, ("right", pulled)]);
+    assert!((displacement[0] - 12.0).abs() < 1e-7 && (displacement[1] - 4.0).abs() < 1e-7);
+    let pairs = by_motion[1]
+        .displacement
+        .iter()
+        .zip(&by_force[1].displacement);
+    let worst = pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    assert!(worst < 1e-7, "{worst}");
+    // At half the factor the force is half the force, which is not half the way.
+    assert!((by_force[0].displacement[0] - by_motion[0].displacement[0]).abs() < 1.0);
+    assert_ne!(by_force[0].displacement, by_motion[0].displacement);
+}
+
+/// A strip that keeps its width between rollers: P = 2 C₁₀ (λ − λ⁻³).
+#[test]
+fn rollers_and_a_pulled_grip_give_planar_tension() {
+    let force = 10.0 * 2.0 * 0.05 * (1.5 - 1.5_f64.powi(-3));
+    let grip = Support::Grip([Drive::Force(force), Drive::Displacement(0.0)]);
+    let (states, moved, reaction) = held(&[
+        ("left", Support::Roller),
+        ("bottom", Support::Roller),
+        ("top", Support::Roller),
+        ("right", grip),
+    ]);
+    assert!((moved[0] - 15.0).abs() < 1e-8, "{moved:?}");
+    assert_eq!(reaction[0], 0.0);
+    assert!(states[1].convergence.iterations() < 8);
+}
+
+#[test]
+fn grips_and_rollers_that_cannot_be_are_refused() {
+    let ring = Shape::RingSector {
+        radii: [10.0, 15.0],
+        angle: 0.5,
+    };
+    let mesh = ring.mesh(4, CellShape::Quad4);
+    let grip = Support::Grip([Drive::Force(1.0), Drive::Displacement(0.0)]);
+    let clamp = Support::Displacement([Some(0.0); 2]);
+    for (supports, told) in [
+        (
+            vec![("end", Support::Roller)],
+            "no straight line parallel to an axis",
+        ),
+        (vec![("start", clamp), ("inside", grip)], "another support"),
+        (vec![("inside", grip), ("start", clamp)], "another support"),
+        (vec![("inside", grip), ("end", grip)], "another grip"),
+    ] {
+        let support = |(group, support): (&str, Support)| (group.to_owned(), support);
+        let problem = BoundaryProblem {
+            thickness: 1.0,
+            law: Arc::new(NEO_HOOKE),
+            supports: supports.into_iter().map(support).collect(),
+            loads: Vec::new(),
+        };
+        let energy = problem.finite_elements(&mesh);
+        let found = problem.on(&mesh, &energy).err().expect("refused");
+        assert!(found.message.contains(told), "{}", found.message);
+    }
 }

@@ -21,6 +21,33 @@ const PULLED: &str = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"left\"\n\
     [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
     [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"6 mm\"\ny = \"0 mm\"\n";
 
+/// All three models are pulled by the same force between the same conditions; what is measured is the displacement.
+#[test]
+fn a_grip_with_a_force_moves_in_all_three_models() {
+    let shape = "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6";
+    let rest = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"right\"\n\
+        [[support]]\ngroup = \"left\"\nkind = \"symmetry\"\n\
+        [[support]]\ngroup = \"bottom\"\nkind = \"roller\"\n\
+        [[support]]\ngroup = \"right\"\nkind = \"grip\"\nx_force = \"0.6 N\"\ny = \"0 mm\"\n";
+    let folder = folder_with(&specimen(shape, rest));
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    let printed = words(&done.get_output().stdout);
+    assert!(
+        printed.contains("corrected grip displacement from"),
+        "{printed}"
+    );
+    let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+    assert!(
+        report.contains("finite elements: grip displacement [mm]"),
+        "{report}"
+    );
+    let lame = rest.replace("y = \"0 mm\"\n", "");
+    fs::write(folder.path().join("small.toml"), specimen(shape, &lame)).unwrap();
+    let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
+    let found = words(&done.get_output().stderr);
+    assert!(found.contains("needs either y or y_force"), "{found}");
+}
+
 #[test]
 fn specimens_of_every_shape_run_in_all_three_models() {
     let turned = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"start\"\n\

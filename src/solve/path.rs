@@ -10,7 +10,8 @@ pub trait Loading {
     /// Marks the unknowns that supports hold.
     fn held(&self) -> Vec<bool>;
 
-    /// Writes the displacements that supports impose at a load factor.
+    /// Writes the displacements that supports impose at a load factor, and those of tied unknowns, which count
+    /// as held, after the ones that they follow.
     fn impose(&self, factor: f64, displacement: &mut [f64]);
 
     /// The potential at a load factor; its pattern must not depend on the factor.
@@ -199,6 +200,7 @@ impl Path<'_> {
             self.settings,
             &|element| self.loading.describe(element),
         )?;
+        self.loading.impose(factor, &mut displacement);
         Ok(State {
             factor,
             displacement,

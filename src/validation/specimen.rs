@@ -20,7 +20,7 @@ mod end;
 mod read;
 
 use end::End;
-use read::Specimen;
+use read::{Measured, Specimen};
 
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
@@ -42,17 +42,17 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
     solver: Solver::Automatic,
 };
 
-/// The states of one model and its force on the measured group at each load factor.
+/// The states of one model and what is measured at each load factor: force in N or displacement in mm.
 struct Solved {
     states: Vec<State>,
-    forces: Vec<f64>,
+    measured: Vec<f64>,
 }
 
 impl Solved {
     fn new(specimen: &Specimen, model: &Discretised, states: Vec<State>) -> Self {
-        let forces = states.iter().map(|state| specimen.force(model, state));
+        let measured = states.iter().map(|state| specimen.measure(model, state));
         Self {
-            forces: forces.collect(),
+            measured: measured.collect(),
             states,
         }
     }
@@ -70,8 +70,8 @@ fn solve(
         Ok(states) => states,
         Err(end) => {
             let last = end.last.as_deref().or(end.states.last());
-            let force = last.map_or(0.0, |state| specimen.force(model, state));
-            ends.push(End::of_path(names, mesh, &end, force));
+            let measured = last.map_or(0.0, |state| specimen.measure(model, state));
+            ends.push(End::of_path(names, mesh, &end, measured));
             end.states
         }
     };
@@ -79,8 +79,12 @@ fn solve(
 }
 
 impl Specimen {
-    /// The size of the force on the measured group in N, with the sign of its larger component.
-    fn force(&self, model: &Discretised, state: &State) -> f64 {
+    /// The size of the force on the measured group in N, with the sign of its larger component; its displacement in
+    /// mm where it is a grip with a given force.
+    fn measure(&self, model: &Discretised, state: &State) -> f64 {
+        if let Measured::Displacement(axis) = self.measured() {
+            return model.displacement(state, &self.measured)[axis];
+        }
         let [x, y] = model.reaction(state, &self.measured);
         if x.abs() >= y.abs() { x } else { y }
     }
@@ -191,7 +195,7 @@ fn correct_all(
 /// Deviations of one model at one load factor, in %.
 struct Deviation {
     displacement: f64,
-    force: f64,
+    measured: f64,
 }
 
 fn deviation(
@@ -199,11 +203,11 @@ fn deviation(
     solved: &Solved,
     step: usize,
     expected: &[f64],
-    force: f64,
+    measured: f64,
 ) -> Deviation {
     Deviation {
         displacement: area_weighted_percent(lattice, &solved.states[step].displacement, expected),
-        force: 100.0 * (solved.forces[step] / force - 1.0),
+        measured: 100.0 * (solved.measured[step] / measured - 1.0),
     }
 }
 
@@ -222,13 +226,13 @@ fn outcome(
     for (step, factor) in specimen.factors.iter().enumerate() {
         let expected =
             fine.displacement_on(&reference.solved[2].states[step].displacement, lattice);
-        let forces = [0, 1, 2].map(|level| reference.solved[level].forces[step]);
-        let own: Richardson = richardson(forces);
-        let before = deviation(lattice, uncorrected, step, &expected, forces[2]);
-        let after = deviation(lattice, corrected, step, &expected, forces[2]);
+        let measured = [0, 1, 2].map(|level| reference.solved[level].measured[step]);
+        let own: Richardson = richardson(measured);
+        let before = deviation(lattice, uncorrected, step, &expected, measured[2]);
+        let after = deviation(lattice, corrected, step, &expected, measured[2]);
         let correction = 100.0 * (1.0 - after.displacement / before.displacement);
         worst[0] = worst[0].max(after.displacement);
-        worst[1] = worst[1].max(after.force.abs());
+        worst[1] = worst[1].max(after.measured.abs());
         worst[2] = worst[2].min(correction);
         own_error = own_error.max(own.error_percent);
         rows.push(vec![
@@ -236,14 +240,15 @@ fn outcome(
             format!("{:.3}", before.displacement),
             format!("{:.4}", after.displacement),
             format!("{correction:.2}"),
-            format!("{:.2}", before.force),
-            format!("{:.3}", after.force),
-            format!("{:.5}", forces[2]),
+            format!("{:.2}", before.measured),
+            format!("{:.3}", after.measured),
+            format!("{:.5}", measured[2]),
             format!("{:.4}", own.error_percent),
         ]);
         fields.push(expected);
     }
     let limits = specimen.tolerances;
+    let what = specimen.measured().name();
     let check = |quantity: &str, wanted, value| {
         Check::new(quantity, "%", wanted, "the study's tolerance", value)
     };
@@ -254,7 +259,7 @@ fn outcome(
             worst[0],
         ),
         check(
-            "corrected force from the finite elements",
+            &format!("corrected {what} from the finite elements"),
             Wanted::AtMost(limits.force_percent),
             worst[1],
         ),
@@ -264,36 +269,38 @@ fn outcome(
             worst[2],
         ),
         check(
-            "finite elements' own error of the force, by three meshes",
+            &format!("finite elements' own error of the {what}, by three meshes"),
             Wanted::AtMost(limits.force_percent),
             own_error,
         ),
     ];
     let head = [
-        "load factor [–]",
-        "mass-spring: displacement [%]",
-        "corrected: displacement [%]",
-        "correction [%]",
-        "mass-spring: force [%]",
-        "corrected: force [%]",
-        "finite elements: force [N]",
-        "their own error [%]",
+        "load factor [–]".into(),
+        "mass-spring: displacement [%]".into(),
+        "corrected: displacement [%]".into(),
+        "correction [%]".into(),
+        format!("mass-spring: {what} [%]"),
+        format!("corrected: {what} [%]"),
+        format!("finite elements: {what} [{}]", specimen.measured().unit()),
+        "their own error [%]".into(),
     ];
     let text = format!(
         "Deviations from the finite elements ({} on {}, finest of three meshes) at {} nodes of the lattice ({}). \
-         Displacements in relative L2, weighted by area; the force is that of the supports on the group `{}`.",
+         Displacements in relative L2, weighted by area; the {what} is that of {} the group `{}`.",
         specimen.element_name,
         fine.describe(),
         lattice.nodes.len(),
         lattice.describe(),
+        if what == "force" {
+            "the supports on"
+        } else {
+            "the grip at"
+        },
         specimen.measured
     );
     Outcome {
         checks,
-        blocks: vec![
-            Block::Paragraph(text),
-            Block::Table(head.map(String::from).to_vec(), rows),
-        ],
+        blocks: vec![Block::Paragraph(text), Block::Table(head.to_vec(), rows)],
         figures: figures(
             specimen,
             reference,

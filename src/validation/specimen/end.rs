@@ -21,14 +21,14 @@ struct Last {
     file: String,
     mesh: Mesh,
     state: State,
-    force: f64,
+    measured: f64,
     /// Whether it lies between two load factors of the study, so that nothing else holds it.
     between: bool,
 }
 
 impl End {
-    /// The end of a path at the model with the names `[model, file]`; `force` is that of the last equilibrium.
-    pub fn of_path([model, file]: [&str; 2], mesh: &Mesh, end: &PathEnd, force: f64) -> Self {
+    /// The end of a path at the model with the names `[model, file]`; `measured` is of the last equilibrium.
+    pub fn of_path([model, file]: [&str; 2], mesh: &Mesh, end: &PathEnd, measured: f64) -> Self {
         let state = end.last.as_deref().or(end.states.last());
         Self {
             model: model.to_owned(),
@@ -38,7 +38,7 @@ impl End {
                 file: format!("{file}_end.vtu"),
                 mesh: mesh.clone(),
                 state: state.clone(),
-                force,
+                measured,
                 between: end.last.is_some(),
             }),
         }
@@ -85,7 +85,7 @@ pub fn tell(specimen: &Specimen, ends: Vec<End>, outcome: &mut Outcome) {
         rows.push(vec![
             end.model,
             format!("{:.4}", last.state.factor),
-            format!("{:.5}", last.force),
+            format!("{:.5}", last.measured),
             file.to_owned(),
         ]);
         if last.between {
@@ -98,9 +98,14 @@ pub fn tell(specimen: &Specimen, ends: Vec<End>, outcome: &mut Outcome) {
     if !rows.is_empty() {
         let text = "Paths that ended early: the last equilibrium of each, at the largest load factor reached. \
             One between the study's load factors has a file of its own.";
-        let head = ["model", "load factor reached [–]", "force [N]", "file"];
+        let measured = specimen.measured();
+        let head = vec![
+            "model".into(),
+            "load factor reached [–]".into(),
+            format!("{} [{}]", measured.name(), measured.unit()),
+            "file".into(),
+        ];
         outcome.blocks.push(Block::Paragraph(text.into()));
-        let head = head.map(String::from).to_vec();
         outcome.blocks.push(Block::Table(head, rows));
     }
 }
