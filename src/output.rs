@@ -15,6 +15,7 @@ mod markdown;
 pub mod picture;
 mod report;
 pub mod vtk;
+pub mod wrinkling;
 
 pub use figures::{Figure, comparison_chart, field_figure, material_chart, mesh_picture};
 pub use fit::{fit_json, fit_picture};

@@ -12,6 +12,7 @@ use vtkio::model::{
     UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
+use super::wrinkling::Wrinkling;
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
 use crate::mass_spring::{MassSpring, SpringState};
@@ -195,9 +196,18 @@ fn material_state(sheet: &Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Attri
         thickness.push(sheet.thickness / kinematics.area_ratio());
         energy.push(density);
     }
+    let wrinkling = Wrinkling::new(sheet.law, mesh, displacement);
+    let compressed = wrinkling.compressed.iter();
+    let compressed = compressed.map(|is| f64::from(u8::from(*is))).collect();
     vec![
         array("nominal_stress_MPa", ElementType::Tensors, nominal),
         array("cauchy_stress_MPa", ElementType::Tensors, cauchy),
+        array(
+            "smallest_principal_cauchy_stress_MPa",
+            scalars(),
+            wrinkling.smallest,
+        ),
+        array("wrinkling_1", scalars(), compressed),
         array("principal_stretches_1", ElementType::Vectors, stretches),
         array("first_invariant_I1_1", scalars(), i1),
         array("thickness_mm", scalars(), thickness),

@@ -11,7 +11,7 @@ use crate::finite_element::convergence::{Richardson, richardson};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::output::picture::Scale;
-use crate::output::{self, Block, Figure, vtk};
+use crate::output::{self, Block, Figure, vtk, wrinkling};
 use crate::sheet_energy::SheetEnergy;
 use crate::solve::{NewtonSettings, State};
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
@@ -298,9 +298,11 @@ fn outcome(
         },
         specimen.measured
     );
+    let mut blocks = vec![Block::Paragraph(text), Block::Table(head.to_vec(), rows)];
+    blocks.extend(compression(specimen, reference).map(Block::Paragraph));
     Outcome {
         checks,
-        blocks: vec![Block::Paragraph(text), Block::Table(head.to_vec(), rows)],
+        blocks,
         figures: figures(
             specimen,
             reference,
@@ -317,6 +319,15 @@ fn outcome(
         ),
         ..Outcome::default()
     }
+}
+
+/// The warning about compression in the finite elements.
+fn compression(specimen: &Specimen, reference: &Reference) -> Option<String> {
+    let [_, _, fine] = &reference.meshes;
+    let states = reference.solved[2].states.iter().zip(&specimen.factors);
+    let states =
+        states.map(|(state, factor)| (format!("load factor {factor}"), &*state.displacement));
+    wrinkling::warning(&*specimen.problem.law, fine, states)
 }
 
 fn sizes(u: &[f64]) -> Vec<f64> {
