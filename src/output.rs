@@ -16,6 +16,7 @@ mod markdown;
 pub mod picture;
 mod report;
 pub mod vtk;
+pub mod wrinkling;
 
 pub use figures::{
     Figure, cell_figure, comparison_chart, field_figure, material_chart, mesh_picture,

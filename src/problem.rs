@@ -94,6 +94,10 @@ impl Loading for PlateLoading<'_> {
     fn describe(&self, element: usize) -> String {
         (self.model.describe)(element)
     }
+
+    fn describe_unknown(&self, unknown: usize) -> String {
+        self.model.mesh.describe_unknown(unknown)
+    }
 }
 
 impl Problem {
@@ -146,7 +150,11 @@ impl Problem {
         let states = follow(&plate, &self.stretches, settings, progress);
         let states = states.map_err(|end| Error::Solve {
             model: model.name.clone(),
-            step: Problem::describe_step(end.factor),
+            step: format!(
+                "{} (reached {} %)",
+                Problem::describe_step(end.factor),
+                Self::percent(end.reached())
+            ),
             fault: end.fault,
         })?;
         Ok(states

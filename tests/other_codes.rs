@@ -22,6 +22,9 @@ const HOLE: &str = "kind = \"specimen\"\ntitle = \"hole\"\n[material]\ncard = \"
 const PULLED: &str =
     "[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"10 mm\"\ny = \"0 mm\"\n";
 
+const GRIPPED: &str =
+    "[[support]]\ngroup = \"right\"\nkind = \"grip\"\nx_force = \"4 N\"\ny = \"0 mm\"\n";
+
 const ADAPTIVE: &str = "[finite_element]\nelement = \"T2\"\nadaptive = true\nerror = \"2 %\"\n";
 
 /// Deviation of the finite elements in % from what `gelbench compare` prints.
@@ -114,6 +117,7 @@ fn calculix_finds_the_same_strip_with_a_hole_under_every_load() {
         (turned, "T2"),
         (&blown, "Q2"),
         (drawn, "Q2"),
+        (GRIPPED, "Q2 serendipity"),
     ] {
         let study = format!("{HOLE}{load}[finite_element]\nelement = \"{element}\"\n");
         let Some(found) = solved(&study, &["0.5", "1"]) else {
@@ -203,7 +207,9 @@ fn every_code_gets_a_file_of_every_kind_of_study() {
 
 #[test]
 fn what_cannot_be_handed_over_is_refused_before_anything_is_written() {
+    let gripped = format!("{HOLE}{GRIPPED}");
     for (study, arguments, told) in [
+        (&*gripped, vec!["--to", "febio"], "hand over to Abaqus"),
         (SMALL, vec!["--to", "calculix"], "fit such a card"),
         (PLATE, vec!["--to", "calculx"], "did you mean `calculix`"),
         (

@@ -21,6 +21,33 @@ const PULLED: &str = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"left\"\n\
     [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
     [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"6 mm\"\ny = \"0 mm\"\n";
 
+/// All three models are pulled by the same force between the same conditions; what is measured is the displacement.
+#[test]
+fn a_grip_with_a_force_moves_in_all_three_models() {
+    let shape = "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6";
+    let rest = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"right\"\n\
+        [[support]]\ngroup = \"left\"\nkind = \"symmetry\"\n\
+        [[support]]\ngroup = \"bottom\"\nkind = \"roller\"\n\
+        [[support]]\ngroup = \"right\"\nkind = \"grip\"\nx_force = \"0.6 N\"\ny = \"0 mm\"\n";
+    let folder = folder_with(&specimen(shape, rest));
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    let printed = words(&done.get_output().stdout);
+    assert!(
+        printed.contains("corrected grip displacement from"),
+        "{printed}"
+    );
+    let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+    assert!(
+        report.contains("finite elements: grip displacement [mm]"),
+        "{report}"
+    );
+    let lame = rest.replace("y = \"0 mm\"\n", "");
+    fs::write(folder.path().join("small.toml"), specimen(shape, &lame)).unwrap();
+    let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
+    let found = words(&done.get_output().stderr);
+    assert!(found.contains("needs either y or y_force"), "{found}");
+}
+
 #[test]
 fn specimens_of_every_shape_run_in_all_three_models() {
     let turned = "[path]\nfactors = [0.5, 1.0]\nmeasured_group = \"start\"\n\
@@ -160,6 +187,29 @@ fn local_refinement_ends_at_its_goal_or_at_its_limit() {
     assert!(printed.contains("most_cells = 200"), "{printed}");
 }
 
+/// Not even the first load factor is reached: the last equilibrium on the way is written all the same.
+#[test]
+fn a_path_that_ends_before_its_first_load_factor_leaves_its_last_state() {
+    let shape = "shape = \"strip\"\nlength = \"60 mm\"\nwidth = \"6 mm\"\ncells = 4";
+    let squeezed = PULLED.replace("x = \"6 mm\"", "x = \"-20 mm\"");
+    let folder = folder_with(&specimen(shape, &squeezed));
+    let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
+    let printed = words(&done.get_output().stdout);
+    assert!(printed.contains("buckling or wrinkling"), "{printed}");
+    assert!(
+        folder
+            .path()
+            .join("out/vtk/finite_element_end.vtu")
+            .exists()
+    );
+    assert!(
+        !folder
+            .path()
+            .join("out/vtk/finite_element_001.vtu")
+            .exists()
+    );
+}
+
 /// The states before the end of a path are written, and the end is told as a requirement that is not met.
 #[test]
 fn what_was_reached_before_a_path_ends_is_not_lost() {
@@ -174,9 +224,18 @@ fn what_was_reached_before_a_path_ends_is_not_lost() {
     fs::write(folder.path().join("small.toml"), specimen(shape, &pressed)).unwrap();
     let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
     let printed = words(&done.get_output().stdout);
-    assert!(printed.contains("load factor 30"), "{printed}");
+    assert!(printed.contains("load factor 30 (reached 8."), "{printed}");
+    assert!(printed.contains("buckling or wrinkling"), "{printed}");
     let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
     assert!(report.contains("| 0.1 |"), "{report}");
     assert!(folder.path().join("out/vtk/corrected_001.vtu").exists());
     assert!(!folder.path().join("out/vtk/corrected_002.vtu").exists());
+    // The last equilibrium on the way to the second load factor is kept apart, and said to be.
+    assert!(report.contains("| finite_element_end.vtu |"), "{report}");
+    assert!(
+        folder
+            .path()
+            .join("out/vtk/finite_element_end.vtu")
+            .exists()
+    );
 }

@@ -10,6 +10,7 @@
 //! axis of symmetry that passes through the point about which A is measured.
 
 use super::Load;
+use super::supports::Supported;
 use crate::mesh::{Group, Mesh};
 use crate::solve::{Inadmissible, Local, Potential};
 
@@ -73,6 +74,15 @@ impl Loaded {
         }
         self.add_forces(&forces);
         Ok(())
+    }
+
+    /// Adds the forces on rigid grips.
+    pub fn pull(&mut self, supported: &Supported) {
+        let mut forces = vec![0.0; self.forces.len()];
+        for (unknown, force) in &supported.forces {
+            forces[*unknown] += force;
+        }
+        self.add_forces(&forces);
     }
 
     /// Edges know displacements only: the area's part that is linear in them acts as a dead force.
@@ -315,5 +325,10 @@ impl Potential for LoadedPotential<'_> {
             }
         }
         Ok(energy)
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        let own = element < self.energy.elements();
+        own.then(|| self.energy.instability(element, u)).flatten()
     }
 }

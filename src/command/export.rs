@@ -48,9 +48,9 @@ pub fn run(options: &Options) -> Outcome {
     let written = match validation::case_of(&path.display().to_string(), &text)? {
         None => plate(path, text, options)?,
         Some(case) if case.kind == specimen::KIND => {
-            let (title, mut specimen, warnings) = specimen::load(case, path, &text)?;
+            let (title, specimen, warnings) = specimen::load(case, path, &text)?;
             warn(&warnings);
-            shape(&title, &mut specimen, options)?
+            shape(&title, &specimen, options)?
         }
         Some(case) => return Err(not_for_other_codes(case)),
     };
@@ -79,7 +79,7 @@ pub fn not_for_other_codes(case: &Case) -> Error {
     )
 }
 
-fn shape(title: &str, specimen: &mut Specimen, options: &Options) -> Result<Written, Error> {
+fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<Written, Error> {
     let mesh = match (specimen.refinement, options.level) {
         (_, Level::Fine) => specimen::finest_mesh(specimen)?,
         (None, level) => specimen.reference_meshes()[level as usize].clone(),

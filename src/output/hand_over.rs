@@ -7,7 +7,8 @@
 //! | gelbench | goes out as |
 //! |---|---|
 //! | load factor s | one step for each, as long as s grows: the total time is the load factor |
-//! | clamp, displacement, roller | prescribed on a node set |
+//! | clamp, displacement, roller, symmetry | prescribed on a node set |
+//! | grip with a given force | nodes that follow one of them (`*EQUATION`), which takes the force; not for FEBio |
 //! | rotation | prescribed node by node |
 //! | traction, force (dead) | nodal forces of the finite elements |
 //! | pressure | pressure on the edges, which follows them |
@@ -15,7 +16,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use crate::boundary::{BoundaryProblem, Load, Support};
+use crate::boundary::{BoundaryProblem, Drive, Load, Support};
 use crate::document::name_of;
 use crate::error::{Diagnostic, Error};
 use crate::material::Card;
@@ -125,6 +126,8 @@ struct Model<'a> {
     /// Parts of the boundary by name: cell and side within it.
     surfaces: Vec<(String, Vec<Side>)>,
     held: Vec<Held>,
+    /// Node and axis that follow another node's motion along the axis: those of grips with a given force.
+    ties: Vec<Tie>,
     /// Dead nodal forces in N at load factor 1.
     forces: Vec<(usize, [f64; 2])>,
     /// Pressures in MPa at load factor 1, by the number of their surface.
@@ -133,6 +136,13 @@ struct Model<'a> {
 
 /// A cell and the number of an edge within it.
 type Side = (usize, usize);
+
+/// A node that moves along an axis as another one does.
+struct Tie {
+    node: usize,
+    axis: usize,
+    follows: usize,
+}
 
 /// A component of displacement that a support prescribes on a node set.
 struct Held {
@@ -147,13 +157,20 @@ impl Held {
     fn uniform(&self) -> Option<f64> {
         match self.support {
             Support::Displacement(displacement) => displacement[self.axis],
+            Support::Roller => Some(0.0),
+            Support::Grip(drives) => match drives[self.axis] {
+                Drive::Displacement(displacement) => Some(displacement),
+                Drive::Force(_) => None,
+            },
             Support::Rotation { .. } => None,
         }
     }
 
     /// The displacement of a node at a place, in mm.
     fn at(&self, place: [f64; 2], factor: f64) -> f64 {
-        self.support.displacement(place, factor)[self.axis].unwrap_or_default()
+        self.support
+            .displacement(place, self.axis, factor)
+            .unwrap_or_default()
     }
 }
 
@@ -194,10 +211,12 @@ impl<'a> Model<'a> {
             sets,
             surfaces,
             held: Vec::new(),
+            ties: Vec::new(),
             forces: Vec::new(),
             pressures: Vec::new(),
         };
         model.hold(&mut names)?;
+        model.tie()?;
         model.load(&group_surfaces)?;
         Ok(model)
     }
@@ -228,9 +247,30 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
+    /// Grips with a given force: their nodes follow one of them, which takes the force.
+    fn tie(&mut self) -> Result<(), Diagnostic> {
+        let ties = self.given.problem.ties(self.given.mesh)?;
+        if self.code == Code::FeBio && !ties.is_empty() {
+            let message = "a grip with a given force cannot be handed over to FEBio";
+            return Err(Diagnostic::error("support", message)
+                .hint("give the grip a displacement, or hand over to Abaqus or CalculiX"));
+        }
+        let ties = ties.into_iter().map(|(unknown, follows)| Tie {
+            node: unknown / 2,
+            axis: unknown % 2,
+            follows: follows / 2,
+        });
+        let known = ties.filter(|tie| self.nodes.binary_search(&tie.node).is_ok());
+        self.ties = known.collect();
+        Ok(())
+    }
+
     fn load(&mut self, surfaces: &BTreeMap<&str, usize>) -> Result<(), Diagnostic> {
         let problem = self.given.problem;
-        let forces = problem.dead_forces(self.given.mesh)?;
+        let mut forces = problem.dead_forces(self.given.mesh)?;
+        for (unknown, follows) in problem.ties(self.given.mesh)? {
+            forces[follows] += std::mem::take(&mut forces[unknown]);
+        }
         for (node, force) in forces.chunks_exact(2).enumerate() {
             if force == [0.0; 2] {
                 continue;

@@ -13,6 +13,7 @@ use crate::results::{Requirement, Results};
 use crate::study::Study;
 
 use super::figures::Figure;
+use super::wrinkling;
 
 /// A part of a report.
 #[derive(Clone, Debug)]
@@ -41,6 +42,7 @@ impl Block {
 pub fn report(study: &Study, results: &Results, figures: &[Figure]) -> Vec<Block> {
     let mut blocks = vec![Block::Heading(1, study.title.clone())];
     blocks.extend(verdict(study, results));
+    blocks.extend(compression(study, results).map(Block::Paragraph));
     blocks.extend(deviations(study, results));
     if !figures.is_empty() {
         blocks.push(heading("Pictures"));
@@ -110,6 +112,16 @@ fn verdict(study: &Study, results: &Results) -> Vec<Block> {
             requirements.iter().map(row),
         ),
     ]
+}
+
+/// The warning about compression in the finite elements.
+fn compression(study: &Study, results: &Results) -> Option<String> {
+    let finest = results.finest();
+    let states = finest.solutions.iter().map(|state| {
+        let load = Problem::describe_step(state.stretch);
+        (load, &*state.displacement)
+    });
+    wrinkling::warning(&*study.problem.law, &finest.model.mesh, states)
 }
 
 fn deviations(study: &Study, results: &Results) -> Vec<Block> {

@@ -12,6 +12,7 @@ use vtkio::model::{
     UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
+use super::wrinkling::Wrinkling;
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
 use crate::finite_element::error_estimate::EnergyError;
@@ -128,19 +129,18 @@ impl<'a> From<&'a Problem> for Sheet<'a> {
 }
 
 /// The `.vtu` file of a displacement field on a mesh, with the stresses that follow and the difference to a reference
-/// field at the nodes.
+/// field at the nodes, where there is one.
 pub fn field_file(
     title: &str,
     sheet: &Sheet,
     mesh: &Mesh,
     displacement: &[f64],
-    reference: &[f64],
+    reference: Option<&[f64]>,
 ) -> Vec<u8> {
-    let difference = difference(TO_FINITE_ELEMENTS, displacement, reference);
-    encode(
-        title,
-        plate(sheet, mesh, displacement, vec![difference], None),
-    )
+    let difference =
+        reference.map(|reference| difference(TO_FINITE_ELEMENTS, displacement, reference));
+    let more = difference.into_iter().collect();
+    encode(title, plate(sheet, mesh, displacement, more, None))
 }
 
 /// The `.vtu` file of a finite-element field, with the stresses that follow and its estimated error.
@@ -257,9 +257,18 @@ fn material_state(sheet: &Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Attri
         thickness.push(sheet.thickness / kinematics.area_ratio());
         energy.push(density);
     }
+    let wrinkling = Wrinkling::new(sheet.law, mesh, displacement);
+    let compressed = wrinkling.compressed.iter();
+    let compressed = compressed.map(|is| f64::from(u8::from(*is))).collect();
     vec![
         array("nominal_stress_MPa", ElementType::Tensors, nominal),
         array("cauchy_stress_MPa", ElementType::Tensors, cauchy),
+        array(
+            "smallest_principal_cauchy_stress_MPa",
+            scalars(),
+            wrinkling.smallest,
+        ),
+        array("wrinkling_1", scalars(), compressed),
         array("principal_stretches_1", ElementType::Vectors, stretches),
         array("first_invariant_I1_1", scalars(), i1),
         array("thickness_mm", scalars(), thickness),

@@ -70,7 +70,7 @@ fn solve(model: &Discretised, name: &str, steps: usize) -> Result<State, Error> 
     let states = model.solve(&factors, NEWTON, &|_| ());
     let states = states.map_err(|end: PathEnd| Error::Solve {
         model: name.to_owned(),
-        step: format!("load factor {}", end.factor),
+        step: end.describe(),
         fault: end.fault,
     })?;
     let last = states.into_iter().last();

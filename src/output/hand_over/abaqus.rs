@@ -8,8 +8,9 @@
 //!
 //! Both codes write Ogden's law as Σ 2 μ/α² (…) and a neo-Hookean volume energy as (J − 1)²/D₁, so that the bulk
 //! modulus is K = 2/D₁. Abaqus' plane-stress elements are incompressible with D = 0. CalculiX makes solids of them
-//! and needs a finite K; its eight-node elements go out with reduced integration (`CPS8R`), which halves their
-//! distance to the sheet on coarse meshes.
+//! and needs a finite K; its eight-node elements go out with reduced integration (`CPS8R`). On a strip with a hole
+//! under traction, Q2 serendipity at load factors 0.5 and 1, they were 0.22 and 0.14 % from the sheet, fully integrated
+//! ones 0.48 and 0.30 %; under the other loads tried both were about equally far.
 //!
 //! # References
 //! Abaqus 2016 Analysis User's Guide, 22.5.1 and 22.5.3; G. Dhondt, CalculiX `CrunchiX` User's Manual 2.20, `*HYPERELASTIC`
@@ -51,6 +52,7 @@ pub fn write(model: &Model) -> Result<String, Error> {
         deck.line(&format!("** {line}"));
     }
     mesh(model, &mut deck);
+    ties(model, &mut deck);
     deck.line("*MATERIAL, NAME=MATERIAL_1");
     for line in &material {
         deck.line(line);
@@ -109,6 +111,20 @@ fn mesh(model: &Model, deck: &mut Deck) {
         for (cell, side) in sides {
             deck.line(&format!("{}, S{}", cell + 1, side + 1));
         }
+    }
+}
+
+/// Nodes that follow others: u − v = 0.
+fn ties(model: &Model, deck: &mut Deck) {
+    for tie in &model.ties {
+        let axis = tie.axis + 1;
+        deck.line("*EQUATION");
+        deck.line("2");
+        deck.line(&format!(
+            "{}, {axis}, 1., {}, {axis}, -1.",
+            tie.node + 1,
+            tie.follows + 1
+        ));
     }
 }
 

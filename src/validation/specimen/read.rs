@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::boundary::{BoundaryProblem, Load, Support};
+use crate::boundary::{BoundaryProblem, Drive, Load, Support};
 use crate::document::{Bound, Section};
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Shape, import};
@@ -40,7 +40,7 @@ pub struct Specimen {
     pub card: Card,
     /// Load factors, ascending.
     pub factors: Vec<f64>,
-    /// The group whose force is compared.
+    /// The group whose force is compared, or its displacement where the force is given.
     pub measured: String,
     /// The finite elements' name.
     pub element_name: &'static str,
@@ -184,7 +184,45 @@ fn read_outline(
     })
 }
 
+/// What is measured at a group, with its unit.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Measured {
+    /// The force of the supports, where displacements are given.
+    Force,
+    /// The displacement of a grip along an axis, where its force is given.
+    Displacement(usize),
+}
+
+impl Measured {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::Displacement(_) => "grip displacement",
+        }
+    }
+
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Force => "N",
+            Self::Displacement(_) => "mm",
+        }
+    }
+}
+
 impl Specimen {
+    /// What is measured at the measured group.
+    pub fn measured(&self) -> Measured {
+        let supports = self.problem.supports.iter().rev();
+        let own = supports.filter(|(group, _)| *group == self.measured);
+        let axis = own.clone().find_map(|(_, support)| match support {
+            Support::Grip(drives) => drives
+                .iter()
+                .position(|drive| matches!(drive, Drive::Force(force) if *force != 0.0)),
+            _ => None,
+        });
+        axis.map_or(Measured::Force, Measured::Displacement)
+    }
+
     /// The mesh of the springs and of the corrector.
     pub fn lattice(&self) -> Mesh {
         match &self.outline {
@@ -349,11 +387,36 @@ fn components(section: &Section, dimension: Dimension) -> [Option<f64>; 2] {
     })
 }
 
+/// What moves a grip along an axis, by the keys of a displacement and of a force.
+fn drive(section: &Section, (displacement, force): (&'static str, &'static str)) -> Drive {
+    match (section.has(displacement), section.has(force)) {
+        (true, false) => {
+            Drive::Displacement(section.quantity(displacement, Dimension::Length, Bound::Any))
+        }
+        (false, true) => Drive::Force(section.quantity(force, Dimension::Force, Bound::Any)),
+        _ => {
+            let message = format!("a grip needs either {displacement} or {force}");
+            let hint = format!(
+                "{displacement} = \"0 mm\" holds it, {force} = \"0 N\" leaves it free to move"
+            );
+            section.fault("kind", &message, &hint);
+            Drive::Displacement(f64::NAN)
+        }
+    }
+}
+
 fn read_support(section: &Section) -> Option<(String, Support)> {
     let group = section.text("group");
     let support = match section.choice(
         "kind",
-        &[("clamp", 0), ("displacement", 1), ("rotation", 2)],
+        &[
+            ("clamp", 0),
+            ("displacement", 1),
+            ("roller", 2),
+            ("symmetry", 2),
+            ("grip", 3),
+            ("rotation", 4),
+        ],
     )? {
         0 => Support::Displacement([Some(0.0); 2]),
         1 => {
@@ -363,6 +426,8 @@ fn read_support(section: &Section) -> Option<(String, Support)> {
             }
             Support::Displacement(displacement)
         }
+        2 => Support::Roller,
+        3 => Support::Grip([("x", "x_force"), ("y", "y_force")].map(|keys| drive(section, keys))),
         _ => {
             let centre = section.quantities("centre", Dimension::Length, Bound::Any);
             let centre = centre.try_into().unwrap_or_else(|_| {
