@@ -151,21 +151,3 @@ fn q2_reproduces_the_displacements_of_another_code() {
         );
     }
 }
-
-/// Sums are taken in the order of the elements, whoever computed them.
-#[test]
-fn the_number_of_threads_does_not_change_a_bit() {
-    let mut problem = plate("marlow");
-    problem.stretches = vec![0.3];
-    let model = FiniteElements::new(&problem, [48, 16], Element::Q2);
-    let solve = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| model.solve(&problem, SETTINGS, &|_| ()).unwrap())
-    };
-    let alone = solve(1);
-    assert_eq!(alone, solve(2));
-    assert_eq!(alone, solve(3));
-}

@@ -1,9 +1,5 @@
 //! A potential energy that is a sum over elements, and its assembly.
 
-use std::ops::Range;
-
-use rayon::prelude::*;
-
 use super::sparse::{SymmetricPattern, moved};
 
 /// An element that has turned inside out, collapsed, or left the range of numbers.
@@ -164,9 +160,27 @@ impl Assembly {
         residual: &mut [f64],
     ) -> Result<f64, Inadmissible> {
         residual.fill(0.0);
-        evaluate(potential, u, false, |element, local, _| {
-            add_residual(potential, element, local, residual);
-        })
+        let (mut values, mut local) = (Vec::new(), Vec::new());
+        let mut energy = 0.0;
+        for element in 0..potential.elements() {
+            let unknowns = potential.element_unknowns(element);
+            gather(unknowns, u, &mut values);
+            local.clear();
+            local.resize(unknowns.len(), 0.0);
+            energy += potential.evaluate_element(
+                element,
+                &values,
+                Local {
+                    residual: &mut local,
+                    stiffness: None,
+                },
+            )?;
+            unknowns
+                .iter()
+                .zip(&local)
+                .for_each(|(unknown, r)| residual[*unknown] += r);
+        }
+        Ok(energy)
     }
 
     /// Adds the forces K m of a small motion m of some unknowns, at all unknowns.
@@ -186,8 +200,7 @@ impl Assembly {
                 continue;
             }
             let size = unknowns.len();
-            values.clear();
-            values.extend(unknowns.iter().map(|unknown| u[*unknown]));
+            gather(unknowns, u, &mut values);
             local.clear();
             local.resize(size, 0.0);
             matrix.clear();
@@ -224,100 +237,47 @@ impl Assembly {
         residual.fill(0.0);
         stiffness.clear();
         stiffness.resize(self.pattern.entries(), 0.0);
-        evaluate(potential, u, true, |element, local, triangle| {
-            add_residual(potential, element, local, residual);
-            let places = &self.scatter[self.scatter_starts[element]..];
-            for (value, place) in triangle.iter().zip(places) {
-                if *place != NOWHERE {
-                    stiffness[*place] += value;
+        let (mut values, mut local, mut matrix) = (Vec::new(), Vec::new(), Vec::new());
+        let mut energy = 0.0;
+        for element in 0..potential.elements() {
+            let unknowns = potential.element_unknowns(element);
+            let size = unknowns.len();
+            gather(unknowns, u, &mut values);
+            local.clear();
+            local.resize(size, 0.0);
+            matrix.clear();
+            matrix.resize(size * size, 0.0);
+            energy += potential.evaluate_element(
+                element,
+                &values,
+                Local {
+                    residual: &mut local,
+                    stiffness: Some(&mut matrix),
+                },
+            )?;
+            unknowns
+                .iter()
+                .zip(&local)
+                .for_each(|(unknown, r)| residual[*unknown] += r);
+            let mut places = self.scatter[self.scatter_starts[element]..].iter();
+            for row in 0..size {
+                for (value, place) in matrix[row * size..=row * size + row]
+                    .iter()
+                    .zip(&mut places)
+                {
+                    if *place != NOWHERE {
+                        stiffness[*place] += value;
+                    }
                 }
             }
-        })
-    }
-}
-
-/// The elements of one batch are evaluated side by side, a block of them by each thread at a time.
-const BATCH: usize = 2048;
-const BLOCK: usize = 64;
-
-/// Energy, residuals and lower triangles of the stiffness of some consecutive elements, one after the other.
-#[derive(Default)]
-struct Evaluated {
-    energies: Vec<f64>,
-    residuals: Vec<f64>,
-    triangles: Vec<f64>,
-}
-
-/// Evaluates all elements and hands each one's residual and triangle to `add`, in their order: the sums have the same
-/// bits with any number of threads. Returns the energy.
-fn evaluate(
-    potential: &dyn Potential,
-    u: &[f64],
-    with_stiffness: bool,
-    mut add: impl FnMut(usize, &[f64], &[f64]),
-) -> Result<f64, Inadmissible> {
-    let elements = potential.elements();
-    let mut energy = 0.0;
-    for batch in (0..elements).step_by(BATCH) {
-        let starts = (batch..elements.min(batch + BATCH)).step_by(BLOCK);
-        let block = |start: usize| {
-            let block = start..elements.min(start + BLOCK);
-            evaluate_block(potential, u, with_stiffness, block)
-        };
-        let starts: Vec<usize> = starts.collect();
-        let blocks: Vec<_> = starts.par_iter().map(|start| block(*start)).collect();
-        for (start, block) in starts.into_iter().zip(blocks) {
-            let block = block?;
-            let (mut residuals, mut triangles) = (&block.residuals[..], &block.triangles[..]);
-            for (element, own) in (start..).zip(&block.energies) {
-                energy += own;
-                let size = potential.element_unknowns(element).len();
-                let (residual, rest) = residuals.split_at(size);
-                let entries = usize::from(with_stiffness) * size * (size + 1) / 2;
-                let (triangle, others) = triangles.split_at(entries);
-                (residuals, triangles) = (rest, others);
-                add(element, residual, triangle);
-            }
         }
+        Ok(energy)
     }
-    Ok(energy)
 }
 
-fn evaluate_block(
-    potential: &dyn Potential,
-    u: &[f64],
-    with_stiffness: bool,
-    block: Range<usize>,
-) -> Result<Evaluated, Inadmissible> {
-    let mut all = Evaluated::default();
-    let (mut values, mut matrix) = (Vec::new(), Vec::new());
-    for element in block {
-        let unknowns = potential.element_unknowns(element);
-        let size = unknowns.len();
-        values.clear();
-        values.extend(unknowns.iter().map(|unknown| u[*unknown]));
-        matrix.clear();
-        matrix.resize(if with_stiffness { size * size } else { 0 }, 0.0);
-        let first = all.residuals.len();
-        all.residuals.resize(first + size, 0.0);
-        let local = Local {
-            residual: &mut all.residuals[first..],
-            stiffness: with_stiffness.then_some(&mut matrix[..]),
-        };
-        let energy = potential.evaluate_element(element, &values, local)?;
-        all.energies.push(energy);
-        for (row, entries) in matrix.chunks_exact(size.max(1)).enumerate() {
-            all.triangles.extend_from_slice(&entries[..=row]);
-        }
-    }
-    Ok(all)
-}
-
-fn add_residual(potential: &dyn Potential, element: usize, local: &[f64], residual: &mut [f64]) {
-    let unknowns = potential.element_unknowns(element);
-    for (unknown, r) in unknowns.iter().zip(local) {
-        residual[*unknown] += r;
-    }
+fn gather(unknowns: &[usize], u: &[f64], values: &mut Vec<f64>) {
+    values.clear();
+    values.extend(unknowns.iter().map(|unknown| u[*unknown]));
 }
 
 /// Checks ∂Π/∂u and ∂²Π/∂u² against central differences along a direction; returns the smallest
