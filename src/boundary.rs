@@ -1,17 +1,24 @@
 //! The boundary value problem of a sheet of any shape: supports and loads on the named groups of its mesh.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
-use crate::error::Diagnostic;
+use crate::error::{Diagnostic, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Group, Mesh};
 use crate::sheet_energy::SheetEnergy;
-use crate::solve::{Loading, NewtonSettings, PathEnd, Potential, State, follow};
+use crate::solve::{
+    Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
+};
 
 mod loads;
+mod supports;
+mod ties;
 
 use loads::Loaded;
+use supports::{Motion, Supported};
+use ties::Tied;
 
 /// What holds a group; everything grows with the load factor and is complete at 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +26,9 @@ pub enum Support {
     /// Displacements ux, uy in mm; one that is not given is free. Both zero: a clamp; one zero: a roller or
     /// an axis of symmetry.
     Displacement([Option<f64>; 2]),
+    /// Free to slide along the straight line on which the group lies, parallel to an axis: a roller, or an axis of
+    /// symmetry.
+    Roller,
     /// A rigid turn about a point in mm by an angle in rad, counter-clockwise.
     Rotation {
         /// The point.
@@ -26,6 +36,17 @@ pub enum Support {
         /// The angle.
         angle: f64,
     },
+    /// A rigid grip that does not turn: all nodes have the same displacement along each axis.
+    Grip([Drive; 2]),
+}
+
+/// What moves a rigid grip along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// A displacement in mm.
+    Displacement(f64),
+    /// A total force in N of constant direction (dead).
+    Force(f64),
 }
 
 /// What loads a group; everything grows with the load factor and is complete at 1.
@@ -57,45 +78,67 @@ pub struct BoundaryProblem {
 pub struct Discretised<'a> {
     mesh: &'a Mesh,
     energy: &'a dyn Potential,
-    /// Motion of each unknown that is held.
-    held: BTreeMap<usize, Motion>,
+    supported: Supported,
     loaded: Loaded,
     names: Box<dyn Fn(usize) -> String + 'a>,
-}
-
-/// How a held unknown moves.
-#[derive(Clone, Copy)]
-enum Motion {
-    /// In proportion to the load factor, in mm at 1.
-    Straight(f64),
-    /// As a coordinate of a point at a place relative to the centre, in mm, turned by an angle at 1.
-    Turn {
-        place: [f64; 2],
-        axis: usize,
-        angle: f64,
-    },
-}
-
-impl Motion {
-    fn at(self, factor: f64) -> f64 {
-        match self {
-            Self::Straight(displacement) => factor * displacement,
-            Self::Turn { place, axis, angle } => {
-                let (sine, cosine) = (factor * angle).sin_cos();
-                // 1 − cos without cancellation.
-                let lost = 2.0 * (0.5 * factor * angle).sin().powi(2);
-                debug_assert!((lost - (1.0 - cosine)).abs() < 1e-14);
-                let across = [-sine * place[1], sine * place[0]];
-                across[axis] - lost * place[axis]
-            }
-        }
-    }
 }
 
 impl BoundaryProblem {
     /// The finite-element energy of a mesh.
     pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
         SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
+    }
+
+    /// The unknowns of a mesh that are held, each with the number of the support that holds it: the last one of
+    /// several.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support names no group of the mesh.
+    pub fn held_by(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+        let mut by = BTreeMap::new();
+        for number in 0..self.supports.len() {
+            let own = self.supported(mesh, number..number + 1)?;
+            by.extend(own.held.into_keys().map(|unknown| (unknown, number)));
+        }
+        Ok(by)
+    }
+
+    /// The unknowns of a mesh that follow others, each with the one that it follows: those of grips with a given force.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support names no group of the mesh, or when a group cannot be held so.
+    pub fn ties(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+        Ok(self.supported(mesh, 0..self.supports.len())?.ties)
+    }
+
+    /// What some of the supports do to the unknowns of a mesh.
+    fn supported(&self, mesh: &Mesh, which: Range<usize>) -> Result<Supported, Diagnostic> {
+        let mut supported = Supported::default();
+        for (name, support) in &self.supports[which] {
+            let added = supported.add(mesh, group(mesh, name)?, support);
+            added.map_err(|reason| refused(name, &reason))?;
+        }
+        Ok(supported)
+    }
+
+    /// The dead forces on the unknowns of a mesh in N at load factor 1: all loads but pressures, and the forces of grips.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a load names no group of the mesh, or when a group cannot carry it.
+    pub fn dead_forces(&self, mesh: &Mesh) -> Result<Vec<f64>, Diagnostic> {
+        let mut sum = vec![0.0; 2 * mesh.nodes.len()];
+        for (name, load) in &self.loads {
+            let forces = loads::dead_forces(mesh, group(mesh, name)?, load, self.thickness)
+                .map_err(|reason| refused(name, &reason))?;
+            for (sum, force) in sum.iter_mut().zip(forces) {
+                *sum += force;
+            }
+        }
+        let supported = self.supported(mesh, 0..self.supports.len())?;
+        for (unknown, force) in supported.forces {
+            sum[unknown] += force;
+        }
+        Ok(sum)
     }
 
     /// The problem on the nodes of a mesh with an energy of them.
@@ -107,32 +150,30 @@ impl BoundaryProblem {
         mesh: &'a Mesh,
         energy: &'a dyn Potential,
     ) -> Result<Discretised<'a>, Diagnostic> {
-        let mut held = BTreeMap::new();
-        for (name, support) in &self.supports {
-            for node in &group(mesh, name)?.nodes {
-                for (axis, motion) in motions(support, mesh.nodes[*node]).into_iter().enumerate() {
-                    if let Some(motion) = motion {
-                        held.insert(2 * node + axis, motion);
-                    }
-                }
-            }
-        }
+        let supported = self.supported(mesh, 0..self.supports.len())?;
+        let held = &supported.held;
         let mut loaded = Loaded::new(2 * mesh.nodes.len());
         for (name, load) in &self.loads {
             let is_held = |node: usize| [0, 1].map(|axis| held.contains_key(&(2 * node + axis)));
             let group = group(mesh, name)?;
             loaded
                 .add(mesh, group, load, self.thickness, &is_held)
-                .map_err(|reason| Diagnostic::error("", format!("the group `{name}` {reason}")))?;
+                .map_err(|reason| refused(name, &reason))?;
         }
+        loaded.pull(&supported);
         Ok(Discretised {
             mesh,
             energy,
-            held,
+            supported,
             loaded,
             names: Box::new(|cell| mesh.describe_cell(cell)),
         })
     }
+}
+
+/// A support or a load that does not suit a group.
+fn refused(group: &str, reason: &str) -> Diagnostic {
+    Diagnostic::error("", format!("the group `{group}` {reason}"))
 }
 
 fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
@@ -142,17 +183,6 @@ fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
         let fault = Diagnostic::error("", format!("the mesh has no group `{name}`"));
         fault.hint(format!("its groups are {}", known.join(", ")))
     })
-}
-
-/// The motions that a support gives a node, along both axes.
-fn motions(support: &Support, node: [f64; 2]) -> [Option<Motion>; 2] {
-    match *support {
-        Support::Displacement(displacement) => displacement.map(|d| d.map(Motion::Straight)),
-        Support::Rotation { centre, angle } => {
-            let place = [node[0] - centre[0], node[1] - centre[1]];
-            [0, 1].map(|axis| Some(Motion::Turn { place, axis, angle }))
-        }
-    }
 }
 
 impl<'a> Discretised<'a> {
@@ -172,7 +202,8 @@ impl<'a> Discretised<'a> {
     pub fn impose_field(&mut self, name: &str, field: impl Fn([f64; 2]) -> [f64; 2]) {
         for node in &self.mesh.groups()[name].nodes {
             for (axis, value) in field(self.mesh.nodes[*node]).into_iter().enumerate() {
-                self.held.insert(2 * node + axis, Motion::Straight(value));
+                let motion = Motion::Straight(value);
+                self.supported.held.insert(2 * node + axis, motion);
             }
         }
     }
@@ -195,6 +226,63 @@ impl<'a> Discretised<'a> {
         follow(self, factors, settings, progress)
     }
 
+    /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
+    /// state, while everything else that is held rests; the field in mm/N that a force on the group brings about where it
+    /// is a grip with a given force.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when the tangent cannot be factorised.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn influence(
+        &self,
+        state: &State,
+        name: &str,
+        axis: usize,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let Supported { held, ties, forces } = &self.supported;
+        let nodes = self.mesh.groups()[name].nodes.iter();
+        let mut unknowns = nodes.map(|node| 2 * node + axis);
+        let pulled = |unknown: &usize| forces.iter().any(|(master, _)| master == unknown);
+        let (mut motion, mut force) = (vec![0.0; state.displacement.len()], None);
+        for unknown in unknowns
+            .clone()
+            .filter(|unknown| held.contains_key(unknown))
+        {
+            motion[unknown] = 1.0;
+        }
+        if let Some(master) = unknowns.find(pulled) {
+            let mut unit = vec![0.0; motion.len()];
+            unit[master] = 1.0;
+            force = Some(unit);
+        }
+        let at = (state.factor, &*state.displacement);
+        let mut field = match force {
+            Some(force) => compliance(self, at, &force)?,
+            None => influence(self, at, &motion)?,
+        };
+        for (unknown, master) in ties {
+            field[*unknown] = field[*master];
+        }
+        Ok(field)
+    }
+
+    /// The mean displacement of a group in mm, from a state.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn displacement(&self, state: &State, name: &str) -> [f64; 2] {
+        let nodes = &self.mesh.groups()[name].nodes;
+        [0, 1].map(|axis| {
+            let sum: f64 = nodes
+                .iter()
+                .map(|node| state.displacement[2 * node + axis])
+                .sum();
+            sum / nodes.len() as f64
+        })
+    }
+
     /// The force of the supports on a group in N, from a state.
     ///
     /// # Panics
@@ -202,8 +290,8 @@ impl<'a> Discretised<'a> {
     pub fn reaction(&self, state: &State, name: &str) -> [f64; 2] {
         let nodes = &self.mesh.groups()[name].nodes;
         [0, 1].map(|axis| {
-            let held = nodes.iter().map(|node| 2 * node + axis);
-            let held = held.filter(|unknown| self.held.contains_key(unknown));
+            let unknowns = nodes.iter().map(|node| 2 * node + axis);
+            let held = unknowns.filter(|unknown| self.supported.held.contains_key(unknown));
             held.map(|unknown| state.residual[unknown]).sum()
         })
     }
@@ -213,21 +301,32 @@ impl Loading for Discretised<'_> {
     fn held(&self) -> Vec<bool> {
         let unknowns = 0..2 * self.mesh.nodes.len();
         unknowns
-            .map(|unknown| self.held.contains_key(&unknown))
+            .map(|unknown| {
+                let Supported { held, ties, .. } = &self.supported;
+                held.contains_key(&unknown) || ties.contains_key(&unknown)
+            })
             .collect()
     }
 
     fn impose(&self, factor: f64, displacement: &mut [f64]) {
-        for (unknown, motion) in &self.held {
+        for (unknown, motion) in &self.supported.held {
             displacement[*unknown] = motion.at(factor);
+        }
+        for (unknown, master) in &self.supported.ties {
+            displacement[*unknown] = displacement[*master];
         }
     }
 
     fn potential(&self, factor: f64) -> Box<dyn Potential + '_> {
-        if self.loaded.is_empty() {
+        let loaded: Box<dyn Potential + '_> = if self.loaded.is_empty() {
             Box::new(self.energy)
         } else {
             Box::new(self.loaded.at(self.energy, factor))
+        };
+        if self.supported.ties.is_empty() {
+            loaded
+        } else {
+            Box::new(Tied::new(loaded, &self.supported.ties))
         }
     }
 
@@ -241,5 +340,9 @@ impl Loading for Discretised<'_> {
         } else {
             "a loaded edge".to_owned()
         }
+    }
+
+    fn describe_unknown(&self, unknown: usize) -> String {
+        self.mesh.describe_unknown(unknown)
     }
 }

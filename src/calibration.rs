@@ -18,6 +18,7 @@ pub use card_text::{Provenance, card_text};
 pub use conversion::Conversion;
 pub use fit::{Bounds, Fit, FitSettings, Weighting, fit, rank};
 pub use quality::{Estimate, Quality, StableRange};
+pub use table::{Column, Table};
 pub use test_data::{KEYS, Observation, Reading, StrainColumn, Test, TestData};
 
 #[cfg(test)]

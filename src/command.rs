@@ -15,12 +15,16 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::error::{Diagnostic, Error};
+use crate::error::{Diagnostic, Error, suggestion};
+use crate::output::hand_over::Code;
 use crate::problem::Problem;
 use crate::study::{self, DEFAULT, Study};
+use crate::units::{self, Dimension};
 use crate::validation::{self, Case, Computed};
 use crate::{output, run};
 
+mod compare;
+mod export;
 mod fit_message;
 mod materials;
 mod message;
@@ -30,6 +34,8 @@ Samples:
   gelbench new my_plate                      write my_plate.toml, a commented study
   gelbench check my_plate.toml               read it and tell every fault
   gelbench run my_plate.toml                 compute it and write output/my_plate/
+  gelbench export my_plate.toml --to abaqus  write it as the input file of another code
+  gelbench compare my_plate.toml abaqus.vtu  compare its models with a field of another program
   gelbench validate                          redo the publication's claims, write validation/REPORT.md
   gelbench materials list                    the cards that come along
   gelbench materials show pva-10             one card with its moduli and its source
@@ -60,6 +66,48 @@ enum Command {
     Check {
         /// The study file
         study: PathBuf,
+    },
+    /// Compare the models of a study with a displacement field of another program
+    #[command(
+        after_help = "Sample: gelbench compare examples/strip_with_hole.toml strip.frd --factor 0.5"
+    )]
+    Compare {
+        /// The study file: a plate, or one of the kind specimen
+        study: PathBuf,
+        /// The field: .vtu, .vtk, CalculiX' .frd, or .csv with X, Y, ux, uy
+        field: PathBuf,
+        /// The load factor or stretch, such as 0.5 or "50 %"; the last one of the study where it is not given
+        #[arg(long, visible_alias = "stretch", value_name = "FACTOR", value_parser = ratio)]
+        factor: Option<f64>,
+        /// The file's unit of length, where the file does not say it
+        #[arg(long, value_name = "UNIT", default_value = "mm", value_parser = length)]
+        unit: f64,
+        /// The array of a VTK file
+        #[arg(long, value_name = "NAME")]
+        array: Option<String>,
+        /// Write a report and VTU files with the differences into this folder
+        #[arg(long, value_name = "FOLDER")]
+        output: Option<PathBuf>,
+    },
+    /// Write a study as the input file of Abaqus, CalculiX or FEBio
+    #[command(
+        after_help = "Sample: gelbench export examples/strip_with_hole.toml --to calculix --output strip.inp"
+    )]
+    Export {
+        /// The study file: a plate, or one of the kind specimen
+        study: PathBuf,
+        /// The code: abaqus, calculix or febio
+        #[arg(long, value_name = "CODE", value_parser = code)]
+        to: Code,
+        /// Write this file instead of one in output/
+        #[arg(long, value_name = "FILE")]
+        output: Option<PathBuf>,
+        /// Which of the three finite-element meshes
+        #[arg(long, value_enum, default_value = "fine")]
+        mesh: export::Level,
+        /// Bulk modulus over the initial shear modulus, for CalculiX and FEBio
+        #[arg(long, value_name = "RATIO", default_value_t = 1000.0)]
+        bulk_ratio: f64,
     },
     /// Write a commented study to start from
     #[command(after_help = "Sample: gelbench new my_plate    writes my_plate.toml")]
@@ -103,6 +151,34 @@ pub fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Run { study, output } => run_study(&study, output),
         Command::Check { study } => check(&study),
+        Command::Compare {
+            study,
+            field,
+            factor,
+            unit,
+            array,
+            output,
+        } => compare::run(compare::Options {
+            study,
+            field,
+            factor,
+            unit,
+            array,
+            output,
+        }),
+        Command::Export {
+            study,
+            to: code,
+            output,
+            mesh: level,
+            bulk_ratio,
+        } => export::run(&export::Options {
+            study,
+            code,
+            output,
+            level,
+            bulk_ratio,
+        }),
         Command::New { name } => new_study(name),
         Command::Validate {
             cases,
@@ -118,6 +194,32 @@ pub fn main() -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// A load factor.
+fn ratio(text: &str) -> Result<f64, String> {
+    match units::parse(text, Dimension::Ratio) {
+        Ok(factor) if factor > 0.0 => Ok(factor),
+        Ok(_) => Err("it must be greater than zero".into()),
+        Err(fault) => Err(fault.to_string()),
+    }
+}
+
+/// The length of a unit in mm.
+fn length(unit: &str) -> Result<f64, String> {
+    units::parse(&format!("1 {unit}"), Dimension::Length).map_err(|_| {
+        let known: Vec<_> = Dimension::Length.units().collect();
+        suggestion(unit, &known, "known units:")
+    })
+}
+
+/// A code by its name.
+fn code(name: &str) -> Result<Code, String> {
+    let known = Code::NAMES.iter().find(|(known, _)| *known == name);
+    let names = Code::NAMES.map(|(known, _)| known);
+    known
+        .map(|(_, code)| *code)
+        .ok_or_else(|| suggestion(name, &names, "codes:"))
 }
 
 type Outcome = Result<u8, Error>;

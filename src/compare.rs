@@ -20,8 +20,10 @@ use nalgebra::Vector4;
 use crate::finite_element::FiniteElements;
 use crate::finite_element::convergence::{Richardson, richardson};
 use crate::material::sheet::Kinematics;
-use crate::mesh::{Mesh, Side};
+use crate::mesh::Mesh;
 use crate::problem::{Problem, Solution};
+
+pub mod imported;
 
 /// Deviation of one field from the reference at one stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,11 +119,11 @@ impl<'a> Reference<'a> {
         let of = |value: fn(&Solution) -> f64| {
             richardson(self.meshes.map(|(_, solutions)| value(&solutions[step])))
         };
-        let coarse = self.meshes[0].0;
+        let coarse = &self.meshes[0].0.common_nodes();
         let [first, second, third] = self
             .meshes
             .map(|(mesh, solutions)| mesh.displacement_on(&solutions[step].displacement, coarse));
-        let areas = nodal_areas(coarse);
+        let areas = coarse.nodal_areas();
         let (before, last) = (
             distance(&areas, &first, &second),
             distance(&areas, &second, &third),
@@ -172,13 +174,20 @@ pub fn displacement_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f6
 
 /// Distance of two fields on a mesh over the size of what the reference departs from `affine`, in %.
 pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: &[f64]) -> f64 {
-    let areas = nodal_areas(mesh);
+    let areas = mesh.nodal_areas();
     100.0 * distance(&areas, field, reference) / distance(&areas, reference, affine)
 }
 
 /// Distance of two fields on the corners of any mesh in relative L2, weighted by area, in %. The area of a cell
 /// belongs to its corners in equal parts.
 pub fn area_weighted_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
+    let areas = corner_areas(mesh);
+    let nothing = vec![0.0; reference.len()];
+    100.0 * distance(&areas, field, reference) / distance(&areas, reference, &nothing)
+}
+
+/// The area in mm² that belongs to each node: that of a cell to its corners in equal parts.
+fn corner_areas(mesh: &Mesh) -> Vec<f64> {
     let mut areas = vec![0.0; mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
         let shape = mesh.shape(cell);
@@ -190,27 +199,13 @@ pub fn area_weighted_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f
             areas[*corner] += area / shape.corners() as f64;
         }
     }
-    let nothing = vec![0.0; reference.len()];
-    100.0 * distance(&areas, field, reference) / distance(&areas, reference, &nothing)
+    areas
 }
 
 /// Whether a point lies within a fifth of the width of a corner.
 fn near_corner(size: [f64; 2], point: [f64; 2]) -> bool {
     let [x, y] = [0, 1].map(|axis| point[axis].min(size[axis] - point[axis]));
     x.hypot(y) < size[1] / 5.0
-}
-
-/// The share of the plate's area in mm² that belongs to each node of its regular grid: halved on each side.
-fn nodal_areas(mesh: &Mesh) -> Vec<f64> {
-    let sides = [Side::Left, Side::Right, Side::Bottom, Side::Top];
-    let share = |node| -> f64 {
-        let halvings = sides.iter().filter(|side| mesh.on(**side, node)).count();
-        0.5_f64.powi(halvings as i32)
-    };
-    let shares: Vec<f64> = (0..mesh.nodes.len()).map(share).collect();
-    let size = mesh.grid().size;
-    let whole = size[0] * size[1] / shares.iter().sum::<f64>();
-    shares.into_iter().map(|share| share * whole).collect()
 }
 
 /// √(Σ A |u − v|²).

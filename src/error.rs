@@ -107,7 +107,7 @@ impl fmt::Display for Diagnostic {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveFault {
     /// An element has turned inside out or shrunk to nothing.
-    #[error("{element} is inverted or collapsed and no shorter step avoids it")]
+    #[error("{element} inverts or collapses, and no shorter step avoids it")]
     Inverted {
         /// The element, named with its place, as in `cell 80 near (150.0, 0.0) mm`.
         element: String,
@@ -115,6 +115,28 @@ pub enum SolveFault {
     /// The tangent has a direction of no or negative stiffness.
     #[error("the tangent stiffness is not positive definite: a loss of stability")]
     NotPositiveDefinite,
+    /// A material whose stress falls with strain.
+    #[error("material unstable in {element} at {state}")]
+    MaterialUnstable {
+        /// The element, named with its place.
+        element: String,
+        /// The state that is not stable, as in `I₁ = 5.10`.
+        state: String,
+    },
+    /// A force or pressure beyond what the body can carry.
+    #[error("the load has its maximum near load factor {factor:.4}")]
+    LoadMaximum {
+        /// The last load factor with an equilibrium.
+        factor: f64,
+    },
+    /// A direction of no stiffness that the loads do not push along: the sheet buckles, wrinkles or necks.
+    #[error(
+        "the tangent stiffness is not positive definite: a buckling or wrinkling mode, or a neck, which moves most at {place}"
+    )]
+    Buckling {
+        /// The unknown that moves most, named with its place.
+        place: String,
+    },
     /// The tangent cannot be factorised at all.
     #[error(
         "the system of equations is singular: the supports leave a free motion, or conditions depend on each other"
@@ -157,10 +179,17 @@ impl SolveFault {
     pub fn advice(&self) -> &'static str {
         match self {
             Self::Inverted { .. } => {
-                "add smaller stretches or load factors before this one, or refine the cells"
+                "refine the mesh there, or end the path before this load factor"
             }
             Self::NotPositiveDefinite => {
                 "look at the card's stable range with `gelbench materials show`, or take smaller load steps"
+            }
+            Self::MaterialUnstable { .. } => {
+                "look at the card's stable range with `gelbench materials show`, or take a law that is stable there"
+            }
+            Self::LoadMaximum { .. } => "control the displacement instead of the force or pressure",
+            Self::Buckling { .. } => {
+                "end the path before it: beyond, the sheet leaves its plane, folds, or strains in one place only"
             }
             Self::Dependent { .. } => "leave out one of the conditions named",
             Self::Singular => "look at the supports and the corrector's conditions",

@@ -3,12 +3,16 @@
 use std::sync::Arc;
 
 use crate::error::Error;
-use crate::mesh::{CellShape, Mesh};
+use crate::mesh::{CellShape, Grid, Mesh};
 use crate::problem::{Model, Problem, Solution};
 use crate::sheet_energy::SheetEnergy;
 use crate::solve::NewtonSettings;
 
+use error_estimate::{ErrorEstimate, Solved};
+
 pub mod convergence;
+pub mod error_estimate;
+pub mod recovery;
 
 /// Degree of the elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +56,17 @@ pub struct FiniteElements {
 impl FiniteElements {
     /// Meshes the problem with `cells` elements.
     pub fn new(problem: &Problem, cells: [usize; 2], element: Element) -> Self {
-        let mesh = Mesh::plate(problem.size, cells, element.shape());
+        Self::graded(problem, cells, element, 1.0)
+    }
+
+    /// Meshes the problem with `cells` elements that become smaller towards the corners; see [`Grid`].
+    pub fn graded(problem: &Problem, cells: [usize; 2], element: Element, grading: f64) -> Self {
+        let grid = Grid {
+            size: problem.size,
+            cells,
+            grading,
+        };
+        let mesh = Mesh::of_grid(grid, element.shape());
         let energy = SheetEnergy::of_mesh(Arc::clone(&problem.law), &mesh, problem.thickness);
         Self {
             mesh,
@@ -75,6 +89,21 @@ impl FiniteElements {
     /// `Q2, 120 × 40 cells`.
     pub fn describe(&self) -> String {
         format!("{}, {}", self.element.name(), self.mesh.describe())
+    }
+
+    /// The estimated error of a solution.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when the tangent at the solution cannot be factorised.
+    pub fn estimate(&self, problem: &Problem, solution: &Solution) -> Result<ErrorEstimate, Error> {
+        let influence = problem.influence(&self.model(), solution)?;
+        let solved = Solved {
+            law: &*problem.law,
+            thickness: problem.thickness,
+            mesh: &self.mesh,
+            displacement: &solution.displacement,
+        };
+        Ok(solved.estimate(&influence))
     }
 
     /// Solves all stretches of the problem, one after the other.

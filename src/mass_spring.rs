@@ -404,6 +404,14 @@ impl Potential for Lattice {
             .filter(|energy| energy.is_finite())
             .ok_or(Inadmissible { element })
     }
+
+    /// A spring whose force falls while it grows.
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        let direction = *self.directions.get(element)?;
+        let strain = strain(direction, [u[2] - u[0], u[3] - u[1]]);
+        let falls = self.tension(element, strain).slope < 0.0;
+        falls.then(|| format!("stretch {:.2}", 1.0 + strain))
+    }
 }
 
 pub mod calibration;

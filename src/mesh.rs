@@ -3,46 +3,21 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
+mod bisect;
 mod blocks;
 mod cell_shape;
+mod grid;
 mod import;
 mod locate;
 mod refine;
 mod shapes;
 
 pub use blocks::{Block, mesh_of_blocks};
-pub use cell_shape::{CellShape, QuadraturePoint};
-pub use import::import;
+pub use cell_shape::{CellShape, GAUSS_3, GAUSS_5, QuadraturePoint};
+pub use grid::{Grid, Side};
+pub use import::{ImportedField, import, import_field};
 use locate::Buckets;
 pub use shapes::Shape;
-
-/// Named sides of the plate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// X = 0.
-    Left,
-    /// X = length.
-    Right,
-    /// Y = 0.
-    Bottom,
-    /// Y = width.
-    Top,
-}
-
-impl Side {
-    /// All sides.
-    pub const ALL: [Self; 4] = [Self::Left, Self::Right, Self::Bottom, Self::Top];
-
-    /// The name of the group of nodes on it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Left => "left",
-            Self::Right => "right",
-            Self::Bottom => "bottom",
-            Self::Top => "top",
-        }
-    }
-}
 
 /// A named part of the boundary, or a set of nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,15 +27,6 @@ pub struct Group {
     /// Its edges, if it is a part of the boundary: both ends, then the middle where there is one, with the
     /// specimen to the left.
     pub edges: Vec<Vec<usize>>,
-}
-
-/// A rectangle of equal cells; nodes are numbered along Y first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
-    /// Length along X and width along Y in mm.
-    pub size: [f64; 2],
-    /// Cells along X and Y.
-    pub cells: [usize; 2],
 }
 
 /// A flat mesh of triangles and quadrilaterals.
@@ -105,43 +71,6 @@ impl Mesh {
         }
     }
 
-    /// A plate of `size` mm with `cells` equal cells; its groups are the sides `left`, `right`, `bottom`, `top`.
-    ///
-    /// # Panics
-    /// When a size or a number of cells is not positive.
-    pub fn plate(size: [f64; 2], cells: [usize; 2], shape: CellShape) -> Self {
-        assert!(size.iter().all(|size| *size > 0.0) && cells.iter().all(|cells| *cells > 0));
-        assert!(
-            matches!(shape, CellShape::Quad4 | CellShape::Quad9),
-            "a grid of nodes"
-        );
-        let degree = shape.degree();
-        let steps = cells.map(|cells| cells * degree);
-        // The last line of nodes lies on the side to the last digit.
-        let coordinate = |axis: usize, i: usize| match i == steps[axis] {
-            true => size[axis],
-            false => size[axis] * i as f64 / steps[axis] as f64,
-        };
-        let nodes = (0..=steps[0])
-            .flat_map(|i| (0..=steps[1]).map(move |j| [coordinate(0, i), coordinate(1, j)]))
-            .collect();
-        let all = (0..cells[0]).flat_map(|i| (0..cells[1]).map(move |j| (i, j)));
-        let cell = |(i, j): (usize, usize)| {
-            let node = |[x, y]: &[f64; 2]| {
-                let step = |x: f64| ((x + 1.0) * degree as f64 / 2.0) as usize;
-                let (column, row) = (i * degree + step(*x), j * degree + step(*y));
-                column * (steps[1] + 1) + row
-            };
-            (shape, shape.reference_nodes().iter().map(node).collect())
-        };
-        let mut mesh = Self::new(nodes, all.map(cell));
-        mesh.grid = Some(Grid { size, cells });
-        for side in Side::ALL {
-            mesh.name_boundary(side.name(), |node| mesh_side(size, side, node));
-        }
-        mesh
-    }
-
     /// Number of cells.
     pub fn cell_count(&self) -> usize {
         self.shapes.len()
@@ -155,24 +84,6 @@ impl Mesh {
     /// The nodes of a cell, in the order of [`CellShape::reference_nodes`].
     pub fn cell(&self, cell: usize) -> &[usize] {
         &self.connectivity[self.starts[cell]..self.starts[cell + 1]]
-    }
-
-    /// The rectangle that the mesh is, if it is one of equal cells.
-    ///
-    /// # Panics
-    /// When the mesh is no such rectangle.
-    pub fn grid(&self) -> Grid {
-        self.grid.expect("the mesh of a plate")
-    }
-
-    /// `120 × 40 cells`, or the number of cells of a mesh that is no rectangle.
-    pub fn describe(&self) -> String {
-        match self.grid {
-            Some(Grid {
-                cells: [nx, ny], ..
-            }) => format!("{nx} × {ny} cells"),
-            None => format!("{} cells", self.cell_count()),
-        }
     }
 
     /// The groups by name.
@@ -234,33 +145,35 @@ impl Mesh {
         })
     }
 
-    /// Length and width of a cell of a plate in mm.
-    pub fn cell_size(&self) -> [f64; 2] {
-        let Grid { size, cells } = self.grid();
-        [0, 1].map(|axis| size[axis] / cells[axis] as f64)
-    }
-
-    /// Whether a node lies on a side of the plate.
-    pub fn on(&self, side: Side, node: usize) -> bool {
-        mesh_side(self.grid().size, side, self.nodes[node])
-    }
-
-    /// Whether a node lies on a grip of the plate: the left or the right side.
-    pub fn on_grip(&self, node: usize) -> bool {
-        self.on(Side::Left, node) || self.on(Side::Right, node)
-    }
-
     /// The cell that holds a point, and the point's reference coordinates in it; for a point outside of the mesh
     /// the nearest cell.
     pub fn locate(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
-        let Some(Grid { cells, .. }) = self.grid else {
-            let buckets = self.buckets.get_or_init(|| Buckets::new(self));
-            return buckets.locate(self, point);
+        match self.grid {
+            Some(grid) => grid.locate(point),
+            None => {
+                let buckets = self.buckets.get_or_init(|| Buckets::new(self));
+                buckets.locate(self, point)
+            }
+        }
+    }
+
+    /// How far a point lies outside of the mesh, in sizes of its nearest cell; zero inside.
+    pub fn outside(&self, point: [f64; 2]) -> f64 {
+        let (cell, local) = self.locate(point);
+        let shape = self.shape(cell);
+        let size = if shape.is_triangle() { 1.0 } else { 2.0 };
+        shape.outside(local) / size
+    }
+
+    /// Lower left and upper right corner of the box around all nodes, in mm.
+    pub fn bounding_box(&self) -> [[f64; 2]; 2] {
+        let limit = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
+            self.nodes.iter().map(|node| node[axis]).fold(start, pick)
         };
-        let step = self.cell_size();
-        let index = [0, 1].map(|axis| ((point[axis] / step[axis]) as usize).min(cells[axis] - 1));
-        let local = [0, 1].map(|axis| 2.0 * (point[axis] / step[axis] - index[axis] as f64) - 1.0);
-        (index[0] * cells[1] + index[1], local)
+        [
+            [0, 1].map(|axis| limit(axis, f64::min, f64::INFINITY)),
+            [0, 1].map(|axis| limit(axis, f64::max, f64::NEG_INFINITY)),
+        ]
     }
 
     /// The reference coordinates of a point in a cell, by Newton's method; nothing where it finds none.
@@ -290,6 +203,17 @@ impl Mesh {
             }
         }
         None
+    }
+
+    /// The place in mm of a reference point of a cell.
+    pub fn place(&self, cell: usize, local: [f64; 2]) -> [f64; 2] {
+        let values = self.shape(cell).values(local);
+        [0, 1].map(|axis| {
+            let nodes = self.cell(cell).iter().zip(&values);
+            nodes
+                .map(|(node, value)| value * self.nodes[*node][axis])
+                .sum()
+        })
     }
 
     /// Displacement interpolated at a point; `displacement` holds ux, uy of node after node.
@@ -352,13 +276,6 @@ impl Mesh {
         gradient
     }
 
-    /// Width of the deformed plate at mid length in mm.
-    pub fn mid_width(&self, displacement: &[f64]) -> f64 {
-        let [length, width] = self.grid().size;
-        let lateral = |y: f64| self.displacement_at(displacement, [length / 2.0, y])[1];
-        width + lateral(width) - lateral(0.0)
-    }
-
     /// `node 12 (35.0, 7.3) mm along x`, for messages.
     pub fn describe_unknown(&self, unknown: usize) -> String {
         let [x, y] = self.nodes[unknown / 2];
@@ -375,16 +292,6 @@ impl Mesh {
 
 fn determinant(map: &[[f64; 2]; 2]) -> f64 {
     map[0][0] * map[1][1] - map[0][1] * map[1][0]
-}
-
-/// Whether a point lies on a side of a plate.
-fn mesh_side([length, width]: [f64; 2], side: Side, [x, y]: [f64; 2]) -> bool {
-    match side {
-        Side::Left => x == 0.0,
-        Side::Right => x == length,
-        Side::Bottom => y == 0.0,
-        Side::Top => y == width,
-    }
 }
 
 #[cfg(test)]
@@ -409,27 +316,5 @@ mod tests {
                 .all(|(g, e)| (g - e).abs() < 1e-13),
             "{gradient:?}"
         );
-    }
-
-    #[test]
-    fn sides_are_found_whatever_the_size() {
-        for size in [0.015, 0.1, 0.7, 150.0] {
-            let mesh = Mesh::plate([size, size / 3.0], [60, 20], CellShape::Quad9);
-            let on = |side| {
-                (0..mesh.nodes.len())
-                    .filter(|node| mesh.on(side, *node))
-                    .count()
-            };
-            assert_eq!((on(Side::Right), on(Side::Top)), (41, 121), "{size}");
-        }
-    }
-
-    #[test]
-    fn cells_run_counter_clockwise_and_sides_are_found() {
-        let mesh = Mesh::plate([2.0, 1.0], [2, 1], CellShape::Quad4);
-        assert_eq!(mesh.cell(1), [2, 4, 5, 3]);
-        assert_eq!(mesh.locate([2.0, 1.0]), (1, [1.0, 1.0]));
-        assert_eq!((0..6).filter(|node| mesh.on_grip(*node)).count(), 4);
-        assert!(mesh.on(Side::Top, 3) && mesh.on(Side::Bottom, 2));
     }
 }

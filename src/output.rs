@@ -9,14 +9,18 @@ use crate::study::Study;
 
 mod figures;
 mod fit;
+pub mod hand_over;
 mod html;
 mod json;
 mod markdown;
 pub mod picture;
 mod report;
 pub mod vtk;
+pub mod wrinkling;
 
-pub use figures::{Figure, comparison_chart, field_figure, material_chart, mesh_picture};
+pub use figures::{
+    Figure, cell_figure, comparison_chart, field_figure, material_chart, mesh_picture,
+};
 pub use fit::{fit_json, fit_picture};
 pub use report::Block;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Mesh, Side};
-use crate::solve::{Convergence, Loading, NewtonSettings, Potential, State, follow};
+use crate::solve::{Convergence, Loading, NewtonSettings, Potential, State, follow, influence};
 
 /// A rectangular plate between two rigid grips that clamp its short sides.
 ///
@@ -94,6 +94,10 @@ impl Loading for PlateLoading<'_> {
     fn describe(&self, element: usize) -> String {
         (self.model.describe)(element)
     }
+
+    fn describe_unknown(&self, unknown: usize) -> String {
+        self.model.mesh.describe_unknown(unknown)
+    }
 }
 
 impl Problem {
@@ -146,13 +150,37 @@ impl Problem {
         let states = follow(&plate, &self.stretches, settings, progress);
         let states = states.map_err(|end| Error::Solve {
             model: model.name.clone(),
-            step: Problem::describe_step(end.factor),
+            step: format!(
+                "{} (reached {} %)",
+                Problem::describe_step(end.factor),
+                Self::percent(end.reached())
+            ),
             fault: end.fault,
         })?;
         Ok(states
             .into_iter()
             .map(|state| self.solution(model.mesh, state))
             .collect())
+    }
+
+    /// The field in mm/mm that a motion of the right grip along X brings about, by the tangent at a solution.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] when the tangent cannot be factorised.
+    pub fn influence(&self, model: &Model, solution: &Solution) -> Result<Vec<f64>, Error> {
+        let plate = PlateLoading {
+            problem: self,
+            model,
+        };
+        let nodes = 0..model.mesh.nodes.len();
+        let moves = |node| [f64::from(u8::from(model.mesh.on(Side::Right, node))), 0.0];
+        let motion: Vec<f64> = nodes.flat_map(moves).collect();
+        let state = (solution.stretch, &*solution.displacement);
+        influence(&plate, state, &motion).map_err(|fault| Error::Solve {
+            model: model.name.clone(),
+            step: Problem::describe_step(solution.stretch),
+            fault,
+        })
     }
 
     fn solution(&self, mesh: &Mesh, state: State) -> Solution {

@@ -3,6 +3,7 @@
 use crate::compare::{Deviation, StepComparison};
 use crate::corrector::plate::CorrectedState;
 use crate::finite_element::FiniteElements;
+use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mass_spring::MassSpring;
 use crate::problem::Solution;
 use crate::study::Tolerances;
@@ -27,6 +28,8 @@ pub struct Results {
     pub corrected: Vec<CorrectedState>,
     /// The finite elements on three meshes, coarse to fine; the last is the reference.
     pub reference: [ReferenceMesh; 3],
+    /// The estimated error of the finest of them.
+    pub estimates: Vec<ErrorEstimate>,
     /// The reference field at the nodes of the lattice in mm.
     pub reference_on_lattice: Vec<Vec<f64>>,
     /// Deviations from the reference.
@@ -39,6 +42,11 @@ impl Results {
     /// The finest finite-element mesh and its solutions.
     pub fn finest(&self) -> &ReferenceMesh {
         &self.reference[2]
+    }
+
+    /// The estimated error of the finest mesh's force at a stretch in %, without its sign.
+    pub fn estimated_force_percent(&self, step: usize) -> f64 {
+        100.0 * (self.estimates[step].force / self.finest().solutions[step].force).abs()
     }
 
     /// Every requirement on the corrected field with its worst value over all stretches.

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::compare::imported::ModelField;
 use crate::compare::{Reference, StepComparison};
 use crate::corrector::PlateCorrector;
 use crate::corrector::climb::Climb;
@@ -9,6 +10,7 @@ use crate::corrector::plate::KnownConditions;
 use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::MassSpring;
+use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::{ReferenceMesh, Results};
 use crate::study::Study;
@@ -51,6 +53,12 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
             .collect::<Result<Vec<_>, Error>>()
     })?;
     let reference = finite_elements(study, &mut times, progress)?;
+    let estimates = timed(&mut times, "finite elements' error", || {
+        let [.., finest] = &reference;
+        let solutions = finest.solutions.iter();
+        let estimates = solutions.map(|solution| finest.model.estimate(problem, solution));
+        estimates.collect::<Result<Vec<_>, Error>>()
+    })?;
 
     let measure = Reference::new(
         problem,
@@ -73,9 +81,43 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
         uncorrected,
         corrected,
         reference,
+        estimates,
         comparison,
         times,
     })
+}
+
+/// The fields of all models of a plate at a stretch: finite elements on the finest mesh, springs, corrected springs.
+/// The study's stretches before it are steps on the way.
+///
+/// # Errors
+/// [`Error::Solve`] with the model and the stretch at which no solution was found.
+pub fn fields(
+    mut study: Study,
+    stretch: f64,
+    progress: Progress,
+) -> Result<[ModelField; 3], Error> {
+    let stretches = &mut study.problem.stretches;
+    stretches.retain(|before| *before < stretch);
+    stretches.push(stretch);
+    let results = run(&study, progress)?;
+    let finest = results.finest();
+    let field = |model, mesh: &Mesh, solution: Option<&Solution>| ModelField {
+        model,
+        mesh: mesh.clone(),
+        displacement: solution.expect("the last stretch").displacement.clone(),
+    };
+    let lattice = &results.springs.mesh;
+    let corrected = results.corrected.last().map(|state| &state.solution);
+    Ok([
+        field(
+            "finite elements",
+            &finest.model.mesh,
+            finest.solutions.last(),
+        ),
+        field("mass-spring", lattice, results.uncorrected.last()),
+        field("corrected", lattice, corrected),
+    ])
 }
 
 /// Is told each model and stretch that is done.
@@ -90,7 +132,7 @@ fn finite_elements(
     progress: Progress,
 ) -> Result<[ReferenceMesh; 3], Error> {
     let mut solve = |name, cells| -> Result<ReferenceMesh, Error> {
-        let model = FiniteElements::new(&study.problem, cells, study.element);
+        let model = FiniteElements::graded(&study.problem, cells, study.element, study.grading);
         let told = |stretch: f64| progress(name, stretch);
         let solve = || model.solve(&study.problem, study.finite_element, &told);
         let solutions = timed(times, name, solve)?;

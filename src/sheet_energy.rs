@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::stability::is_stable;
 use crate::mesh::{Mesh, QuadraturePoint};
 use crate::solve::{Inadmissible, Local, Potential};
 
@@ -134,6 +135,15 @@ impl Potential for SheetEnergy {
         } else {
             Err(Inadmissible { element })
         }
+    }
+
+    /// The first sampling point at which the law is not stable after Drucker.
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        self.cell_points(element).iter().find_map(|point| {
+            let kinematics = Self::kinematics(point, u).ok()?;
+            let unstable = !is_stable(&*self.law, &kinematics);
+            unstable.then(|| format!("I₁ = {:.2}", 3.0 + kinematics.invariants.i1_minus_3))
+        })
     }
 }
 

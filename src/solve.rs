@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows any mechanics: an unknown is a number in a vector, an element is a term of a sum.
 
+mod ending;
 pub mod newton;
 pub mod path;
 pub mod potential;
@@ -9,7 +10,7 @@ pub mod rows;
 pub mod sparse;
 
 pub use newton::{Convergence, Newton, NewtonSettings};
-pub use path::{Loading, PathEnd, State, follow};
+pub use path::{Loading, PathEnd, State, compliance, follow, influence};
 pub use potential::{Assembly, Inadmissible, Local, Potential};
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu, SymmetricPattern};

@@ -50,6 +50,8 @@ pub struct Study {
     pub element: Element,
     /// Cells of the reference's finest mesh.
     pub reference_cells: [usize; 2],
+    /// How much smaller the reference's cells become towards the corners; see [`crate::mesh::Grid`].
+    pub grading: f64,
     /// How the reference is solved.
     pub finite_element: NewtonSettings,
     /// What the corrected field has to reach.
@@ -185,6 +187,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let section = root.section("finite_element");
     let element = section.choice("element", &Element::NAMES);
     let reference_cells = read_reference_cells(&section);
+    let grading = section.number("grading", Bound::Within(1.0, 4.0));
     let finite_element = read_newton(&section);
     section.unknown_keys();
 
@@ -207,6 +210,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
         corrector,
         element: element?,
         reference_cells,
+        grading,
         finite_element,
         tolerances,
         output,
@@ -372,6 +376,7 @@ mod tests {
         assert!(faults("[plate]\ncells = [2, 2]\n")[0].contains("take [6, 2]"));
         assert!(faults("[plate]\ncells = [1500, 500]\n")[0].contains("750000 cells are too many"));
         assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
+        assert!(faults("[finite_element]\ngrading = 0.5\n")[0].contains("must be"));
         assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));
         assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("ascend"));
         assert!(faults("[corrector]\nscheme = \"gaus\"\n")[0].contains("did you mean \"gauss\""));

@@ -22,7 +22,7 @@ mod plate;
 mod plate_ablation;
 pub mod report;
 mod smoothing;
-mod specimen;
+pub mod specimen;
 mod vibrating_spring;
 
 pub use outcome::{Check, Claim, Computed, Outcome, Wanted};
@@ -86,7 +86,7 @@ pub const CASES: &[Case] = &[
         prepare: smoothing::prepare,
     },
     Case {
-        kind: "specimen",
+        kind: specimen::KIND,
         study: include_str!("../examples/strip_with_hole.toml"),
         file: "examples/strip_with_hole.toml",
         slow: true,
@@ -154,6 +154,13 @@ pub const CASES: &[Case] = &[
         file: "validation/cases/cook.toml",
         slow: false,
         prepare: finite_elements::cook::prepare,
+    },
+    Case {
+        kind: "own-error",
+        study: include_str!("../validation/cases/own_error.toml"),
+        file: "validation/cases/own_error.toml",
+        slow: true,
+        prepare: finite_elements::own_error::prepare,
     },
 ];
 
@@ -242,26 +249,37 @@ impl Case {
     /// # Errors
     /// [`Error::Input`] with every fault.
     pub fn read(&self, file: &Path, text: &str) -> Result<Ready, Error> {
-        let folder = file.parent().unwrap_or(Path::new("."));
-        let file = file.display().to_string();
-        let faults = Faults::default();
-        let (title, prepared) = {
-            let defaults = Document::parse(self.file, self.study, &faults);
-            let document = Document::parse(&file, text, &faults);
-            let root = document.root(Some(&defaults), &faults);
-            root.text("kind");
-            let title = root.heading("title");
-            let prepared = (self.prepare)(&root, folder);
-            root.unknown_keys();
-            (title, prepared)
-        };
-        let warnings = faults.finish()?;
+        let (title, prepared, warnings) = self.read_with(file, text, self.prepare)?;
         Ok(Ready {
             title,
             kind: self.kind,
             prepared,
             warnings,
         })
+    }
+
+    /// What `read` makes of a study of this case, after its title and before the warnings.
+    fn read_with<T>(
+        &self,
+        file: &Path,
+        text: &str,
+        read: impl FnOnce(&Section, &Path) -> T,
+    ) -> Result<(String, T, Vec<Diagnostic>), Error> {
+        let folder = file.parent().unwrap_or(Path::new("."));
+        let file = file.display().to_string();
+        let faults = Faults::default();
+        let (title, made) = {
+            let defaults = Document::parse(self.file, self.study, &faults);
+            let document = Document::parse(&file, text, &faults);
+            let root = document.root(Some(&defaults), &faults);
+            root.text("kind");
+            let title = root.heading("title");
+            let made = read(&root, folder);
+            root.unknown_keys();
+            (title, made)
+        };
+        let warnings = faults.finish()?;
+        Ok((title, made, warnings))
     }
 }
 

@@ -86,7 +86,7 @@ fn the_same_study_gives_the_same_bytes() {
             compared += 1;
         }
     }
-    assert_eq!(compared, 6 + 8, "pictures and VTK files");
+    assert_eq!(compared, 7 + 8, "pictures and VTK files");
     let without_times = |output: &str| {
         let report = fs::read_to_string(folder.path().join(output).join("report.md")).unwrap();
         report.split("## Times").next().unwrap().to_owned()
@@ -106,6 +106,7 @@ fn pictures_and_vtk_files_are_what_they_claim() {
         "errors",
         "force",
         "residuals",
+        "estimated_error",
     ] {
         let bytes = fs::read(output.join(format!("{name}.png"))).unwrap();
         assert!(
@@ -114,7 +115,7 @@ fn pictures_and_vtk_files_are_what_they_claim() {
         );
     }
     let page = fs::read_to_string(output.join("report.html")).unwrap();
-    assert_eq!(page.matches("data:image/png;base64,").count(), 6);
+    assert_eq!(page.matches("data:image/png;base64,").count(), 7);
     for model in ["mass_spring", "springs", "corrected", "finite_element"] {
         let collection = fs::read_to_string(output.join(format!("vtk/{model}.pvd"))).unwrap();
         assert!(collection.contains(&format!(

@@ -10,6 +10,7 @@
 //! axis of symmetry that passes through the point about which A is measured.
 
 use super::Load;
+use super::supports::Supported;
 use crate::mesh::{Group, Mesh};
 use crate::solve::{Inadmissible, Local, Potential};
 
@@ -61,36 +62,27 @@ impl Loaded {
         thickness: f64,
         is_held: &dyn Fn(usize) -> [bool; 2],
     ) -> Result<(), String> {
-        let mut forces = vec![0.0; self.forces.len()];
-        match load {
-            Load::Force(force) => {
-                let share = 1.0 / group.nodes.len() as f64;
-                for node in &group.nodes {
-                    forces[2 * node] += share * force[0];
-                    forces[2 * node + 1] += share * force[1];
-                }
+        let forces = dead_forces(mesh, group, load, thickness)?;
+        if let Load::Pressure(pressure) = load {
+            need_edges(group, "a pressure")?;
+            let centre = centre(mesh, group, is_held)?;
+            for edge in &group.edges {
+                let unknowns = edge.iter().flat_map(|node| [2 * node, 2 * node + 1]);
+                self.edges.push((unknowns.collect(), pressure * thickness));
             }
-            Load::Traction(traction) => {
-                need_edges(group, "a traction")?;
-                for edge in &group.edges {
-                    for (node, length) in edge_lengths(mesh, edge) {
-                        forces[2 * node] += traction[0] * thickness * length;
-                        forces[2 * node + 1] += traction[1] * thickness * length;
-                    }
-                }
-            }
-            Load::Pressure(pressure) => {
-                need_edges(group, "a pressure")?;
-                let centre = centre(mesh, group, is_held)?;
-                for edge in &group.edges {
-                    let unknowns = edge.iter().flat_map(|node| [2 * node, 2 * node + 1]);
-                    self.edges.push((unknowns.collect(), pressure * thickness));
-                }
-                self.reference(mesh, group, centre, *pressure * thickness);
-            }
+            self.reference(mesh, group, centre, *pressure * thickness);
         }
         self.add_forces(&forces);
         Ok(())
+    }
+
+    /// Adds the forces on rigid grips.
+    pub fn pull(&mut self, supported: &Supported) {
+        let mut forces = vec![0.0; self.forces.len()];
+        for (unknown, force) in &supported.forces {
+            forces[*unknown] += force;
+        }
+        self.add_forces(&forces);
     }
 
     /// Edges know displacements only: the area's part that is linear in them acts as a dead force.
@@ -117,6 +109,39 @@ impl Loaded {
             factor,
         }
     }
+}
+
+/// The forces in N of a dead load on the unknowns of a mesh; a pressure has none.
+///
+/// # Errors
+/// Says why the group cannot carry the load.
+pub fn dead_forces(
+    mesh: &Mesh,
+    group: &Group,
+    load: &Load,
+    thickness: f64,
+) -> Result<Vec<f64>, String> {
+    let mut forces = vec![0.0; 2 * mesh.nodes.len()];
+    match load {
+        Load::Force(force) => {
+            let share = 1.0 / group.nodes.len() as f64;
+            for node in &group.nodes {
+                forces[2 * node] += share * force[0];
+                forces[2 * node + 1] += share * force[1];
+            }
+        }
+        Load::Traction(traction) => {
+            need_edges(group, "a traction")?;
+            for edge in &group.edges {
+                for (node, length) in edge_lengths(mesh, edge) {
+                    forces[2 * node] += traction[0] * thickness * length;
+                    forces[2 * node + 1] += traction[1] * thickness * length;
+                }
+            }
+        }
+        Load::Pressure(_) => {}
+    }
+    Ok(forces)
 }
 
 /// A point that lies on the axes along which the ends of loaded edges slide.
@@ -300,5 +325,10 @@ impl Potential for LoadedPotential<'_> {
             }
         }
         Ok(energy)
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        let own = element < self.energy.elements();
+        own.then(|| self.energy.instability(element, u)).flatten()
     }
 }

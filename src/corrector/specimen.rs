@@ -62,7 +62,9 @@ pub fn correct(
     let names = Names { mesh, loading };
     let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(&names);
     let correction = corrector.correct(data, start)?;
-    let displacement = correction.field().to_vec();
+    let mut displacement = correction.field().to_vec();
+    // Tied unknowns, on which no condition depends, follow.
+    loading.impose(factor, &mut displacement);
     let mut residual = vec![0.0; size];
     let energy =
         Assembly::residual(&*potential, &displacement, &mut residual).map_err(|fault| {

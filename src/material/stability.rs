@@ -35,8 +35,8 @@ fn stable_until(law: &dyn HyperelasticLaw, mode: Mode, end: f64) -> f64 {
     // Logarithmic strain along the first axis.
     let stable = |strain: f64| {
         mode.gradient(law, strain.exp_m1())
-            .and_then(|gradient| tangent(law, &gradient))
-            .is_some_and(|tangent| tangent.cholesky().is_some())
+            .and_then(|gradient| Kinematics::new(&gradient).ok())
+            .is_some_and(|kinematics| is_stable(law, &kinematics))
     };
     let strain = |step: i32| end * f64::from(step) / f64::from(STEPS);
     let Some(first) = (1..=STEPS).find(|step| !stable(strain(*step))) else {
@@ -54,10 +54,14 @@ fn stable_until(law: &dyn HyperelasticLaw, mode: Mode, end: f64) -> f64 {
     inside
 }
 
-/// D at a displacement gradient by the components ε₁₁, ε₂₂ and √2 ε₁₂; nothing for inadmissible states.
-fn tangent(law: &dyn HyperelasticLaw, gradient: &Gradient) -> Option<Matrix3<f64>> {
-    let kinematics = Kinematics::new(gradient).ok()?;
-    let response = law.response(&kinematics);
+/// Whether D is positive definite in a state.
+pub fn is_stable(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> bool {
+    tangent(law, kinematics).is_some_and(|tangent| tangent.cholesky().is_some())
+}
+
+/// D by the components ε₁₁, ε₂₂ and √2 ε₁₂; nothing where it is not finite.
+fn tangent(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> Option<Matrix3<f64>> {
+    let response = law.response(kinematics);
     let matrix = |v: &Gradient| Matrix2::new(v[0], v[1], v[2], v[3]);
     let f = matrix(&kinematics.deformation_gradient);
     let p = matrix(&response.first_piola_kirchhoff_stress);
@@ -105,7 +109,8 @@ mod tests {
         };
         let (at, step) = ([0.3, -0.1], 1e-4);
         let [first, second] = at.map(f64::exp_m1);
-        let found = tangent(&law, &Vector4::new(first, 0.0, 0.0, second)).unwrap();
+        let state = Kinematics::new(&Vector4::new(first, 0.0, 0.0, second)).unwrap();
+        let found = tangent(&law, &state).unwrap();
         for (i, j) in [(0, 0), (0, 1), (1, 1)] {
             let value = |a: f64, b: f64| {
                 let mut strains = at;

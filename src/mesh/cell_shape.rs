@@ -38,6 +38,22 @@ const TRIANGLE: [[f64; 2]; 6] = [
     [0.0, 0.5],
 ];
 
+/// Gauss's rule with three points on −1…1: point and weight.
+pub const GAUSS_3: [(f64, f64); 3] = [
+    (-0.774_596_669_241_483_4, 5.0 / 9.0),
+    (0.0, 8.0 / 9.0),
+    (0.774_596_669_241_483_4, 5.0 / 9.0),
+];
+
+/// Gauss's rule with five points on −1…1: point and weight.
+pub const GAUSS_5: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+];
+
 impl CellShape {
     /// All kinds by the names of the finite elements that they are.
     pub const NAMES: [(&'static str, Self); 5] = [
@@ -122,22 +138,30 @@ impl CellShape {
     /// Points and weights that integrate the stiffness of an undistorted cell exactly.
     pub fn quadrature(self) -> Vec<QuadraturePoint> {
         let linear = [(-1.0 / 3.0_f64.sqrt(), 1.0), (1.0 / 3.0_f64.sqrt(), 1.0)];
-        let x = 0.6_f64.sqrt();
-        let quadratic = [(-x, 5.0 / 9.0), (0.0, 8.0 / 9.0), (x, 5.0 / 9.0)];
-        let grid = |rule: &[(f64, f64)]| {
-            let point = |(x, y): (&(f64, f64), &(f64, f64))| ([x.0, y.0], x.1 * y.1);
-            let pairs = rule.iter().flat_map(|x| rule.iter().map(move |y| (x, y)));
-            pairs.map(point).collect()
-        };
         match self {
             Self::Triangle3 => vec![([1.0 / 3.0; 2], 0.5)],
             Self::Triangle6 => {
                 let (a, b) = (1.0 / 6.0, 2.0 / 3.0);
                 [[a, a], [b, a], [a, b]].map(|point| (point, a)).to_vec()
             }
-            Self::Quad4 => grid(&linear),
-            Self::Quad8 | Self::Quad9 => grid(&quadratic),
+            Self::Quad4 => self.product_quadrature(&linear),
+            Self::Quad8 | Self::Quad9 => self.product_quadrature(&GAUSS_3),
         }
+    }
+
+    /// The product of a rule on −1…1 with itself, for what the stiffness's own rule does not resolve, such as errors;
+    /// triangles are squares with one side shrunk to a point.
+    pub fn product_quadrature(self, line: &[(f64, f64)]) -> Vec<QuadraturePoint> {
+        let pairs = line.iter().flat_map(|x| line.iter().map(move |y| (x, y)));
+        let point = |((x, wx), (y, wy)): (&(f64, f64), &(f64, f64))| {
+            if self.is_triangle() {
+                let (s, t) = (0.5 * (1.0 + x), 0.5 * (1.0 + y));
+                ([s, t * (1.0 - s)], 0.25 * wx * wy * (1.0 - s))
+            } else {
+                ([*x, *y], wx * wy)
+            }
+        };
+        pairs.map(point).collect()
     }
 
     /// Values Nₐ of the shape functions at a reference point.
@@ -277,9 +301,16 @@ mod tests {
     #[test]
     fn quadrature_has_the_area_of_the_reference_cell() {
         for (_, shape) in CellShape::NAMES {
-            let area: f64 = shape.quadrature().iter().map(|(_, weight)| weight).sum();
             let expected = if shape.is_triangle() { 0.5 } else { 4.0 };
-            assert!((area - expected).abs() < 1e-14, "{shape:?}");
+            let rules = [
+                shape.quadrature(),
+                shape.product_quadrature(&GAUSS_3),
+                shape.product_quadrature(&GAUSS_5),
+            ];
+            for rule in rules {
+                let area: f64 = rule.iter().map(|(_, weight)| weight).sum();
+                assert!((area - expected).abs() < 1e-14, "{shape:?}");
+            }
         }
     }
 }

@@ -8,8 +8,12 @@ use std::path::Path;
 
 use super::{CellShape, Mesh};
 
+mod field;
+mod frd;
 mod gmsh;
 mod vtk;
+
+pub use field::{ImportedField, import_field};
 
 /// What a file holds, before it is a flat mesh: places in the file's unit, and elements by their kinds.
 #[derive(Default)]
@@ -32,30 +36,33 @@ pub fn import(path: &Path, unit: f64) -> Result<Mesh, String> {
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
     let raw = match ending.as_deref() {
-        Some("msh") => {
-            let bytes = std::fs::read(path).map_err(|cause| cause.to_string())?;
-            let text = String::from_utf8(bytes).map_err(|_| BINARY.to_owned())?;
-            gmsh::read(&text)?
-        }
+        Some("msh") => gmsh::read(&read_text(path)?)?,
         Some("vtu" | "vtk") => vtk::read(path)?,
         _ => return Err("is no .msh, .vtu or .vtk file".into()),
     };
     raw.mesh(unit)
 }
 
-const BINARY: &str = "is a binary Gmsh file; save it as ASCII (Mesh.Binary = 0) or as .vtu";
+/// The text of a file.
+fn read_text(path: &Path) -> Result<String, String> {
+    let bytes = std::fs::read(path).map_err(|cause| format!("cannot be read: {cause}"))?;
+    String::from_utf8(bytes).map_err(|_| BINARY.to_owned())
+}
+
+const BINARY: &str = "is a binary file; save it as ASCII (Mesh.Binary = 0 in Gmsh) or as .vtu";
 
 impl Raw {
+    /// The nodes of the cells, in the order that they have in the mesh.
+    fn used(&self) -> BTreeSet<u64> {
+        let nodes = self.cells.iter().flat_map(|(_, nodes)| nodes);
+        nodes.copied().collect()
+    }
+
     fn mesh(self, unit: f64) -> Result<Mesh, String> {
         if self.cells.is_empty() {
             return Err("holds no triangles or quadrilaterals".into());
         }
-        let used: BTreeSet<u64> = self
-            .cells
-            .iter()
-            .flat_map(|(_, nodes)| nodes)
-            .copied()
-            .collect();
+        let used = self.used();
         let (mut nodes, mut names) = (Vec::new(), HashMap::new());
         let mut height: Option<f64> = None;
         for name in used {
@@ -140,11 +147,7 @@ fn counter_clockwise(shape: CellShape, nodes: Vec<usize>, places: &[[f64; 2]]) -
 
 /// Names the boundary and its parts on the four sides of the mesh's box.
 fn name_sides(mesh: &mut Mesh) {
-    let limit = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
-        mesh.nodes.iter().map(|node| node[axis]).fold(start, pick)
-    };
-    let low = [0, 1].map(|axis| limit(axis, f64::min, f64::INFINITY));
-    let high = [0, 1].map(|axis| limit(axis, f64::max, f64::NEG_INFINITY));
+    let [low, high] = mesh.bounding_box();
     let near = 1e-9 * (high[0] - low[0]).max(high[1] - low[1]);
     for (name, axis, value) in [
         ("left", 0, low[0]),

@@ -14,13 +14,7 @@ pub struct Buckets {
 impl Buckets {
     /// Sorts the cells of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        let corner = |pick: fn(f64, f64) -> f64, start: f64| {
-            [0, 1].map(|axis| mesh.nodes.iter().map(|node| node[axis]).fold(start, pick))
-        };
-        let (low, high) = (
-            corner(f64::min, f64::INFINITY),
-            corner(f64::max, f64::NEG_INFINITY),
-        );
+        let [low, high] = mesh.bounding_box();
         let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(f64::MIN_POSITIVE));
         let step = (size[0] * size[1] / mesh.cell_count().max(1) as f64).sqrt();
         let step = step.max(size[0].max(size[1]) / 2000.0);

@@ -65,7 +65,8 @@ impl Mesh {
                 }
             }
         }
-        middles.finish(self, cells, |[from, to], middle| {
+        middles.finish(self, cells, |middles, [from, to]| {
+            let middle = middles.of(from, to);
             vec![vec![from, middle], vec![middle, to]]
         })
     }
@@ -87,27 +88,28 @@ impl Mesh {
             (CellShape::Quad9, nodes)
         });
         let cells: Vec<_> = cells.collect();
-        middles.finish(self, cells, |[from, to], middle| {
-            vec![vec![from, to, middle]]
+        middles.finish(self, cells, |middles, [from, to]| {
+            vec![vec![from, to, middles.of(from, to)]]
         })
     }
 }
 
 /// Nodes in the middle of edges, each made once.
-struct Middles {
+pub(super) struct Middles {
     nodes: Vec<[f64; 2]>,
     made: HashMap<[usize; 2], usize>,
 }
 
 impl Middles {
-    fn new(nodes: Vec<[f64; 2]>) -> Self {
+    pub(super) fn new(nodes: Vec<[f64; 2]>) -> Self {
         Self {
             nodes,
             made: HashMap::new(),
         }
     }
 
-    fn of(&mut self, a: usize, b: usize) -> usize {
+    /// The node in the middle of an edge.
+    pub(super) fn of(&mut self, a: usize, b: usize) -> usize {
         let nodes = &mut self.nodes;
         *self.made.entry([a.min(b), a.max(b)]).or_insert_with(|| {
             nodes.push([0, 1].map(|axis| 0.5 * (nodes[a][axis] + nodes[b][axis])));
@@ -115,22 +117,26 @@ impl Middles {
         })
     }
 
-    /// The mesh of some cells with the groups of the one that they were made from; `edges` makes an edge with its
-    /// middle into those of the new mesh.
-    fn finish(
+    /// The node in the middle of an edge, if it was made.
+    pub(super) fn made(&self, a: usize, b: usize) -> Option<usize> {
+        self.made.get(&[a.min(b), a.max(b)]).copied()
+    }
+
+    /// The mesh of some cells with the groups of the one that they were made from; `edges` makes an edge into those
+    /// of the new mesh.
+    pub(super) fn finish(
         mut self,
         from: &Mesh,
         cells: Vec<(CellShape, Vec<usize>)>,
-        edges: impl Fn([usize; 2], usize) -> Vec<Vec<usize>>,
+        edges: impl Fn(&mut Self, [usize; 2]) -> Vec<Vec<usize>>,
     ) -> Mesh {
         let mut groups = Vec::new();
         for (name, group) in from.groups() {
             let (mut nodes, mut own) = (group.nodes.clone(), Vec::new());
             for edge in &group.edges {
-                let middle = self.of(edge[0], edge[1]);
-                nodes.push(middle);
-                own.extend(edges([edge[0], edge[1]], middle));
+                own.extend(edges(&mut self, [edge[0], edge[1]]));
             }
+            nodes.extend(own.iter().flatten());
             groups.push((name, nodes, own));
         }
         let mut mesh = Mesh::new(self.nodes, cells);

@@ -50,37 +50,10 @@ impl Shape {
     /// A mesh with so many cells across the specimen, and along it as many as make cells about square.
     pub fn mesh(self, across: usize, kind: CellShape) -> Mesh {
         match self {
-            Self::Strip { size } => strip(size, across, kind, |_| size[1] / 2.0),
+            Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
+                strip(size, across, kind, |x| self.half_width(x))
+            }
             Self::StripWithHole { size, radius } => with_hole(size, radius, across, kind),
-            Self::NotchedStrip {
-                size,
-                depth,
-                half_length,
-            } => {
-                let middle = size[0] / 2.0;
-                strip(size, across, kind, move |x| {
-                    size[1] / 2.0 - notch(x - middle, depth, half_length)
-                })
-            }
-            Self::DogBone {
-                size,
-                narrow,
-                shoulder,
-            } => {
-                let rise = (size[1] - narrow[1]) / 2.0;
-                let from = narrow[0] / 2.0;
-                strip(size, across, kind, move |x| {
-                    let over = (x - size[0] / 2.0).abs() - from;
-                    // An arc that leaves the narrow part smoothly.
-                    let radius = (shoulder * shoulder + rise * rise) / (2.0 * rise);
-                    let risen = match over {
-                        over if over <= 0.0 => 0.0,
-                        over if over >= shoulder => rise,
-                        over => radius - (radius * radius - over * over).sqrt(),
-                    };
-                    narrow[1] / 2.0 + risen
-                })
-            }
             Self::RingSector { radii, angle } => {
                 let along = angle * (radii[0] + radii[1]) / 2.0;
                 let cells = [across, count(along / (radii[1] - radii[0]) * across as f64)];
@@ -95,6 +68,70 @@ impl Shape {
                 };
                 mesh_of_blocks(&[block], kind)
             }
+        }
+    }
+
+    /// Moves the nodes of the mesh's named sides onto the outline, where refinement has put them on chords.
+    pub fn fit(self, mesh: &mut Mesh) {
+        let groups = mesh.groups().iter();
+        let moves: Vec<_> = groups
+            .flat_map(|(name, group)| group.nodes.iter().map(move |node| (name.as_str(), *node)))
+            .filter_map(|(name, node)| Some((node, self.on_outline(name, mesh.nodes[node])?)))
+            .collect();
+        for (node, place) in moves {
+            mesh.nodes[node] = place;
+        }
+    }
+
+    /// The place on a curved side that a place beside it belongs to; nothing for a straight side.
+    fn on_outline(self, side: &str, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+        let on_circle = |[a, b]: [f64; 2], radius: f64| {
+            let (dx, dy) = (x - a, y - b);
+            let share = radius / dx.hypot(dy);
+            [a + share * dx, b + share * dy]
+        };
+        match (self, side) {
+            (Self::StripWithHole { size, radius }, "hole") => {
+                Some(on_circle([size[0] / 2.0, 0.0], radius))
+            }
+            (Self::RingSector { radii, .. }, "inside") => Some(on_circle([0.0; 2], radii[0])),
+            (Self::RingSector { radii, .. }, "outside") => Some(on_circle([0.0; 2], radii[1])),
+            (Self::NotchedStrip { .. } | Self::DogBone { .. }, "top") => {
+                Some([x, self.half_width(x)])
+            }
+            (Self::NotchedStrip { .. } | Self::DogBone { .. }, "bottom") => {
+                Some([x, -self.half_width(x)])
+            }
+            _ => None,
+        }
+    }
+
+    /// Half the width of a strip, with notches or of a dumb-bell, at a place along it.
+    fn half_width(self, x: f64) -> f64 {
+        match self {
+            Self::NotchedStrip {
+                size,
+                depth,
+                half_length,
+            } => size[1] / 2.0 - notch(x - size[0] / 2.0, depth, half_length),
+            Self::DogBone {
+                size,
+                narrow,
+                shoulder,
+            } => {
+                let rise = (size[1] - narrow[1]) / 2.0;
+                let over = (x - size[0] / 2.0).abs() - narrow[0] / 2.0;
+                // An arc that leaves the narrow part smoothly.
+                let radius = (shoulder * shoulder + rise * rise) / (2.0 * rise);
+                let risen = match over {
+                    over if over <= 0.0 => 0.0,
+                    over if over >= shoulder => rise,
+                    over => radius - (radius * radius - over * over).sqrt(),
+                };
+                narrow[1] / 2.0 + risen
+            }
+            Self::Strip { size } | Self::StripWithHole { size, .. } => size[1] / 2.0,
+            Self::RingSector { radii, .. } => (radii[1] - radii[0]) / 2.0,
         }
     }
 
@@ -365,6 +402,22 @@ mod tests {
             assert!(
                 exact.is_nan() || (found / exact - 1.0).abs() < 1e-5,
                 "{shape:?}: {found} {exact}"
+            );
+        }
+    }
+
+    #[test]
+    fn refined_meshes_come_back_to_the_outline() {
+        for shape in SHAPES {
+            let mut mesh = shape.mesh(6, CellShape::Triangle3).refined();
+            shape.fit(&mut mesh);
+            let mut mesh = mesh.quadratic();
+            shape.fit(&mut mesh);
+            let direct = area(&shape.mesh(12, CellShape::Triangle6));
+            let fitted = area(&mesh);
+            assert!(
+                (fitted / direct - 1.0).abs() < 2e-4,
+                "{shape:?}: {fitted} {direct}"
             );
         }
     }

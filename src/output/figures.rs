@@ -67,6 +67,11 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
             "Residual over iteration, at the largest stretch.",
             residuals(results).png(),
         ),
+        figure(
+            "estimated_error.png",
+            "Estimated error of every finite element at the largest stretch, in % of the solution's energy norm.",
+            estimated_error(study, results),
+        ),
     ]);
     all
 }
@@ -275,18 +280,62 @@ pub fn field_figure(
     figure.png()
 }
 
+fn estimated_error(study: &Study, results: &Results) -> Vec<u8> {
+    let last = study.problem.stretches.len() - 1;
+    let at = Problem::describe_step(study.problem.stretches[last]);
+    let (mesh, error) = (
+        &results.finest().model.mesh,
+        &results.estimates[last].energy,
+    );
+    cell_figure(
+        (&format!("Estimated error at {at}"), "error of a cell [%]"),
+        Scale::Logarithmic,
+        mesh,
+        &results.finest().solutions[last].displacement,
+        &error.cell_percents(),
+    )
+}
+
+/// One value a cell on a deformed mesh.
+pub fn cell_figure(
+    (title, quantity): (&str, &str),
+    scale: Scale,
+    mesh: &Mesh,
+    displacement: &[f64],
+    values: &[f64],
+) -> Vec<u8> {
+    let figure = FieldFigure {
+        title: title.to_owned(),
+        quantity: quantity.to_owned(),
+        scale,
+        colours: Colours::Sequential,
+        panels: vec![Panel {
+            label: mesh.describe(),
+            cells: deformed(mesh, displacement, &|cell| values[cell]),
+        }],
+    };
+    figure.png()
+}
+
 /// Deformed cells with the mean of their corners' values.
 fn cells(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec<FieldCell> {
+    let mean = |cell: usize| {
+        let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+        let sum: f64 = corners.iter().map(|node| value(*node)).sum();
+        sum / corners.len() as f64
+    };
+    deformed(mesh, displacement, &mean)
+}
+
+/// Deformed cells with their values.
+fn deformed(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec<FieldCell> {
     let place =
         |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + displacement[2 * node + axis]);
     let cell = |cell: usize| {
         // A triangle is a quadrilateral whose last two corners are one.
         let last = mesh.shape(cell).corners() - 1;
         let corners: [usize; 4] = std::array::from_fn(|corner| mesh.cell(cell)[corner.min(last)]);
-        (
-            corners.map(place),
-            corners.map(value).iter().sum::<f64>() / 4.0,
-        )
+        (corners.map(place), value(cell))
     };
     (0..mesh.cell_count()).map(cell).collect()
 }

@@ -25,7 +25,7 @@ pub fn json(study: &Study, results: &Results) -> Value {
             "text": study.card.text,
             "fit_error_percent": study.card.fit_error_percent(),
         },
-        "reference": { "element": study.element.name(), "cells": study.reference_meshes() },
+        "reference": { "element": study.element.name(), "cells": study.reference_meshes(), "grading": study.grading },
         "steps": steps.map(|(index, step)| self::step(results, index, step)).collect::<Vec<_>>(),
         "requirements": requirements.iter().map(|requirement| json!({
             "name": requirement.name,
@@ -62,6 +62,8 @@ fn step(results: &Results, index: usize, step: &StepComparison) -> Value {
             "width_order": own.width.order,
             "displacement_discretisation_percent": own.displacement_percent,
             "displacement_order": own.displacement_order,
+            "estimated_energy_norm_percent": results.estimates[index].energy.percent(),
+            "estimated_force_percent": results.estimated_force_percent(index),
             "residuals": finest.convergence.residuals,
         },
     })

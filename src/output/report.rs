@@ -13,6 +13,7 @@ use crate::results::{Requirement, Results};
 use crate::study::Study;
 
 use super::figures::Figure;
+use super::wrinkling;
 
 /// A part of a report.
 #[derive(Clone, Debug)]
@@ -41,6 +42,7 @@ impl Block {
 pub fn report(study: &Study, results: &Results, figures: &[Figure]) -> Vec<Block> {
     let mut blocks = vec![Block::Heading(1, study.title.clone())];
     blocks.extend(verdict(study, results));
+    blocks.extend(compression(study, results).map(Block::Paragraph));
     blocks.extend(deviations(study, results));
     if !figures.is_empty() {
         blocks.push(heading("Pictures"));
@@ -110,6 +112,16 @@ fn verdict(study: &Study, results: &Results) -> Vec<Block> {
             requirements.iter().map(row),
         ),
     ]
+}
+
+/// The warning about compression in the finite elements.
+fn compression(study: &Study, results: &Results) -> Option<String> {
+    let finest = results.finest();
+    let states = finest.solutions.iter().map(|state| {
+        let load = Problem::describe_step(state.stretch);
+        (load, &*state.displacement)
+    });
+    wrinkling::warning(&*study.problem.law, &finest.model.mesh, states)
 }
 
 fn deviations(study: &Study, results: &Results) -> Vec<Block> {
@@ -257,7 +269,7 @@ fn reference(study: &Study, results: &Results) -> Vec<Block> {
             format!("{:.5}", value.error_percent),
         ]
     };
-    let row = |step: &StepComparison| {
+    let row = |(index, step): (usize, &StepComparison)| {
         let own = &step.reference;
         let mut cells = vec![Problem::percent(step.stretch)];
         cells.extend(quantity(&own.force));
@@ -265,6 +277,8 @@ fn reference(study: &Study, results: &Results) -> Vec<Block> {
         cells.extend([
             order(own.displacement_order),
             format!("{:.5}", own.displacement_percent),
+            format!("{:.4}", results.estimates[index].energy.percent()),
+            format!("{:.5}", results.estimated_force_percent(index)),
         ]);
         cells
     };
@@ -279,18 +293,26 @@ fn reference(study: &Study, results: &Results) -> Vec<Block> {
         "error of the finest mesh [%]",
         "displacement: order",
         "error of the finest mesh [%]",
+        "by recovery: energy norm [%]",
+        "by recovery: force [%]",
     ];
     vec![
         heading("The finite elements' own error"),
         Block::Paragraph(format!(
-            "{} elements on {}, {} and {} cells; Richardson's extrapolation with the observed order. The \
-             clamped corners are singular, which lowers the order.",
+            "{} elements on {}, {} and {} cells{}; Richardson's extrapolation with the observed order. The \
+             clamped corners are singular, which lowers the order where cells are equal; a grading towards them \
+             restores it. The last columns come from the finest mesh alone, by recovery of its gradient; at \
+             singular corners they are good for the order of magnitude.",
             study.element.name(),
             meshes[0],
             meshes[1],
-            meshes[2]
+            meshes[2],
+            match study.grading > 1.0 {
+                true => format!(", graded by {} towards the corners", study.grading),
+                false => String::new(),
+            }
         )),
-        Block::table(&head, results.comparison.iter().map(row)),
+        Block::table(&head, results.comparison.iter().enumerate().map(row)),
     ]
 }
 

@@ -12,8 +12,10 @@ use vtkio::model::{
     UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
 
+use super::wrinkling::Wrinkling;
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
+use crate::finite_element::error_estimate::EnergyError;
 use crate::mass_spring::{MassSpring, SpringState};
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
@@ -21,6 +23,9 @@ use crate::mesh::{CellShape, Mesh};
 use crate::problem::Problem;
 use crate::results::Results;
 use crate::study::Study;
+
+/// η_c/‖u_h‖ of each cell: the root of the sum of their squares is the error of the field in %.
+const ESTIMATED_ERROR: &str = "estimated_error_percent_of_energy_norm";
 
 /// All VTK files of a run: name and content, one after the other.
 pub fn files(study: &Study, results: &Results) -> impl Iterator<Item = (String, Vec<u8>)> {
@@ -71,15 +76,11 @@ impl Model {
         let problem = &study.problem;
         let lattice = &results.springs.mesh;
         let reference = &results.reference_on_lattice[step];
-        let difference = |u: &[f64]| {
-            let pairs = u.iter().zip(reference);
-            let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
-            planar_vectors("difference_to_finite_elements_mm", &difference)
-        };
+        let difference = |u: &[f64]| difference(TO_FINITE_ELEMENTS, u, reference);
         match self {
             Self::MassSpring => {
                 let u = &results.uncorrected[step].displacement;
-                plate(&problem.into(), lattice, u, vec![difference(u)])
+                plate(&problem.into(), lattice, u, vec![difference(u)], None)
             }
             Self::Corrected => {
                 let state = &results.corrected[step];
@@ -92,6 +93,7 @@ impl Model {
                     lattice,
                     u,
                     [difference(u)].into_iter().chain(arrays).collect(),
+                    None,
                 )
             }
             Self::FiniteElement => {
@@ -101,6 +103,7 @@ impl Model {
                     &finest.model.mesh,
                     &finest.solutions[step].displacement,
                     Vec::new(),
+                    Some(&results.estimates[step].energy),
                 )
             }
             Self::Springs => springs(&results.springs, &results.uncorrected[step].displacement),
@@ -125,8 +128,8 @@ impl<'a> From<&'a Problem> for Sheet<'a> {
     }
 }
 
-/// The `.vtu` file of a displacement field on a mesh, with the stresses that follow and, where there is a
-/// reference field at the nodes, the difference to it.
+/// The `.vtu` file of a displacement field on a mesh, with the stresses that follow and the difference to a reference
+/// field at the nodes, where there is one.
 pub fn field_file(
     title: &str,
     sheet: &Sheet,
@@ -134,13 +137,72 @@ pub fn field_file(
     displacement: &[f64],
     reference: Option<&[f64]>,
 ) -> Vec<u8> {
-    let difference = reference.map(|reference| {
-        let pairs = displacement.iter().zip(reference);
-        let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
-        planar_vectors("difference_to_finite_elements_mm", &difference)
-    });
+    let difference =
+        reference.map(|reference| difference(TO_FINITE_ELEMENTS, displacement, reference));
     let more = difference.into_iter().collect();
-    encode(title, plate(sheet, mesh, displacement, more))
+    encode(title, plate(sheet, mesh, displacement, more, None))
+}
+
+/// The `.vtu` file of a finite-element field, with the stresses that follow and its estimated error.
+pub fn finite_element_file(
+    title: &str,
+    sheet: &Sheet,
+    mesh: &Mesh,
+    displacement: &[f64],
+    error: &EnergyError,
+) -> Vec<u8> {
+    encode(
+        title,
+        plate(sheet, mesh, displacement, Vec::new(), Some(error)),
+    )
+}
+
+/// The `.vtu` file of a displacement field on a mesh beside an imported one at the same nodes.
+pub fn imported_file(
+    title: &str,
+    sheet: &Sheet,
+    mesh: &Mesh,
+    displacement: &[f64],
+    imported: &[f64],
+) -> Vec<u8> {
+    let more = vec![
+        planar_vectors("imported_displacement_mm", imported),
+        difference(TO_IMPORTED, displacement, imported),
+    ];
+    encode(title, plate(sheet, mesh, displacement, more, None))
+}
+
+/// The `.vtu` file of scattered points with a displacement field and an imported one at them.
+pub fn points_file(
+    title: &str,
+    places: &[[f64; 2]],
+    displacement: &[f64],
+    imported: &[f64],
+) -> Vec<u8> {
+    let nodes: Vec<usize> = (0..places.len()).collect();
+    let cells: Vec<&[usize]> = nodes.chunks(1).collect();
+    let grid = UnstructuredGridPiece {
+        points: IOBuffer::F64(places.iter().flat_map(|[x, y]| [*x, *y, 0.0]).collect()),
+        cells: connect(&cells, vec![CellType::Vertex; cells.len()]),
+        data: Attributes {
+            point: vec![
+                planar_vectors("displacement_mm", displacement),
+                planar_vectors("imported_displacement_mm", imported),
+                difference(TO_IMPORTED, displacement, imported),
+            ],
+            cell: Vec::new(),
+        },
+    };
+    encode(title, grid)
+}
+
+const TO_FINITE_ELEMENTS: &str = "difference_to_finite_elements_mm";
+const TO_IMPORTED: &str = "difference_to_imported_mm";
+
+fn difference(name: &str, displacement: &[f64], reference: &[f64]) -> Attribute {
+    let pairs = displacement.iter().zip(reference);
+    let difference: Vec<f64> = pairs.map(|(u, v)| u - v).collect();
+    planar_vectors(name, &difference)
 }
 
 /// The `.vtu` file of the springs of a lattice.
@@ -154,18 +216,18 @@ fn plate(
     mesh: &Mesh,
     displacement: &[f64],
     more_point_data: Vec<Attribute>,
+    error: Option<&EnergyError>,
 ) -> UnstructuredGridPiece {
     let cells: Vec<&[usize]> = (0..mesh.cell_count()).map(|cell| mesh.cell(cell)).collect();
     let kinds = (0..mesh.cell_count()).map(|cell| kind(mesh.shape(cell)));
     let mut point = vec![planar_vectors("displacement_mm", displacement)];
     point.extend(more_point_data);
+    let mut cell = material_state(sheet, mesh, displacement);
+    cell.extend(error.map(|error| array(ESTIMATED_ERROR, scalars(), error.cell_percents())));
     UnstructuredGridPiece {
         points: points(mesh),
         cells: connect(&cells, kinds.collect()),
-        data: Attributes {
-            point,
-            cell: material_state(sheet, mesh, displacement),
-        },
+        data: Attributes { point, cell },
     }
 }
 
@@ -195,9 +257,18 @@ fn material_state(sheet: &Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Attri
         thickness.push(sheet.thickness / kinematics.area_ratio());
         energy.push(density);
     }
+    let wrinkling = Wrinkling::new(sheet.law, mesh, displacement);
+    let compressed = wrinkling.compressed.iter();
+    let compressed = compressed.map(|is| f64::from(u8::from(*is))).collect();
     vec![
         array("nominal_stress_MPa", ElementType::Tensors, nominal),
         array("cauchy_stress_MPa", ElementType::Tensors, cauchy),
+        array(
+            "smallest_principal_cauchy_stress_MPa",
+            scalars(),
+            wrinkling.smallest,
+        ),
+        array("wrinkling_1", scalars(), compressed),
         array("principal_stretches_1", ElementType::Vectors, stretches),
         array("first_invariant_I1_1", scalars(), i1),
         array("thickness_mm", scalars(), thickness),

@@ -1,7 +1,7 @@
 //! Newton's method for the minimum of a potential, with a line search that keeps every element admissible.
 
 use super::potential::{Assembly, Inadmissible, Potential};
-use super::sparse::{Cholesky, NotPositiveDefinite, largest, moved};
+use super::sparse::{Cholesky, NotPositiveDefinite, largest, norm};
 use crate::error::SolveFault;
 
 /// When to stop.
@@ -37,6 +37,7 @@ impl Convergence {
 pub struct Newton {
     assembly: Assembly,
     cholesky: Cholesky,
+    indefinite: Option<Vec<f64>>,
 }
 
 /// Forces are negligible below this share of the stiffest unknown's stiffness times the largest displacement:
@@ -45,6 +46,10 @@ const NEGLIGIBLE: f64 = 1e-4;
 
 /// Relative residual below which the tangent no longer changes its kind.
 const SMALL: f64 = 1e-3;
+
+/// Relative residual below which a tangent that is not positive definite is that of an unstable equilibrium. From
+/// there rounding would choose between the branches beside it.
+const SADDLE: f64 = 1e-5;
 
 /// Relative residual at which a stagnating iteration counts as converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-11;
@@ -58,7 +63,21 @@ impl Newton {
         let assembly = Assembly::new(potential, fixed);
         let cholesky =
             Cholesky::analyse(assembly.pattern().clone()).map_err(|_| SolveFault::Singular)?;
-        Ok(Self { assembly, cholesky })
+        Ok(Self {
+            assembly,
+            cholesky,
+            indefinite: None,
+        })
+    }
+
+    /// The free unknowns, ascending.
+    pub fn free(&self) -> &[usize] {
+        self.assembly.free()
+    }
+
+    /// Where the last [`Self::solve`] first met a tangent that is not positive definite.
+    pub fn indefinite(&self) -> Option<&[f64]> {
+        self.indefinite.as_deref()
     }
 
     /// Moves the free entries of `u` to a minimum of the potential near by. On return `residual` holds
@@ -82,6 +101,7 @@ impl Newton {
         };
         let mut log = Convergence::default();
         let mut stiffness = Vec::new();
+        self.indefinite = None;
         loop {
             let energy = self
                 .assembly
@@ -101,12 +121,14 @@ impl Newton {
             let converged =
                 relative <= settings.tolerance || (stagnant && relative < ROUNDING_FLOOR);
             let shifted = self.factorise(&mut stiffness)?;
+            if shifted && self.indefinite.is_none() {
+                self.indefinite = Some(u.to_vec());
+            }
+            if shifted && (converged || relative <= SADDLE) {
+                return Err(SolveFault::NotPositiveDefinite);
+            }
             if converged {
-                return if shifted {
-                    Err(SolveFault::NotPositiveDefinite)
-                } else {
-                    Ok(log)
-                };
+                return Ok(log);
             }
             if log.iterations() >= settings.max_iterations {
                 return Err(SolveFault::Stalled {
@@ -151,24 +173,72 @@ impl Newton {
         self.assembly
             .linearise(potential, u, &mut residual, &mut stiffness)
             .map_err(inverted)?;
-        // The forces of the moved supports by a difference along their motion, small beside the size of u.
-        let most = largest(motion);
-        if most > 0.0 {
-            let share = 1e-6 * largest(u).max(1e-3 * most) / most;
-            let mut there = vec![0.0; u.len()];
-            Assembly::residual(potential, &moved(u, share, motion), &mut there)
-                .map_err(inverted)?;
-            for (residual, there) in residual.iter_mut().zip(&there) {
-                *residual += (there - *residual) / share;
-            }
-        }
-        self.factorise(&mut stiffness)?;
-        let mut change = vec![0.0; u.len()];
-        let step = self.step(&residual)?;
+        Assembly::add_product(potential, u, motion, &mut residual).map_err(inverted)?;
+        self.change(&mut stiffness, &residual)
+    }
+
+    /// The change of the free unknowns by the tangent at `u` under small forces on them; nothing at held unknowns.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when `u` is not admissible or the tangent cannot be factorised.
+    pub fn respond(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        forces: &[f64],
+        describe: &dyn Fn(usize) -> String,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+        self.assembly
+            .linearise(potential, u, &mut residual, &mut stiffness)
+            .map_err(|fault| SolveFault::Inverted {
+                element: describe(fault.element),
+            })?;
+        let opposed: Vec<f64> = forces.iter().map(|force| -force).collect();
+        self.change(&mut stiffness, &opposed)
+    }
+
+    /// −K⁻¹ r at the free unknowns.
+    fn change(&mut self, stiffness: &mut [f64], residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
+        self.factorise(stiffness)?;
+        let mut change = vec![0.0; residual.len()];
+        let step = self.step(residual)?;
         for (unknown, step) in self.assembly.free().iter().zip(step) {
             change[*unknown] = step;
         }
         Ok(change)
+    }
+
+    /// The direction φ of least stiffness at `u`, ‖φ‖ = 1, by inverse iteration, and φᵀ K φ; φ is nothing at held
+    /// unknowns. Nothing where there is no tangent.
+    pub fn softest_mode(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+    ) -> Option<(f64, Vec<f64>)> {
+        const ITERATIONS: usize = 20;
+        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+        let linearised = self
+            .assembly
+            .linearise(potential, u, &mut residual, &mut stiffness);
+        linearised.ok()?;
+        let tangent = stiffness.clone();
+        self.factorise(&mut stiffness).ok()?;
+        // A start without any symmetry has a part of every mode.
+        let count = self.assembly.free().len();
+        let mut mode: Vec<f64> = (0..count).map(|i| (1.0 + i as f64).sqrt().sin()).collect();
+        for _ in 0..ITERATIONS {
+            mode = self.cholesky.solve(&mode).ok()?;
+            let scale = norm(&mode);
+            mode.iter_mut().for_each(|entry| *entry /= scale);
+        }
+        let forces = self.assembly.pattern().multiply(&tangent, &mode);
+        let stiffness = mode.iter().zip(&forces).map(|(a, b)| a * b).sum();
+        let mut all = vec![0.0; u.len()];
+        for (unknown, entry) in self.assembly.free().iter().zip(mode) {
+            all[*unknown] = entry;
+        }
+        Some((stiffness, all))
     }
 
     /// The largest entry of the diagonal of a stiffness.

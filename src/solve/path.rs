@@ -1,5 +1,6 @@
 //! Equilibria along a path of load factors.
 
+use super::ending::diagnose;
 use super::newton::{Convergence, Newton, NewtonSettings};
 use super::potential::Potential;
 use crate::error::SolveFault;
@@ -9,7 +10,8 @@ pub trait Loading {
     /// Marks the unknowns that supports hold.
     fn held(&self) -> Vec<bool>;
 
-    /// Writes the displacements that supports impose at a load factor.
+    /// Writes the displacements that supports impose at a load factor, and those of tied unknowns, which count
+    /// as held, after the ones that they follow.
     fn impose(&self, factor: f64, displacement: &mut [f64]);
 
     /// The potential at a load factor; its pattern must not depend on the factor.
@@ -21,6 +23,9 @@ pub trait Loading {
 
     /// Names an element of the potential with its place, for messages.
     fn describe(&self, element: usize) -> String;
+
+    /// Names an unknown with its place, for messages.
+    fn describe_unknown(&self, unknown: usize) -> String;
 }
 
 /// An equilibrium at one load factor.
@@ -45,15 +50,37 @@ pub struct PathEnd {
     pub factor: f64,
     /// Why.
     pub fault: SolveFault,
-    /// The equilibria before it.
+    /// The equilibria at the load factors before it.
     pub states: Vec<State>,
+    /// The last equilibrium on the way from there; nothing where not one was found.
+    pub last: Option<Box<State>>,
 }
 
-/// How often the way to a load factor is halved before it is given up.
-const HALVINGS: usize = 5;
+impl PathEnd {
+    /// The largest load factor with an equilibrium; nothing where there is none.
+    pub fn reached(&self) -> f64 {
+        let last = self.last.as_deref().or(self.states.last());
+        last.map_or(0.0, |state| state.factor)
+    }
+
+    /// `load factor 0.75 (reached 0.6183)`, for messages.
+    pub fn describe(&self) -> String {
+        format!(
+            "load factor {} (reached {:.4})",
+            self.factor,
+            self.reached()
+        )
+    }
+}
+
+/// The shortest step, as a share of the load factor that it leads to; how near a path comes to its end.
+const SHORTEST: f64 = 1.0 / 1024.0;
+
+/// Iterations up to which a step was easy.
+const EASY: usize = 6;
 
 /// Solves all load factors, one after the other. One that cannot be reached from the one before in one go
-/// is approached by halves.
+/// is approached by shorter steps: halved where they fail, doubled after easy ones.
 ///
 /// # Errors
 /// [`PathEnd`] with the load factor at which no equilibrium was found and the states before it.
@@ -64,58 +91,134 @@ pub fn follow(
     progress: &dyn Fn(f64),
 ) -> Result<Vec<State>, PathEnd> {
     let mut states: Vec<State> = Vec::new();
-    let end = |factor: f64, fault: SolveFault, states: Vec<State>| PathEnd {
-        factor,
-        fault,
-        states,
-    };
     let Some(&first) = factors.first() else {
         return Ok(states);
     };
-    let newton = Newton::new(&*loading.potential(first), &loading.held());
-    let mut path = match newton {
-        Ok(newton) => Path {
-            loading,
-            settings,
-            newton,
-        },
-        Err(fault) => return Err(end(first, fault, states)),
+    let newton = match Newton::new(&*loading.potential(first), &loading.held()) {
+        Ok(newton) => newton,
+        Err(fault) => {
+            return Err(PathEnd {
+                factor: first,
+                fault,
+                states,
+                last: None,
+            });
+        }
+    };
+    let mut path = Path {
+        loading,
+        settings,
+        newton,
+        step: f64::INFINITY,
     };
     for &factor in factors {
-        match path.reach(states.last(), factor, HALVINGS) {
+        match path.reach(states.last(), factor) {
             Ok(state) => states.push(state),
-            Err(fault) => return Err(end(factor, fault, states)),
+            Err((fault, last)) => {
+                return Err(PathEnd {
+                    factor,
+                    fault,
+                    states,
+                    last,
+                });
+            }
         }
         progress(factor);
     }
     Ok(states)
 }
 
+/// The change of an equilibrium by its tangent while held unknowns move as `motion` says and the others follow:
+/// the sensitivity of the field to a support's motion, and, as the tangent is symmetric, the influence of a
+/// disturbance of the field on the support's reaction.
+///
+/// # Errors
+/// A [`SolveFault`] when the tangent cannot be factorised.
+pub fn influence(
+    loading: &dyn Loading,
+    state: (f64, &[f64]),
+    motion: &[f64],
+) -> Result<Vec<f64>, SolveFault> {
+    let (factor, displacement) = state;
+    let potential = loading.potential(factor);
+    let mut newton = Newton::new(&*potential, &loading.held())?;
+    let describe = |element| loading.describe(element);
+    let change = newton.predict(&*potential, displacement, motion, &describe)?;
+    Ok(motion.iter().zip(change).map(|(m, c)| m + c).collect())
+}
+
+/// The change of an equilibrium by its tangent under small forces on free unknowns, while held ones rest; by symmetry,
+/// the influence of a disturbance of the field on the forces' displacement.
+///
+/// # Errors
+/// A [`SolveFault`] when the tangent cannot be factorised.
+pub fn compliance(
+    loading: &dyn Loading,
+    state: (f64, &[f64]),
+    forces: &[f64],
+) -> Result<Vec<f64>, SolveFault> {
+    let (factor, displacement) = state;
+    let potential = loading.potential(factor);
+    let mut newton = Newton::new(&*potential, &loading.held())?;
+    let describe = |element| loading.describe(element);
+    newton.respond(&*potential, displacement, forces, &describe)
+}
+
 struct Path<'a> {
     loading: &'a dyn Loading,
     settings: NewtonSettings,
     newton: Newton,
+    /// The longest step of the load factor that is tried.
+    step: f64,
 }
 
 impl Path<'_> {
-    /// Solves one load factor from the state before it, through intermediate ones where it must.
+    /// Solves one load factor from the state before it, through intermediate ones where it must; a fault comes
+    /// with the last of these.
     fn reach(
         &mut self,
-        previous: Option<&State>,
+        from: Option<&State>,
         factor: f64,
-        halvings: usize,
-    ) -> Result<State, SolveFault> {
-        let direct = self.solve_at(previous, factor);
-        if direct.is_ok() || halvings == 0 {
-            return direct;
+    ) -> Result<State, (SolveFault, Option<Box<State>>)> {
+        let shortest = SHORTEST * factor.abs();
+        let (mut last, mut load_steps, mut halved) = (None::<Box<State>>, 0, false);
+        loop {
+            let previous = last.as_deref().or(from);
+            let start = previous.map_or(0.0, |state| state.factor);
+            // A rest that is hardly longer than a step is taken with it.
+            let aim = if factor - start <= 1.001 * self.step {
+                factor
+            } else {
+                start + self.step
+            };
+            match self.solve_at(previous, aim) {
+                Ok(state) => {
+                    load_steps += 1;
+                    let log = &state.convergence;
+                    let easy = log.iterations() <= EASY && log.cut_steps + log.shifted_steps == 0;
+                    if easy && !halved {
+                        self.step *= 2.0;
+                    }
+                    halved = false;
+                    let state = State {
+                        load_steps,
+                        ..state
+                    };
+                    if aim == factor {
+                        return Ok(state);
+                    }
+                    last = Some(Box::new(state));
+                }
+                Err(_) if 0.5 * (aim - start) >= shortest => {
+                    self.step = 0.5 * (aim - start);
+                    halved = true;
+                }
+                Err(fault) => {
+                    let fault = diagnose(&mut self.newton, self.loading, previous, aim, fault);
+                    return Err((fault, last));
+                }
+            }
         }
-        let half = 0.5 * (previous.map_or(0.0, |previous| previous.factor) + factor);
-        let half = self.reach(previous, half, halvings - 1)?;
-        let state = self.reach(Some(&half), factor, halvings - 1)?;
-        Ok(State {
-            load_steps: half.load_steps + state.load_steps,
-            ..state
-        })
     }
 
     fn solve_at(&mut self, previous: Option<&State>, factor: f64) -> Result<State, SolveFault> {
@@ -133,6 +236,7 @@ impl Path<'_> {
             self.settings,
             &|element| self.loading.describe(element),
         )?;
+        self.loading.impose(factor, &mut displacement);
         Ok(State {
             factor,
             displacement,
@@ -166,5 +270,122 @@ impl Path<'_> {
             *u += motion + step;
         }
         Ok(start)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::potential::{Inadmissible, Local};
+
+    const NEWTON: NewtonSettings = NewtonSettings {
+        tolerance: 1e-10,
+        max_iterations: 30,
+    };
+
+    /// One unknown with the energy Π(u) − s u.
+    struct Point {
+        /// Π, ∂Π/∂u and ∂²Π/∂u² at u; nothing where the load factor s may not be.
+        energy: fn(u: f64, s: f64) -> Option<[f64; 3]>,
+    }
+
+    struct Loaded<'a>(&'a Point, f64);
+
+    impl Potential for Loaded<'_> {
+        fn unknowns(&self) -> usize {
+            1
+        }
+
+        fn elements(&self) -> usize {
+            1
+        }
+
+        fn element_unknowns(&self, _: usize) -> &[usize] {
+            &[0]
+        }
+
+        fn evaluate_element(
+            &self,
+            element: usize,
+            u: &[f64],
+            local: Local<'_>,
+        ) -> Result<f64, Inadmissible> {
+            let [energy, force, stiffness] =
+                (self.0.energy)(u[0], self.1).ok_or(Inadmissible { element })?;
+            local.residual[0] = force - self.1;
+            if let Some(entry) = local.stiffness {
+                entry[0] = stiffness;
+            }
+            Ok(energy - self.1 * u[0])
+        }
+    }
+
+    impl Loading for Point {
+        fn held(&self) -> Vec<bool> {
+            vec![false]
+        }
+
+        fn impose(&self, _: f64, _: &mut [f64]) {}
+
+        fn potential(&self, factor: f64) -> Box<dyn Potential + '_> {
+            Box::new(Loaded(self, factor))
+        }
+
+        fn guess(&self, _: f64, _: Option<&State>) -> Option<Vec<f64>> {
+            None
+        }
+
+        fn describe(&self, _: usize) -> String {
+            "the point".into()
+        }
+
+        fn describe_unknown(&self, _: usize) -> String {
+            "its place".into()
+        }
+    }
+
+    /// A linear spring that bears steps up to 0.2 as far as u = 0.5, and any beyond.
+    fn cautious(u: f64, s: f64) -> Option<[f64; 3]> {
+        let near = u > 0.5 || (u - s).abs() <= 0.2;
+        near.then_some([0.5 * u * u, u, 1.0])
+    }
+
+    #[test]
+    fn steps_are_halved_where_they_must_and_grow_again() {
+        let point = Point { energy: cautious };
+        let states = follow(&point, &[10.0, 20.0], NEWTON, &|_| ()).unwrap();
+        assert_eq!(states.len(), 2);
+        assert!((states[1].displacement[0] - 20.0).abs() < 1e-12);
+        // 10/64 four times, then doubled from step to step; without growth 64 steps.
+        let steps = states[0].load_steps;
+        assert!(steps > 6 && steps < 16, "{steps}");
+        assert!(states[1].load_steps <= 3, "{}", states[1].load_steps);
+    }
+
+    /// The force u − u²/2 has its maximum ½ at u = 1.
+    #[test]
+    fn a_path_comes_near_to_the_maximum_of_its_load_and_names_it() {
+        let point = Point {
+            energy: |u, _| Some([0.5 * u * u - u.powi(3) / 6.0, u - 0.5 * u * u, 1.0 - u]),
+        };
+        let end = follow(&point, &[0.25, 0.7], NEWTON, &|_| ()).unwrap_err();
+        assert_eq!(end.states.len(), 1);
+        let last = end.last.clone().expect("an equilibrium beyond 0.25");
+        assert!(
+            last.factor <= 0.5 && last.factor > 0.5 - 2e-3,
+            "{}",
+            last.factor
+        );
+        assert!((last.displacement[0] - (1.0 - (1.0 - 2.0 * last.factor).sqrt())).abs() < 1e-7);
+        assert_eq!(
+            end.describe(),
+            format!("load factor 0.7 (reached {:.4})", last.factor)
+        );
+        assert_eq!(
+            end.fault,
+            SolveFault::LoadMaximum {
+                factor: last.factor
+            }
+        );
     }
 }

@@ -43,6 +43,12 @@ pub trait Potential: Sync {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible>;
+
+    /// The state of an element that is unstable by itself at its own unknowns `u`, in words; nothing where it is
+    /// stable, or where only the sum has a stability.
+    fn instability(&self, _element: usize, _u: &[f64]) -> Option<String> {
+        None
+    }
 }
 
 impl<P: Potential + ?Sized> Potential for &P {
@@ -65,6 +71,10 @@ impl<P: Potential + ?Sized> Potential for &P {
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
         (**self).evaluate_element(element, u, local)
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        (**self).instability(element, u)
     }
 }
 
@@ -171,6 +181,46 @@ impl Assembly {
                 .for_each(|(unknown, r)| residual[*unknown] += r);
         }
         Ok(energy)
+    }
+
+    /// Adds the forces K m of a small motion m of some unknowns, at all unknowns.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with the first inverted element.
+    pub fn add_product(
+        potential: &dyn Potential,
+        u: &[f64],
+        motion: &[f64],
+        forces: &mut [f64],
+    ) -> Result<(), Inadmissible> {
+        let (mut values, mut local, mut matrix) = (Vec::new(), Vec::new(), Vec::new());
+        for element in 0..potential.elements() {
+            let unknowns = potential.element_unknowns(element);
+            if unknowns.iter().all(|unknown| motion[*unknown] == 0.0) {
+                continue;
+            }
+            let size = unknowns.len();
+            gather(unknowns, u, &mut values);
+            local.clear();
+            local.resize(size, 0.0);
+            matrix.clear();
+            matrix.resize(size * size, 0.0);
+            potential.evaluate_element(
+                element,
+                &values,
+                Local {
+                    residual: &mut local,
+                    stiffness: Some(&mut matrix),
+                },
+            )?;
+            for row in 0..size {
+                for column in 0..size {
+                    let stiffness = matrix[row.max(column) * size + row.min(column)];
+                    forces[unknowns[row]] += stiffness * motion[unknowns[column]];
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Energy, full residual and the stiffness of the free unknowns.

@@ -13,6 +13,7 @@ pub mod cantilever;
 pub mod cook;
 pub mod hole;
 pub mod manufactured;
+pub mod own_error;
 pub mod patch;
 pub mod ring;
 
@@ -69,7 +70,7 @@ fn solve(model: &Discretised, name: &str, steps: usize) -> Result<State, Error> 
     let states = model.solve(&factors, NEWTON, &|_| ());
     let states = states.map_err(|end: PathEnd| Error::Solve {
         model: name.to_owned(),
-        step: format!("load factor {}", end.factor),
+        step: end.describe(),
         fault: end.fault,
     })?;
     let last = states.into_iter().last();

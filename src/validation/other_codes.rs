@@ -6,10 +6,13 @@ use std::path::Path;
 use super::{Check, Outcome, Prepared, Progress, Wanted};
 use crate::document::Section;
 use crate::error::Error;
+use crate::finite_element::convergence::richardson;
 use crate::finite_element::{Element, FiniteElements};
 use crate::material::Card;
 use crate::problem::{Problem, Solution};
 
+/// Converged force in N and width at mid length in mm at the stretches, by Richardson's extrapolation of the same codes.
+const CONVERGED: &str = include_str!("../../validation/plate/converged.csv");
 const SUMMARY: &str = include_str!("../../validation/plate/summary.csv");
 const STRETCHES: [f64; 5] = [0.15, 0.3, 0.5, 0.75, 1.0];
 
@@ -84,10 +87,61 @@ fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
             error,
         )
     };
+    let mut checks: Vec<Check> = worst.into_iter().map(check).collect();
+    // Three meshes, each twice as fine as the one before, with as many cells across as a third of those along.
+    let is_fine = finest >= 60 && finest.is_multiple_of(12);
+    for material in ["marlow", "nh"].into_iter().filter(|_| is_fine) {
+        checks.extend(converged(material, finest, progress)?);
+    }
     Ok(Outcome {
-        checks: worst.into_iter().map(check).collect(),
+        checks,
         ..Outcome::default()
     })
+}
+
+/// Richardson's extrapolation of Q2 elements on three meshes beside the published converged values.
+fn converged(material: &str, finest: usize, progress: Progress) -> Result<[Check; 2], Error> {
+    progress(&format!("{material}, converged"));
+    let meshes = [finest / 4, finest / 2, finest].map(|along| solve(material, along, "Q2"));
+    let [coarse, middle, fine] = meshes;
+    let (coarse, middle, fine) = (coarse?, middle?, fine?);
+    let mut worst = [0.0_f64; 2];
+    for line in CONVERGED
+        .lines()
+        .skip(1)
+        .filter(|line| line.starts_with(&format!("{material},")))
+    {
+        let numbers: Vec<f64> = line
+            .split(',')
+            .skip(1)
+            .filter_map(|cell| cell.parse().ok())
+            .collect();
+        let at = |solutions: &[Solution]| {
+            let solution = solutions
+                .iter()
+                .find(|solution| solution.stretch == numbers[0]);
+            let solution = solution.expect("the published stretches are computed");
+            [solution.force, solution.mid_width]
+        };
+        let (coarse, middle, fine) = (at(&coarse), at(&middle), at(&fine));
+        for (quantity, worst) in worst.iter_mut().enumerate() {
+            let values = [coarse[quantity], middle[quantity], fine[quantity]];
+            let error = richardson(values).extrapolated / numbers[1 + quantity] - 1.0;
+            *worst = worst.max(error.abs());
+        }
+    }
+    let [force, width] = worst;
+    Ok(
+        [("force", force), ("width at mid length", width)].map(|(quantity, error)| {
+            Check::new(
+                format!("{material}: converged {quantity}, largest relative difference"),
+                "–",
+                Wanted::AtMost(1e-4),
+                "validation/plate/converged.csv",
+                error,
+            )
+        }),
+    )
 }
 
 fn solve(material: &str, along: usize, element: &str) -> Result<Vec<Solution>, Error> {

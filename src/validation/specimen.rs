@@ -3,22 +3,43 @@
 use std::path::Path;
 
 use crate::boundary::{BoundaryProblem, Discretised};
-use crate::compare::area_weighted_percent;
+use crate::compare::imported::ModelField;
 use crate::corrector::{CorrectorSettings, Solver, specimen::correct};
 use crate::document::Section;
-use crate::error::{Error, SolveFault};
-use crate::finite_element::convergence::{Richardson, richardson};
+use crate::error::{Diagnostic, Error};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
-use crate::output::picture::Scale;
-use crate::output::{self, Block, Figure, vtk};
-use crate::sheet_energy::SheetEnergy;
-use crate::solve::{NewtonSettings, PathEnd, State};
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
+use crate::output::vtk;
+use crate::solve::{NewtonSettings, Potential, State};
+use crate::validation::{Case, Outcome, Prepared, Progress};
 
+mod end;
+mod files;
+mod outcome;
 mod read;
+mod reference;
 
-use read::Specimen;
+use end::End;
+use read::Measured;
+pub use read::{Refinement, Specimen, Tolerances};
+use reference::Reference;
+
+/// The `kind` of these studies.
+pub const KIND: &str = "specimen";
+
+/// A specimen's study: its title, the specimen, and what deserves attention.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn load(
+    case: &Case,
+    file: &Path,
+    text: &str,
+) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
+    let (title, specimen, warnings) = case.read_with(file, text, read::read)?;
+    let specimen = specimen.expect("a study without faults has a specimen");
+    Ok((title, specimen, warnings))
+}
 
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
@@ -40,62 +61,63 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
     solver: Solver::Automatic,
 };
 
-/// The states of one model and its force on the measured group at each load factor.
+/// The states of one model and what is measured at each load factor: force in N or displacement in mm.
 struct Solved {
     states: Vec<State>,
-    forces: Vec<f64>,
+    measured: Vec<f64>,
 }
 
-fn fault(model: &str, factor: f64, fault: SolveFault) -> Error {
-    Error::Solve {
-        model: model.to_owned(),
-        step: format!("load factor {factor}"),
-        fault,
+impl Solved {
+    fn new(specimen: &Specimen, model: &Discretised, states: Vec<State>) -> Self {
+        let measured = states.iter().map(|state| specimen.measure(model, state));
+        Self {
+            measured: measured.collect(),
+            states,
+        }
     }
 }
 
-/// Solves as many load factors as can be reached; the others are taken from the specimen, and why is told.
+/// Solves as many load factors as can be reached; where others cannot, the end is told.
 fn solve(
-    specimen: &mut Specimen,
+    specimen: &Specimen,
     model: &Discretised,
-    name: &str,
-    ends: &mut Vec<String>,
-) -> Result<Solved, Error> {
+    names: [&str; 2],
+    mesh: &Mesh,
+    ends: &mut Vec<End>,
+) -> Solved {
     let states = match model.solve(&specimen.factors, NEWTON, &|_| ()) {
         Ok(states) => states,
-        Err(PathEnd {
-            factor,
-            fault: cause,
-            states,
-        }) => specimen.end(states, fault(name, factor, cause), ends)?,
+        Err(end) => {
+            let last = end.last.as_deref().or(end.states.last());
+            let measured = last.map_or(0.0, |state| specimen.measure(model, state));
+            ends.push(End::of_path(names, mesh, &end, measured));
+            end.states
+        }
     };
-    let forces = states
-        .iter()
-        .map(|state| specimen.force(model, state))
-        .collect();
-    Ok(Solved { states, forces })
+    Solved::new(specimen, model, states)
 }
 
 impl Specimen {
-    /// Ends the path after the states that were reached; a fault before the first of them is one of the study.
-    fn end(
-        &mut self,
-        states: Vec<State>,
-        fault: Error,
-        ends: &mut Vec<String>,
-    ) -> Result<Vec<State>, Error> {
-        if states.is_empty() {
-            return Err(fault);
+    /// What is measured, with its axis: the larger component of the force on the measured group in N with its sign, or the
+    /// displacement in mm of a grip with a given force.
+    fn component(&self, model: &Discretised, state: &State) -> (usize, f64) {
+        if let Measured::Displacement(axis) = self.measured() {
+            return (axis, model.displacement(state, &self.measured)[axis]);
         }
-        self.factors.truncate(states.len());
-        ends.push(fault.to_string());
-        Ok(states)
+        let [x, y] = model.reaction(state, &self.measured);
+        if x.abs() >= y.abs() { (0, x) } else { (1, y) }
     }
 
-    /// The size of the force on the measured group in N, with the sign of its larger component.
-    fn force(&self, model: &Discretised, state: &State) -> f64 {
-        let [x, y] = model.reaction(state, &self.measured);
-        if x.abs() >= y.abs() { x } else { y }
+    fn measure(&self, model: &Discretised, state: &State) -> f64 {
+        self.component(model, state).1
+    }
+
+    /// What stresses follow from.
+    fn sheet(&self) -> vtk::Sheet<'_> {
+        vtk::Sheet {
+            law: &*self.problem.law,
+            thickness: self.problem.thickness,
+        }
     }
 
     /// The problem on a mesh; groups were checked when the study was read.
@@ -103,7 +125,7 @@ impl Specimen {
         &self,
         problem: &BoundaryProblem,
         mesh: &'a Mesh,
-        energy: &'a dyn crate::solve::Potential,
+        energy: &'a dyn Potential,
     ) -> Result<Discretised<'a>, Error> {
         problem
             .on(mesh, energy)
@@ -111,58 +133,118 @@ impl Specimen {
     }
 }
 
-/// The finite elements on three meshes, coarse to fine.
-struct Reference {
-    meshes: [Mesh; 3],
-    solved: [Solved; 3],
+/// The three models of a specimen, as far as their paths go.
+struct Models {
+    reference: Reference,
+    springs: MassSpring,
+    uncorrected: Solved,
+    corrected: Solved,
+}
+
+/// The mesh of the finest finite elements; a specimen that refines itself is solved for it.
+///
+/// # Errors
+/// [`Error::Solve`] when it must be solved and has no solution.
+pub fn finest_mesh(specimen: &Specimen) -> Result<Mesh, Error> {
+    if specimen.refinement.is_none() {
+        let [_, _, mesh] = specimen.reference_meshes();
+        return Ok(mesh);
+    }
+    let mut ends = Vec::new();
+    let (mesh, _) = reference::finest(specimen, &mut ends)?;
+    ends.pop().map_or(Ok(mesh), |end| Err(end.error()))
+}
+
+/// The fields of all models at a load factor: finite elements on the finest mesh, springs, corrected springs. The
+/// study's load factors before it are steps on the way.
+///
+/// # Errors
+/// [`Error::Solve`] when a model has no solution.
+pub fn fields(
+    mut specimen: Specimen,
+    factor: f64,
+    progress: Progress,
+) -> Result<[ModelField; 3], Error> {
+    specimen.factors.retain(|before| *before < factor);
+    specimen.factors.push(factor);
+    let mut ends = Vec::new();
+    progress("finite elements");
+    let (mesh, reference) = reference::finest(&specimen, &mut ends)?;
+    let (springs, [uncorrected, corrected]) = on_lattice(&specimen, &mut ends, progress)?;
+    if let Some(end) = ends.first() {
+        return Err(end.error());
+    }
+    let field = |model, mesh: Mesh, mut solved: Solved| ModelField {
+        model,
+        mesh,
+        displacement: solved.states.pop().expect("the last factor").displacement,
+    };
+    Ok([
+        field("finite elements", mesh, reference),
+        field("mass-spring", springs.mesh.clone(), uncorrected),
+        field("corrected", springs.mesh, corrected),
+    ])
 }
 
 fn compute(mut specimen: Specimen, progress: Progress) -> Result<Outcome, Error> {
-    let (specimen, mut ends) = (&mut specimen, Vec::new());
-    let problem = &specimen.problem.clone();
+    let mut ends = Vec::new();
     progress("finite elements");
-    let meshes = specimen.reference_meshes();
-    let mut solved = Vec::new();
-    for mesh in &meshes {
-        let energy: SheetEnergy = problem.finite_elements(mesh);
-        let model = specimen.on(problem, mesh, &energy)?;
-        let name = format!("finite elements ({})", mesh.describe());
-        solved.push(solve(specimen, &model, &name, &mut ends)?);
-    }
-    let solved = solved.try_into().ok().expect("three meshes");
-    let reference = Reference { meshes, solved };
+    let reference = Reference::solve(&specimen, &mut ends)?;
+    let (springs, [uncorrected, corrected]) = on_lattice(&specimen, &mut ends, progress)?;
+    let on_lattice = uncorrected.states.len().min(corrected.states.len());
+    specimen
+        .factors
+        .truncate(reference.reached().min(on_lattice));
+    let mut outcome = if specimen.factors.is_empty() {
+        end::without_state(&ends)?
+    } else {
+        let models = Models {
+            reference,
+            springs,
+            uncorrected,
+            corrected,
+        };
+        outcome::outcome(&specimen, &models)
+    };
+    end::tell(&specimen, ends, &mut outcome);
+    Ok(outcome)
+}
 
+/// The springs, and the states of them before and after the correction.
+fn on_lattice(
+    specimen: &Specimen,
+    ends: &mut Vec<End>,
+    progress: Progress,
+) -> Result<(MassSpring, [Solved; 2]), Error> {
+    let problem = &specimen.problem;
     progress("mass-spring");
     let springs = MassSpring::on_mesh(&problem.law, problem.thickness, specimen.lattice());
     let lattice = &springs.mesh;
     let model = specimen.on(problem, lattice, springs.potential())?;
     let model = model.named(|element| springs.describe_element(element));
-    let uncorrected = solve(specimen, &model, "mass-spring", &mut ends)?;
+    let names = ["mass-spring", "mass_spring"];
+    let uncorrected = solve(specimen, &model, names, lattice, ends);
+    drop(model);
 
     progress("corrector");
     let energy = problem.finite_elements(lattice);
     let model = specimen.on(problem, lattice, &energy)?;
-    let corrected = correct_all(specimen, &model, lattice, &uncorrected, &mut ends)?;
-    let mut outcome = outcome(specimen, &reference, &springs, [&uncorrected, &corrected]);
-    for end in ends {
-        let wanted = Wanted::AtMost(0.0);
-        let check = Check::new(end, "–", wanted, "the whole path", f64::NAN);
-        outcome.checks.push(check);
-    }
-    Ok(outcome)
+    let corrected = correct_all(specimen, &model, lattice, &uncorrected, ends);
+    drop(model);
+    Ok((springs, [uncorrected, corrected]))
 }
 
 /// Corrects the states of the springs as far as they can be.
 fn correct_all(
-    specimen: &mut Specimen,
+    specimen: &Specimen,
     model: &Discretised,
     lattice: &Mesh,
     uncorrected: &Solved,
-    ends: &mut Vec<String>,
-) -> Result<Solved, Error> {
+    ends: &mut Vec<End>,
+) -> Solved {
     let mut states: Vec<State> = Vec::new();
     let mut change = vec![0.0; 2 * lattice.nodes.len()];
-    for state in &uncorrected.states[..specimen.factors.len()] {
+    for state in &uncorrected.states {
         // What the correction has changed at the load factor before is nearly right at this one.
         let data = &state.displacement;
         let pairs = data.iter().zip(&change);
@@ -173,240 +255,11 @@ fn correct_all(
                 change = pairs.map(|(corrected, u)| corrected - u).collect();
                 states.push(field.state);
             }
-            Err(cause) => {
-                let fault = fault("corrector", state.factor, cause);
-                states = specimen.end(states, fault, ends)?;
+            Err(fault) => {
+                ends.push(End::at("corrector", state.factor, fault));
                 break;
             }
         }
     }
-    let forces = states
-        .iter()
-        .map(|state| specimen.force(model, state))
-        .collect();
-    Ok(Solved { states, forces })
-}
-
-/// Deviations of one model at one load factor, in %.
-struct Deviation {
-    displacement: f64,
-    force: f64,
-}
-
-fn deviation(
-    lattice: &Mesh,
-    solved: &Solved,
-    step: usize,
-    expected: &[f64],
-    force: f64,
-) -> Deviation {
-    Deviation {
-        displacement: area_weighted_percent(lattice, &solved.states[step].displacement, expected),
-        force: 100.0 * (solved.forces[step] / force - 1.0),
-    }
-}
-
-fn outcome(
-    specimen: &Specimen,
-    reference: &Reference,
-    springs: &MassSpring,
-    [uncorrected, corrected]: [&Solved; 2],
-) -> Outcome {
-    let lattice = &springs.mesh;
-    let [_, _, fine] = &reference.meshes;
-    let mut rows = Vec::new();
-    let mut worst = [0.0_f64, 0.0, f64::INFINITY];
-    let mut own_error = 0.0_f64;
-    let mut fields = Vec::new();
-    for (step, factor) in specimen.factors.iter().enumerate() {
-        let expected =
-            fine.displacement_on(&reference.solved[2].states[step].displacement, lattice);
-        let forces = [0, 1, 2].map(|level| reference.solved[level].forces[step]);
-        let own: Richardson = richardson(forces);
-        let before = deviation(lattice, uncorrected, step, &expected, forces[2]);
-        let after = deviation(lattice, corrected, step, &expected, forces[2]);
-        let correction = 100.0 * (1.0 - after.displacement / before.displacement);
-        worst[0] = worst[0].max(after.displacement);
-        worst[1] = worst[1].max(after.force.abs());
-        worst[2] = worst[2].min(correction);
-        own_error = own_error.max(own.error_percent);
-        rows.push(vec![
-            factor.to_string(),
-            format!("{:.3}", before.displacement),
-            format!("{:.4}", after.displacement),
-            format!("{correction:.2}"),
-            format!("{:.2}", before.force),
-            format!("{:.3}", after.force),
-            format!("{:.5}", forces[2]),
-            format!("{:.4}", own.error_percent),
-        ]);
-        fields.push(expected);
-    }
-    let limits = specimen.tolerances;
-    let check = |quantity: &str, wanted, value| {
-        Check::new(quantity, "%", wanted, "the study's tolerance", value)
-    };
-    let checks = vec![
-        check(
-            "corrected displacement from the finite elements",
-            Wanted::AtMost(limits.displacement_percent),
-            worst[0],
-        ),
-        check(
-            "corrected force from the finite elements",
-            Wanted::AtMost(limits.force_percent),
-            worst[1],
-        ),
-        check(
-            "correction of the displacement",
-            Wanted::AtLeast(limits.correction_percent),
-            worst[2],
-        ),
-        check(
-            "finite elements' own error of the force, by three meshes",
-            Wanted::AtMost(limits.force_percent),
-            own_error,
-        ),
-    ];
-    let head = [
-        "load factor [–]",
-        "mass-spring: displacement [%]",
-        "corrected: displacement [%]",
-        "correction [%]",
-        "mass-spring: force [%]",
-        "corrected: force [%]",
-        "finite elements: force [N]",
-        "their own error [%]",
-    ];
-    let text = format!(
-        "Deviations from the finite elements ({} on {}, finest of three meshes) at {} nodes of the lattice ({}). \
-         Displacements in relative L2, weighted by area; the force is that of the supports on the group `{}`.",
-        specimen.element_name,
-        fine.describe(),
-        lattice.nodes.len(),
-        lattice.describe(),
-        specimen.measured
-    );
-    Outcome {
-        checks,
-        blocks: vec![
-            Block::Paragraph(text),
-            Block::Table(head.map(String::from).to_vec(), rows),
-        ],
-        figures: figures(
-            specimen,
-            reference,
-            springs,
-            [uncorrected, corrected],
-            &fields,
-        ),
-        vtk: files(
-            specimen,
-            reference,
-            springs,
-            [uncorrected, corrected],
-            &fields,
-        ),
-        ..Outcome::default()
-    }
-}
-
-fn sizes(u: &[f64]) -> Vec<f64> {
-    u.chunks_exact(2).map(|u| u[0].hypot(u[1])).collect()
-}
-
-fn figures(
-    specimen: &Specimen,
-    reference: &Reference,
-    springs: &MassSpring,
-    [uncorrected, corrected]: [&Solved; 2],
-    expected: &[Vec<f64>],
-) -> Vec<Figure> {
-    let lattice = &springs.mesh;
-    let last = specimen.factors.len() - 1;
-    let fine = &reference.meshes[2];
-    let [before, after] = [uncorrected, corrected].map(|model| &*model.states[last].displacement);
-    let exact = &*reference.solved[2].states[last].displacement;
-    let distance = |u: &[f64]| {
-        let pairs = u.iter().zip(&expected[last]);
-        sizes(&pairs.map(|(u, v)| u - v).collect::<Vec<_>>())
-    };
-    let name = |what: &str| format!("{}_{what}.png", specimen.name);
-    let at = format!("load factor {}", specimen.factors[last]);
-    vec![
-        Figure {
-            name: name("displacement"),
-            caption: format!("Displacement in all three models at {at}, on one colour scale."),
-            png: output::field_figure(
-                &format!("Displacement at {at}"),
-                "displacement [mm]",
-                Scale::Linear,
-                &[
-                    ("mass-spring", lattice, before, sizes(before)),
-                    ("corrected", lattice, after, sizes(after)),
-                    ("finite elements", fine, exact, sizes(exact)),
-                ],
-            ),
-        },
-        Figure {
-            name: name("error"),
-            caption: format!(
-                "Distance to the finite elements at {at}, before and after the correction."
-            ),
-            png: output::field_figure(
-                &format!("Distance to the finite elements at {at}"),
-                "distance [mm]",
-                Scale::Logarithmic,
-                &[
-                    ("mass-spring", lattice, before, distance(before)),
-                    ("corrected", lattice, after, distance(after)),
-                ],
-            ),
-        },
-        Figure {
-            name: name("mesh"),
-            caption: "The cells of the lattice.".into(),
-            png: output::mesh_picture("Lattice", lattice),
-        },
-    ]
-}
-
-fn files(
-    specimen: &Specimen,
-    reference: &Reference,
-    springs: &MassSpring,
-    [uncorrected, corrected]: [&Solved; 2],
-    expected: &[Vec<f64>],
-) -> Vec<(String, Vec<u8>)> {
-    let sheet = vtk::Sheet {
-        law: &*specimen.problem.law,
-        thickness: specimen.problem.thickness,
-    };
-    let lattice = &springs.mesh;
-    let title = &specimen.name;
-    let mut files = Vec::new();
-    let mut series = |name: &str, file: &dyn Fn(usize) -> Vec<u8>| {
-        let steps = specimen.factors.iter().enumerate();
-        let named: Vec<(f64, String)> = steps
-            .map(|(step, factor)| (*factor, format!("{name}_{:03}.vtu", step + 1)))
-            .collect();
-        for (step, (_, file_name)) in named.iter().enumerate() {
-            files.push((file_name.clone(), file(step)));
-        }
-        files.push((format!("{name}.pvd"), vtk::collection(&named)));
-    };
-    for (name, model) in [("mass_spring", uncorrected), ("corrected", corrected)] {
-        series(name, &|step| {
-            let u = &model.states[step].displacement;
-            vtk::field_file(title, &sheet, lattice, u, Some(&expected[step]))
-        });
-    }
-    series("springs", &|step| {
-        vtk::springs_file(title, springs, &uncorrected.states[step].displacement)
-    });
-    series("finite_element", &|step| {
-        let u = &reference.solved[2].states[step].displacement;
-        vtk::field_file(title, &sheet, &reference.meshes[2], u, None)
-    });
-    files
+    Solved::new(specimen, model, states)
 }

@@ -19,6 +19,39 @@ const GROUPS: [&str; 3] = ["gmsh:physical", "physical", "CellEntityIds"];
 /// # Errors
 /// Says what is wrong or cannot be read.
 pub fn read(path: &Path) -> Result<Raw, String> {
+    grid(&piece(path)?)
+}
+
+/// Arrays of vectors by name: two or three components of point after point.
+pub type Arrays = Vec<(String, Vec<f64>)>;
+
+/// Reads a file with its arrays of vectors at the points.
+///
+/// # Errors
+/// Says what is wrong or cannot be read.
+pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), String> {
+    let piece = piece(path)?;
+    let raw = grid(&piece)?;
+    let points = raw.places.len();
+    let all = piece
+        .data
+        .point
+        .iter()
+        .flat_map(|attribute| match attribute {
+            Attribute::DataArray(array) => vec![(&array.name, &array.data)],
+            Attribute::Field { data_array, .. } => {
+                let arrays = data_array.iter();
+                arrays.map(|array| (&array.name, &array.data)).collect()
+            }
+        });
+    let vectors = all.filter(|(_, data)| [2 * points, 3 * points].contains(&data.len()));
+    let arrays = vectors.filter_map(|(name, data)| Some((name.clone(), numbers(data)?)));
+    let arrays = arrays.collect();
+    Ok((raw, arrays))
+}
+
+/// The only piece of a file.
+fn piece(path: &Path) -> Result<UnstructuredGridPiece, String> {
     refuse_legacy_5(path)?;
     let file = Vtk::import(path).map_err(|cause| format!("cannot be read as VTK: {cause}"))?;
     let DataSet::UnstructuredGrid { pieces, .. } = file.data else {
@@ -29,7 +62,7 @@ pub fn read(path: &Path) -> Result<Raw, String> {
         return Err("has several pieces; merge them into one".into());
     };
     match piece {
-        Piece::Inline(piece) => grid(&piece),
+        Piece::Inline(piece) => Ok(*piece),
         _ => Err("refers to other files; save it as one".into()),
     }
 }

@@ -12,9 +12,10 @@ use super::{distorted, misfit, sheet, solve, stress};
 use crate::boundary::BoundaryProblem;
 use crate::document::{Bound, Section};
 use crate::error::Error;
-use crate::mesh::{CellShape, Mesh, QuadraturePoint};
+use crate::mesh::{CellShape, GAUSS_5, Mesh};
 use crate::output::picture::PALETTE;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::solve::State;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, figure};
 
 /// Side of the square in mm.
@@ -31,8 +32,9 @@ pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
     Box::new(move |progress| compute(cells, amplitude, progress))
 }
 
+/// The chosen field.
 #[derive(Clone, Copy)]
-struct Field {
+pub struct Field {
     a: f64,
     b: f64,
 }
@@ -43,7 +45,8 @@ impl Field {
         [SIDE * self.a * sx * cy, SIDE * self.b * cx * sy]
     }
 
-    fn gradient(self, [x, y]: [f64; 2]) -> [f64; 4] {
+    /// Its displacement gradient, components 11, 12, 21, 22.
+    pub fn gradient(self, [x, y]: [f64; 2]) -> [f64; 4] {
         let ((sx, cx), (sy, cy)) = ((PI * x / SIDE).sin_cos(), (PI * y / SIDE).sin_cos());
         [
             PI * self.a * cx * cy,
@@ -125,8 +128,12 @@ fn compute(coarsest: usize, amplitude: f64, progress: Progress) -> Result<Outcom
     Ok(outcome)
 }
 
-/// Relative errors in L2 and in H1 on a distorted mesh.
-fn error(shape: CellShape, cells: usize, amplitude: f64) -> Result<[f64; 2], Error> {
+/// The solution on a distorted mesh and the exact field.
+pub fn solved(
+    shape: CellShape,
+    cells: usize,
+    amplitude: f64,
+) -> Result<(Mesh, State, Field), Error> {
     let mesh = distorted([SIDE; 2], [cells; 2], shape);
     let field = Field {
         a: amplitude,
@@ -138,6 +145,13 @@ fn error(shape: CellShape, cells: usize, amplitude: f64) -> Result<[f64; 2], Err
     model.impose_field("boundary", |point| field.displacement(point));
     model.add_forces(&forces(&mesh, &problem, field));
     let state = solve(&model, "manufactured solution", 1)?;
+    drop(model);
+    Ok((mesh, state, field))
+}
+
+/// Relative errors in L2 and in H1 on a distorted mesh.
+fn error(shape: CellShape, cells: usize, amplitude: f64) -> Result<[f64; 2], Error> {
+    let (mesh, state, field) = solved(shape, cells, amplitude)?;
     let mut sums = [[0.0; 2]; 2];
     each_point(&mesh, |cell, local, place, volume| {
         let u = &state.displacement;
@@ -181,36 +195,9 @@ fn forces(mesh: &Mesh, problem: &BoundaryProblem, field: Field) -> Vec<f64> {
 fn each_point(mesh: &Mesh, mut call: impl FnMut(usize, [f64; 2], [f64; 2], f64)) {
     for cell in 0..mesh.cell_count() {
         let shape = mesh.shape(cell);
-        for (local, weight) in fine_rule(shape) {
-            let values = shape.values(local);
-            let place = [0, 1].map(|axis| {
-                let nodes = mesh.cell(cell).iter().zip(&values);
-                nodes
-                    .map(|(node, value)| value * mesh.nodes[*node][axis])
-                    .sum()
-            });
-            call(cell, local, place, weight * mesh.gradients(cell, local).1);
+        for (local, weight) in shape.product_quadrature(&GAUSS_5) {
+            let area = weight * mesh.gradients(cell, local).1;
+            call(cell, local, mesh.place(cell, local), area);
         }
     }
-}
-
-/// Five Gauss points along each axis; triangles are squares with one side shrunk to a point.
-fn fine_rule(shape: CellShape) -> Vec<QuadraturePoint> {
-    const GAUSS: [(f64, f64); 5] = [
-        (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
-        (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
-        (0.0, 0.568_888_888_888_888_9),
-        (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
-        (0.906_179_845_938_664, 0.236_926_885_056_189_08),
-    ];
-    let pairs = GAUSS.iter().flat_map(|x| GAUSS.iter().map(move |y| (x, y)));
-    let point = |((x, wx), (y, wy)): (&(f64, f64), &(f64, f64))| {
-        if shape.is_triangle() {
-            let (s, t) = (0.5 * (1.0 + x), 0.5 * (1.0 + y));
-            ([s, t * (1.0 - s)], 0.25 * wx * wy * (1.0 - s))
-        } else {
-            ([*x, *y], wx * wy)
-        }
-    };
-    pairs.map(point).collect()
 }

@@ -15,10 +15,14 @@ use crate::boundary::Load;
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
+use crate::solve::State;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
 
 const INNER: f64 = 10.0;
 const OUTER: f64 = 20.0;
+
+/// Over Young's modulus.
+const LARGE_PRESSURE: f64 = 0.12;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
@@ -47,7 +51,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
         ));
     }
     let mesh = quarter(cells, CellShape::Quad9);
-    let [grown, round] = inflate(&mesh, 0.12 * modulus, 6)?;
+    let [grown, round] = inflate(&mesh, LARGE_PRESSURE * modulus, 6)?;
     outcome.checks.push(Check::new(
         format!(
             "inflated to {:.2} of the inner radius: out of round",
@@ -80,8 +84,14 @@ fn quarter(cells: usize, shape: CellShape) -> Mesh {
     mesh_of_blocks(&[block], shape)
 }
 
-/// The mean radial displacement of the inner edge in mm, and how far it is from round, relative.
-fn inflate(mesh: &Mesh, pressure: f64, steps: usize) -> Result<[f64; 2], Error> {
+/// A quarter of the ring, and its state at the large pressure.
+pub fn blown_up(cells: usize, shape: CellShape) -> Result<(Mesh, State), Error> {
+    let mesh = quarter(cells, shape);
+    let state = pressed(&mesh, LARGE_PRESSURE * sheet().law.youngs_modulus(), 6)?;
+    Ok((mesh, state))
+}
+
+fn pressed(mesh: &Mesh, pressure: f64, steps: usize) -> Result<State, Error> {
     let mut problem = held(&[
         ("symmetry_x", [Some(0.0), None]),
         ("symmetry_y", [None, Some(0.0)]),
@@ -91,7 +101,12 @@ fn inflate(mesh: &Mesh, pressure: f64, steps: usize) -> Result<[f64; 2], Error> 
         .push(("inside".into(), Load::Pressure(pressure)));
     let energy = problem.finite_elements(mesh);
     let model = problem.on(mesh, &energy).map_err(misfit)?;
-    let state = solve(&model, "ring", steps)?;
+    solve(&model, "ring", steps)
+}
+
+/// The mean radial displacement of the inner edge in mm, and how far it is from round, relative.
+fn inflate(mesh: &Mesh, pressure: f64, steps: usize) -> Result<[f64; 2], Error> {
+    let state = pressed(mesh, pressure, steps)?;
     let radii = mesh.groups()["inside"].nodes.iter().map(|node| {
         let place =
             [0, 1].map(|axis| mesh.nodes[*node][axis] + state.displacement[2 * node + axis]);

@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::boundary::{BoundaryProblem, Load, Support};
+use crate::boundary::{BoundaryProblem, Drive, Load, Support};
 use crate::document::{Bound, Section};
+use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Shape, import};
 use crate::study;
 use crate::units::Dimension;
@@ -12,21 +13,41 @@ use crate::units::Dimension;
 /// What the corrected field has to reach, in %.
 #[derive(Clone, Copy)]
 pub struct Tolerances {
+    /// Largest deviation in displacement from the finite elements.
     pub displacement_percent: f64,
+    /// Largest deviation in force.
     pub force_percent: f64,
+    /// Smallest correction of the springs' deviation in displacement.
     pub correction_percent: f64,
+}
+
+/// When local refinement ends.
+#[derive(Clone, Copy)]
+pub struct Refinement {
+    /// Estimated error in the energy norm in % at the worst load factor.
+    pub error_percent: f64,
+    /// Cells that are not exceeded.
+    pub most_cells: usize,
 }
 
 /// A specimen, its supports and loads, and how finely it is meshed.
 pub struct Specimen {
     /// For file names.
     pub name: String,
+    /// Thickness, material, supports and loads.
     pub problem: BoundaryProblem,
+    /// The card of its material.
+    pub card: Card,
+    /// Load factors, ascending.
     pub factors: Vec<f64>,
-    /// The group whose force is compared.
+    /// The group whose force is compared, or its displacement where the force is given.
     pub measured: String,
+    /// The finite elements' name.
     pub element_name: &'static str,
+    /// What the corrected field has to reach.
     pub tolerances: Tolerances,
+    /// How far the finite elements are refined locally; nothing where they have three meshes.
+    pub refinement: Option<Refinement>,
     outline: Outline,
 }
 
@@ -66,6 +87,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         "element",
         &CellShape::NAMES.map(|element| (element.0, element)),
     );
+    let refinement = read_refinement(&section, chosen.map(|(_, element)| element));
     section.unknown_keys();
     let section = root.section("specimen");
     let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
@@ -101,18 +123,21 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         correction_percent: percent("correction"),
     };
     section.unknown_keys();
+    let card = card?;
     let specimen = Specimen {
         name: name?.replace('-', "_"),
         problem: BoundaryProblem {
             thickness,
-            law: Arc::clone(&card?.law),
+            law: Arc::clone(&card.law),
             supports,
             loads,
         },
+        card,
         factors,
         measured,
         element_name: chosen?.0,
         tolerances,
+        refinement,
         outline: outline?,
     };
     specimen.check(root);
@@ -159,7 +184,45 @@ fn read_outline(
     })
 }
 
+/// What is measured at a group, with its unit.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Measured {
+    /// The force of the supports, where displacements are given.
+    Force,
+    /// The displacement of a grip along an axis, where its force is given.
+    Displacement(usize),
+}
+
+impl Measured {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::Displacement(_) => "grip displacement",
+        }
+    }
+
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Force => "N",
+            Self::Displacement(_) => "mm",
+        }
+    }
+}
+
 impl Specimen {
+    /// What is measured at the measured group.
+    pub fn measured(&self) -> Measured {
+        let supports = self.problem.supports.iter().rev();
+        let own = supports.filter(|(group, _)| *group == self.measured);
+        let axis = own.clone().find_map(|(_, support)| match support {
+            Support::Grip(drives) => drives
+                .iter()
+                .position(|drive| matches!(drive, Drive::Force(force) if *force != 0.0)),
+            _ => None,
+        });
+        axis.map_or(Measured::Force, Measured::Displacement)
+    }
+
     /// The mesh of the springs and of the corrector.
     pub fn lattice(&self) -> Mesh {
         match &self.outline {
@@ -194,6 +257,34 @@ impl Specimen {
         }
     }
 
+    /// The three-node triangles that local refinement begins with: as coarse as the coarsest of three meshes.
+    pub fn first_triangles(&self) -> Mesh {
+        match &self.outline {
+            Outline::Shape { shape, cells, .. } => shape.mesh(*cells / 2, CellShape::Triangle3),
+            Outline::File { mesh, .. } => mesh.triangulated(),
+        }
+    }
+
+    /// The mesh of the study's elements on some triangles.
+    pub fn elements_on(&self, triangles: &Mesh) -> Mesh {
+        let quadratic = match &self.outline {
+            Outline::Shape { element, .. } => element.degree() == 2,
+            Outline::File { quadratic, .. } => *quadratic,
+        };
+        match quadratic {
+            true => self.fitted(triangles.quadratic()),
+            false => triangles.clone(),
+        }
+    }
+
+    /// A refined mesh with its sides on the outline; that of a file is the polygon of its mesh.
+    pub fn fitted(&self, mut mesh: Mesh) -> Mesh {
+        if let Outline::Shape { shape, .. } = &self.outline {
+            shape.fit(&mut mesh);
+        }
+        mesh
+    }
+
     /// Records measures that do not fit and groups that the shape does not have.
     fn check(&self, root: &Section) {
         if !self.problem.thickness.is_finite() {
@@ -222,6 +313,16 @@ impl Specimen {
             root.fault("support", &fault.message, &hint);
             return;
         }
+        let forces = |(_, load): &(String, Load)| matches!(load, Load::Force(_));
+        if self.refinement.is_some() && self.problem.loads.iter().any(forces) {
+            let message =
+                "a force is shared by the nodes of its group, which local refinement changes";
+            root.fault(
+                "load",
+                message,
+                "write it as a traction, or leave out `adaptive`",
+            );
+        }
         if !mesh.groups().contains_key(&self.measured) {
             let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
             let message = format!("the specimen has no group `{}`", self.measured);
@@ -232,6 +333,22 @@ impl Specimen {
             );
         }
     }
+}
+
+fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refinement> {
+    let error = section.quantity("error", Dimension::Ratio, Bound::Within(1e-6, 0.5));
+    let most_cells = section.count("most_cells", 10, 200_000);
+    if !section.flag("adaptive") {
+        return None;
+    }
+    if element.is_some_and(|element| !element.is_triangle()) {
+        let message = "adaptive refinement is that of triangles";
+        section.fault("element", message, "take \"T2\" or \"T1\"");
+    }
+    Some(Refinement {
+        error_percent: 100.0 * error,
+        most_cells,
+    })
 }
 
 fn read_shape(section: &Section, name: &str) -> Shape {
@@ -270,11 +387,36 @@ fn components(section: &Section, dimension: Dimension) -> [Option<f64>; 2] {
     })
 }
 
+/// What moves a grip along an axis, by the keys of a displacement and of a force.
+fn drive(section: &Section, (displacement, force): (&'static str, &'static str)) -> Drive {
+    match (section.has(displacement), section.has(force)) {
+        (true, false) => {
+            Drive::Displacement(section.quantity(displacement, Dimension::Length, Bound::Any))
+        }
+        (false, true) => Drive::Force(section.quantity(force, Dimension::Force, Bound::Any)),
+        _ => {
+            let message = format!("a grip needs either {displacement} or {force}");
+            let hint = format!(
+                "{displacement} = \"0 mm\" holds it, {force} = \"0 N\" leaves it free to move"
+            );
+            section.fault("kind", &message, &hint);
+            Drive::Displacement(f64::NAN)
+        }
+    }
+}
+
 fn read_support(section: &Section) -> Option<(String, Support)> {
     let group = section.text("group");
     let support = match section.choice(
         "kind",
-        &[("clamp", 0), ("displacement", 1), ("rotation", 2)],
+        &[
+            ("clamp", 0),
+            ("displacement", 1),
+            ("roller", 2),
+            ("symmetry", 2),
+            ("grip", 3),
+            ("rotation", 4),
+        ],
     )? {
         0 => Support::Displacement([Some(0.0); 2]),
         1 => {
@@ -284,6 +426,8 @@ fn read_support(section: &Section) -> Option<(String, Support)> {
             }
             Support::Displacement(displacement)
         }
+        2 => Support::Roller,
+        3 => Support::Grip([("x", "x_force"), ("y", "y_force")].map(|keys| drive(section, keys))),
         _ => {
             let centre = section.quantities("centre", Dimension::Length, Bound::Any);
             let centre = centre.try_into().unwrap_or_else(|_| {

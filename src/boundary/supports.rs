@@ -1,0 +1,142 @@
+//! What supports do to the unknowns: how held ones move, which ones are tied, what pulls rigid grips.
+
+use std::collections::BTreeMap;
+
+use super::{Drive, Support};
+use crate::mesh::{Group, Mesh};
+
+/// How a held unknown moves.
+#[derive(Clone, Copy)]
+pub enum Motion {
+    /// In proportion to the load factor, in mm at 1.
+    Straight(f64),
+    /// As a coordinate of a point at a place relative to the centre, in mm, turned by an angle at 1.
+    Turn {
+        place: [f64; 2],
+        axis: usize,
+        angle: f64,
+    },
+}
+
+impl Motion {
+    pub fn at(self, factor: f64) -> f64 {
+        match self {
+            Self::Straight(displacement) => factor * displacement,
+            Self::Turn { place, axis, angle } => {
+                let (sine, cosine) = (factor * angle).sin_cos();
+                // 1 − cos without cancellation.
+                let lost = 2.0 * (0.5 * factor * angle).sin().powi(2);
+                debug_assert!((lost - (1.0 - cosine)).abs() < 1e-14);
+                let across = [-sine * place[1], sine * place[0]];
+                across[axis] - lost * place[axis]
+            }
+        }
+    }
+}
+
+impl Support {
+    /// The displacement in mm of a node at a place in mm, at a load factor, along an axis that the support holds.
+    pub fn displacement(&self, place: [f64; 2], axis: usize, factor: f64) -> Option<f64> {
+        motion(self, place, axis).map(|motion| motion.at(factor))
+    }
+}
+
+/// All supports of a problem on the unknowns of a mesh.
+#[derive(Default)]
+pub struct Supported {
+    /// Motion of each unknown that is held.
+    pub held: BTreeMap<usize, Motion>,
+    /// The unknown that each tied one follows.
+    pub ties: BTreeMap<usize, usize>,
+    /// Forces in N on the unknowns that others follow.
+    pub forces: Vec<(usize, f64)>,
+}
+
+impl Supported {
+    /// Adds a support of a group; it replaces earlier ones on the nodes that they share.
+    ///
+    /// # Errors
+    /// Says why the group cannot be held so.
+    pub fn add(&mut self, mesh: &Mesh, group: &Group, support: &Support) -> Result<(), String> {
+        for axis in [0, 1] {
+            if let Support::Grip(drives) = support
+                && let Drive::Force(force) = drives[axis]
+            {
+                self.tie(group, axis, force)?;
+                continue;
+            }
+            let slides = *support == Support::Roller && normal(mesh, group)? != axis;
+            for node in group.nodes.iter().filter(|_| !slides) {
+                if let Some(motion) = motion(support, mesh.nodes[*node], axis) {
+                    self.held.insert(2 * node + axis, motion);
+                }
+            }
+        }
+        self.check_ties(mesh)
+    }
+
+    /// Ties the nodes of a group along an axis to the first of them, which takes the force.
+    fn tie(&mut self, group: &Group, axis: usize, force: f64) -> Result<(), String> {
+        let mut unknowns = group.nodes.iter().map(|node| 2 * node + axis);
+        let first = unknowns.next().ok_or("has no nodes")?;
+        let known = self.ties.clone();
+        let masters: Vec<usize> = self.forces.iter().map(|(unknown, _)| *unknown).collect();
+        for unknown in unknowns.clone().chain([first]) {
+            if known.contains_key(&unknown) || masters.contains(&unknown) {
+                return Err(
+                    "shares nodes with another grip; leave them out of one of the groups".into(),
+                );
+            }
+        }
+        self.ties.extend(unknowns.map(|unknown| (unknown, first)));
+        self.forces.push((first, force));
+        Ok(())
+    }
+
+    /// A grip that is pulled must not be held by other supports as well.
+    fn check_ties(&self, mesh: &Mesh) -> Result<(), String> {
+        let masters = self.forces.iter().map(|(unknown, _)| unknown);
+        let mut tied = self.ties.keys().chain(masters);
+        match tied.find(|unknown| self.held.contains_key(unknown)) {
+            None => Ok(()),
+            Some(unknown) => Err(format!(
+                "shares {} between a grip with a force and another support; leave the node out of one of the groups, or give the grip a displacement there",
+                mesh.describe_unknown(*unknown)
+            )),
+        }
+    }
+}
+
+/// The motion that a support gives a node along an axis.
+fn motion(support: &Support, node: [f64; 2], axis: usize) -> Option<Motion> {
+    match *support {
+        Support::Displacement(displacement) => displacement[axis].map(Motion::Straight),
+        Support::Roller => Some(Motion::Straight(0.0)),
+        Support::Rotation { centre, angle } => {
+            let place = [node[0] - centre[0], node[1] - centre[1]];
+            Some(Motion::Turn { place, axis, angle })
+        }
+        Support::Grip(drives) => match drives[axis] {
+            Drive::Displacement(displacement) => Some(Motion::Straight(displacement)),
+            Drive::Force(_) => None,
+        },
+    }
+}
+
+/// The axis across the straight line, parallel to the other axis, on which a group lies.
+fn normal(mesh: &Mesh, group: &Group) -> Result<usize, String> {
+    let extent = |axis: usize| {
+        let places = group.nodes.iter().map(|node| mesh.nodes[*node][axis]);
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        high - low
+    };
+    let extents = [extent(0), extent(1)];
+    let axis = usize::from(extents[1] < extents[0]);
+    if extents[axis] <= 1e-9 * extents[1 - axis] {
+        return Ok(axis);
+    }
+    Err("is no straight line parallel to an axis, which a roller or an axis of symmetry needs; turn the mesh, or \
+         hold the group with the kind \"displacement\"".into())
+}

@@ -1,0 +1,222 @@
+//! `gelbench compare`: the models of a study beside a displacement field of another program.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::{Outcome, export::not_for_other_codes, print, progress_bar, warn};
+use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField, Sites};
+use crate::error::Error;
+use crate::material::HyperelasticLaw;
+use crate::output::{self, Block, vtk};
+use crate::study::{self, Study};
+use crate::validation::{self, specimen};
+use crate::{problem::Problem, run};
+
+/// What the command line says about a comparison.
+pub struct Options {
+    pub study: PathBuf,
+    pub field: PathBuf,
+    pub factor: Option<f64>,
+    pub unit: f64,
+    pub array: Option<String>,
+    pub output: Option<PathBuf>,
+}
+
+/// What is compared, before and after it is computed.
+struct Compared {
+    title: String,
+    law: Arc<dyn HyperelasticLaw>,
+    thickness: f64,
+    factor: f64,
+    imported: Imported,
+    sites: Sites,
+    fields: [ModelField; 3],
+}
+
+/// Compares, prints, and writes what is asked for.
+pub fn run(options: Options) -> Outcome {
+    let compared = compute(&options)?;
+    let fields = compared.fields.iter();
+    let differences = fields.map(|field| compared.sites.difference(field));
+    let differences: Result<Vec<Difference>, String> = differences.collect();
+    let differences = differences.map_err(|reason| {
+        let message = format!("the field of {} {reason}", options.field.display());
+        Error::input(
+            message,
+            "nothing can be related to it; choose a step with a load",
+        )
+    })?;
+    print(&summary(&compared, &differences))?;
+    if let Some(folder) = &options.output {
+        write(&compared, &differences, &options.field, folder)?;
+        print(&format!("report: {}\n", folder.join("report.md").display()))?;
+    }
+    Ok(0)
+}
+
+/// Reads both files before anything is computed.
+fn compute(options: &Options) -> Result<Compared, Error> {
+    let path = &options.study;
+    let text = study::read(path)?;
+    let read = |factor: f64| {
+        let settings = ImportSettings {
+            unit: options.unit,
+            array: options.array.clone(),
+            factor,
+        };
+        Imported::read(&options.field, &settings)
+    };
+    let place = |imported: &Imported, lattice| {
+        imported.sites(lattice).map_err(|reason| {
+            let message = format!("{}: {reason}", options.field.display());
+            Error::input(
+                message,
+                "give places at rest in the axes of the study, and their unit with --unit",
+            )
+        })
+    };
+    let bar = progress_bar(0);
+    let told = |what: &str| {
+        bar.set_message(what.to_owned());
+        bar.tick();
+    };
+    let compared = match validation::case_of(&path.display().to_string(), &text)? {
+        None => {
+            let study = Study::of_file(path, text)?;
+            warn(&study.warnings);
+            let last = study.problem.stretches[study.problem.stretches.len() - 1];
+            let factor = options.factor.unwrap_or(last);
+            let imported = read(factor)?;
+            let Problem {
+                size,
+                thickness,
+                ref law,
+                ..
+            } = study.problem;
+            let lattice =
+                crate::mesh::Mesh::plate(size, study.cells, crate::mesh::CellShape::Quad4);
+            Compared {
+                title: study.title.clone(),
+                law: Arc::clone(law),
+                thickness,
+                factor,
+                sites: place(&imported, &lattice)?,
+                imported,
+                fields: run::fields(study, factor, &|model, _| told(model))?,
+            }
+        }
+        Some(case) if case.kind == specimen::KIND => {
+            let (title, specimen, warnings) = specimen::load(case, path, &text)?;
+            warn(&warnings);
+            let last = specimen.factors[specimen.factors.len() - 1];
+            let factor = options.factor.unwrap_or(last);
+            let imported = read(factor)?;
+            Compared {
+                title,
+                law: Arc::clone(&specimen.problem.law),
+                thickness: specimen.problem.thickness,
+                factor,
+                sites: place(&imported, &specimen.lattice())?,
+                imported,
+                fields: specimen::fields(specimen, factor, &told)?,
+            }
+        }
+        Some(case) => return Err(not_for_other_codes(case)),
+    };
+    bar.finish_and_clear();
+    Ok(compared)
+}
+
+fn summary(compared: &Compared, differences: &[Difference]) -> String {
+    let mut text = format!(
+        "deviation from the imported field at the load factor {} ({})\n\
+         model             displacement [%]  largest difference [mm]  at x, y [mm]\n",
+        compared.factor,
+        compared.imported.describe()
+    );
+    for (field, difference) in compared.fields.iter().zip(differences) {
+        let [x, y] = difference.place;
+        text += &format!(
+            "{:<16}  {:>16.4}  {:>23.5}  {x:.3}, {y:.3}\n",
+            field.model, difference.percent, difference.largest
+        );
+    }
+    text
+}
+
+fn write(
+    compared: &Compared,
+    differences: &[Difference],
+    file: &Path,
+    folder: &Path,
+) -> Result<(), Error> {
+    output::prepare(folder)?;
+    let sheet = vtk::Sheet {
+        law: &*compared.law,
+        thickness: compared.thickness,
+    };
+    for field in &compared.fields {
+        let bytes = match &compared.imported {
+            Imported::OnMesh(imported) => {
+                let expected = imported
+                    .mesh
+                    .displacement_on(&imported.displacement, &field.mesh);
+                vtk::imported_file(
+                    &compared.title,
+                    &sheet,
+                    &field.mesh,
+                    &field.displacement,
+                    &expected,
+                )
+            }
+            Imported::AtPoints {
+                places,
+                displacement,
+            } => vtk::points_file(
+                &compared.title,
+                places,
+                &compared.sites.at(field),
+                displacement,
+            ),
+        };
+        let name = format!("{}.vtu", field.model.replace([' ', '-'], "_"));
+        output::save(&folder.join("vtk").join(name), &bytes)?;
+    }
+    output::write_document(folder, "report", &report(compared, differences, file), &[])?;
+    Ok(())
+}
+
+fn report(compared: &Compared, differences: &[Difference], file: &Path) -> Vec<Block> {
+    let weighting = match compared.imported {
+        Imported::OnMesh(_) => "at the nodes of the lattice, weighted by area",
+        Imported::AtPoints { .. } => "at the imported points, all with the same weight",
+    };
+    let row = |(field, difference): (&ModelField, &Difference)| {
+        let [x, y] = difference.place;
+        vec![
+            field.model.to_owned(),
+            field.mesh.describe(),
+            format!("{:.4}", difference.percent),
+            format!("{:.5}", difference.largest),
+            format!("({x:.3}, {y:.3})"),
+        ]
+    };
+    let head = [
+        "model",
+        "mesh",
+        "displacement [%]",
+        "largest difference [mm]",
+        "at (x, y) [mm]",
+    ];
+    vec![
+        Block::Heading(1, compared.title.clone()),
+        Block::Paragraph(format!(
+            "Deviation of the displacement from an imported field at the load factor {}: {}, {}. Relative L2 {weighting}.",
+            compared.factor,
+            file.file_name().unwrap_or_default().to_string_lossy(),
+            compared.imported.describe()
+        )),
+        Block::table(&head, compared.fields.iter().zip(differences).map(row)),
+        Block::Paragraph(format!("gelbench {}", env!("CARGO_PKG_VERSION"))),
+    ]
+}

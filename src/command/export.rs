@@ -1,0 +1,128 @@
+//! `gelbench export`: a study as the input file of another code.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use super::{Outcome, print, warn};
+use crate::boundary::{BoundaryProblem, Support};
+use crate::error::{Diagnostic, Error};
+use crate::finite_element::FiniteElements;
+use crate::mesh::Side;
+use crate::output::hand_over::{Code, HandOver, Written, hand_over};
+use crate::study::{self, Study};
+use crate::validation::{self, Case, specimen};
+use crate::{output, validation::specimen::Specimen};
+
+/// Which of the three finite-element meshes of a study goes out.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Level {
+    /// The coarsest
+    Coarse,
+    /// The one between
+    Middle,
+    /// The finest, with which the other models are compared
+    Fine,
+}
+
+/// What the command line says about an export.
+pub struct Options {
+    pub study: PathBuf,
+    pub code: Code,
+    pub output: Option<PathBuf>,
+    pub level: Level,
+    pub bulk_ratio: f64,
+}
+
+/// Writes the file.
+pub fn run(options: &Options) -> Outcome {
+    if !(options.bulk_ratio >= 10.0 && options.bulk_ratio <= 1e8) {
+        let message = format!("a bulk ratio of {} is not possible", options.bulk_ratio);
+        return Err(Error::input(
+            message,
+            "it lies between 10 and 1e8; 1000 is usual",
+        ));
+    }
+    let path = &options.study;
+    let text = study::read(path)?;
+    let written = match validation::case_of(&path.display().to_string(), &text)? {
+        None => plate(path, text, options)?,
+        Some(case) if case.kind == specimen::KIND => {
+            let (title, specimen, warnings) = specimen::load(case, path, &text)?;
+            warn(&warnings);
+            shape(&title, &specimen, options)?
+        }
+        Some(case) => return Err(not_for_other_codes(case)),
+    };
+    let stem = path
+        .file_stem()
+        .map_or_else(String::new, |stem| stem.to_string_lossy().into());
+    let code = options.code;
+    let name = format!("{stem}_{}.{}", code.key(), code.ending());
+    let usual = || Path::new("output").join(&stem).join(name);
+    let target = options.output.clone().unwrap_or_else(usual);
+    output::save(&target, written.text.as_bytes())?;
+    for remark in written.remarks {
+        warn(&[Diagnostic::warning("", remark)]);
+    }
+    print(&format!("{} for {}\n", target.display(), code.name()))?;
+    Ok(0)
+}
+
+pub fn not_for_other_codes(case: &Case) -> Error {
+    Error::input(
+        format!(
+            "a study of the kind `{}` is no boundary value problem of one sheet",
+            case.kind
+        ),
+        "take a plate study or one of the kind `specimen`",
+    )
+}
+
+fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<Written, Error> {
+    let mesh = match (specimen.refinement, options.level) {
+        (_, Level::Fine) => specimen::finest_mesh(specimen)?,
+        (None, level) => specimen.reference_meshes()[level as usize].clone(),
+        (Some(_), _) => {
+            let message = "a study with `adaptive = true` has one mesh, the refined one";
+            return Err(Error::input(message, "leave out --mesh"));
+        }
+    };
+    let given = HandOver {
+        title,
+        problem: &specimen.problem,
+        card: &specimen.card,
+        mesh: &mesh,
+        factors: &specimen.factors,
+        bulk_ratio: options.bulk_ratio,
+    };
+    hand_over(&given, options.code)
+}
+
+fn plate(path: &Path, text: String, options: &Options) -> Result<Written, Error> {
+    let study = Study::of_file(path, text)?;
+    warn(&study.warnings);
+    let plate = &study.problem;
+    let cells = study.reference_meshes()[options.level as usize];
+    let grip = |side: Side, along: f64| {
+        (
+            side.name().to_owned(),
+            Support::Displacement([Some(along), Some(0.0)]),
+        )
+    };
+    let problem = BoundaryProblem {
+        thickness: plate.thickness,
+        law: plate.law.clone(),
+        supports: vec![grip(Side::Left, 0.0), grip(Side::Right, plate.size[0])],
+        loads: Vec::new(),
+    };
+    let given = HandOver {
+        title: &study.title,
+        problem: &problem,
+        card: &study.card,
+        mesh: &FiniteElements::graded(plate, cells, study.element, study.grading).mesh,
+        factors: &plate.stretches,
+        bulk_ratio: options.bulk_ratio,
+    };
+    hand_over(&given, options.code)
+}

@@ -1,0 +1,209 @@
+use super::*;
+use crate::mesh::CellShape;
+
+const SETTINGS: ImportSettings = ImportSettings {
+    unit: 1.0,
+    array: None,
+    factor: 0.5,
+};
+
+/// ux = 0.1 X + 0.02 Y, uy = −0.05 Y.
+fn field([x, y]: [f64; 2]) -> [f64; 2] {
+    [0.1 * x + 0.02 * y, -0.05 * y]
+}
+
+fn model(cells: [usize; 2]) -> ModelField {
+    let mesh = Mesh::plate([30.0, 10.0], cells, CellShape::Quad4);
+    let displacement = mesh.nodes.iter().flat_map(|node| field(*node)).collect();
+    ModelField {
+        model: "test",
+        mesh,
+        displacement,
+    }
+}
+
+fn written(name: &str, text: &str) -> tempfile::TempPath {
+    let mut builder = tempfile::Builder::new();
+    let file = builder.suffix(name).tempfile().unwrap();
+    std::fs::write(file.path(), text).unwrap();
+    file.into_temp_path()
+}
+
+fn refusal(name: &str, text: &str) -> String {
+    match Imported::read(&written(name, text), &SETTINGS) {
+        Err(told) => told.to_string(),
+        Ok(imported) => imported.sites(&model([6, 2]).mesh).unwrap_err(),
+    }
+}
+
+/// A file as CalculiX writes it for a sheet of 2 × 1 cells of solids: z = ±1, the same displacements above each other.
+fn frd(scale: f64, last_x: &str) -> String {
+    let mut text = String::from(
+        "    1C\n    1Utest\n    2C                            12                                     1\n",
+    );
+    let mut nodes = Vec::new();
+    for z in [-1.0, 1.0] {
+        for y in [0.0, 10.0] {
+            for x in [0.0, 15.0, 30.0] {
+                nodes.push([x, y, z]);
+            }
+        }
+    }
+    for (i, [x, y, z]) in nodes.iter().enumerate() {
+        text += &format!(
+            " -1{:>10}{:>12}{:>12}{:>12}\n",
+            i + 1,
+            scale * x,
+            scale * y,
+            z
+        );
+    }
+    text += " -3\n    3C                             2                                     1\n";
+    for (number, corner) in [(1, 1), (2, 2)] {
+        text += &format!(" -1{number:>10}    1    0    1\n -2");
+        for node in [corner, corner + 1, corner + 4, corner + 3] {
+            text += &format!("{node:>10}");
+        }
+        for node in [corner, corner + 1, corner + 4, corner + 3] {
+            text += &format!("{:>10}", node + 6);
+        }
+        text.push('\n');
+    }
+    text += " -3\n";
+    for (time, factor) in [("2.50000E-01", 0.5), ("5.00000E-01", 1.0)] {
+        text += "    1PSTEP                         1           1           1\n";
+        text += &format!(
+            "  100CL  101{time:>12}{:>12}                     0    1           1\n",
+            12
+        );
+        text += " -4  DISP        4    1\n -5  D1          1    2    1    0\n";
+        for (i, [x, y, z]) in nodes.iter().enumerate() {
+            let [ux, uy] = field([*x, *y]).map(|u| scale * factor * u);
+            // Above and below the middle by as much: the mean is the sheet's.
+            let ux = format!("{:.5E}", ux + scale * 0.01 * z);
+            let ux = if i == 11 && factor == 1.0 && !last_x.is_empty() {
+                last_x
+            } else {
+                &ux
+            };
+            text += &format!(
+                " -1{:>10}{:>12}{:>12}{:>12}\n",
+                i + 1,
+                ux,
+                format!("{uy:.5E}"),
+                "0.00000E+00"
+            );
+        }
+        text += " -3\n";
+    }
+    text + " 9999\n"
+}
+
+#[test]
+fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
+    let model = model([6, 2]);
+    let imported = Imported::read(&written(".frd", &frd(1.0, "")), &SETTINGS).unwrap();
+    let difference = imported
+        .sites(&model.mesh)
+        .unwrap()
+        .difference(&model)
+        .unwrap();
+    assert!(difference.percent < 1e-3, "{difference:?}");
+    // The first step is half of it.
+    let first = ImportSettings {
+        factor: 0.25,
+        ..SETTINGS
+    };
+    let imported = Imported::read(&written(".frd", &frd(1.0, "")), &first).unwrap();
+    let difference = imported
+        .sites(&model.mesh)
+        .unwrap()
+        .difference(&model)
+        .unwrap();
+    assert!((difference.percent - 100.0).abs() < 1e-3, "{difference:?}");
+    assert_eq!(difference.place, [30.0, 10.0]);
+    assert!(
+        (difference.largest - 0.5 * 3.2_f64.hypot(0.5)).abs() < 1e-5,
+        "{difference:?}"
+    );
+    // The same in metres.
+    let metres = ImportSettings {
+        unit: 1000.0,
+        ..SETTINGS
+    };
+    let imported = Imported::read(&written(".frd", &frd(1e-3, "")), &metres).unwrap();
+    let difference = imported
+        .sites(&model.mesh)
+        .unwrap()
+        .difference(&model)
+        .unwrap();
+    assert!(difference.percent < 1e-3, "{difference:?}");
+}
+
+#[test]
+fn points_of_a_table_are_compared_where_they_are() {
+    let table =
+        "stretch,X_cm,Y_cm,ux_mm,uy_mm\n0.25,1,0.5,9,9\n0.5,1,0.5,1.1,-0.25\n0.5,2,0.5,2.1,-0.45\n";
+    let imported = Imported::read(&written(".csv", table), &SETTINGS).unwrap();
+    let sites = imported.sites(&model([6, 2]).mesh).unwrap();
+    let difference = sites.difference(&model([6, 2])).unwrap();
+    // Off by 0.2 mm at (20, 5) mm alone.
+    assert!((difference.largest - 0.2).abs() < 1e-12 && difference.place == [20.0, 5.0]);
+    let size = (1.1_f64 * 1.1 + 0.25 * 0.25 + 2.1 * 2.1 + 0.45 * 0.45).sqrt();
+    assert!(
+        (difference.percent - 20.0 / size).abs() < 1e-10,
+        "{difference:?}"
+    );
+}
+
+#[test]
+fn fields_that_do_not_fit_are_refused_with_the_reason() {
+    let head = "X_mm,Y_mm,ux_mm,uy_mm\n";
+    for (name, text, told) in [
+        (
+            ".frd",
+            frd(1e-3, ""),
+            "measures 0.0300 × 0.0100 mm, the specimen 30.0000 × 10.0000 mm",
+        ),
+        (".frd", frd(1.0, "NaN"), "that is no number"),
+        (
+            ".frd",
+            frd(1.0, "").replace("5.00000E-01    ", "7.50000E-01    "),
+            "no step at the time 0.5; its times are 0.25, 0.75",
+        ),
+        (
+            ".frd",
+            frd(1.0, "").replace("DISP", "STRE"),
+            "holds no displacements",
+        ),
+        (
+            ".frd",
+            frd(1.0, "").replace("    1    0    1\n", "    3    0    1\n"),
+            "elements of the kind 3",
+        ),
+        (
+            ".csv",
+            format!("{head}31,20,1,1\n"),
+            "does not reach the point at (31.0000, 20.0000) mm",
+        ),
+        (".csv", format!("{head}3,2,nan,1\n"), "nan"),
+        (".csv", "X_mm,Y_mm,ux_mm\n3,2,1\n".into(), "no column `uy`"),
+        (
+            ".csv",
+            "X_mm,Y_mm,ux_MPa,uy_mm\n3,2,1,1\n".into(),
+            "no unit of length",
+        ),
+        (
+            ".csv",
+            "stretch,X_mm,Y_mm,ux_mm,uy_mm\n0.7,3,2,1,1\n".into(),
+            "no rows for the load factor 0.5",
+        ),
+        (".txt", String::new(), "is no .vtu, .vtk, .frd or .csv file"),
+    ] {
+        let found = refusal(name, &text);
+        assert!(
+            found.to_lowercase().contains(&told.to_lowercase()),
+            "{told}: {found}"
+        );
+    }
+}

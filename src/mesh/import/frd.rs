@@ -1,0 +1,200 @@
+//! CalculiX' result files, ASCII: nodes (`2C`), elements (`3C`) and the displacements of each step (`DISP`).
+//!
+//! ```text
+//!     2C …                        nodes:      -1, number, x, y, z in columns of 3, 10, 12, 12, 12
+//!     3C …                        elements:   -1, number, kind;  -2, nodes
+//!   100CL  101 5.00000E-01 …      a step with its time
+//!  -4  DISP …                     displacements: -1, node, D1, D2, D3
+//! ```
+//!
+//! CalculiX makes solids of the elements of a sheet. Where the file holds them (`OUTPUT=3D`), their lower faces become
+//! the cells, and the displacement of a node is the mean of all nodes above it.
+//!
+//! # References
+//! K. Wittig, CalculiX GraphiX 2.20, "Result Format"
+
+use std::collections::HashMap;
+
+use super::Raw;
+use crate::mesh::CellShape;
+
+/// A file, before a step is chosen.
+#[derive(Default)]
+pub struct Results {
+    /// Places and cells.
+    pub raw: Raw,
+    /// The time and the displacements of every step, in the order of the file.
+    pub steps: Vec<(f64, HashMap<u64, [f64; 2]>)>,
+}
+
+/// Elements by their numbers: kind of the cell, and whether it is the lower face of a solid of so many nodes.
+const KINDS: [(usize, CellShape, usize); 8] = [
+    (1, CellShape::Quad4, 8),
+    (2, CellShape::Triangle3, 6),
+    (4, CellShape::Quad8, 20),
+    (5, CellShape::Triangle6, 15),
+    (7, CellShape::Triangle3, 3),
+    (8, CellShape::Triangle6, 6),
+    (9, CellShape::Quad4, 4),
+    (10, CellShape::Quad8, 8),
+];
+
+/// Which block the lines belong to.
+enum Block {
+    Other,
+    Nodes,
+    Elements,
+    Displacements,
+}
+
+/// Reads the text of a file.
+///
+/// # Errors
+/// Says what is wrong or cannot be read.
+pub fn read(text: &str) -> Result<Results, String> {
+    let mut results = Results::default();
+    let (mut block, mut time, mut solid) = (Block::Other, None, false);
+    // Width of a node's number: the short format has five digits, the long one ten.
+    let mut width = 10;
+    let mut element: Option<(usize, Vec<u64>)> = None;
+    for (index, line) in text.lines().enumerate() {
+        let fault = |what: &str| format!("has no {what} in line {}", index + 1);
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match (&block, words.as_slice()) {
+            (_, ["2C" | "3C", .., format]) => {
+                width = digits(format)?;
+                block = match words[0] {
+                    "2C" => Block::Nodes,
+                    _ => Block::Elements,
+                };
+            }
+            (_, [first, ..]) if first.starts_with("100C") => {
+                time = line.get(12..24).and_then(|field| field.trim().parse().ok());
+                width = digits(words[words.len() - 1])?;
+            }
+            (_, ["-4", "DISP", ..]) => {
+                let time = time.ok_or_else(|| fault("time for displacements"))?;
+                results.steps.push((time, HashMap::new()));
+                block = Block::Displacements;
+            }
+            (_, ["-3", ..]) => {
+                solid |= keep(&mut results.raw, element.take())?;
+                block = Block::Other;
+            }
+            (Block::Nodes, ["-1", ..]) => {
+                let [x, y, z] = numbers(line, width).ok_or_else(|| fault("place of a node"))?;
+                let node = node(line, width).ok_or_else(|| fault("number of a node"))?;
+                results.raw.places.insert(node, [x, y, z]);
+            }
+            (Block::Displacements, ["-1", ..]) => {
+                let [x, y, _] = numbers(line, width).ok_or_else(|| fault("displacement"))?;
+                let node = node(line, width).ok_or_else(|| fault("number of a node"))?;
+                let (_, field) = results.steps.last_mut().expect("a step was begun");
+                field.insert(node, [x, y]);
+            }
+            (Block::Elements, ["-1", _, kind, ..]) => {
+                solid |= keep(&mut results.raw, element.take())?;
+                element = Some((kind.parse().map_err(|_| fault("kind"))?, Vec::new()));
+            }
+            (Block::Elements, ["-2", ..]) => {
+                let own = &mut element.as_mut().ok_or_else(|| fault("element"))?.1;
+                let nodes = line.as_bytes()[3..].chunks(width);
+                for field in nodes {
+                    let field = std::str::from_utf8(field).unwrap_or_default().trim();
+                    own.push(field.parse().map_err(|_| fault("number of a node"))?);
+                }
+            }
+            _ => {}
+        }
+    }
+    if results.steps.is_empty() {
+        return Err("holds no displacements (DISP); ask CalculiX for *NODE FILE with U".into());
+    }
+    if solid {
+        flatten(&mut results)?;
+    }
+    Ok(results)
+}
+
+fn digits(format: &str) -> Result<usize, String> {
+    match format {
+        "0" => Ok(5),
+        "1" => Ok(10),
+        _ => Err("is binary or no result file; use *NODE FILE, which writes ASCII".into()),
+    }
+}
+
+fn node(line: &str, width: usize) -> Option<u64> {
+    line.get(3..3 + width)?.trim().parse().ok()
+}
+
+/// Three numbers of twelve columns each; what is left out at the end of a line is zero.
+fn numbers(line: &str, width: usize) -> Option<[f64; 3]> {
+    let mut values = [0.0; 3];
+    for (i, value) in values.iter_mut().enumerate() {
+        let start = 3 + width + 12 * i;
+        let field = line.get(start..(start + 12).min(line.len()));
+        match field.map(str::trim) {
+            Some("") | None if i == 2 => {}
+            field => *value = field?.parse().ok()?,
+        }
+    }
+    Some(values)
+}
+
+/// Keeps an element as a cell; says whether it was a solid.
+fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, String> {
+    let Some((number, nodes)) = element else {
+        return Ok(false);
+    };
+    let kind = KINDS.iter().find(|(known, ..)| *known == number);
+    let Some((_, shape, count)) = kind else {
+        return Err(format!(
+            "has elements of the kind {number}; a sheet consists of triangles, quadrilaterals, wedges and hexahedra"
+        ));
+    };
+    if nodes.len() != *count {
+        return Err(format!(
+            "has an element of {} nodes where {count} belong",
+            nodes.len()
+        ));
+    }
+    // The middles of the lower face follow the corners of both faces.
+    let (corners, own) = (shape.corners(), shape.nodes());
+    let solid = *count > own;
+    let mut cell = nodes[..corners].to_vec();
+    let middles = if solid { 2 * corners } else { corners };
+    cell.extend(&nodes[middles..middles + own - corners]);
+    raw.cells.push((*shape, cell));
+    Ok(solid)
+}
+
+/// Takes the mean displacement of all nodes above each other.
+fn flatten(results: &mut Results) -> Result<(), String> {
+    let places = &results.raw.places;
+    let key = |place: &[f64; 3]| [place[0] + 0.0, place[1] + 0.0].map(f64::to_bits);
+    let mut columns: HashMap<[u64; 2], Vec<u64>> = HashMap::new();
+    for (node, place) in places {
+        columns.entry(key(place)).or_default().push(*node);
+    }
+    if columns.len() * 2 > places.len() {
+        return Err("holds solids that are no single layer over a sheet".into());
+    }
+    for nodes in columns.values_mut() {
+        nodes.sort_unstable(); // sums in one order give the same digits on every run
+    }
+    for (_, field) in &mut results.steps {
+        let mean = |node: &u64| {
+            let column = &columns[&key(&places[node])];
+            let known: Vec<_> = column.iter().filter_map(|node| field.get(node)).collect();
+            let sum = |axis: usize| known.iter().map(|u| u[axis]).sum::<f64>();
+            (*node, [0, 1].map(|axis| sum(axis) / known.len() as f64))
+        };
+        *field = field
+            .keys()
+            .filter(|node| places.contains_key(node))
+            .map(mean)
+            .collect();
+    }
+    Ok(())
+}

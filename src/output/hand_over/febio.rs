@@ -1,0 +1,590 @@
+//! The `.feb` file of FEBio 4.
+//!
+//! The sheet is one layer of solids over half its thickness, whose lower face is the middle of the sheet and is
+//! held along z; the upper face is free. A column of nodes stands on each node of the sheet: two of them at linear
+//! cells and on the mid-sides of quadratic ones, three elsewhere.
+//!
+//! | law | FEBio | parameters |
+//! |---|---|---|
+//! | neo-Hooke, Mooney–Rivlin | `Mooney-Rivlin` | c1 = C₁₀, c2 = C₀₁ |
+//! | polynomial of second order | `polynomial` | cij = Cᵢⱼ, U = D1 (J − 1)², D1 = K/2 |
+//! | Ogden | `Ogden`, Σ c/m² (…) | c = 2 μ, m = α |
+//! | Gent | `Gent` | G = μ, Jm = Jₘ |
+//! | Veronda–Westmann | `Veronda-Westmann` | c1 = C, c2 = β |
+//! | Holzapfel–Gasser–Ogden | `Holzapfel-Gasser-Ogden` | c = μ; two families at ±γ, one as two of half the stiffness at γ = 0 in turned axes |
+//!
+//! Not handed over: Yeoh's law, of which FEBio 4 (sources of January 2026) computes another stress than its energy
+//! has, and Arruda and Boyce's, in which its coefficients are i times those of the publication.
+//!
+//! # References
+//! S. A. Maas et al., FEBio User's Manual 4.x; `FEBioMech` in <https://github.com/febiosoftware/FEBio>
+
+use std::collections::BTreeMap;
+
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
+
+use super::material::{Material, refused};
+use super::{Held, Model, ascii, number};
+use crate::error::Error;
+use crate::mesh::CellShape;
+
+/// Steps of time within a load factor to begin with.
+const TIME_STEPS: u32 = 10;
+/// Points of the path of a turn between two load factors.
+const TURN_POINTS: u32 = 8;
+
+/// The input file of a model.
+///
+/// # Errors
+/// [`Error::Input`] when FEBio lacks the law.
+pub fn write(model: &Model) -> Result<String, Error> {
+    let (law, parameters) = material(model)?;
+    let columns = Columns::new(model);
+    let mut file = Xml::new();
+    for line in std::iter::once(ascii(model.given.title)).chain(model.head()) {
+        file.comment(&line);
+    }
+    file.open("febio_spec", &[("version", "4.0")]);
+    file.empty("Module", &[("type", "solid")]);
+    file.open("Material", &[]);
+    file.open(
+        "material",
+        &[("id", "1"), ("name", "material_1"), ("type", law)],
+    );
+    for (name, value) in &parameters {
+        file.text(name, &[], &number(*value));
+    }
+    material_axes(model, &mut file);
+    file.close("material");
+    file.close("Material");
+    mesh(model, &columns, &mut file);
+    let mut curves = Curves::default();
+    boundary(model, &columns, &mut curves, &mut file);
+    loads(model, &columns, &mut file);
+    steps(model, &mut file);
+    curves.write(&mut file);
+    file.open("Output", &[]);
+    file.open("plotfile", &[("type", "febio")]);
+    file.empty("var", &[("type", "displacement")]);
+    file.empty("var", &[("type", "stress")]);
+    file.empty("var", &[("type", "reaction forces")]);
+    file.close("plotfile");
+    file.open("logfile", &[]);
+    file.empty("node_data", &[("data", "x;y;z;ux;uy;uz"), ("delim", ",")]);
+    file.close("logfile");
+    file.close("Output");
+    file.close("febio_spec");
+    Ok(file.finish())
+}
+
+/// Parameters of a material by name.
+type Parameters = Vec<(String, f64)>;
+
+/// The material's type and parameters.
+fn material(model: &Model) -> Result<(&'static str, Parameters), Error> {
+    let bulk = model.bulk_modulus();
+    let named = |names: &[&str], values: &[f64]| -> Parameters {
+        let names = names.iter().map(|name| (*name).to_owned());
+        names.zip(values.iter().copied()).collect()
+    };
+    Ok(match &model.material {
+        Material::Polynomial([c10, c01, 0.0, 0.0, 0.0]) => (
+            "Mooney-Rivlin",
+            named(&["c1", "c2", "k"], &[*c10, *c01, bulk]),
+        ),
+        Material::Polynomial([c10, c01, c20, c11, c02]) => (
+            "polynomial",
+            named(
+                &["c10", "c01", "c20", "c11", "c02", "D1"],
+                &[*c10, *c01, *c20, *c11, *c02, bulk / 2.0],
+            ),
+        ),
+        Material::Ogden(terms) => {
+            let numbered = terms.iter().zip(1..);
+            let term = |([mu, alpha], i): (&[f64; 2], i32)| {
+                [(format!("c{i}"), 2.0 * mu), (format!("m{i}"), *alpha)]
+            };
+            let mut parameters: Vec<_> = numbered.flat_map(term).collect();
+            parameters.push(("k".into(), bulk));
+            ("Ogden", parameters)
+        }
+        Material::Gent([mu, jm]) => ("Gent", named(&["G", "Jm", "k"], &[*mu, *jm, bulk])),
+        Material::VerondaWestmann([c, beta]) => (
+            "Veronda-Westmann",
+            named(&["c1", "c2", "k"], &[*c, *beta, bulk]),
+        ),
+        Material::HolzapfelGasserOgden {
+            values: [mu, k1, k2, kappa],
+            angle,
+            families,
+        } => {
+            let (k1, gamma) = match families {
+                1 => (k1 / 2.0, 0.0),
+                _ => (*k1, angle.to_degrees()),
+            };
+            let names = ["c", "k1", "k2", "kappa", "gamma", "k"];
+            (
+                "Holzapfel-Gasser-Ogden",
+                named(&names, &[*mu, k1, *k2, *kappa, gamma, bulk]),
+            )
+        }
+        Material::Yeoh(_) | Material::ArrudaBoyce(_) | Material::TensionCurve(_) => {
+            let has = "neo-Hooke, Mooney-Rivlin to the second order, Ogden, Gent, Veronda-Westmann and Holzapfel-Gasser-Ogden";
+            return Err(refused(model.given.card, model.code, has));
+        }
+    })
+}
+
+/// Axes of which the first lies along the fibres, where there is one family of them.
+fn material_axes(model: &Model, file: &mut Xml) {
+    if let Material::HolzapfelGasserOgden {
+        angle, families: 1, ..
+    } = model.material
+    {
+        let (sine, cosine) = angle.sin_cos();
+        file.open("mat_axis", &[("type", "vector")]);
+        file.text("a", &[], &format!("{},{},0", number(cosine), number(sine)));
+        file.text("d", &[], &format!("{},{},0", number(-sine), number(cosine)));
+        file.close("mat_axis");
+    }
+}
+
+/// The columns of nodes above the nodes of the sheet: their numbers from the middle of the sheet upwards.
+struct Columns(BTreeMap<usize, Vec<usize>>);
+
+impl Columns {
+    fn new(model: &Model) -> Self {
+        let mut heights: BTreeMap<usize, usize> = BTreeMap::new();
+        for (shape, nodes) in &model.cells {
+            for (place, node) in nodes.iter().enumerate() {
+                let three = match shape {
+                    CellShape::Triangle3 | CellShape::Quad4 => false,
+                    CellShape::Triangle6 | CellShape::Quad8 => place < shape.corners(),
+                    CellShape::Quad9 => true,
+                };
+                heights.insert(*node, if three { 3 } else { 2 });
+            }
+        }
+        let mut next = 1;
+        let columns = heights.into_iter().map(|(node, height)| {
+            let own = next..next + height;
+            next = own.end;
+            (node, own.collect())
+        });
+        Self(columns.collect())
+    }
+
+    fn lower(&self, node: usize) -> usize {
+        self.0[&node][0]
+    }
+
+    fn upper(&self, node: usize) -> usize {
+        self.0[&node][self.0[&node].len() - 1]
+    }
+
+    /// The middle one of three.
+    fn middle(&self, node: usize) -> usize {
+        self.0[&node][1]
+    }
+
+    fn all<'a>(&'a self, nodes: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
+        nodes.iter().flat_map(|node| self.0[node].iter().copied())
+    }
+
+    /// The nodes of the solid on a cell, in FEBio's order: corners, edges below, above and between, faces, centre.
+    fn solid(&self, shape: CellShape, nodes: &[usize]) -> Vec<usize> {
+        let (corners, rest) = nodes.split_at(shape.corners());
+        let (sides, centre) = rest.split_at(rest.len().min(shape.corners()));
+        let mut solid = Vec::new();
+        for layer in [corners, sides] {
+            solid.extend(layer.iter().map(|node| self.lower(*node)));
+            solid.extend(layer.iter().map(|node| self.upper(*node)));
+        }
+        if shape.degree() == 2 {
+            solid.extend(corners.iter().map(|node| self.middle(*node)));
+        }
+        for node in centre {
+            solid.extend(sides.iter().map(|side| self.middle(*side)));
+            solid.extend([self.lower(*node), self.upper(*node), self.middle(*node)]);
+        }
+        solid
+    }
+
+    /// The outer face on an edge, its normal outwards.
+    fn face(&self, shape: CellShape, edge: &[usize]) -> (&'static str, Vec<usize>) {
+        let (a, b) = (edge[0], edge[1]);
+        let mut face = vec![self.lower(a), self.lower(b), self.upper(b), self.upper(a)];
+        let Some(side) = edge.get(2) else {
+            return ("quad4", face);
+        };
+        face.extend([
+            self.lower(*side),
+            self.middle(b),
+            self.upper(*side),
+            self.middle(a),
+        ]);
+        if shape == CellShape::Quad9 {
+            face.push(self.middle(*side));
+            return ("quad9", face);
+        }
+        ("quad8", face)
+    }
+
+    /// The shares of a force on a node of the sheet that its column carries: those of a constant traction.
+    fn shares(&self, model: &Model, node: usize) -> &'static [f64] {
+        let nine = model
+            .cells
+            .iter()
+            .all(|(shape, _)| *shape == CellShape::Quad9);
+        match self.0[&node].len() {
+            2 => &[0.5, 0.5],
+            _ if nine => &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+            _ => &[-0.5, 2.0, -0.5],
+        }
+    }
+}
+
+fn solid_name(shape: CellShape) -> &'static str {
+    match shape {
+        CellShape::Triangle3 => "penta6",
+        CellShape::Triangle6 => "penta15",
+        CellShape::Quad4 => "hex8",
+        CellShape::Quad8 => "hex20",
+        CellShape::Quad9 => "hex27",
+    }
+}
+
+fn list(numbers: impl IntoIterator<Item = usize>) -> String {
+    let numbers: Vec<_> = numbers
+        .into_iter()
+        .map(|number| number.to_string())
+        .collect();
+    numbers.join(",")
+}
+
+fn mesh(model: &Model, columns: &Columns, file: &mut Xml) {
+    let half = model.given.problem.thickness / 2.0;
+    file.open("Mesh", &[]);
+    file.open("Nodes", &[("name", "sheet")]);
+    for (node, column) in &columns.0 {
+        let [x, y] = model.given.mesh.nodes[*node].map(number);
+        for (level, own) in column.iter().enumerate() {
+            let z = number(half * level as f64 / (column.len() - 1) as f64);
+            file.text("node", &[("id", &own.to_string())], &format!("{x},{y},{z}"));
+        }
+    }
+    file.close("Nodes");
+    let shapes = CellShape::NAMES.map(|(_, shape)| shape);
+    let shapes: Vec<_> = shapes
+        .into_iter()
+        .filter(|shape| model.cells.iter().any(|(own, _)| own == shape))
+        .collect();
+    for shape in &shapes {
+        let kind = solid_name(*shape);
+        file.open("Elements", &[("type", kind), ("name", kind)]);
+        for (cell, (own, nodes)) in model.cells.iter().enumerate() {
+            if own == shape {
+                let id = (cell + 1).to_string();
+                file.text("elem", &[("id", &id)], &list(columns.solid(*shape, nodes)));
+            }
+        }
+        file.close("Elements");
+    }
+    sets(model, columns, file);
+    file.close("Mesh");
+    file.open("MeshDomains", &[]);
+    for shape in shapes {
+        file.empty(
+            "SolidDomain",
+            &[("name", solid_name(shape)), ("mat", "material_1")],
+        );
+    }
+    file.close("MeshDomains");
+}
+
+/// Node sets and surfaces.
+fn sets(model: &Model, columns: &Columns, file: &mut Xml) {
+    let middle = list(columns.0.values().map(|column| column[0]));
+    file.text("NodeSet", &[("name", MID_PLANE)], &middle);
+    for (name, nodes) in &model.sets {
+        file.text("NodeSet", &[("name", name)], &list(columns.all(nodes)));
+    }
+    for held in turned(model) {
+        for node in &model.sets[held.set].1 {
+            let name = turned_set(*node);
+            if held.axis == 0 {
+                file.text("NodeSet", &[("name", &name)], &list(columns.all(&[*node])));
+            }
+        }
+    }
+    for (number, (node, share, _)) in node_forces(model, columns).into_iter().enumerate() {
+        let name = force_set(number);
+        file.text(
+            "NodeSet",
+            &[("name", &name)],
+            &columns.0[&node][share].to_string(),
+        );
+    }
+    for (name, sides) in &model.surfaces {
+        file.open("Surface", &[("name", name)]);
+        for (number, (cell, side)) in sides.iter().enumerate() {
+            let (shape, nodes) = model.cells[*cell];
+            let edge: Vec<_> = shape.edges()[*side]
+                .iter()
+                .map(|place| nodes[*place])
+                .collect();
+            let (kind, face) = columns.face(shape, &edge);
+            file.text(kind, &[("id", &(number + 1).to_string())], &list(face));
+        }
+        file.close("Surface");
+    }
+}
+
+const MID_PLANE: &str = "MIDDLE_OF_THE_SHEET";
+
+fn turned<'a>(model: &'a Model) -> impl Iterator<Item = &'a Held> {
+    model.held.iter().filter(|held| held.uniform().is_none())
+}
+
+fn turned_set(node: usize) -> String {
+    format!("TURNED_{}", node + 1)
+}
+
+fn force_set(number: usize) -> String {
+    format!("FORCE_{}", number + 1)
+}
+
+/// Dead forces in N on the half sheet: node of the sheet, place in its column, force.
+fn node_forces(model: &Model, columns: &Columns) -> Vec<(usize, usize, [f64; 2])> {
+    let mut forces = Vec::new();
+    for (node, force) in &model.forces {
+        for (place, share) in columns.shares(model, *node).iter().enumerate() {
+            forces.push((*node, place, force.map(|force| 0.5 * share * force)));
+        }
+    }
+    forces
+}
+
+fn boundary(model: &Model, columns: &Columns, curves: &mut Curves, file: &mut Xml) {
+    let axes = ["x", "y"];
+    file.open("Boundary", &[]);
+    fixed(MID_PLANE, "z", file);
+    for held in &model.held {
+        let (name, nodes) = &model.sets[held.set];
+        let axis = axes[held.axis];
+        match held.uniform() {
+            Some(0.0) => fixed(name, axis, file),
+            Some(displacement) => prescribed(name, axis, displacement, 1, file),
+            None => {
+                for node in nodes.iter().filter(|node| columns.0.contains_key(node)) {
+                    let curve = curves.turn(model, held, *node);
+                    prescribed(&turned_set(*node), axis, 1.0, curve, file);
+                }
+            }
+        }
+    }
+    file.close("Boundary");
+}
+
+fn fixed(set: &str, axis: &str, file: &mut Xml) {
+    file.open(
+        "bc",
+        &[
+            ("name", &format!("{set}_{axis}")),
+            ("node_set", set),
+            ("type", "zero displacement"),
+        ],
+    );
+    for each in ["x", "y", "z"] {
+        let held = if each == axis { "1" } else { "0" };
+        file.text(&format!("{each}_dof"), &[], held);
+    }
+    file.close("bc");
+}
+
+fn prescribed(set: &str, axis: &str, value: f64, curve: usize, file: &mut Xml) {
+    let kind = "prescribed displacement";
+    file.open(
+        "bc",
+        &[
+            ("name", &format!("{set}_{axis}")),
+            ("node_set", set),
+            ("type", kind),
+        ],
+    );
+    file.text("dof", &[], axis);
+    file.text("value", &[("lc", &curve.to_string())], &number(value));
+    file.text("relative", &[], "0");
+    file.close("bc");
+}
+
+fn loads(model: &Model, columns: &Columns, file: &mut Xml) {
+    let forces = node_forces(model, columns);
+    if forces.is_empty() && model.pressures.is_empty() {
+        return;
+    }
+    file.open("Loads", &[]);
+    for (number_of, (_, _, [x, y])) in forces.into_iter().enumerate() {
+        let set = force_set(number_of);
+        file.open(
+            "nodal_load",
+            &[("name", &set), ("node_set", &set), ("type", "nodal_force")],
+        );
+        file.text(
+            "value",
+            &[("lc", "1")],
+            &format!("{},{},0", number(x), number(y)),
+        );
+        file.text("relative", &[], "0");
+        file.close("nodal_load");
+    }
+    for (surface, pressure) in &model.pressures {
+        let name = &model.surfaces[*surface].0;
+        file.open(
+            "surface_load",
+            &[("name", name), ("surface", name), ("type", "pressure")],
+        );
+        file.text("pressure", &[("lc", "1")], &number(*pressure));
+        file.text("linear", &[], "0");
+        file.close("surface_load");
+    }
+    file.close("Loads");
+}
+
+/// One step for each load factor; the time is the load factor.
+fn steps(model: &Model, file: &mut Xml) {
+    file.open("Step", &[]);
+    let mut before = 0.0;
+    for (index, factor) in model.given.factors.iter().enumerate() {
+        let id = (index + 1).to_string();
+        let size = (factor - before) / f64::from(TIME_STEPS);
+        file.open(
+            "step",
+            &[("id", &id), ("name", &format!("load factor {factor}"))],
+        );
+        file.open("Control", &[]);
+        file.text("analysis", &[], "STATIC");
+        file.text("time_steps", &[], &TIME_STEPS.to_string());
+        file.text("step_size", &[], &number(size));
+        file.text("plot_level", &[], "PLOT_STEP_FINAL");
+        file.open("time_stepper", &[("type", "default")]);
+        for (name, value) in [
+            ("max_retries", 10.0),
+            ("opt_iter", 15.0),
+            ("dtmin", size * 1e-4),
+            ("dtmax", size),
+        ] {
+            file.text(name, &[], &number(value));
+        }
+        file.close("time_stepper");
+        file.open("solver", &[("type", "solid")]);
+        file.text("symmetric_stiffness", &[], "symmetric");
+        file.open("qn_method", &[("type", "BFGS")]);
+        file.text("max_ups", &[], "0");
+        file.close("qn_method");
+        file.close("solver");
+        file.close("Control");
+        file.close("step");
+        before = *factor;
+    }
+    file.close("Step");
+}
+
+/// Load curves: the first is the load factor itself, the others follow turning nodes.
+#[derive(Default)]
+struct Curves(Vec<Vec<[f64; 2]>>);
+
+impl Curves {
+    /// The number of the curve of a node that a support turns, exact at every load factor and at points between.
+    fn turn(&mut self, model: &Model, held: &Held, node: usize) -> usize {
+        let place = model.given.mesh.nodes[node];
+        let mut points = vec![[0.0, 0.0]];
+        for factor in model.given.factors {
+            let before = points[points.len() - 1][0];
+            for i in 1..=TURN_POINTS {
+                let time = match i {
+                    TURN_POINTS => *factor,
+                    _ => before + (factor - before) * f64::from(i) / f64::from(TURN_POINTS),
+                };
+                points.push([time, held.at(place, time)]);
+            }
+        }
+        self.0.push(points);
+        self.0.len() + 1
+    }
+
+    fn write(self, file: &mut Xml) {
+        file.open("LoadData", &[]);
+        let factor = vec![[0.0, 0.0], [1.0, 1.0]];
+        for (index, points) in std::iter::once(factor).chain(self.0).enumerate() {
+            let id = (index + 1).to_string();
+            file.open(
+                "load_controller",
+                &[
+                    ("id", &id),
+                    ("name", &format!("curve {id}")),
+                    ("type", "loadcurve"),
+                ],
+            );
+            file.text("interpolate", &[], "LINEAR");
+            file.text("extend", &[], "EXTRAPOLATE");
+            file.open("points", &[]);
+            for [time, value] in points {
+                file.text("pt", &[], &format!("{},{}", number(time), number(value)));
+            }
+            file.close("points");
+            file.close("load_controller");
+        }
+        file.close("LoadData");
+    }
+}
+
+/// A document, element by element.
+struct Xml(Writer<Vec<u8>>);
+
+impl Xml {
+    fn new() -> Self {
+        let mut file = Self(Writer::new_with_indent(Vec::new(), b' ', 2));
+        file.event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)));
+        file
+    }
+
+    fn event(&mut self, event: Event<'_>) {
+        self.0
+            .write_event(event)
+            .expect("writing to memory does not fail");
+    }
+
+    fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
+        let start = BytesStart::new(name).with_attributes(attributes.iter().copied());
+        self.event(Event::Start(start));
+    }
+
+    fn close(&mut self, name: &str) {
+        self.event(Event::End(BytesEnd::new(name)));
+    }
+
+    fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) {
+        let start = BytesStart::new(name).with_attributes(attributes.iter().copied());
+        self.event(Event::Empty(start));
+    }
+
+    fn text(&mut self, name: &str, attributes: &[(&str, &str)], text: &str) {
+        self.open(name, attributes);
+        self.event(Event::Text(BytesText::new(text)));
+        self.close(name);
+    }
+
+    /// A remark; two hyphens in a row would end it.
+    fn comment(&mut self, text: &str) {
+        let text = format!(" {} ", text.replace("--", "- -"));
+        self.event(Event::Comment(BytesText::from_escaped(text)));
+    }
+
+    fn finish(self) -> String {
+        let mut text = String::from_utf8(self.0.into_inner()).expect("texts are UTF-8");
+        text.push('\n');
+        text
+    }
+}

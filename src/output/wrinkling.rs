@@ -1,0 +1,122 @@
+//! Where a sheet is under compression, which it cannot bear: it wrinkles or buckles out of its plane.
+
+use nalgebra::Vector4;
+
+use crate::material::HyperelasticLaw;
+use crate::material::sheet::Kinematics;
+use crate::mesh::Mesh;
+
+/// Compression below this share of the largest principal stress of the sheet is not counted.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// The compression of a sheet, cell by cell, at the centres of the cells.
+#[derive(Clone, Debug)]
+pub struct Wrinkling {
+    /// The smaller principal Cauchy stress in the plane in MPa.
+    pub smallest: Vec<f64>,
+    /// Whether a cell is under compression.
+    pub compressed: Vec<bool>,
+    /// The share of the reference area under compression in %.
+    pub area_percent: f64,
+}
+
+impl Wrinkling {
+    /// The compression of a displacement field.
+    ///
+    /// # Panics
+    /// When a cell is inverted at its centre.
+    pub fn new(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Self {
+        let stresses = |cell: usize| {
+            let gradient = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
+            let kinematics = Kinematics::new(&Vector4::from(gradient));
+            let kinematics = kinematics.expect("cells of a solution have a positive centre");
+            let (_, p) = law.stress(&kinematics);
+            principal(kinematics.cauchy_stress(&p))
+        };
+        let stresses: Vec<[f64; 2]> = (0..mesh.cell_count()).map(stresses).collect();
+        let largest = stresses
+            .iter()
+            .flatten()
+            .fold(0.0, |most: f64, stress| most.max(stress.abs()));
+        let smallest: Vec<f64> = stresses.iter().map(|[_, smaller]| *smaller).collect();
+        let limit = -NEGLIGIBLE * largest;
+        let compressed: Vec<bool> = smallest.iter().map(|stress| *stress < limit).collect();
+        let areas = (0..mesh.cell_count()).map(|cell| area(mesh, cell));
+        let (mut all, mut under) = (0.0, 0.0);
+        for (area, compressed) in areas.zip(&compressed) {
+            all += area;
+            under += if *compressed { area } else { 0.0 };
+        }
+        Self {
+            smallest,
+            compressed,
+            area_percent: 100.0 * under / all,
+        }
+    }
+}
+
+/// The warning about the states of a model, each at a load that is named; nothing without compression.
+pub fn warning<'a>(
+    law: &dyn HyperelasticLaw,
+    mesh: &Mesh,
+    states: impl Iterator<Item = (String, &'a [f64])>,
+) -> Option<String> {
+    let shares = states.map(|(load, u)| (Wrinkling::new(law, mesh, u).area_percent, load));
+    let told: Vec<String> = shares
+        .filter(|(percent, _)| *percent > 0.0)
+        .map(|(percent, load)| format!("{percent:.1} % at {load}"))
+        .collect();
+    (!told.is_empty()).then(|| {
+        format!(
+            "Warning: part of the sheet is under compression, where a thin sheet wrinkles and the plane solution \
+             carries stress that it would lose: {} of the area (array `wrinkling_1` of the finite elements' VTK \
+             files).",
+            told.join(", ")
+        )
+    })
+}
+
+/// The principal values of a plane stress with the components 11, 12, 22, the larger first.
+fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
+    let (mean, radius) = (0.5 * (s11 + s22), (0.5 * (s11 - s22)).hypot(s12));
+    [mean + radius, mean - radius]
+}
+
+fn area(mesh: &Mesh, cell: usize) -> f64 {
+    let rule = mesh.shape(cell).quadrature().into_iter();
+    rule.map(|(local, weight)| weight * mesh.gradients(cell, local).1)
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::NeoHooke;
+    use crate::mesh::CellShape;
+
+    /// The share and the stresses of a plate of 4 × 1 mm with a displacement field.
+    fn of(field: impl Fn([f64; 2]) -> [f64; 2]) -> Wrinkling {
+        let mesh = Mesh::plate([4.0, 1.0], [8, 8], CellShape::Quad9);
+        let u: Vec<f64> = mesh.nodes.iter().flat_map(|node| field(*node)).collect();
+        Wrinkling::new(&NeoHooke { c10: 0.05 }, &mesh, &u)
+    }
+
+    #[test]
+    fn tension_has_no_compression_and_bending_has_it_on_one_side() {
+        let contraction = 1.2_f64.powf(-0.5) - 1.0;
+        let pulled = of(|[x, y]| [0.2 * x, contraction * y]);
+        assert_eq!(pulled.area_percent, 0.0);
+        assert!(pulled.smallest.iter().all(|stress| stress.abs() < 1e-12));
+        let squeezed = of(|[x, _]| [-0.1 * x, 0.0]);
+        assert!((squeezed.area_percent - 100.0).abs() < 1e-9);
+        // σ₁ = 2 C₁₀ (λ² − λ⁻²) with the width kept.
+        let expected = 0.1 * (0.81 - 1.0 / 0.81);
+        assert!((squeezed.smallest[0] - expected).abs() < 1e-14);
+        let bent = of(|[x, y]| [1e-4 * x * (y - 0.5), -0.5e-4 * x * x]);
+        assert!(
+            (bent.area_percent - 50.0).abs() < 1e-9,
+            "{}",
+            bent.area_percent
+        );
+    }
+}

@@ -1,0 +1,122 @@
+//! Why a path of equilibria ends.
+//!
+//! Near a critical state the tangent K has a direction φ of vanishing stiffness. With q = ∂r/∂s, the change of
+//! the loads by the load factor s, φ · q ≠ 0 is a limit point: the load has its maximum there. φ · q = 0 is
+//! a bifurcation: the body may leave its path along φ, it buckles or wrinkles.
+//!
+//! # References
+//! P. Wriggers, Nonlinear Finite Element Methods, Springer (2008), § 7.1, doi:10.1007/978-3-540-71001-1
+
+use super::newton::Newton;
+use super::path::{Loading, State};
+use super::potential::{Assembly, Potential};
+use super::sparse::{largest, norm};
+use crate::error::SolveFault;
+
+/// How far from the last equilibrium a tangent tells about it, relative to the largest displacement.
+const NEAR: f64 = 0.1;
+
+/// Share of the least stiffness at rest that counts as none: it vanishes like the root of the distance to a limit
+/// point, and a path comes near by a thousandth.
+const SOFT: f64 = 0.1;
+
+/// Cosine of the angle between mode and load above which the load drives the mode. A mode that a symmetry
+/// keeps from the load has rounding alone, about 1e-10; the stretching of a bar some 0.1.
+const DRIVEN: f64 = 1e-3;
+
+/// The reason behind a fault at load factor `factor` after the equilibrium `previous`: a material that lost its
+/// stability, a load that has its maximum, a mode of buckling; the fault itself where it is none of these.
+pub fn diagnose(
+    newton: &mut Newton,
+    loading: &dyn Loading,
+    previous: Option<&State>,
+    factor: f64,
+    fault: SolveFault,
+) -> SolveFault {
+    if matches!(fault, SolveFault::NotFinite(_)) {
+        return fault;
+    }
+    let potential = loading.potential(factor);
+    let unstable = |u: &[f64]| {
+        let (element, state) = unstable_element(&*potential, u)?;
+        let element = loading.describe(element);
+        Some(SolveFault::MaterialUnstable { element, state })
+    };
+    let rest = vec![0.0; potential.unknowns()];
+    let last = previous.map_or(&rest, |state| &state.displacement);
+    if let Some(found) = previous.is_none().then(|| unstable(last)).flatten() {
+        return found;
+    }
+    let Some(u) = critical(newton, &*potential, previous, &fault) else {
+        return fault;
+    };
+    if let Some(found) = unstable(last).or_else(|| unstable(&u)) {
+        return found;
+    }
+    let Some((_, mode)) = newton.softest_mode(&*potential, &u) else {
+        return fault;
+    };
+    if is_driven(newton, loading, factor, &u, &mode) {
+        return SolveFault::LoadMaximum {
+            factor: previous.map_or(0.0, |state| state.factor),
+        };
+    }
+    let most = (0..mode.len()).max_by(|a, b| mode[*a].abs().total_cmp(&mode[*b].abs()));
+    SolveFault::Buckling {
+        place: most.map_or_else(String::new, |unknown| loading.describe_unknown(unknown)),
+    }
+}
+
+/// A place at or near the last equilibrium at which a direction has no stiffness any more.
+fn critical(
+    newton: &mut Newton,
+    potential: &dyn Potential,
+    previous: Option<&State>,
+    fault: &SolveFault,
+) -> Option<Vec<f64>> {
+    let indefinite = newton.indefinite();
+    let Some(previous) = previous else {
+        let inverted = matches!(fault, SolveFault::Inverted { .. });
+        return indefinite.filter(|_| !inverted).map(<[f64]>::to_vec);
+    };
+    let last = &previous.displacement;
+    let distance = |u: &[f64]| {
+        let pairs = u.iter().zip(last);
+        pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
+    };
+    if let Some(u) = indefinite.filter(|u| distance(u) <= NEAR * largest(last)) {
+        return Some(u.to_vec());
+    }
+    let mut softest = |u: &[f64]| newton.softest_mode(potential, u).map(|(least, _)| least);
+    let (now, rest) = (softest(last), softest(&vec![0.0; last.len()]));
+    let soft = now
+        .zip(rest)
+        .is_some_and(|(now, rest)| now <= SOFT * rest.abs());
+    soft.then(|| last.clone())
+}
+
+/// The first element that is unstable by itself, and in which state.
+fn unstable_element(potential: &dyn Potential, u: &[f64]) -> Option<(usize, String)> {
+    (0..potential.elements()).find_map(|element| {
+        let unknowns = potential.element_unknowns(element).iter();
+        let own: Vec<f64> = unknowns.map(|unknown| u[*unknown]).collect();
+        potential
+            .instability(element, &own)
+            .map(|state| (element, state))
+    })
+}
+
+/// Whether the loads push along a mode.
+fn is_driven(newton: &Newton, loading: &dyn Loading, factor: f64, u: &[f64], mode: &[f64]) -> bool {
+    let residual = |factor: f64| {
+        let mut residual = vec![0.0; u.len()];
+        Assembly::residual(&*loading.potential(factor), u, &mut residual).map(|_| residual)
+    };
+    let (Ok(loaded), Ok(unloaded)) = (residual(factor), residual(0.0)) else {
+        return false;
+    };
+    let free = newton.free();
+    let load: Vec<f64> = free.iter().map(|i| loaded[*i] - unloaded[*i]).collect();
+    let product: f64 = free.iter().zip(&load).map(|(i, q)| mode[*i] * q).sum();
+    product.abs() > DRIVEN * norm(&load) * norm(mode)
+}

@@ -1,0 +1,352 @@
+//! The error estimate beside true errors, the order of the force with graded cells, and local refinement beside
+//! uniform refinement.
+
+use std::path::Path;
+
+use super::{held, manufactured, misfit, ring, sheet, solve};
+use crate::document::Section;
+use crate::error::Error;
+use crate::finite_element::convergence::richardson;
+use crate::finite_element::error_estimate::{EnergyError, ErrorEstimate, Solved, bulk};
+use crate::finite_element::{Element, FiniteElements};
+use crate::mesh::{CellShape, Mesh, Shape};
+use crate::output::picture::PALETTE;
+use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::output::{Block, Figure, mesh_picture};
+use crate::problem::{Problem, Solution};
+use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, figure, number};
+
+const SIZE: [f64; 2] = [150.0, 50.0];
+const STRETCH: f64 = 0.5;
+
+/// The plate's force in N at this stretch by dolfinx, scikit-fem and FElupe, extrapolated.
+const OTHER_CODES: f64 = 10.7125;
+
+/// The part of the squared error that is refined in a round.
+const SHARE: f64 = 0.5;
+
+/// Reads a study of this case.
+pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+    let section = root.section("smooth");
+    let smooth = section.count("cells", 8, 64);
+    section.unknown_keys();
+    let section = root.section("plate");
+    let plate = section.count("coarsest", 4, 20);
+    section.unknown_keys();
+    let section = root.section("adaptive");
+    let coarsest = section.count("coarsest", 2, 16);
+    let halvings = section.count("halvings", 1, 4);
+    section.unknown_keys();
+    Box::new(move |progress| {
+        let mut outcome = Outcome::default();
+        for (name, shape) in CellShape::NAMES {
+            progress(name);
+            outcome.checks.extend(smooth_checks(name, shape, smooth)?);
+        }
+        let exact = graded_plates(plate, &mut outcome, progress)?;
+        progress("local refinement");
+        refinement([coarsest, halvings], exact, &mut outcome)?;
+        Ok(outcome)
+    })
+}
+
+/// Estimated over true error of an element on smooth problems.
+fn smooth_checks(name: &str, shape: CellShape, cells: usize) -> Result<[Check; 2], Error> {
+    let check = |what: &str, effectivity: f64| {
+        Check::new(
+            format!("{name}: estimated over true error, {what}"),
+            "–",
+            Wanted::Equal(1.0, 20.0),
+            "exact in the limit",
+            effectivity,
+        )
+    };
+    let amplitude = 0.05;
+    let (mesh, state, field) = manufactured::solved(shape, cells, amplitude)?;
+    let solved = on(&mesh, &state.displacement, sheet().thickness, |solved| {
+        let exact = solved.distance(|cell, local| field.gradient(mesh.place(cell, local)));
+        effectivity(solved, &exact)
+    });
+    let (mesh, state) = ring::blown_up(cells, shape)?;
+    let (fine, exact) = ring::blown_up(3 * cells, CellShape::Quad9)?;
+    let blown_up = on(&mesh, &state.displacement, sheet().thickness, |solved| {
+        let exact = solved.distance(|cell, local| {
+            let (there, local) = fine.locate(mesh.place(cell, local));
+            fine.gradient_at(&exact.displacement, there, local)
+        });
+        effectivity(solved, &exact)
+    });
+    Ok([
+        check("manufactured solution", solved),
+        check("ring under pressure", blown_up),
+    ])
+}
+
+/// Calls with a solution of the case's sheet.
+fn on<T>(mesh: &Mesh, displacement: &[f64], thickness: f64, call: impl FnOnce(&Solved) -> T) -> T {
+    let problem = sheet();
+    call(&Solved {
+        law: &*problem.law,
+        thickness,
+        mesh,
+        displacement,
+    })
+}
+
+fn effectivity(solved: &Solved, exact: &EnergyError) -> f64 {
+    (solved.energy_estimate().squared() / exact.squared()).sqrt()
+}
+
+/// What is exact for the plate: force in N and energy in mJ.
+#[derive(Clone, Copy)]
+struct Exact {
+    force: f64,
+    energy: f64,
+}
+
+/// One mesh of the plate.
+struct Plate {
+    element: Element,
+    grading: f64,
+    describe: String,
+    solution: Solution,
+    estimate: ErrorEstimate,
+}
+
+/// Plates with equal and with graded cells; the exact values from the best of them.
+fn graded_plates(
+    coarsest: usize,
+    outcome: &mut Outcome,
+    progress: Progress,
+) -> Result<Exact, Error> {
+    let mut series = Vec::new();
+    for (element, grading) in [
+        (Element::Q2, 3.0),
+        (Element::Q2, 1.0),
+        (Element::Q1, 1.5),
+        (Element::Q1, 1.0),
+    ] {
+        progress(&format!("plate, {}, grading {grading}", element.name()));
+        let plates = [1, 2, 4].map(|finer| plate(finer * coarsest, element, grading));
+        let [coarse, middle, fine] = plates;
+        series.push([coarse?, middle?, fine?]);
+    }
+    let values = |value: fn(&Solution) -> f64, plates: &[Plate; 3]| {
+        richardson(plates.each_ref().map(|plate| value(&plate.solution)))
+    };
+    let force = |plates| values(|solution| solution.force, plates);
+    let exact = Exact {
+        force: force(&series[0]).extrapolated,
+        energy: values(|solution| solution.energy, &series[0]).extrapolated,
+    };
+    outcome.checks.push(Check::new(
+        "plate, graded, extrapolated force",
+        "N",
+        Wanted::Equal(OTHER_CODES, 1e-4),
+        "dolfinx, scikit-fem, FElupe, extrapolated",
+        exact.force,
+    ));
+    for plates in &series {
+        let [.., fine] = plates;
+        let (wanted, source) = match (fine.element, fine.grading > 1.0) {
+            (Element::Q2, true) => (Wanted::AtLeast(3.7), "2p = 4"),
+            (Element::Q1, true) => (Wanted::AtLeast(1.9), "2p = 2"),
+            (Element::Q2, false) => (Wanted::AtMost(2.3), "singular corners"),
+            (Element::Q1, false) => (Wanted::AtMost(1.9), "singular corners"),
+        };
+        outcome.checks.push(Check::new(
+            format!("plate, {}: order of the force", fine.name()),
+            "–",
+            wanted,
+            source,
+            force(plates).order,
+        ));
+    }
+    outcome.blocks.extend(table(&series, exact));
+    Ok(exact)
+}
+
+impl Plate {
+    fn name(&self) -> String {
+        let cells = match self.grading > 1.0 {
+            true => format!("graded by {}", self.grading),
+            false => "equal cells".to_owned(),
+        };
+        format!("{}, {cells}", self.element.name())
+    }
+}
+
+fn plate(across: usize, element: Element, grading: f64) -> Result<Plate, Error> {
+    let problem = Problem {
+        size: SIZE,
+        thickness: sheet().thickness,
+        law: sheet().law,
+        stretches: vec![STRETCH],
+    };
+    let model = FiniteElements::graded(&problem, [3 * across, across], element, grading);
+    let solution = model.solve(&problem, super::NEWTON, &|_| ())?.remove(0);
+    Ok(Plate {
+        element,
+        grading,
+        describe: model.describe(),
+        estimate: model.estimate(&problem, &solution)?,
+        solution,
+    })
+}
+
+fn table(series: &[[Plate; 3]], exact: Exact) -> Vec<Block> {
+    let row = |plate: &Plate| {
+        let solution = &plate.solution;
+        let surplus = 2.0 * (solution.energy - exact.energy);
+        let squared = plate.estimate.energy.squared();
+        vec![
+            plate.describe.clone(),
+            format!("{:.6}", solution.force),
+            number(100.0 * (solution.force / exact.force - 1.0)),
+            number(100.0 * plate.estimate.force / exact.force),
+            number(plate.estimate.energy.percent()),
+            number((squared / surplus).sqrt()),
+        ]
+    };
+    let head = [
+        "clamped plate",
+        "force [N]",
+        "its error [%]",
+        "the same by recovery [%]",
+        "error of the field by recovery, energy norm [%]",
+        "estimated over true error of the field",
+    ];
+    vec![
+        Block::Paragraph(
+            "The clamped plate at 50 % stretch. True errors are those from the extrapolated graded Q2 plates; that of the \
+             field is the root of twice the surplus of the potential. Beside a singular corner a recovered gradient is \
+             no better than the elements' own: there the estimate is less exact, and no check is made of it."
+                .into(),
+        ),
+        Block::table(&head, series.iter().flatten().map(row)),
+    ]
+}
+
+/// One mesh of a refinement: cells, error of the force in %, estimate.
+struct Round {
+    triangles: Mesh,
+    force_percent: f64,
+    estimate: EnergyError,
+}
+
+/// T2 elements on the plate of some triangles.
+fn round(triangles: Mesh, exact: Exact) -> Result<Round, Error> {
+    let mesh = triangles.quadratic();
+    let problem = held(&[
+        ("left", [Some(0.0); 2]),
+        ("right", [Some(STRETCH * SIZE[0]), Some(0.0)]),
+    ]);
+    let energy = problem.finite_elements(&mesh);
+    let model = problem.on(&mesh, &energy).map_err(misfit)?;
+    let state = solve(&model, "local refinement", 1)?;
+    let force = model.reaction(&state, "right")[0];
+    let estimate = on(&mesh, &state.displacement, problem.thickness, |solved| {
+        solved.energy_estimate()
+    });
+    Ok(Round {
+        triangles,
+        force_percent: 100.0 * (force / exact.force - 1.0).abs(),
+        estimate,
+    })
+}
+
+/// Refines until the force is as good as on the finest uniform mesh, and compares the numbers of cells.
+fn refinement(
+    [coarsest, halvings]: [usize; 2],
+    exact: Exact,
+    outcome: &mut Outcome,
+) -> Result<(), Error> {
+    let first = Shape::Strip { size: SIZE }.mesh(coarsest, CellShape::Triangle3);
+    let mut uniform = vec![round(first.clone(), exact)?];
+    for _ in 0..halvings {
+        let finer = uniform[uniform.len() - 1].triangles.refined();
+        uniform.push(round(finer, exact)?);
+    }
+    let finest = &uniform[uniform.len() - 1];
+    let most = finest.triangles.cell_count();
+    let mut adaptive = vec![round(first, exact)?];
+    loop {
+        let last = &adaptive[adaptive.len() - 1];
+        let cells = last.triangles.cell_count();
+        if last.force_percent <= finest.force_percent || cells > most {
+            break;
+        }
+        let marked = bulk(&last.estimate.cells, SHARE);
+        let finer = last.triangles.refined_where(&marked);
+        adaptive.push(round(finer, exact)?);
+    }
+    let last = &adaptive[adaptive.len() - 1];
+    outcome.checks.push(Check::new(
+        format!(
+            "plate, T2: cells of local over {most} of uniform refinement, at {} % error of the force",
+            number(finest.force_percent)
+        ),
+        "–",
+        Wanted::AtMost(0.25),
+        "the same error with fewer cells",
+        last.triangles.cell_count() as f64 / most as f64,
+    ));
+    outcome.blocks.extend(rounds(&uniform, &adaptive));
+    outcome.figures.extend(pictures(&uniform, &adaptive));
+    Ok(())
+}
+
+fn rounds(uniform: &[Round], adaptive: &[Round]) -> Vec<Block> {
+    let row = |name: &str, round: &Round| {
+        vec![
+            name.to_owned(),
+            round.triangles.cell_count().to_string(),
+            number(round.force_percent),
+            number(round.estimate.percent()),
+        ]
+    };
+    let head = [
+        "T2, refinement",
+        "cells",
+        "error of the force [%]",
+        "error of the field by recovery, energy norm [%]",
+    ];
+    let uniform = uniform.iter().map(|round| row("uniform", round));
+    let rows = uniform.chain(adaptive.iter().map(|round| row("local", round)));
+    vec![Block::table(&head, rows)]
+}
+
+fn pictures(uniform: &[Round], adaptive: &[Round]) -> [Figure; 2] {
+    let line = |label: &str, rounds: &[Round], colour| Line {
+        label: label.to_owned(),
+        points: rounds
+            .iter()
+            .map(|round| [round.triangles.cell_count() as f64, round.force_percent])
+            .collect(),
+        colour,
+        stroke: Stroke::Marked,
+    };
+    let chart = LineChart {
+        title: "Force of the clamped plate, T2".into(),
+        x: Axis::logarithmic("cells"),
+        y: Axis::logarithmic("error of the force [%]"),
+        lines: vec![
+            line("uniform refinement", uniform, PALETTE[0]),
+            line("local refinement", adaptive, PALETTE[1]),
+        ],
+        band: None,
+    };
+    let last = &adaptive[adaptive.len() - 1].triangles;
+    [
+        figure(
+            "own_error.png",
+            "Error of the plate's force over the number of cells.",
+            &chart,
+        ),
+        Figure {
+            name: "own_error_mesh.png".into(),
+            caption: "The last mesh of the local refinement.".into(),
+            png: mesh_picture("Refined where the estimated error is", last),
+        },
+    ]
+}
