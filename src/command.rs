@@ -85,6 +85,9 @@ enum Command {
         /// The array of a VTK file
         #[arg(long, value_name = "NAME")]
         array: Option<String>,
+        /// The time of the step in a .frd file, where it is not the load factor
+        #[arg(long, value_name = "TIME")]
+        time: Option<f64>,
         /// Write a report and VTU files with the differences into this folder
         #[arg(long, value_name = "FOLDER")]
         output: Option<PathBuf>,
@@ -157,6 +160,7 @@ pub fn main() -> ExitCode {
             factor,
             unit,
             array,
+            time,
             output,
         } => compare::run(compare::Options {
             study,
@@ -164,6 +168,7 @@ pub fn main() -> ExitCode {
             factor,
             unit,
             array,
+            time,
             output,
         }),
         Command::Export {

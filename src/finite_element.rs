@@ -9,6 +9,7 @@ use crate::sheet_energy::SheetEnergy;
 use crate::solve::NewtonSettings;
 
 use error_estimate::{ErrorEstimate, Solved};
+use recovery::Recovery;
 
 pub mod convergence;
 pub mod error_estimate;
@@ -91,11 +92,16 @@ impl FiniteElements {
         format!("{}, {}", self.element.name(), self.mesh.describe())
     }
 
-    /// The estimated error of a solution.
+    /// The estimated error of a solution, by the recovery on this mesh.
     ///
     /// # Errors
     /// [`Error::Solve`] when the tangent at the solution cannot be factorised.
-    pub fn estimate(&self, problem: &Problem, solution: &Solution) -> Result<ErrorEstimate, Error> {
+    pub fn estimate(
+        &self,
+        problem: &Problem,
+        solution: &Solution,
+        recovery: &Recovery,
+    ) -> Result<ErrorEstimate, Error> {
         let influence = problem.influence(&self.model(), solution)?;
         let solved = Solved {
             law: &*problem.law,
@@ -103,7 +109,7 @@ impl FiniteElements {
             mesh: &self.mesh,
             displacement: &solution.displacement,
         };
-        Ok(solved.estimate(&influence))
+        Ok(solved.estimate(recovery, &influence))
     }
 
     /// Solves all stretches of the problem, one after the other.

@@ -9,6 +9,7 @@ use crate::corrector::climb::Climb;
 use crate::corrector::plate::KnownConditions;
 use crate::error::Error;
 use crate::finite_element::FiniteElements;
+use crate::finite_element::recovery::Recovery;
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
@@ -55,8 +56,9 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let reference = finite_elements(study, &mut times, progress)?;
     let estimates = timed(&mut times, "finite elements' error", || {
         let [.., finest] = &reference;
-        let solutions = finest.solutions.iter();
-        let estimates = solutions.map(|solution| finest.model.estimate(problem, solution));
+        let recovery = Recovery::new(&finest.model.mesh);
+        let estimate = |solution| finest.model.estimate(problem, solution, &recovery);
+        let estimates = finest.solutions.iter().map(estimate);
         estimates.collect::<Result<Vec<_>, Error>>()
     })?;
 

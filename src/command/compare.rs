@@ -19,6 +19,7 @@ pub struct Options {
     pub factor: Option<f64>,
     pub unit: f64,
     pub array: Option<String>,
+    pub time: Option<f64>,
     pub output: Option<PathBuf>,
 }
 
@@ -63,6 +64,7 @@ fn compute(options: &Options) -> Result<Compared, Error> {
             unit: options.unit,
             array: options.array.clone(),
             factor,
+            time: options.time,
         };
         Imported::read(&options.field, &settings)
     };

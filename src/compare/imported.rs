@@ -25,6 +25,8 @@ pub struct ImportSettings {
     pub array: Option<String>,
     /// The load factor.
     pub factor: f64,
+    /// The time of a step, where it is not the load factor.
+    pub time: Option<f64>,
 }
 
 /// A displacement field of another program.
@@ -94,7 +96,7 @@ impl Imported {
             path,
             settings.unit,
             settings.array.as_deref(),
-            settings.factor,
+            settings.time.unwrap_or(settings.factor),
         );
         field.map(|field| Self::OnMesh(Box::new(field))).map_err(|reason| {
             let hint = "a field stands in .vtu, .vtk (to version 4), CalculiX' .frd (ASCII), or .csv with X, Y, ux, uy";

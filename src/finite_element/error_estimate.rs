@@ -13,20 +13,23 @@
 //!
 //! **Force.** R is the reaction of a group along an axis and z the field that follows a unit motion of that group by the
 //! tangent at the solution, so that no test field at rest there does work on it: z is the influence of the field's error
-//! on R. With E = G* − ∇u_h and Z = z's recovered gradient less its own,
+//! on R. Where R is the displacement of a grip with a given force, z is the field of a unit force on the grip, and the sign
+//! is the opposite one. With E = G* − ∇u_h and Z = z's recovered gradient less its own,
 //!
 //! ```text
-//! R_h − R ≈ t ∫ E : 𝔸 : Z dA − t ∫ (P(∇u_h + E) − P(∇u_h) − 𝔸 : E) : ∇z_h dA                      [N]
+//! R_h − R ≈ t ∫ E : 𝔸 : Z dA + t ∫ (P(∇u_h + E) − P(∇u_h) − 𝔸 : E) : ∇z_h dA                      [N]
 //! ```
 //!
-//! The second integral is the part of the error that the tangent does not see; it is of the same order.
+//! The second integral, ½ ∫ 𝔸'EE : ∇z, is of the order of the first. It counts once as what 𝔸 : E does not see of P, −½, and
+//! once for Z: the recovered gradient is that of the smooth tangent 𝔸(∇u), for which ∫ E : 𝔸(∇u) : ∇z = 0, and 𝔸 at
+//! ∇u_h differs from it by −𝔸'E: +1.
 //!
 //! **Errors.** Exact in the limit on smooth solutions, as the recovered gradient is of higher order: estimated over true
-//! error is within 0.8 and 1.25 in `validation/cases/own_error.toml`. Beside a singular corner the recovered gradient is
-//! no better than the solution's own: on the clamped plate with equal cells the estimate of the field was 0.8 (Q1) and 1.3
-//! (Q2) of the true error, that of the force 0.8 … 1.0 (Q1) and about 3 (Q2); with graded cells that of the field tended to 1
-//! (1.01 and 1.09), that of the force was 1.4 and 1.6 on the finest meshes. Errors of
-//! the outline and of the quadrature are not seen.
+//! error of field and force is within 0.8 and 1.25 in `validation/cases/own_error.toml`, but for the force of T2, whose two
+//! integrals nearly cancel there. Beside a singular corner the recovered gradient is no better than the solution's own: on
+//! the clamped plate with equal cells the estimate of the field was 0.8 (Q1) and 1.3 (Q2) of the true error, that of the
+//! force 0.7 … 0.8 (Q1) and 1.8 … 2.0 (Q2); with graded cells both tended to 1, on the finest meshes 1.01 and 1.09 (field),
+//! 1.03 and 1.09 (force). Errors of the outline and of the quadrature are not seen.
 //!
 //! # References
 //! - O. C. Zienkiewicz, J. Z. Zhu, Int. J. Numer. Methods Eng. 33, 1331 (1992), doi:10.1002/nme.1620330702
@@ -34,7 +37,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::recovery::RecoveredGradient;
+use super::recovery::Recovery;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::{GAUSS_3, Mesh};
@@ -71,6 +74,25 @@ pub struct ErrorEstimate {
 }
 
 impl EnergyError {
+    fn of_cells(count: usize) -> Self {
+        Self {
+            cells: vec![0.0; count],
+            norm_squared: 0.0,
+        }
+    }
+
+    /// Adds the share of a point with the error of its gradient.
+    fn add(&mut self, point: &Point, error: &Gradient) {
+        let eigen = point.tangent.symmetric_eigen();
+        let size = |v: &Gradient| {
+            let along = eigen.eigenvectors.tr_mul(v);
+            let pairs = along.iter().zip(&eigen.eigenvalues);
+            pairs.map(|(v, a)| a.max(0.0) * v * v).sum::<f64>()
+        };
+        self.cells[point.cell] += point.volume * size(error);
+        self.norm_squared += point.volume * size(&point.gradient);
+    }
+
     /// η² in mJ.
     pub fn squared(&self) -> f64 {
         self.cells.iter().sum()
@@ -120,10 +142,11 @@ struct Point {
 }
 
 impl Solved<'_> {
-    /// Estimates the error of the field, and of the force whose influence field z is given.
-    pub fn estimate(&self, influence: &[f64]) -> ErrorEstimate {
+    /// Estimates the error of the field by the recovery on its mesh, and of the force whose influence field z is given.
+    pub fn estimate(&self, recovery: &Recovery, influence: &[f64]) -> ErrorEstimate {
         let mesh = self.mesh;
-        let [field, other] = RecoveredGradient::of(mesh, [self.displacement, influence]);
+        let [field, other] = [self.displacement, influence].map(|u| recovery.gradient(u));
+        let mut energy = EnergyError::of_cells(mesh.cell_count());
         let mut force = 0.0;
         self.each_point(|point| {
             let error = Vector4::from(field.at(mesh, point.cell, point.local)) - point.gradient;
@@ -133,37 +156,25 @@ impl Solved<'_> {
             let beyond = self
                 .stress(&(point.gradient + error))
                 .map_or(0.0, |stress| (stress - point.stress - linear).dot(&z));
-            force += point.volume * (linear.dot(&z_error) - beyond);
+            force += point.volume * (linear.dot(&z_error) + beyond);
+            energy.add(point, &error);
         });
-        ErrorEstimate {
-            energy: self.distance(|cell, local| field.at(mesh, cell, local)),
-            force,
-        }
+        ErrorEstimate { energy, force }
     }
 
     /// The estimate of the field alone.
     pub fn energy_estimate(&self) -> EnergyError {
-        let [field] = RecoveredGradient::of(self.mesh, [self.displacement]);
+        let field = Recovery::new(self.mesh).gradient(self.displacement);
         self.distance(|cell, local| field.at(self.mesh, cell, local))
     }
 
     /// The distance in the energy norm to the field whose displacement gradient at a reference point of a cell is given:
     /// the true error, where that field is the exact one.
     pub fn distance(&self, gradient: impl Fn(usize, [f64; 2]) -> [f64; 4]) -> EnergyError {
-        let mut found = EnergyError {
-            cells: vec![0.0; self.mesh.cell_count()],
-            norm_squared: 0.0,
-        };
+        let mut found = EnergyError::of_cells(self.mesh.cell_count());
         self.each_point(|point| {
             let error = Vector4::from(gradient(point.cell, point.local)) - point.gradient;
-            let eigen = point.tangent.symmetric_eigen();
-            let size = |v: &Gradient| {
-                let along = eigen.eigenvectors.tr_mul(v);
-                let pairs = along.iter().zip(&eigen.eigenvalues);
-                pairs.map(|(v, a)| a.max(0.0) * v * v).sum::<f64>()
-            };
-            found.cells[point.cell] += point.volume * size(&error);
-            found.norm_squared += point.volume * size(&point.gradient);
+            found.add(point, &error);
         });
         found
     }
@@ -274,7 +285,9 @@ mod tests {
         let (_, exact) = solve([60, 20], Element::Q2, 3.0);
         for (element, grading) in [(Element::Q1, 2.0), (Element::Q2, 3.0)] {
             let (model, solution) = solve([30, 10], element, grading);
-            let estimate = model.estimate(&problem, &solution).unwrap();
+            let estimate = model
+                .estimate(&problem, &solution, &Recovery::new(&model.mesh))
+                .unwrap();
             let surplus = 2.0 * (solution.energy - exact.energy);
             let effectivity = (estimate.energy.squared() / surplus).sqrt();
             let force = estimate.force / (solution.force - exact.force);
@@ -282,7 +295,9 @@ mod tests {
                 (0.8..1.8).contains(&effectivity),
                 "{element:?}: {effectivity}"
             );
-            assert!((0.8..3.5).contains(&force), "{element:?}: {force}");
+            // The corners of so coarse a Q2 mesh are not yet resolved.
+            let most = if element == Element::Q1 { 1.25 } else { 3.0 };
+            assert!((0.8..most).contains(&force), "{element:?}: {force}");
         }
     }
 }

@@ -17,7 +17,7 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::mesh::Mesh;
 
@@ -48,25 +48,67 @@ const DETERMINED: f64 = 1e-4;
 /// make a one-sided fit as wide as its patch.
 const FAR: f64 = 0.1;
 
-impl RecoveredGradient {
-    /// Recovers the gradients of several fields on one mesh; each holds ux, uy of node after node.
-    pub fn of<const N: usize>(mesh: &Mesh, fields: [&[f64]; N]) -> [Self; N] {
+/// The recovery on one mesh: what the least squares make of any field.
+#[derive(Clone, Debug)]
+pub struct Recovery {
+    /// One at each corner of a cell.
+    fits: Vec<Option<Fit>>,
+}
+
+/// The polynomial around a corner as a linear function of the displacements of nodes.
+#[derive(Clone, Debug)]
+struct Fit {
+    nodes: Vec<usize>,
+    origin: [f64; 2],
+    scale: [f64; 2],
+    degree: usize,
+    /// Coefficients by monomial (rows) for a unit displacement of each node (columns).
+    coefficients: DMatrix<f64>,
+}
+
+impl Recovery {
+    /// Fits around every corner of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
         let patches = Patches::new(mesh);
-        let mut all = fields.map(|_| Self {
-            polynomials: vec![None; mesh.nodes.len()],
-        });
-        for corner in 0..mesh.nodes.len() {
-            if patches.cells_at[corner].is_empty() {
-                continue;
-            }
-            let polynomials = patches.fit(corner, &fields);
-            for (recovered, polynomial) in all.iter_mut().zip(polynomials) {
-                recovered.polynomials[corner] = Some(polynomial);
-            }
+        let corners = 0..mesh.nodes.len();
+        let fit = |corner: usize| {
+            let is_corner = !patches.cells_at[corner].is_empty();
+            is_corner.then(|| patches.fit(corner))
+        };
+        Self {
+            fits: corners.map(fit).collect(),
         }
-        all
     }
 
+    /// The gradient of a field, which holds ux, uy of node after node.
+    pub fn gradient(&self, displacement: &[f64]) -> RecoveredGradient {
+        let fits = self.fits.iter();
+        let polynomial = |fit: &Option<Fit>| fit.as_ref().map(|fit| fit.polynomial(displacement));
+        RecoveredGradient {
+            polynomials: fits.map(polynomial).collect(),
+        }
+    }
+}
+
+impl Fit {
+    fn polynomial(&self, displacement: &[f64]) -> Polynomial {
+        let mut coefficients = vec![[0.0; 2]; self.coefficients.nrows()];
+        for (node, column) in self.nodes.iter().zip(self.coefficients.column_iter()) {
+            for (sums, value) in coefficients.iter_mut().zip(&column) {
+                sums[0] += value * displacement[2 * node];
+                sums[1] += value * displacement[2 * node + 1];
+            }
+        }
+        Polynomial {
+            origin: self.origin,
+            scale: self.scale,
+            degree: self.degree,
+            coefficients,
+        }
+    }
+}
+
+impl RecoveredGradient {
     /// G*₁₁, G*₁₂, G*₂₁, G*₂₂ at a reference point of a cell.
     pub fn at(&self, mesh: &Mesh, cell: usize, local: [f64; 2]) -> [f64; 4] {
         let shape = mesh.shape(cell);
@@ -145,13 +187,13 @@ impl<'a> Patches<'a> {
         }
     }
 
-    /// The polynomials of several fields around a corner.
-    fn fit(&self, corner: usize, fields: &[&[f64]]) -> Vec<Polynomial> {
+    /// The fit around a corner.
+    fn fit(&self, corner: usize) -> Fit {
         let mut cells: BTreeSet<usize> = self.cells_at[corner].iter().copied().collect();
         let least = 1 + usize::from(self.on_boundary[corner]);
         for layers in 1..MOST_LAYERS {
             if layers >= least
-                && let Some(found) = self.fit_on(corner, &cells, self.degree, fields)
+                && let Some(found) = self.fit_on(corner, &cells, self.degree)
             {
                 return found;
             }
@@ -159,15 +201,13 @@ impl<'a> Patches<'a> {
         }
         // A mesh of very few cells: what they determine.
         let lower = (1..=self.degree).rev();
-        let mut found = lower.filter_map(|degree| self.fit_on(corner, &cells, degree, fields));
-        found.next().unwrap_or_else(|| {
-            let nothing = || Polynomial {
-                origin: self.mesh.nodes[corner],
-                scale: [1.0; 2],
-                degree: 0,
-                coefficients: vec![[0.0; 2]],
-            };
-            fields.iter().map(|_| nothing()).collect()
+        let mut found = lower.filter_map(|degree| self.fit_on(corner, &cells, degree));
+        found.next().unwrap_or_else(|| Fit {
+            nodes: Vec::new(),
+            origin: self.mesh.nodes[corner],
+            scale: [1.0; 2],
+            degree: 0,
+            coefficients: DMatrix::zeros(1, 0),
         })
     }
 
@@ -183,18 +223,12 @@ impl<'a> Patches<'a> {
     }
 
     /// Least squares on the nodes of some cells; nothing where they do not determine the polynomial.
-    fn fit_on(
-        &self,
-        corner: usize,
-        cells: &BTreeSet<usize>,
-        degree: usize,
-        fields: &[&[f64]],
-    ) -> Option<Vec<Polynomial>> {
+    fn fit_on(&self, corner: usize, cells: &BTreeSet<usize>, degree: usize) -> Option<Fit> {
         let mesh = self.mesh;
-        let nodes: BTreeSet<usize> = cells
-            .iter()
-            .flat_map(|cell| mesh.cell(*cell).iter().copied())
-            .collect();
+        let of_cells = |cells: &mut dyn Iterator<Item = &usize>| -> BTreeSet<usize> {
+            cells.flat_map(|cell| mesh.cell(*cell)).copied().collect()
+        };
+        let nodes = of_cells(&mut cells.iter());
         let count = monomials(degree).count();
         if nodes.len() < count {
             return None;
@@ -205,49 +239,40 @@ impl<'a> Patches<'a> {
             let far = nodes.iter().map(|node| away(*node, axis).abs());
             far.fold(f64::MIN_POSITIVE, f64::max)
         });
+        let near = of_cells(&mut self.cells_at[corner].iter());
         let nodes: Vec<usize> = nodes.into_iter().collect();
-        let near = self.cells_at[corner].iter();
-        let near: BTreeSet<usize> = near.flat_map(|cell| mesh.cell(*cell)).copied().collect();
+        let mut weights = DVector::zeros(nodes.len());
         let mut matrix = DMatrix::zeros(nodes.len(), count);
-        let mut values = DMatrix::zeros(nodes.len(), 2 * fields.len());
         for (row, node) in nodes.iter().enumerate() {
             let [x, y] = [0, 1].map(|axis| away(*node, axis) / scale[axis]);
-            let weight = if near.contains(node) { 1.0 } else { FAR };
+            weights[row] = if near.contains(node) { 1.0 } else { FAR };
             for (column, [i, j]) in monomials(degree).enumerate() {
-                matrix[(row, column)] = weight * x.powi(i) * y.powi(j);
-            }
-            for (field, u) in fields.iter().enumerate() {
-                values[(row, 2 * field)] = weight * u[2 * node];
-                values[(row, 2 * field + 1)] = weight * u[2 * node + 1];
+                matrix[(row, column)] = weights[row] * x.powi(i) * y.powi(j);
             }
         }
-        let found = least_squares(matrix, values)?;
-        let polynomial = |field: usize| Polynomial {
+        Some(Fit {
+            coefficients: least_squares(matrix, &weights)?,
+            nodes,
             origin,
             scale,
             degree,
-            coefficients: (0..count)
-                .map(|row| [found[(row, 2 * field)], found[(row, 2 * field + 1)]])
-                .collect(),
-        };
-        Some((0..fields.len()).map(polynomial).collect())
+        })
     }
 }
 
-/// arg min |A x − b| for every column of b; nothing where A is nearly deficient.
-fn least_squares(matrix: DMatrix<f64>, mut values: DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let count = matrix.ncols();
+/// A⁺ diag(w), which makes arg min |A x − diag(w) b| of b; nothing where A is nearly deficient.
+fn least_squares(matrix: DMatrix<f64>, weights: &DVector<f64>) -> Option<DMatrix<f64>> {
     let decomposition = matrix.qr();
-    decomposition.q_tr_mul(&mut values);
-    let upper = decomposition.unpack_r();
-    let pivots = (0..count).map(|i| upper[(i, i)].abs());
-    let [least, most] = pivots.fold([f64::INFINITY, 0.0], |[least, most], pivot| {
-        [pivot.min(least), pivot.max(most)]
-    });
+    let (mut values, upper) = (decomposition.q().transpose(), decomposition.unpack_r());
+    let pivots = upper.diagonal();
+    let [least, most] = [pivots.amin(), pivots.amax()];
     if least < DETERMINED * most || least.is_nan() {
         return None;
     }
-    upper.solve_upper_triangular(&values.rows(0, count).into_owned())
+    for (mut column, weight) in values.column_iter_mut().zip(weights) {
+        column *= *weight;
+    }
+    upper.solve_upper_triangular(&values)
 }
 
 #[cfg(test)]
@@ -271,7 +296,7 @@ mod tests {
                 ]
             };
             let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
-            let [recovered] = RecoveredGradient::of(&mesh, [&u]);
+            let recovered = Recovery::new(&mesh).gradient(&u);
             for cell in 0..mesh.cell_count() {
                 for (local, _) in kind.quadrature() {
                     let [x, y] = mesh.place(cell, local);
@@ -302,7 +327,7 @@ mod tests {
                 .iter()
                 .flat_map(|[x, y]| [0.1 * x, 0.2 * y])
                 .collect();
-            let [recovered] = RecoveredGradient::of(&mesh, [&u]);
+            let recovered = Recovery::new(&mesh).gradient(&u);
             let found = recovered.at(&mesh, 0, kind.centre());
             for (found, exact) in found.iter().zip([0.1, 0.0, 0.0, 0.2]) {
                 assert!((found - exact).abs() < 1e-12, "{name}: {found}");

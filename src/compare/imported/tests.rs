@@ -5,6 +5,7 @@ const SETTINGS: ImportSettings = ImportSettings {
     unit: 1.0,
     array: None,
     factor: 0.5,
+    time: None,
 };
 
 /// ux = 0.1 X + 0.02 Y, uy = −0.05 Y.
@@ -109,23 +110,26 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
         .difference(&model)
         .unwrap();
     assert!(difference.percent < 1e-3, "{difference:?}");
-    // The first step is half of it.
-    let first = ImportSettings {
-        factor: 0.25,
-        ..SETTINGS
-    };
-    let imported = Imported::read(&written(".frd", &frd(1.0, "")), &first).unwrap();
-    let difference = imported
-        .sites(&model.mesh)
-        .unwrap()
-        .difference(&model)
-        .unwrap();
-    assert!((difference.percent - 100.0).abs() < 1e-3, "{difference:?}");
-    assert_eq!(difference.place, [30.0, 10.0]);
-    assert!(
-        (difference.largest - 0.5 * 3.2_f64.hypot(0.5)).abs() < 1e-5,
-        "{difference:?}"
-    );
+    // The first step is half of it, by its load factor or by its time.
+    for (factor, time) in [(0.25, None), (0.5, Some(0.25))] {
+        let first = ImportSettings {
+            factor,
+            time,
+            ..SETTINGS
+        };
+        let imported = Imported::read(&written(".frd", &frd(1.0, "")), &first).unwrap();
+        let difference = imported
+            .sites(&model.mesh)
+            .unwrap()
+            .difference(&model)
+            .unwrap();
+        assert!((difference.percent - 100.0).abs() < 1e-3, "{difference:?}");
+        assert_eq!(difference.place, [30.0, 10.0]);
+        assert!(
+            (difference.largest - 0.5 * 3.2_f64.hypot(0.5)).abs() < 1e-5,
+            "{difference:?}"
+        );
+    }
     // The same in metres.
     let metres = ImportSettings {
         unit: 1000.0,
@@ -169,7 +173,7 @@ fn fields_that_do_not_fit_are_refused_with_the_reason() {
         (
             ".frd",
             frd(1.0, "").replace("5.00000E-01    ", "7.50000E-01    "),
-            "no step at the time 0.5; its times are 0.25, 0.75",
+            "no step at the time 0.5; it has 0.25, 0.75: choose one with --time",
         ),
         (
             ".frd",

@@ -17,13 +17,12 @@ pub struct ImportedField {
     pub part: String,
 }
 
-/// The load factor of a step may differ by so much of it from the one that is wanted.
+/// The time of a step may differ by so much of it from the one that is wanted.
 const NEAR: f64 = 1e-4;
 
 /// Reads a field from VTK (`.vtu`, `.vtk`) or CalculiX (`.frd`); `unit` is the length of the file's unit in mm. Of
 /// VTK's arrays the one of the name `array` is taken; without a name the displacement, or the only vector. A unit at
-/// the end of an array's name is that of its values. Of CalculiX' steps the one with the time `factor` is taken, or
-/// the only one.
+/// the end of an array's name is that of its values. Of CalculiX' steps the one with the time `time` is taken.
 ///
 /// # Errors
 /// Says what the file holds that cannot be read, or what is wrong with it.
@@ -31,7 +30,7 @@ pub fn import_field(
     path: &Path,
     unit: f64,
     array: Option<&str>,
-    factor: f64,
+    time: f64,
 ) -> Result<ImportedField, String> {
     let ending = path
         .extension()
@@ -51,17 +50,12 @@ pub fn import_field(
         Some("frd") => {
             let results = frd::read(&read_text(path)?)?;
             let times: Vec<f64> = results.steps.iter().map(|(time, _)| *time).collect();
-            let near = |time: &f64| (time - factor).abs() <= NEAR * factor;
-            let step = match times.len() {
-                1 => 0,
-                _ => times.iter().rposition(near).ok_or_else(|| {
-                    let known: Vec<_> = times.iter().map(ToString::to_string).collect();
-                    format!(
-                        "has no step at the time {factor}; its times are {}",
-                        known.join(", ")
-                    )
-                })?,
-            };
+            let near = |known: &f64| (known - time).abs() <= NEAR * time;
+            let step = times.iter().rposition(near).ok_or_else(|| {
+                let known: Vec<_> = times.iter().map(ToString::to_string).collect();
+                let known = known.join(", ");
+                format!("has no step at the time {time}; it has {known}: choose one with --time")
+            })?;
             let (time, displacements) = &results.steps[step];
             let at = |node: u64| displacements.get(&node).copied();
             field(

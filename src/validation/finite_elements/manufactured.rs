@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use super::{distorted, misfit, sheet, solve, stress};
-use crate::boundary::BoundaryProblem;
+use crate::boundary::{BoundaryProblem, Support};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, GAUSS_5, Mesh};
@@ -17,6 +17,9 @@ use crate::output::picture::PALETTE;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::solve::State;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, figure};
+
+/// For messages.
+const NAME: &str = "manufactured solution";
 
 /// Side of the square in mm.
 const SIDE: f64 = 10.0;
@@ -40,6 +43,13 @@ pub struct Field {
 }
 
 impl Field {
+    fn new(amplitude: f64) -> Self {
+        Self {
+            a: amplitude,
+            b: -0.7 * amplitude,
+        }
+    }
+
     fn displacement(self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ((sx, cx), (sy, cy)) = ((PI * x / SIDE).sin_cos(), (PI * y / SIDE).sin_cos());
         [SIDE * self.a * sx * cy, SIDE * self.b * cx * sy]
@@ -135,18 +145,64 @@ pub fn solved(
     amplitude: f64,
 ) -> Result<(Mesh, State, Field), Error> {
     let mesh = distorted([SIDE; 2], [cells; 2], shape);
-    let field = Field {
-        a: amplitude,
-        b: -0.7 * amplitude,
-    };
+    let field = Field::new(amplitude);
     let problem = sheet();
     let energy = problem.finite_elements(&mesh);
     let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
     model.impose_field("boundary", |point| field.displacement(point));
     model.add_forces(&forces(&mesh, &problem, field));
-    let state = solve(&model, "manufactured solution", 1)?;
+    let state = solve(&model, NAME, 1)?;
     drop(model);
     Ok((mesh, state, field))
+}
+
+/// The force of the right side in N and the exact one.
+pub struct Force {
+    pub found: f64,
+    pub exact: f64,
+    /// The field that a unit motion of the side brings about.
+    pub influence: Vec<f64>,
+}
+
+/// The solution between four rollers, on which the chosen field slides without shear, and the force of the right one.
+pub fn between_rollers(
+    shape: CellShape,
+    cells: usize,
+    amplitude: f64,
+) -> Result<(Mesh, State, Force), Error> {
+    let mesh = distorted([SIDE; 2], [cells; 2], shape);
+    let field = Field::new(amplitude);
+    let sides = ["left", "right", "bottom", "top"];
+    let problem = BoundaryProblem {
+        supports: sides.map(|side| (side.into(), Support::Roller)).into(),
+        ..sheet()
+    };
+    let energy = problem.finite_elements(&mesh);
+    let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+    model.add_forces(&forces(&mesh, &problem, field));
+    let state = solve(&model, NAME, 1)?;
+    let influence = model.influence(&state, "right", 0);
+    let force = Force {
+        found: model.reaction(&state, "right")[0],
+        exact: side_force(&problem, field),
+        influence: influence.map_err(|fault| Error::Solve {
+            model: NAME.to_owned(),
+            step: "load factor 1".to_owned(),
+            fault,
+        })?,
+    };
+    drop(model);
+    Ok((mesh, state, force))
+}
+
+/// t ∫ P₁₁ dY along the right side in N, by a midpoint rule: P₁₁ is even about both ends, so that it is exact but for
+/// rounding.
+fn side_force(problem: &BoundaryProblem, field: Field) -> f64 {
+    const POINTS: usize = 200;
+    let step = SIDE / POINTS as f64;
+    let places = (0..POINTS).map(|i| [SIDE, (i as f64 + 0.5) * step]);
+    let stresses = places.map(|place| stress(&*problem.law, field.gradient(place))[0]);
+    problem.thickness * step * stresses.sum::<f64>()
 }
 
 /// Relative errors in L2 and in H1 on a distorted mesh.

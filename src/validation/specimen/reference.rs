@@ -6,6 +6,7 @@ use crate::boundary::Discretised;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;
 use crate::finite_element::error_estimate::{self, ErrorEstimate, bulk};
+use crate::finite_element::recovery::Recovery;
 use crate::mesh::Mesh;
 use crate::output::Block;
 use crate::validation::{Check, Wanted};
@@ -271,6 +272,7 @@ fn estimate_all(
     solved: &Solved,
 ) -> Result<Vec<ErrorEstimate>, Error> {
     let states = solved.states.iter();
+    let recovery = Recovery::new(mesh);
     let estimate = |state| {
         let (axis, _) = specimen.component(model, state);
         let influence = model.influence(state, &specimen.measured, axis);
@@ -285,7 +287,7 @@ fn estimate_all(
             mesh,
             displacement: &state.displacement,
         };
-        Ok(solved.estimate(&influence))
+        Ok(solved.estimate(&recovery, &influence))
     };
     states.map(estimate).collect()
 }
