@@ -61,7 +61,7 @@ pub struct Climbed {
     pub discretisation_error: f64,
     /// The last correction, root mean square over the nodes in mm.
     pub last_correction: f64,
-    /// The last correction on each grid, coarse to fine, root mean square over the nodes in mm.
+    /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
     /// What was done on each grid, coarse to fine: its nodes, and the work.
     pub work: Vec<(usize, Work)>,
@@ -204,10 +204,10 @@ impl<'a> Climb<'a> {
             let error = |first: f64| first * ratio(first) / (1.0 - ratio(first));
             let enough = |first: f64, last: f64| last <= tolerance * error(first);
             let reached = self.solve(index, &mut field, &enough)?;
-            own_error = error(reached.first);
-            last_correction = reached.last;
-            corrections.push(reached.last);
-            previous = Some(reached.first);
+            own_error = error(reached.first());
+            last_correction = reached.last();
+            previous = Some(reached.first());
+            corrections = reached.corrections;
             work.push((self.levels[index].grid.nodes(), reached.work));
         }
         let force = self.force(&field).map_err(|Inverted| inverted())?;
@@ -239,24 +239,25 @@ impl<'a> Climb<'a> {
             level
                 .linearise(sheet, field, &mut self.multigrid)
                 .map_err(|Inverted| inverted())?;
-            let first = whole.map(|whole| whole.first);
+            let first = whole.as_ref().map(Reached::first);
             let enough = |own: f64, last: f64| enough(first.unwrap_or(own), last);
             let mut reached = level
                 .iterate(sheet, field, &mut self.multigrid, most, &enough)
                 .map_err(|Inverted| inverted())?;
             reached.work.linearisations += 1;
-            if let Some(whole) = whole {
+            if let Some(mut whole) = whole.take() {
                 reached.work.add(whole.work);
-                reached.first = whole.first;
+                whole.corrections.append(&mut reached.corrections);
+                reached.corrections = whole.corrections;
             }
-            if enough(reached.first, reached.last) {
+            if enough(reached.first(), reached.last()) {
                 return Ok(reached);
             }
             whole = Some(reached);
         }
         Err(SolveFault::Stalled {
             iterations: LINEARISATIONS * most,
-            residual: whole.map_or(f64::NAN, |whole| whole.last / whole.first),
+            residual: whole.map_or(f64::NAN, |whole| whole.last() / whole.first()),
             tolerance: self.settings.tolerance,
         })
     }

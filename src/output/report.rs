@@ -52,7 +52,7 @@ pub fn report(study: &Study, results: &Results, figures: &[Figure]) -> Vec<Block
     blocks.extend(forces(results));
     blocks.extend(error_budget(study, results));
     blocks.extend(reference(study, results));
-    blocks.extend(convergence(results));
+    blocks.extend(convergence(study, results));
     blocks.extend(material(study));
     blocks.push(heading("Study"));
     blocks.extend(
@@ -316,7 +316,7 @@ fn reference(study: &Study, results: &Results) -> Vec<Block> {
     ]
 }
 
-fn convergence(results: &Results) -> Vec<Block> {
+fn convergence(study: &Study, results: &Results) -> Vec<Block> {
     let row = |stretch: f64, model: &str, solution: &Solution| {
         let log = &solution.convergence;
         let cell = |residual: Option<&f64>| residual.map_or("–".into(), |r| format!("{r:.1e}"));
@@ -362,12 +362,17 @@ fn convergence(results: &Results) -> Vec<Block> {
     vec![
         heading("Convergence"),
         Block::table(&head, rows),
-        Block::Paragraph(
-            "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: \
-             largest scaled residual over the largest displacement; its equations are as many as its \
-             unknowns, so that each step is a Newton step that starts from the mass-spring field."
-                .into(),
-        ),
+        Block::Paragraph(format!(
+            "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: {}",
+            match study.climb {
+                Some(_) =>
+                    "the correction that is left, root mean square over the nodes of the finest grid, over the \
+                         largest displacement; the first is what this grid adds to the one before it.",
+                None =>
+                    "largest scaled residual over the largest displacement; its equations are as many as its \
+                         unknowns, so that each step is a Newton step that starts from the mass-spring field.",
+            }
+        )),
     ]
 }
 

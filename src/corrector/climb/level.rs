@@ -7,6 +7,18 @@ use crate::corrector::DifferenceScheme;
 use crate::material::HyperelasticLaw;
 use crate::multigrid::{Multigrid, Vector};
 
+impl Reached {
+    /// The first correction.
+    pub fn first(&self) -> f64 {
+        self.corrections[0]
+    }
+
+    /// The last correction.
+    pub fn last(&self) -> f64 {
+        self.corrections[self.corrections.len() - 1]
+    }
+}
+
 /// Iterations of a linear system at most.
 const LINEAR_ITERATIONS: usize = 200;
 
@@ -79,12 +91,10 @@ impl Work {
 }
 
 /// How far an iteration came; root mean squares over the nodes in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// Of the first correction: how far the start was away.
-    pub first: f64,
-    /// Of the last correction, which has been applied.
-    pub last: f64,
+    /// Of every correction: the first says how far the start was away, the last one has been applied.
+    pub corrections: Vec<f64>,
     /// What it took.
     pub work: Work,
 }
@@ -149,6 +159,8 @@ impl Level {
         self.evaluate_residual(sheet, u)?;
         let mut steepness = self.precondition(multigrid, &mut work);
         let first = self.correction.size();
+        let mut corrections = Vec::with_capacity(max_iterations + 1);
+        corrections.push(first);
         for component in &mut self.direction.components {
             component.fill(0.0);
         }
@@ -164,13 +176,14 @@ impl Level {
             steepness = self.precondition(multigrid, &mut work);
             share = steepness / before;
             last = self.correction.size();
+            corrections.push(last);
         }
         let free = u.free();
         for (u, correction) in u.components.iter_mut().zip(&self.correction.components) {
             let pairs = u[free.clone()].iter_mut().zip(&correction[free.clone()]);
             pairs.for_each(|(u, correction)| *u -= correction);
         }
-        Ok(Reached { first, last, work })
+        Ok(Reached { corrections, work })
     }
 
     /// The correction z = M⁻¹ r of the residual; returns r · z.

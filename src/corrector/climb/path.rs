@@ -124,10 +124,10 @@ impl Climb<'_> {
             last <= limit
         });
         let reached = iterated.map_err(|Inverted| inverted())?;
-        if reached.last > limit {
+        if reached.last() > limit {
             return Err(SolveFault::Stalled {
                 iterations: most,
-                residual: reached.last,
+                residual: reached.last(),
                 tolerance: limit,
             });
         }
@@ -139,8 +139,8 @@ impl Climb<'_> {
             force,
             coarser: None,
             discretisation_error: error,
-            last_correction: reached.last,
-            corrections: vec![reached.last],
+            last_correction: reached.last(),
+            corrections: reached.corrections,
             work: vec![(self.grid().nodes(), work)],
         })
     }
