@@ -221,3 +221,32 @@ fn grips_and_rollers_that_cannot_be_are_refused() {
         assert!(found.message.contains(told), "{}", found.message);
     }
 }
+
+/// The influence field of a pulled grip is the change of the equilibrium by the force, tied nodes with the others.
+#[test]
+fn the_influence_of_a_pulled_grip_is_the_derivative_by_its_force() {
+    let mesh = Shape::Strip { size: [30.0, 10.0] }.mesh(4, CellShape::Quad4);
+    let solved = |force: f64| {
+        let clamp = Support::Displacement([Some(0.0); 2]);
+        let grip = Support::Grip([Drive::Force(force), Drive::Displacement(0.0)]);
+        let problem = BoundaryProblem {
+            thickness: 1.0,
+            law: Arc::new(NEO_HOOKE),
+            supports: vec![("left".into(), clamp), ("right".into(), grip)],
+            loads: Vec::new(),
+        };
+        let energy = problem.finite_elements(&mesh);
+        let model = problem.on(&mesh, &energy).unwrap();
+        let state = model.solve(&[1.0], NEWTON, &|_| ()).unwrap().remove(0);
+        let influence = model.influence(&state, "right", 0).unwrap();
+        (state.displacement, influence)
+    };
+    let (_, influence) = solved(0.4);
+    let step = 1e-3;
+    let [more, less] = [solved(0.4 + step).0, solved(0.4 - step).0];
+    for ((more, less), influence) in more.iter().zip(less).zip(&influence) {
+        let change = (more - less) / (2.0 * step);
+        assert!((change - influence).abs() < 1e-3, "{change} {influence}");
+    }
+    assert!(influence.iter().any(|u| u.abs() > 10.0), "{influence:?}");
+}

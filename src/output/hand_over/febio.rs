@@ -19,21 +19,21 @@
 //! # References
 //! S. A. Maas et al., FEBio User's Manual 4.x; `FEBioMech` in <https://github.com/febiosoftware/FEBio>
 
-use std::collections::BTreeMap;
-
-use quick_xml::Writer;
-use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
-
 use super::material::{Material, refused};
 use super::{Held, Model, ascii, number};
 use crate::error::Error;
 use crate::mesh::CellShape;
 
+mod columns;
+mod curves;
+mod xml;
+
+use columns::Columns;
+use curves::Curves;
+use xml::Xml;
+
 /// Steps of time within a load factor to begin with.
 const TIME_STEPS: u32 = 10;
-/// Points of the path of a turn between two load factors.
-const TURN_POINTS: u32 = 8;
-
 /// The input file of a model.
 ///
 /// # Errors
@@ -147,101 +147,6 @@ fn material_axes(model: &Model, file: &mut Xml) {
         file.text("a", &[], &format!("{},{},0", number(cosine), number(sine)));
         file.text("d", &[], &format!("{},{},0", number(-sine), number(cosine)));
         file.close("mat_axis");
-    }
-}
-
-/// The columns of nodes above the nodes of the sheet: their numbers from the middle of the sheet upwards.
-struct Columns(BTreeMap<usize, Vec<usize>>);
-
-impl Columns {
-    fn new(model: &Model) -> Self {
-        let mut heights: BTreeMap<usize, usize> = BTreeMap::new();
-        for (shape, nodes) in &model.cells {
-            for (place, node) in nodes.iter().enumerate() {
-                let three = match shape {
-                    CellShape::Triangle3 | CellShape::Quad4 => false,
-                    CellShape::Triangle6 | CellShape::Quad8 => place < shape.corners(),
-                    CellShape::Quad9 => true,
-                };
-                heights.insert(*node, if three { 3 } else { 2 });
-            }
-        }
-        let mut next = 1;
-        let columns = heights.into_iter().map(|(node, height)| {
-            let own = next..next + height;
-            next = own.end;
-            (node, own.collect())
-        });
-        Self(columns.collect())
-    }
-
-    fn lower(&self, node: usize) -> usize {
-        self.0[&node][0]
-    }
-
-    fn upper(&self, node: usize) -> usize {
-        self.0[&node][self.0[&node].len() - 1]
-    }
-
-    /// The middle one of three.
-    fn middle(&self, node: usize) -> usize {
-        self.0[&node][1]
-    }
-
-    fn all<'a>(&'a self, nodes: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
-        nodes.iter().flat_map(|node| self.0[node].iter().copied())
-    }
-
-    /// The nodes of the solid on a cell, in FEBio's order: corners, edges below, above and between, faces, centre.
-    fn solid(&self, shape: CellShape, nodes: &[usize]) -> Vec<usize> {
-        let (corners, rest) = nodes.split_at(shape.corners());
-        let (sides, centre) = rest.split_at(rest.len().min(shape.corners()));
-        let mut solid = Vec::new();
-        for layer in [corners, sides] {
-            solid.extend(layer.iter().map(|node| self.lower(*node)));
-            solid.extend(layer.iter().map(|node| self.upper(*node)));
-        }
-        if shape.degree() == 2 {
-            solid.extend(corners.iter().map(|node| self.middle(*node)));
-        }
-        for node in centre {
-            solid.extend(sides.iter().map(|side| self.middle(*side)));
-            solid.extend([self.lower(*node), self.upper(*node), self.middle(*node)]);
-        }
-        solid
-    }
-
-    /// The outer face on an edge, its normal outwards.
-    fn face(&self, shape: CellShape, edge: &[usize]) -> (&'static str, Vec<usize>) {
-        let (a, b) = (edge[0], edge[1]);
-        let mut face = vec![self.lower(a), self.lower(b), self.upper(b), self.upper(a)];
-        let Some(side) = edge.get(2) else {
-            return ("quad4", face);
-        };
-        face.extend([
-            self.lower(*side),
-            self.middle(b),
-            self.upper(*side),
-            self.middle(a),
-        ]);
-        if shape == CellShape::Quad9 {
-            face.push(self.middle(*side));
-            return ("quad9", face);
-        }
-        ("quad8", face)
-    }
-
-    /// The shares of a force on a node of the sheet that its column carries: those of a constant traction.
-    fn shares(&self, model: &Model, node: usize) -> &'static [f64] {
-        let nine = model
-            .cells
-            .iter()
-            .all(|(shape, _)| *shape == CellShape::Quad9);
-        match self.0[&node].len() {
-            2 => &[0.5, 0.5],
-            _ if nine => &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
-            _ => &[-0.5, 2.0, -0.5],
-        }
     }
 }
 
@@ -489,102 +394,4 @@ fn steps(model: &Model, file: &mut Xml) {
         before = *factor;
     }
     file.close("Step");
-}
-
-/// Load curves: the first is the load factor itself, the others follow turning nodes.
-#[derive(Default)]
-struct Curves(Vec<Vec<[f64; 2]>>);
-
-impl Curves {
-    /// The number of the curve of a node that a support turns, exact at every load factor and at points between.
-    fn turn(&mut self, model: &Model, held: &Held, node: usize) -> usize {
-        let place = model.given.mesh.nodes[node];
-        let mut points = vec![[0.0, 0.0]];
-        for factor in model.given.factors {
-            let before = points[points.len() - 1][0];
-            for i in 1..=TURN_POINTS {
-                let time = match i {
-                    TURN_POINTS => *factor,
-                    _ => before + (factor - before) * f64::from(i) / f64::from(TURN_POINTS),
-                };
-                points.push([time, held.at(place, time)]);
-            }
-        }
-        self.0.push(points);
-        self.0.len() + 1
-    }
-
-    fn write(self, file: &mut Xml) {
-        file.open("LoadData", &[]);
-        let factor = vec![[0.0, 0.0], [1.0, 1.0]];
-        for (index, points) in std::iter::once(factor).chain(self.0).enumerate() {
-            let id = (index + 1).to_string();
-            file.open(
-                "load_controller",
-                &[
-                    ("id", &id),
-                    ("name", &format!("curve {id}")),
-                    ("type", "loadcurve"),
-                ],
-            );
-            file.text("interpolate", &[], "LINEAR");
-            file.text("extend", &[], "EXTRAPOLATE");
-            file.open("points", &[]);
-            for [time, value] in points {
-                file.text("pt", &[], &format!("{},{}", number(time), number(value)));
-            }
-            file.close("points");
-            file.close("load_controller");
-        }
-        file.close("LoadData");
-    }
-}
-
-/// A document, element by element.
-struct Xml(Writer<Vec<u8>>);
-
-impl Xml {
-    fn new() -> Self {
-        let mut file = Self(Writer::new_with_indent(Vec::new(), b' ', 2));
-        file.event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)));
-        file
-    }
-
-    fn event(&mut self, event: Event<'_>) {
-        self.0
-            .write_event(event)
-            .expect("writing to memory does not fail");
-    }
-
-    fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
-        let start = BytesStart::new(name).with_attributes(attributes.iter().copied());
-        self.event(Event::Start(start));
-    }
-
-    fn close(&mut self, name: &str) {
-        self.event(Event::End(BytesEnd::new(name)));
-    }
-
-    fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) {
-        let start = BytesStart::new(name).with_attributes(attributes.iter().copied());
-        self.event(Event::Empty(start));
-    }
-
-    fn text(&mut self, name: &str, attributes: &[(&str, &str)], text: &str) {
-        self.open(name, attributes);
-        self.event(Event::Text(BytesText::new(text)));
-        self.close(name);
-    }
-
-    /// A remark; two hyphens in a row would end it.
-    fn comment(&mut self, text: &str) {
-        let text = format!(" {} ", text.replace("--", "- -"));
-        self.event(Event::Comment(BytesText::from_escaped(text)));
-    }
-
-    fn finish(self) -> String {
-        let mut text = String::from_utf8(self.0.into_inner()).expect("texts are UTF-8");
-        text.push('\n');
-        text
-    }
 }

@@ -105,10 +105,7 @@ fn force_table(rows: Vec<Vec<String>>) -> [Block; 2] {
         "the same by recovery [%]",
         "estimated over true error",
     ];
-    [
-        Block::Paragraph(text.into()),
-        Block::table(&head, rows.into_iter()),
-    ]
+    [Block::Paragraph(text.into()), Block::table(&head, rows)]
 }
 
 /// Estimated over true error of an element on smooth problems.
