@@ -17,6 +17,7 @@ mod forces;
 mod grid;
 mod level;
 mod multipliers;
+mod newton;
 mod path;
 mod start;
 mod tangents;

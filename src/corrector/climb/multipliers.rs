@@ -24,15 +24,16 @@ impl Climb<'_> {
         let mut difference = data.clone();
         difference.add(-1.0, corrected);
         let level = &mut self.levels[finest];
-        level
-            .solve_linear(
-                sheet,
-                corrected,
-                &difference,
-                &mut self.multigrid,
-                TOLERANCE,
-            )
-            .map_err(|Inverted| inverted())?
+        let solved = level.solve_linear(
+            sheet,
+            corrected,
+            &difference,
+            &mut self.multigrid,
+            TOLERANCE,
+        );
+        let solved = solved.map_err(|Inverted| inverted())?;
+        solved
+            .map(|(multipliers, _)| multipliers)
             .ok_or(SolveFault::NotPositiveDefinite)
     }
 }
