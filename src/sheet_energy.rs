@@ -23,6 +23,8 @@ pub struct SamplingPoint {
 pub struct SheetEnergy {
     law: Arc<dyn HyperelasticLaw>,
     unknowns: usize,
+    /// Where the nodes are, if that is known.
+    places: Vec<[f64; 2]>,
     /// ux, uy of node after node for each cell.
     cell_unknowns: Vec<usize>,
     /// Where the unknowns of each cell begin.
@@ -42,6 +44,7 @@ impl SheetEnergy {
         let mut energy = Self {
             law,
             unknowns: 2 * nodes,
+            places: Vec::new(),
             cell_unknowns: Vec::new(),
             unknown_starts: vec![0],
             points: Vec::new(),
@@ -71,7 +74,10 @@ impl SheetEnergy {
             rule.map(point).collect()
         };
         let cells = (0..mesh.cell_count()).map(|cell| (mesh.cell(cell), points(cell)));
-        Self::new(law, mesh.nodes.len(), cells)
+        Self {
+            places: mesh.nodes.clone(),
+            ..Self::new(law, mesh.nodes.len(), cells)
+        }
     }
 
     /// The sampling points of a cell.
@@ -103,6 +109,10 @@ impl Potential for SheetEnergy {
 
     fn element_unknowns(&self, element: usize) -> &[usize] {
         &self.cell_unknowns[self.unknown_starts[element]..self.unknown_starts[element + 1]]
+    }
+
+    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
+        self.places.get(unknown / 2).copied()
     }
 
     fn evaluate_element(

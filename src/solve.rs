@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows any mechanics: an unknown is a number in a vector, an element is a term of a sum.
 
+pub mod dissection;
 mod ending;
 pub mod newton;
 pub mod path;

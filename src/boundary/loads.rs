@@ -294,6 +294,10 @@ impl Potential for LoadedPotential<'_> {
         }
     }
 
+    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
+        self.energy.place(unknown)
+    }
+
     fn evaluate_element(
         &self,
         element: usize,

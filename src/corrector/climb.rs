@@ -18,6 +18,7 @@ mod forces;
 mod grid;
 mod level;
 mod multipliers;
+mod newton;
 mod path;
 mod start;
 mod tangents;

@@ -61,8 +61,8 @@ impl Newton {
     /// [`SolveFault::Singular`] when the pattern cannot be analysed.
     pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Result<Self, SolveFault> {
         let assembly = Assembly::new(potential, fixed);
-        let cholesky =
-            Cholesky::analyse(assembly.pattern().clone()).map_err(|_| SolveFault::Singular)?;
+        let cholesky = assembly.analyse(potential);
+        let cholesky = cholesky.map_err(|_| SolveFault::Singular)?;
         Ok(Self {
             assembly,
             cholesky,

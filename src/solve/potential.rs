@@ -1,6 +1,7 @@
 //! A potential energy that is a sum over elements, and its assembly.
 
-use super::sparse::{SymmetricPattern, moved};
+use super::dissection::dissection;
+use super::sparse::{Cholesky, NotPositiveDefinite, SymmetricPattern, moved};
 
 /// An element that has turned inside out, collapsed, or left the range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +34,11 @@ pub trait Potential: Sync {
     /// The unknowns that element `element` depends on.
     fn element_unknowns(&self, element: usize) -> &[usize];
 
+    /// Where an unknown is in the body, if that is known: large systems are eliminated in an order by places.
+    fn place(&self, _unknown: usize) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Πₑ, and its derivatives into `local`, at the element's own unknowns `u`.
     ///
     /// # Errors
@@ -64,6 +70,10 @@ impl<P: Potential + ?Sized> Potential for &P {
         (**self).element_unknowns(element)
     }
 
+    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
+        (**self).place(unknown)
+    }
+
     fn evaluate_element(
         &self,
         element: usize,
@@ -92,6 +102,10 @@ pub struct Assembly {
 }
 
 const NOWHERE: usize = usize::MAX;
+
+/// Unknowns from which on nested dissection pays: its analysis takes half the time of one by least degree, and from
+/// half a million unknowns on the factorisation takes one to three times less.
+const WORTH_DISSECTION: usize = 30_000;
 
 impl Assembly {
     /// Prepares the assembly of `potential` with the unknowns marked in `fixed` held.
@@ -148,6 +162,21 @@ impl Assembly {
     /// Pattern of the stiffness over the free unknowns.
     pub fn pattern(&self) -> &SymmetricPattern {
         &self.pattern
+    }
+
+    /// Analyses the pattern of the stiffness, in an order by places where the system is large and they are known.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when the pattern cannot be analysed, which means out of memory.
+    pub fn analyse(&self, potential: &dyn Potential) -> Result<Cholesky, NotPositiveDefinite> {
+        let places = || self.free.iter().map(|unknown| potential.place(*unknown));
+        match places().collect::<Option<Vec<_>>>() {
+            Some(places) if places.len() >= WORTH_DISSECTION => {
+                let order = dissection(&self.pattern, &places);
+                Cholesky::analyse_in_order(self.pattern.clone(), &order)
+            }
+            _ => Cholesky::analyse(self.pattern.clone()),
+        }
     }
 
     /// Energy and full residual (fixed unknowns too: there it is the reaction).

@@ -3,6 +3,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::linalg::solvers::SolveCore;
+use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -47,6 +48,11 @@ impl SymmetricPattern {
     /// Number of stored entries.
     pub fn entries(&self) -> usize {
         self.rows.len()
+    }
+
+    /// The rows of a column from the diagonal on.
+    pub fn column(&self, column: usize) -> &[usize] {
+        &self.rows[self.column_starts[column]..self.column_starts[column + 1]]
     }
 
     /// Where the entry (row, column) of either triangle is stored.
@@ -117,11 +123,37 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Analyses a pattern.
+    /// Analyses a pattern, to be eliminated in an order of approximately least degree.
     ///
     /// # Errors
     /// [`NotPositiveDefinite`] when the pattern cannot be analysed, which means out of memory.
     pub fn analyse(pattern: SymmetricPattern) -> Result<Self, NotPositiveDefinite> {
+        Self::analyse_by(pattern, SymmetricOrdering::Amd)
+    }
+
+    /// Analyses a pattern, to be eliminated in a given order of all unknowns.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when the pattern cannot be analysed, which means out of memory.
+    ///
+    /// # Panics
+    /// When an unknown is missing in the order.
+    pub fn analyse_in_order(
+        pattern: SymmetricPattern,
+        order: &[usize],
+    ) -> Result<Self, NotPositiveDefinite> {
+        let mut position = vec![0; order.len()];
+        for (place, unknown) in order.iter().enumerate() {
+            position[*unknown] = place;
+        }
+        let permutation = PermRef::new_checked(order, &position, pattern.size());
+        Self::analyse_by(pattern, SymmetricOrdering::Custom(permutation))
+    }
+
+    fn analyse_by(
+        pattern: SymmetricPattern,
+        ordering: SymmetricOrdering<'_, usize>,
+    ) -> Result<Self, NotPositiveDefinite> {
         let size = pattern.size();
         let symbolic = factorize_symbolic_cholesky(
             SymbolicSparseColMatRef::new_checked(
@@ -132,7 +164,7 @@ impl Cholesky {
                 &pattern.rows,
             ),
             Side::Lower,
-            SymmetricOrdering::Amd,
+            ordering,
             CholeskySymbolicParams::default(),
         )
         .map_err(|_| NotPositiveDefinite)?;
@@ -235,7 +267,8 @@ impl Cholesky {
             .collect()
     }
 
-    fn substitute(&mut self, x: &mut [f64]) {
+    /// x ← A⁻¹ x by substitution alone, without refinement and proof: for iterations that look at their own residual.
+    pub fn substitute(&mut self, x: &mut [f64]) {
         let size = x.len();
         LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
@@ -348,6 +381,19 @@ mod tests {
             );
             values.iter_mut().for_each(|value| *value *= 3.0);
         }
+    }
+
+    #[test]
+    fn the_order_of_elimination_does_not_change_the_solution() {
+        let (pattern, values) = laplacian(50);
+        let exact: Vec<f64> = (0..50).map(|i| f64::from(i).cos()).collect();
+        let order: Vec<usize> = (0..25).flat_map(|i| [2 * i, 49 - 2 * i]).collect();
+        let mut cholesky = Cholesky::analyse_in_order(pattern.clone(), &order).unwrap();
+        cholesky.factorise(&values).unwrap();
+        let mut x = pattern.multiply(&values, &exact);
+        cholesky.substitute(&mut x);
+        let pairs = x.iter().zip(&exact);
+        pairs.for_each(|(x, exact)| assert!((x - exact).abs() < 1e-12));
     }
 
     #[test]

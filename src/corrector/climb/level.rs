@@ -231,7 +231,7 @@ impl Level {
     }
 
     /// x with K x = b at the free nodes and nothing at the grips but −K x + b, where K is the Jacobian of F at `u`,
-    /// by the same iteration as [`Self::iterate`]; nothing where K is not positive definite.
+    /// by the same iteration as [`Self::iterate`], and what it took; nothing where K is not positive definite.
     ///
     /// # Errors
     /// [`Inverted`] when `u` is not admissible.
@@ -242,14 +242,17 @@ impl Level {
         b: &Field,
         multigrid: &mut Multigrid,
         tolerance: f64,
-    ) -> Result<Option<Field>, Inverted> {
+    ) -> Result<Option<(Field, Work)>, Inverted> {
         let mut at_rest = Field::zeros(&self.grid);
         sheet.forces(&self.grid, u, &mut at_rest)?;
         let mut x = Field::zeros(&self.grid);
         let mut image = Field::zeros(&self.grid);
         self.residual.clone_from(b);
         self.residual.scale(-1.0);
-        let mut work = Work::default();
+        let mut work = Work {
+            evaluations: 1,
+            ..Work::default()
+        };
         let mut steepness = self.precondition(multigrid, &mut work);
         let first = self.correction.size();
         self.direction.scale(0.0);
@@ -260,6 +263,7 @@ impl Level {
             self.trial.clone_from(u);
             self.trial.add(scale, &self.direction);
             sheet.forces(&self.grid, &self.trial, &mut self.trial_residual)?;
+            work.evaluations += 1;
             self.trial_residual.add(-1.0, &at_rest);
             self.trial_residual.scale(1.0 / scale);
             let curvature = self.direction.product(&self.trial_residual);
@@ -281,7 +285,7 @@ impl Level {
                         x[node] = b.components[axis][node] - image.components[axis][node];
                     }
                 }
-                return Ok(Some(x));
+                return Ok(Some((x, work)));
             }
         }
         Ok(None)

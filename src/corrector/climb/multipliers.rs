@@ -49,8 +49,9 @@ impl Climb<'_> {
             &mut self.multigrid,
             TOLERANCE,
         );
+        let solved = solved.map_err(|Inverted| inverted())?;
         solved
-            .map_err(|Inverted| inverted())?
+            .map(|(multipliers, _)| multipliers)
             .ok_or(SolveFault::NotPositiveDefinite)
     }
 }

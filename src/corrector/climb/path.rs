@@ -103,7 +103,7 @@ impl Climb<'_> {
     }
 
     /// The root mean square over the nodes of a field's departure from the affine stretch in mm.
-    fn departure(&self, field: &Field, stretch: f64) -> f64 {
+    pub(super) fn departure(&self, field: &Field, stretch: f64) -> f64 {
         let places = &self.grid().coordinates[0];
         let lines = field.components[0].chunks_exact(field.width).zip(places);
         let along: f64 = lines

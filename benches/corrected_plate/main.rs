@@ -1,0 +1,134 @@
+//! The corrected plate beside finite elements: time, error, memory and work, from a thousand nodes to over a million.
+//!
+//! ```text
+//! cargo bench --bench corrected_plate              all of it, some minutes and 6 GB
+//! cargo bench --bench corrected_plate -- --quick   grids up to a quarter of a million nodes
+//! ```
+//!
+//! A plate of 150 × 50 × 2 mm of 10 % PVA hydrogel (`pva-10`), stretched by 100 %. Every time runs from the problem to
+//! field and force, with grids, meshes and analysis, on one thread where nothing else is said; it is the shortest of
+//! several runs in which all contestants take turns. Errors are departures from the affine stretch in relative L2 and
+//! forces, against a converged field. Writes `output/bench/corrected_plate.csv` and `.png`.
+
+mod measure;
+mod opponent;
+mod reference;
+mod states;
+mod table;
+mod verdict;
+mod way;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use gelbench::corrector::DifferenceScheme;
+use gelbench::error::Error;
+use gelbench::material::Card;
+use gelbench::output;
+use gelbench::problem::Problem;
+use peak_alloc::PeakAlloc;
+use rayon::ThreadPoolBuilder;
+
+use measure::Bench;
+use reference::{PUBLISHED_FORCE, Reference};
+use table::Row;
+use verdict::Verdicts;
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+const STRETCH: f64 = 1.0;
+const FOLDER: &str = "output/bench";
+/// Cells along X and Y of the grids on which the climb is measured.
+const CORRECTED: [[usize; 2]; 7] = [
+    [60, 20],
+    [120, 40],
+    [240, 80],
+    [480, 160],
+    [600, 200],
+    [960, 320],
+    [1920, 640],
+];
+/// Further grids of nodes for finite elements of equal accuracy.
+const FURTHER: [[usize; 2]; 10] = [
+    [36, 12],
+    [48, 16],
+    [72, 24],
+    [96, 32],
+    [144, 48],
+    [192, 64],
+    [288, 96],
+    [360, 120],
+    [768, 256],
+    [1200, 400],
+];
+/// Nodes above which grids are left out by `--quick`.
+const QUICK: usize = 250_000;
+
+fn main() -> ExitCode {
+    let quick = std::env::args().any(|argument| argument == "--quick");
+    match bench(quick) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(3)
+        }
+    }
+}
+
+fn bench(quick: bool) -> Result<(), Error> {
+    output::prepare(Path::new(FOLDER))?;
+    let problem = Problem {
+        size: [150.0, 50.0],
+        thickness: 2.0,
+        law: Card::load("pva-10", Path::new("."))?.law,
+        stretches: vec![STRETCH],
+    };
+    let pools = [1, 2].map(|threads| {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads")
+    });
+    let reference = pools[1].install(|| Reference::new(&problem, STRETCH))?;
+    println!(
+        "reference: force {:.6} N (published {PUBLISHED_FORCE} N), own departure below {:.1e} %",
+        reference.force, reference.own_percent
+    );
+    let bench = Bench {
+        problem: &problem,
+        reference: &reference,
+        stretch: STRETCH,
+        pools: &pools,
+    };
+    let mut grids: Vec<([usize; 2], bool)> = CORRECTED.map(|cells| (cells, true)).to_vec();
+    grids.extend(FURTHER.map(|cells| (cells, false)));
+    grids.sort_unstable();
+    let mut runs = Vec::new();
+    for (cells, corrected) in grids {
+        if quick && cells[0] * cells[1] > QUICK {
+            continue;
+        }
+        let own = bench.grid(cells, corrected)?;
+        own.iter().for_each(table::print_run);
+        runs.extend(own);
+    }
+    let rows = Row::all(&runs);
+    table::print(&rows);
+    let mut verdicts = Verdicts::new(&reference);
+    verdicts.rows(&rows);
+    let stretches: Vec<f64> = (1..=100).map(|percent| 0.01 * f64::from(percent)).collect();
+    for scheme in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic] {
+        let error = table::own_error(&runs, [60, 20], scheme);
+        let path = || states::path(&problem, [60, 20], scheme, &stretches, error);
+        verdicts.path(&pools[0].install(path)?);
+    }
+    verdicts.frames(&pools[0].install(|| states::frames(&problem, [180, 60], 100))?);
+    verdicts.print();
+    let folder = Path::new(FOLDER);
+    for (name, bytes) in [
+        ("corrected_plate.csv", table::csv(&rows)),
+        ("corrected_plate.png", table::picture(&runs)),
+    ] {
+        println!("{}", output::save(&folder.join(name), &bytes)?.display());
+    }
+    Ok(())
+}

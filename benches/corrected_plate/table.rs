@@ -1,0 +1,253 @@
+//! The table: one row for each grid, scheme and number of threads of the climb.
+
+use gelbench::corrector::DifferenceScheme;
+use gelbench::finite_element::Element;
+use gelbench::output::picture::PALETTE;
+use gelbench::output::picture::lines::{Axis, Line, LineChart, Stroke, stacked};
+
+use super::measure::Run;
+use super::opponent::Guess;
+use super::way::{Way, element, scheme_name};
+
+/// The climb on one grid beside its opponents; times in s.
+pub struct Row<'a> {
+    pub climb: &'a Run,
+    pub scheme: DifferenceScheme,
+    /// Finite elements with the same nodes and equations: from the affine and from the nested guess.
+    pub same_nodes: [&'a Run; 2],
+    /// The cheapest finite elements that are as accurate, of all meshes and both elements.
+    pub equal_accuracy: [Option<&'a Run>; 2],
+    pub newton: &'a Run,
+}
+
+/// How much larger an error still counts as equal: as much as the iterations of the climb leave.
+const EQUAL: f64 = 1.02;
+
+const GUESSES: [Guess; 2] = [Guess::Affine, Guess::Nested];
+
+impl<'a> Row<'a> {
+    pub fn all(runs: &'a [Run]) -> Vec<Self> {
+        let climbs = runs.iter().filter_map(|run| match run.way {
+            Way::Climb(scheme) => Some((run, scheme)),
+            _ => None,
+        });
+        climbs
+            .map(|(run, scheme)| Self::new(runs, run, scheme))
+            .collect()
+    }
+
+    fn new(runs: &'a [Run], climb: &'a Run, scheme: DifferenceScheme) -> Self {
+        let here = |way: Way| {
+            let found = runs
+                .iter()
+                .find(|run| run.way == way && run.cells == climb.cells);
+            found.expect("every way is measured on this grid")
+        };
+        let cheapest = |guess: Guess| {
+            let as_accurate = runs.iter().filter(|run| {
+                matches!(run.way, Way::FiniteElements(_, own) if own == guess)
+                    && run.departure_percent <= EQUAL * climb.departure_percent
+            });
+            as_accurate.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+        };
+        Self {
+            climb,
+            scheme,
+            same_nodes: GUESSES.map(|guess| here(Way::FiniteElements(element(scheme), guess))),
+            equal_accuracy: GUESSES.map(cheapest),
+            newton: here(Way::Newton(scheme)),
+        }
+    }
+
+    /// Time of finite elements at the same nodes over that of the climb.
+    pub fn ratio_same_nodes(&self, guess: Guess) -> f64 {
+        self.same_nodes[guess as usize].seconds / self.climb.seconds
+    }
+
+    /// Time of the cheapest finite elements of equal accuracy over that of the climb.
+    pub fn ratio_equal_accuracy(&self, guess: Guess) -> f64 {
+        let seconds = self.equal_accuracy[guess as usize].map_or(f64::NAN, |run| run.seconds);
+        seconds / self.climb.seconds
+    }
+
+    /// What is printed and written: name and value.
+    fn columns(&self) -> Vec<(&'static str, String)> {
+        let climb = self.climb;
+        let equal = self.equal_accuracy[0];
+        let mesh = equal.map_or("-".to_owned(), |run| match run.way {
+            Way::FiniteElements(element, _) => {
+                format!("{} {}x{}", element.name(), run.cells[0], run.cells[1])
+            }
+            _ => unreachable!("finite elements"),
+        });
+        let number = |value: f64| format!("{value:.4e}");
+        let ratio = |value: f64| format!("{value:.2}");
+        vec![
+            ("nodes", climb.nodes.to_string()),
+            ("scheme", scheme_name(self.scheme).to_owned()),
+            ("threads", climb.threads.to_string()),
+            ("departure_percent", number(climb.departure_percent)),
+            ("force_percent", number(climb.force_percent)),
+            ("seconds", number(climb.seconds)),
+            (
+                "finite_elements_seconds",
+                number(self.same_nodes[0].seconds),
+            ),
+            (
+                "ratio_same_nodes",
+                ratio(self.ratio_same_nodes(Guess::Affine)),
+            ),
+            (
+                "ratio_same_nodes_nested",
+                ratio(self.ratio_same_nodes(Guess::Nested)),
+            ),
+            ("equal_accuracy_nodes", mesh),
+            (
+                "equal_accuracy_force_percent",
+                number(equal.map_or(f64::NAN, |run| run.force_percent)),
+            ),
+            (
+                "ratio_equal_accuracy",
+                ratio(self.ratio_equal_accuracy(Guess::Affine)),
+            ),
+            (
+                "ratio_equal_accuracy_nested",
+                ratio(self.ratio_equal_accuracy(Guess::Nested)),
+            ),
+            ("ratio_newton", ratio(self.newton.seconds / climb.seconds)),
+            (
+                "difference_to_direct_percent",
+                number(climb.difference_percent),
+            ),
+            ("bytes_per_node", format!("{:.0}", climb.bytes_per_node)),
+            (
+                "finite_elements_bytes_per_node",
+                format!("{:.0}", self.same_nodes[0].bytes_per_node),
+            ),
+            ("work_units", format!("{:.1}", climb.work_units)),
+            ("same_bits_as_one_thread", climb.same_bits.to_string()),
+        ]
+    }
+}
+
+/// The finite elements' own error on a grid of nodes, relative to the departure from affine.
+pub fn own_error(runs: &[Run], cells: [usize; 2], scheme: DifferenceScheme) -> f64 {
+    let way = Way::FiniteElements(element(scheme), Guess::Affine);
+    let found = runs.iter().find(|run| run.way == way && run.cells == cells);
+    0.01 * found.expect("measured").departure_percent
+}
+
+/// One run as soon as it is measured.
+pub fn print_run(run: &Run) {
+    println!(
+        "{:>8} nodes  {:<38} {} thread{}  {:>10.5} s  {:>2} iterations  departure {:.2e} %  force {:.6} N ({:.1e} %)",
+        run.nodes,
+        run.way.name(),
+        run.threads,
+        if run.threads == 1 { " " } else { "s" },
+        run.seconds,
+        run.iterations,
+        run.departure_percent,
+        run.force,
+        run.force_percent,
+    );
+}
+
+/// The table in columns.
+pub fn print(rows: &[Row]) {
+    let cells: Vec<Vec<(&str, String)>> = rows.iter().map(Row::columns).collect();
+    let Some(first) = cells.first() else {
+        return;
+    };
+    println!();
+    // Long names stand above, by number, so that a row fits on a line.
+    for (index, (name, _)) in first.iter().enumerate() {
+        println!("({index}) {name}");
+    }
+    let heads: Vec<String> = (0..first.len()).map(|index| format!("({index})")).collect();
+    let width = |column: usize| {
+        let values = cells.iter().map(|row| row[column].1.len());
+        values.max().unwrap_or(0).max(heads[column].len())
+    };
+    let widths: Vec<usize> = (0..first.len()).map(width).collect();
+    let line = |values: Vec<&str>| {
+        let padded = values
+            .iter()
+            .zip(&widths)
+            .map(|(value, width)| format!("{value:>width$}"));
+        println!("{}", padded.collect::<Vec<_>>().join("  "));
+    };
+    line(heads.iter().map(String::as_str).collect());
+    for row in &cells {
+        line(row.iter().map(|(_, value)| value.as_str()).collect());
+    }
+}
+
+/// The table as CSV.
+pub fn csv(rows: &[Row]) -> Vec<u8> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (index, row) in rows.iter().enumerate() {
+        let columns = row.columns();
+        if index == 0 {
+            let names = columns.iter().map(|(name, _)| *name);
+            writer
+                .write_record(names)
+                .expect("writing to memory does not fail");
+        }
+        let values = columns.iter().map(|(_, value)| value);
+        writer
+            .write_record(values)
+            .expect("writing to memory does not fail");
+    }
+    writer
+        .into_inner()
+        .expect("writing to memory does not fail")
+}
+
+/// Time against nodes and against error.
+pub fn picture(runs: &[Run]) -> Vec<u8> {
+    let ways = [
+        Way::Climb(DifferenceScheme::Gauss),
+        Way::Climb(DifferenceScheme::Biquadratic),
+        Way::Newton(DifferenceScheme::Biquadratic),
+        Way::FiniteElements(Element::Q1, Guess::Affine),
+        Way::FiniteElements(Element::Q2, Guess::Affine),
+        Way::FiniteElements(Element::Q2, Guess::Nested),
+    ];
+    let chart = |title: &str, x: &str, value: fn(&Run) -> f64| {
+        let line = |(way, colour): (&Way, &[u8; 3])| {
+            let own = runs
+                .iter()
+                .filter(|run| run.way == *way && run.threads == 1);
+            Line {
+                label: way.name(),
+                points: own.map(|run| [value(run), run.seconds]).collect(),
+                colour: *colour,
+                stroke: Stroke::Marked,
+            }
+        };
+        LineChart {
+            title: title.to_owned(),
+            x: Axis::logarithmic(x),
+            y: Axis::logarithmic("time [s]"),
+            lines: ways.iter().zip(&PALETTE).map(line).collect(),
+            band: None,
+        }
+    };
+    stacked(&[
+        (
+            chart("Plate at 100 %: time against nodes", "nodes", |run| {
+                run.nodes as f64
+            }),
+            480,
+        ),
+        (
+            chart(
+                "Time against error",
+                "departure from affine: error [%]",
+                |run| run.departure_percent,
+            ),
+            480,
+        ),
+    ])
+}

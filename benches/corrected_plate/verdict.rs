@@ -1,0 +1,212 @@
+//! What the bench must show, each with what was measured.
+
+use super::opponent::Guess;
+use super::reference::{PUBLISHED_FORCE, Reference};
+use super::states::{Frames, PathTimes};
+use super::table::Row;
+use super::way::scheme_name;
+use gelbench::corrector::DifferenceScheme;
+
+/// Lines with pass or fail.
+pub struct Verdicts {
+    lines: Vec<(bool, String)>,
+    own_percent: f64,
+}
+
+/// Nodes between which the exponent of time is fitted; the largest grid has a little more than a million.
+const FITTED: std::ops::RangeInclusive<usize> = 10_000..=1_300_000;
+
+impl Verdicts {
+    pub fn new(reference: &Reference) -> Self {
+        let deviation = 100.0 * (reference.force / PUBLISHED_FORCE - 1.0).abs();
+        let mut verdicts = Self {
+            lines: Vec::new(),
+            own_percent: reference.own_percent,
+        };
+        let text = format!(
+            "force of the reference: {:.6} N, {deviation:.1e} % from the published {PUBLISHED_FORCE} N (at most 1e-4 %)",
+            reference.force
+        );
+        verdicts.put(deviation <= 1e-4, text);
+        verdicts
+    }
+
+    fn put(&mut self, pass: bool, text: String) {
+        self.lines.push((pass, text));
+    }
+
+    /// At least, or at most, over some rows; the worst one decides.
+    fn worst(
+        &mut self,
+        what: &str,
+        rows: &[&Row],
+        limit: f64,
+        least: bool,
+        value: impl Fn(&Row) -> f64,
+    ) {
+        let Some(worst) = rows.iter().min_by(|a, b| {
+            let order = value(a).total_cmp(&value(b));
+            if least { order } else { order.reverse() }
+        }) else {
+            return;
+        };
+        let measured = value(worst);
+        let pass = if least {
+            measured >= limit
+        } else {
+            measured <= limit
+        };
+        let bound = if least { "at least" } else { "at most" };
+        let text = format!(
+            "{what}: {measured:.4} ({bound} {limit}), worst at {} nodes, {}",
+            worst.climb.nodes,
+            scheme_name(worst.scheme)
+        );
+        self.put(pass, text);
+    }
+
+    /// All that is seen from the table.
+    pub fn rows(&mut self, rows: &[Row]) {
+        let one: Vec<&Row> = rows.iter().filter(|row| row.climb.threads == 1).collect();
+        let at = |cells: usize| -> Vec<&Row> {
+            let own = one.iter().filter(|row| row.climb.cells[0] == cells);
+            own.copied().collect()
+        };
+        for (cells, limit, name) in [
+            (600, 20.0, "600 × 200 cells"),
+            (1920, 50.0, "1920 × 640 cells"),
+        ] {
+            for guess in [Guess::Affine, Guess::Nested] {
+                let what = format!(
+                    "times faster at the same nodes, {name}, {} guess",
+                    guess.name()
+                );
+                self.worst(&what, &at(cells), limit, true, |row| {
+                    row.ratio_same_nodes(guess)
+                });
+            }
+        }
+        let of = |scheme: DifferenceScheme| -> Vec<&Row> {
+            let own = one.iter().filter(|row| row.scheme == scheme);
+            own.copied().collect()
+        };
+        for order in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic] {
+            let accurate: Vec<&Row> = of(order)
+                .into_iter()
+                .filter(|row| row.climb.departure_percent <= 0.1 && row.equal_accuracy[0].is_some())
+                .collect();
+            for guess in [Guess::Affine, Guess::Nested] {
+                let what = format!(
+                    "times faster at equal accuracy below 0.1 %, {} climb, {} guess",
+                    scheme_name(order),
+                    guess.name()
+                );
+                self.worst(&what, &accurate, 3.0, true, |row| {
+                    row.ratio_equal_accuracy(guess)
+                });
+            }
+            self.exponent(order, &of(order));
+        }
+        self.worst("bytes a node", &one, 1024.0, false, |row| {
+            row.climb.bytes_per_node
+        });
+        let large: Vec<&Row> = one
+            .iter()
+            .filter(|row| row.climb.nodes >= 10_000)
+            .copied()
+            .collect();
+        self.worst(
+            "evaluations of F, in time, from 10⁴ nodes on",
+            &large,
+            30.0,
+            false,
+            |row| row.climb.work_units,
+        );
+        self.worst(
+            "evaluations of F, in time, all grids",
+            &one,
+            30.0,
+            false,
+            |row| row.climb.work_units,
+        );
+        self.worst(
+            "difference to the direct path over the discretisation error",
+            &one,
+            0.1,
+            false,
+            |row| row.climb.difference_percent / row.same_nodes[0].departure_percent,
+        );
+        let own = self.own_percent;
+        self.worst(
+            "error of the reference over that of a row",
+            &one,
+            0.1,
+            false,
+            |row| own / row.climb.departure_percent,
+        );
+        let same = rows.iter().all(|row| row.climb.same_bits);
+        self.put(same, "the same bits with one and two threads".to_owned());
+    }
+
+    /// The least-squares slope of ln t over ln n.
+    fn exponent(&mut self, order: DifferenceScheme, rows: &[&Row]) {
+        let points = rows.iter().filter(|row| FITTED.contains(&row.climb.nodes));
+        let points: Vec<[f64; 2]> = points
+            .map(|row| [(row.climb.nodes as f64).ln(), row.climb.seconds.ln()])
+            .collect();
+        let mean =
+            |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
+        let [x, y] = [mean(0), mean(1)];
+        let covariance: f64 = points
+            .iter()
+            .map(|point| (point[0] - x) * (point[1] - y))
+            .sum();
+        let variance: f64 = points.iter().map(|point| (point[0] - x).powi(2)).sum();
+        let slope = covariance / variance;
+        let text = format!(
+            "exponent of time against nodes, {} climb, {} grids: {slope:.3} (at most 1.05)",
+            scheme_name(order),
+            points.len()
+        );
+        self.put(slope <= 1.05, text);
+    }
+
+    /// The path of many states: built-in and tuned opponents.
+    pub fn path(&mut self, path: &PathTimes) {
+        let scheme = scheme_name(path.scheme);
+        for (name, seconds) in [("built-in", path.built_in), ("tuned", path.tuned)] {
+            let ratio = seconds / path.climb;
+            let text = format!(
+                "times faster over {} states at 60 × 20 cells, {scheme}, {name} finite elements: {ratio:.1} (at least 20); \
+                 {:.1} ms against {:.1} ms",
+                path.states,
+                1e3 * path.climb,
+                1e3 * seconds
+            );
+            self.put(ratio >= 20.0, text);
+        }
+        println!(
+            "path, {order}: {} Newton iterations of the tuned finite elements in {} states, largest deviation of the \
+             climb's force from theirs {:.1e} %",
+            path.iterations, path.states, path.force_percent
+        );
+    }
+
+    /// Grips in the hand.
+    pub fn frames(&mut self, frames: &Frames) {
+        let text = format!(
+            "frame of a plate in the hand, {} nodes: median {:.2} ms, worst {:.2} ms (at most 16 ms)",
+            frames.nodes,
+            1e3 * frames.median,
+            1e3 * frames.worst
+        );
+        self.put(frames.worst <= 0.016, text);
+    }
+
+    pub fn print(&self) {
+        println!();
+        for (pass, text) in &self.lines {
+            println!("{} {text}", if *pass { "pass" } else { "FAIL" });
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Ways to the field, each from nothing but the problem, with their times.
+
+use std::time::Instant;
+
+use gelbench::corrector::DifferenceScheme;
+use gelbench::corrector::climb::{Climb, ClimbSettings, Field, Grid};
+use gelbench::error::Error;
+use gelbench::finite_element::Element;
+use gelbench::problem::Problem;
+
+use super::opponent::{Guess, Opponent};
+
+/// A way to the field at one stretch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Springs and climb.
+    Climb(DifferenceScheme),
+    /// Plain Newton on the same equations with the same multigrid.
+    Newton(DifferenceScheme),
+    /// Finite elements.
+    FiniteElements(Element, Guess),
+}
+
+impl Way {
+    pub fn name(self) -> String {
+        match self {
+            Self::Climb(scheme) => format!("climb, {}", scheme_name(scheme)),
+            Self::Newton(scheme) => format!("Newton with multigrid, {}", scheme_name(scheme)),
+            Self::FiniteElements(element, guess) => {
+                format!("finite elements {}, {} guess", element.name(), guess.name())
+            }
+        }
+    }
+}
+
+pub fn scheme_name(scheme: DifferenceScheme) -> &'static str {
+    match scheme {
+        DifferenceScheme::Corners | DifferenceScheme::Gauss => "gauss",
+        DifferenceScheme::Biquadratic => "biquadratic",
+    }
+}
+
+/// The element with the same equations.
+pub fn element(scheme: DifferenceScheme) -> Element {
+    match scheme {
+        DifferenceScheme::Corners | DifferenceScheme::Gauss => Element::Q1,
+        DifferenceScheme::Biquadratic => Element::Q2,
+    }
+}
+
+/// What a way came to.
+pub struct Found {
+    pub grid: Grid,
+    pub field: Field,
+    pub force: f64,
+    /// From the problem to field and force, grids, meshes and analysis included, in s.
+    pub seconds: f64,
+    /// Newton iterations on the finest mesh, or cycles on the finest grid.
+    pub iterations: usize,
+    /// Time of one evaluation of F on the finest grid in s.
+    pub evaluation: f64,
+}
+
+/// Evaluations of F that are timed, of which the shortest counts.
+const EVALUATIONS: usize = 3;
+
+/// Goes one way. `error` is the mesh's own error relative to the departure from the affine stretch, which tells the
+/// finite elements and plain Newton when to stop; the climb finds it out for itself.
+pub fn go(
+    way: Way,
+    problem: &Problem,
+    cells: [usize; 2],
+    stretch: f64,
+    error: f64,
+) -> Result<Found, Error> {
+    let start = Instant::now();
+    let (scheme, newton) = match way {
+        Way::FiniteElements(element, guess) => {
+            let mut opponent = Opponent::new(problem, cells, element);
+            let mut u = opponent.start(guess, stretch, error);
+            let iterations = opponent.solve(&mut u, stretch, error);
+            let force = opponent.force(&u);
+            let seconds = start.elapsed().as_secs_f64();
+            return Ok(Found {
+                field: Field::of_nodes(&opponent.grid, &u),
+                grid: opponent.grid,
+                force,
+                seconds,
+                iterations,
+                evaluation: f64::NAN,
+            });
+        }
+        Way::Climb(scheme) => (scheme, false),
+        Way::Newton(scheme) => (scheme, true),
+    };
+    let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::default());
+    let climbed = match newton {
+        true => climb.newton_from_affine(stretch, (0.1 * error).sqrt(), 1e-3)?,
+        false => climb.correct(stretch)?,
+    };
+    let seconds = start.elapsed().as_secs_f64();
+    let evaluations = (0..EVALUATIONS).map(|_| {
+        let start = Instant::now();
+        assert!(climb.forces(&climbed.field).is_some(), "admissible fields");
+        start.elapsed().as_secs_f64()
+    });
+    let evaluation = evaluations.fold(f64::INFINITY, f64::min);
+    Ok(Found {
+        grid: climb.grid().clone(),
+        force: climbed.force,
+        iterations: climbed.work.last().map_or(0, |(_, work)| work.cycles),
+        field: climbed.field,
+        seconds,
+        evaluation,
+    })
+}
