@@ -90,22 +90,22 @@ impl Verdicts {
             let own = one.iter().filter(|row| row.scheme == scheme);
             own.copied().collect()
         };
-        for order in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic] {
-            let accurate: Vec<&Row> = of(order)
+        for scheme in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic] {
+            let accurate: Vec<&Row> = of(scheme)
                 .into_iter()
                 .filter(|row| row.climb.departure_percent <= 0.1 && row.equal_accuracy[0].is_some())
                 .collect();
             for guess in [Guess::Affine, Guess::Nested] {
                 let what = format!(
                     "times faster at equal accuracy below 0.1 %, {} climb, {} guess",
-                    scheme_name(order),
+                    scheme_name(scheme),
                     guess.name()
                 );
                 self.worst(&what, &accurate, 3.0, true, |row| {
                     row.ratio_equal_accuracy(guess)
                 });
             }
-            self.exponent(order, &of(order));
+            self.exponent(scheme, &of(scheme));
         }
         self.worst("bytes a node", &one, 1024.0, false, |row| {
             row.climb.bytes_per_node
@@ -149,7 +149,7 @@ impl Verdicts {
     }
 
     /// The least-squares slope of ln t over ln n.
-    fn exponent(&mut self, order: DifferenceScheme, rows: &[&Row]) {
+    fn exponent(&mut self, scheme: DifferenceScheme, rows: &[&Row]) {
         let points = rows.iter().filter(|row| FITTED.contains(&row.climb.nodes));
         let points: Vec<[f64; 2]> = points
             .map(|row| [(row.climb.nodes as f64).ln(), row.climb.seconds.ln()])
@@ -165,7 +165,7 @@ impl Verdicts {
         let slope = covariance / variance;
         let text = format!(
             "exponent of time against nodes, {} climb, {} grids: {slope:.3} (at most 1.05)",
-            scheme_name(order),
+            scheme_name(scheme),
             points.len()
         );
         self.put(slope <= 1.05, text);
@@ -186,7 +186,7 @@ impl Verdicts {
             self.put(ratio >= 20.0, text);
         }
         println!(
-            "path, {order}: {} Newton iterations of the tuned finite elements in {} states, largest deviation of the \
+            "path, {scheme}: {} Newton iterations of the tuned finite elements in {} states, largest deviation of the \
              climb's force from theirs {:.1e} %",
             path.iterations, path.states, path.force_percent
         );
