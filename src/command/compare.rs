@@ -7,10 +7,11 @@ use super::{Outcome, export::not_for_other_codes, print, progress_bar, warn};
 use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField, Sites};
 use crate::error::Error;
 use crate::material::HyperelasticLaw;
+use crate::mesh::{CellShape, Mesh};
 use crate::output::{self, Block, vtk};
+use crate::run;
 use crate::study::{self, Study};
-use crate::validation::{self, specimen};
-use crate::{problem::Problem, run};
+use crate::validation::{self, Case, specimen};
 
 /// What the command line says about a comparison.
 pub struct Options {
@@ -55,78 +56,82 @@ pub fn run(options: Options) -> Outcome {
     Ok(0)
 }
 
-/// Reads both files before anything is computed.
+/// Computes what is compared.
 fn compute(options: &Options) -> Result<Compared, Error> {
     let path = &options.study;
     let text = study::read(path)?;
-    let read = |factor: f64| {
-        let settings = ImportSettings {
-            unit: options.unit,
-            array: options.array.clone(),
-            factor,
-            time: options.time,
-        };
-        Imported::read(&options.field, &settings)
-    };
-    let place = |imported: &Imported, lattice| {
-        imported.sites(lattice).map_err(|reason| {
-            let message = format!("{}: {reason}", options.field.display());
-            Error::input(
-                message,
-                "give places at rest in the axes of the study, and their unit with --unit",
-            )
-        })
-    };
     let bar = progress_bar(0);
     let told = |what: &str| {
         bar.set_message(what.to_owned());
         bar.tick();
     };
     let compared = match validation::case_of(&path.display().to_string(), &text)? {
-        None => {
-            let study = Study::of_file(path, text)?;
-            warn(&study.warnings);
-            let last = study.problem.stretches[study.problem.stretches.len() - 1];
-            let factor = options.factor.unwrap_or(last);
-            let imported = read(factor)?;
-            let Problem {
-                size,
-                thickness,
-                ref law,
-                ..
-            } = study.problem;
-            let lattice =
-                crate::mesh::Mesh::plate(size, study.cells, crate::mesh::CellShape::Quad4);
-            Compared {
-                title: study.title.clone(),
-                law: Arc::clone(law),
-                thickness,
-                factor,
-                sites: place(&imported, &lattice)?,
-                imported,
-                fields: run::fields(study, factor, &|model, _| told(model))?,
-            }
-        }
-        Some(case) if case.kind == specimen::KIND => {
-            let (title, specimen, warnings) = specimen::load(case, path, &text)?;
-            warn(&warnings);
-            let last = specimen.factors[specimen.factors.len() - 1];
-            let factor = options.factor.unwrap_or(last);
-            let imported = read(factor)?;
-            Compared {
-                title,
-                law: Arc::clone(&specimen.problem.law),
-                thickness: specimen.problem.thickness,
-                factor,
-                sites: place(&imported, &specimen.lattice())?,
-                imported,
-                fields: specimen::fields(specimen, factor, &told)?,
-            }
-        }
+        None => plate(options, text, &told)?,
+        Some(case) if case.kind == specimen::KIND => shape(options, case, &text, &told)?,
         Some(case) => return Err(not_for_other_codes(case)),
     };
     bar.finish_and_clear();
     Ok(compared)
+}
+
+fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Compared, Error> {
+    let study = Study::of_file(&options.study, text)?;
+    warn(&study.warnings);
+    let problem = &study.problem;
+    let last = problem.stretches[problem.stretches.len() - 1];
+    let factor = options.factor.unwrap_or(last);
+    let lattice = Mesh::plate(problem.size, study.cells, CellShape::Quad4);
+    let (imported, sites) = import(options, factor, &lattice)?;
+    Ok(Compared {
+        title: study.title.clone(),
+        law: Arc::clone(&problem.law),
+        thickness: problem.thickness,
+        factor,
+        imported,
+        sites,
+        fields: run::fields(study, factor, &|model, _| told(model))?,
+    })
+}
+
+fn shape(
+    options: &Options,
+    case: &Case,
+    text: &str,
+    told: &dyn Fn(&str),
+) -> Result<Compared, Error> {
+    let (title, specimen, warnings) = specimen::load(case, &options.study, text)?;
+    warn(&warnings);
+    let last = specimen.factors[specimen.factors.len() - 1];
+    let factor = options.factor.unwrap_or(last);
+    let (imported, sites) = import(options, factor, &specimen.lattice())?;
+    Ok(Compared {
+        title,
+        law: Arc::clone(&specimen.problem.law),
+        thickness: specimen.problem.thickness,
+        factor,
+        imported,
+        sites,
+        fields: specimen::fields(specimen, factor, told)?,
+    })
+}
+
+/// Reads the field, before anything is computed, and places it on the specimen.
+fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(Imported, Sites), Error> {
+    let settings = ImportSettings {
+        unit: options.unit,
+        array: options.array.clone(),
+        factor,
+        time: options.time,
+    };
+    let imported = Imported::read(&options.field, &settings)?;
+    let sites = imported.sites(lattice).map_err(|reason| {
+        let message = format!("{}: {reason}", options.field.display());
+        Error::input(
+            message,
+            "give places at rest in the axes of the study, and their unit with --unit",
+        )
+    })?;
+    Ok((imported, sites))
 }
 
 fn summary(compared: &Compared, differences: &[Difference]) -> String {
