@@ -77,14 +77,18 @@ pub fn forces<const NODES: usize>(
 
 type Plate<'a, const NODES: usize> = (&'a dyn HyperelasticLaw, f64, &'a Grid, &'a Rule<NODES>);
 
-/// A block of elements: numbers of one kind lie side by side, one for each element.
+/// Points of an element at most, and nodes.
+const POINTS: usize = 9;
+
+/// A block of elements: numbers of one kind lie side by side, one for each element. On the stack: an evaluation
+/// allocates nothing.
 struct Workspace<const NODES: usize> {
     /// Displacements of axis, line and node along Y.
-    displacements: Vec<f64>,
+    displacements: [f64; 2 * POINTS * BLOCK],
     /// Forces of axis, line and node along Y.
-    forces: Vec<f64>,
-    gradients: [Vec<f64>; 4],
-    stresses: [Vec<f64>; 4],
+    forces: [f64; 2 * POINTS * BLOCK],
+    gradients: [[f64; POINTS * BLOCK]; 4],
+    stresses: [[f64; POINTS * BLOCK]; 4],
     lengths: [f64; BLOCK],
 }
 
@@ -107,12 +111,12 @@ fn add_product<S: Simd>(simd: S, sum: S::f64s, factor: f64, vector: S::f64s) -> 
 
 impl<const NODES: usize> Workspace<NODES> {
     fn new() -> Self {
-        let numbers = |kinds: usize| vec![0.0; kinds * BLOCK];
+        const { assert!(NODES * NODES <= POINTS) };
         Self {
-            displacements: numbers(2 * NODES * NODES),
-            forces: numbers(2 * NODES * NODES),
-            gradients: std::array::from_fn(|_| numbers(NODES * NODES)),
-            stresses: std::array::from_fn(|_| numbers(NODES * NODES)),
+            displacements: [0.0; 2 * POINTS * BLOCK],
+            forces: [0.0; 2 * POINTS * BLOCK],
+            gradients: [[0.0; POINTS * BLOCK]; 4],
+            stresses: [[0.0; POINTS * BLOCK]; 4],
             lengths: [1.0; BLOCK],
         }
     }
