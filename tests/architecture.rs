@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: &[&[&str]] = &[
     &["error", "units"],
     &["document"],
-    &["mesh", "material", "solve"],
+    &["mesh", "material", "multigrid", "solve"],
     &["problem", "sheet_energy", "calibration"],
     &["mass_spring", "finite_element", "boundary"],
     &["corrector"],
