@@ -189,23 +189,28 @@ mod tests {
 
     #[test]
     fn every_unknown_comes_once_and_the_first_cut_is_one_line_of_nodes() {
-        for degree in [1, 2] {
-            let (pattern, places) = grid(12, degree);
+        // The middle falls on a boundary of biquadratic elements and into one.
+        for (cells, degree) in [(12, 1), (12, 2), (13, 2)] {
+            let (pattern, places) = grid(cells, degree);
             let order = dissection(&pattern, &places);
             let mut sorted = order.clone();
             sorted.sort_unstable();
-            assert!(
-                sorted
-                    .iter()
-                    .enumerate()
-                    .all(|(index, unknown)| index == *unknown)
-            );
-            let line = 2 * (12 * degree + 1);
+            let each = sorted.iter().enumerate();
+            assert!(each.into_iter().all(|(index, unknown)| index == *unknown));
+            let line = 2 * (cells * degree + 1);
             let cut = &order[order.len() - line..];
-            assert!(
-                cut.iter()
-                    .all(|unknown| places[*unknown][0] == places[cut[0]][0])
-            );
+            let first = places[cut[0]][0];
+            assert!(cut.iter().all(|unknown| places[*unknown][0] == first));
+            // Before it one half comes as a whole, then the other one, and none reaches over the cut.
+            let rest = &order[..order.len() - line];
+            let below = |unknown: &usize| places[*unknown][0] < first;
+            let lower = rest.iter().take_while(|unknown| below(unknown)).count();
+            assert!(lower > 0 && !rest[lower..].iter().any(below));
+            for column in rest {
+                let rows = pattern.column(*column).iter();
+                let beyond = rows.filter(|row| places[**row][0] != first);
+                beyond.for_each(|row| assert_eq!(below(row), below(column)));
+            }
         }
     }
 

@@ -387,7 +387,7 @@ mod tests {
     fn the_order_of_elimination_does_not_change_the_solution() {
         let (pattern, values) = laplacian(50);
         let exact: Vec<f64> = (0..50).map(|i| f64::from(i).cos()).collect();
-        let order: Vec<usize> = (0..25).flat_map(|i| [2 * i, 49 - 2 * i]).collect();
+        let order: Vec<usize> = (0..50).map(|i| 7 * i % 50).collect();
         let mut cholesky = Cholesky::analyse_in_order(pattern.clone(), &order).unwrap();
         cholesky.factorise(&values).unwrap();
         let mut x = pattern.multiply(&values, &exact);
