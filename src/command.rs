@@ -15,11 +15,9 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::error::{Diagnostic, Error, suggestion};
-use crate::output::hand_over::Code;
+use crate::error::{Diagnostic, Error};
 use crate::problem::Problem;
 use crate::study::{self, DEFAULT, Study};
-use crate::units::{self, Dimension};
 use crate::validation::{self, Case, Computed};
 use crate::{output, run};
 
@@ -71,47 +69,12 @@ enum Command {
     #[command(
         after_help = "Sample: gelbench compare examples/strip_with_hole.toml strip.frd --factor 0.5"
     )]
-    Compare {
-        /// The study file: a plate, or one of the kind specimen
-        study: PathBuf,
-        /// The field: .vtu, .vtk, CalculiX' .frd, or .csv with X, Y, ux, uy
-        field: PathBuf,
-        /// The load factor or stretch, such as 0.5 or "50 %"; the last one of the study where it is not given
-        #[arg(long, visible_alias = "stretch", value_name = "FACTOR", value_parser = ratio)]
-        factor: Option<f64>,
-        /// The file's unit of length, where the file does not say it
-        #[arg(long, value_name = "UNIT", default_value = "mm", value_parser = length)]
-        unit: f64,
-        /// The array of a VTK file
-        #[arg(long, value_name = "NAME")]
-        array: Option<String>,
-        /// The time of the step in a .frd file, where it is not the load factor
-        #[arg(long, value_name = "TIME")]
-        time: Option<f64>,
-        /// Write a report and VTU files with the differences into this folder
-        #[arg(long, value_name = "FOLDER")]
-        output: Option<PathBuf>,
-    },
+    Compare(compare::Options),
     /// Write a study as the input file of Abaqus, CalculiX or FEBio
     #[command(
         after_help = "Sample: gelbench export examples/strip_with_hole.toml --to calculix --output strip.inp"
     )]
-    Export {
-        /// The study file: a plate, or one of the kind specimen
-        study: PathBuf,
-        /// The code: abaqus, calculix or febio
-        #[arg(long, value_name = "CODE", value_parser = code)]
-        to: Code,
-        /// Write this file instead of one in output/
-        #[arg(long, value_name = "FILE")]
-        output: Option<PathBuf>,
-        /// Which of the three finite-element meshes
-        #[arg(long, value_enum, default_value = "fine")]
-        mesh: export::Level,
-        /// Bulk modulus over the initial shear modulus, for CalculiX and FEBio
-        #[arg(long, value_name = "RATIO", default_value_t = 1000.0)]
-        bulk_ratio: f64,
-    },
+    Export(export::Options),
     /// Write a commented study to start from
     #[command(after_help = "Sample: gelbench new my_plate    writes my_plate.toml")]
     New {
@@ -154,36 +117,8 @@ pub fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Run { study, output } => run_study(&study, output),
         Command::Check { study } => check(&study),
-        Command::Compare {
-            study,
-            field,
-            factor,
-            unit,
-            array,
-            time,
-            output,
-        } => compare::run(compare::Options {
-            study,
-            field,
-            factor,
-            unit,
-            array,
-            time,
-            output,
-        }),
-        Command::Export {
-            study,
-            to: code,
-            output,
-            mesh: level,
-            bulk_ratio,
-        } => export::run(&export::Options {
-            study,
-            code,
-            output,
-            level,
-            bulk_ratio,
-        }),
+        Command::Compare(options) => compare::run(options),
+        Command::Export(options) => export::run(&options),
         Command::New { name } => new_study(name),
         Command::Validate {
             cases,
@@ -199,32 +134,6 @@ pub fn main() -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
-}
-
-/// A load factor.
-fn ratio(text: &str) -> Result<f64, String> {
-    match units::parse(text, Dimension::Ratio) {
-        Ok(factor) if factor > 0.0 => Ok(factor),
-        Ok(_) => Err("it must be greater than zero".into()),
-        Err(fault) => Err(fault.to_string()),
-    }
-}
-
-/// The length of a unit in mm.
-fn length(unit: &str) -> Result<f64, String> {
-    units::parse(&format!("1 {unit}"), Dimension::Length).map_err(|_| {
-        let known: Vec<_> = Dimension::Length.units().collect();
-        suggestion(unit, &known, "known units:")
-    })
-}
-
-/// A code by its name.
-fn code(name: &str) -> Result<Code, String> {
-    let known = Code::NAMES.iter().find(|(known, _)| *known == name);
-    let names = Code::NAMES.map(|(known, _)| known);
-    known
-        .map(|(_, code)| *code)
-        .ok_or_else(|| suggestion(name, &names, "codes:"))
 }
 
 type Outcome = Result<u8, Error>;

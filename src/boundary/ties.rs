@@ -71,6 +71,10 @@ impl Potential for Tied<'_> {
         }
     }
 
+    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
+        self.potential.place(unknown)
+    }
+
     fn evaluate_element(
         &self,
         element: usize,

@@ -3,24 +3,40 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::Args;
+
 use super::{Outcome, export::not_for_other_codes, print, progress_bar, warn};
 use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField, Sites};
-use crate::error::Error;
+use crate::error::{Error, suggestion};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
 use crate::output::{self, Block, vtk};
 use crate::run;
 use crate::study::{self, Study};
+use crate::units::{self, Dimension};
 use crate::validation::{self, Case, specimen};
 
 /// What the command line says about a comparison.
+#[derive(Args)]
 pub struct Options {
+    /// The study file: a plate, or one of the kind specimen
     pub study: PathBuf,
+    /// The field: .vtu, .vtk, CalculiX' .frd, or .csv with X, Y, ux, uy
     pub field: PathBuf,
+    /// The load factor or stretch, such as 0.5 or "50 %"; the last one of the study where it is not given
+    #[arg(long, visible_alias = "stretch", value_name = "FACTOR", value_parser = ratio)]
     pub factor: Option<f64>,
+    /// The file's unit of length, where the file does not say it
+    #[arg(long, value_name = "UNIT", default_value = "mm", value_parser = length)]
     pub unit: f64,
+    /// The array of a VTK file
+    #[arg(long, value_name = "NAME")]
     pub array: Option<String>,
+    /// The time of the step in a .frd file, where it is not the load factor
+    #[arg(long, value_name = "TIME")]
     pub time: Option<f64>,
+    /// Write a report and VTU files with the differences into this folder
+    #[arg(long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
 }
 
@@ -226,4 +242,21 @@ fn report(compared: &Compared, differences: &[Difference], file: &Path) -> Vec<B
         Block::table(&head, compared.fields.iter().zip(differences).map(row)),
         Block::Paragraph(format!("gelbench {}", env!("CARGO_PKG_VERSION"))),
     ]
+}
+
+/// A load factor.
+fn ratio(text: &str) -> Result<f64, String> {
+    match units::parse(text, Dimension::Ratio) {
+        Ok(factor) if factor > 0.0 => Ok(factor),
+        Ok(_) => Err("it must be greater than zero".into()),
+        Err(fault) => Err(fault.to_string()),
+    }
+}
+
+/// The length of a unit in mm.
+fn length(unit: &str) -> Result<f64, String> {
+    units::parse(&format!("1 {unit}"), Dimension::Length).map_err(|_| {
+        let known: Vec<_> = Dimension::Length.units().collect();
+        suggestion(unit, &known, "known units:")
+    })
 }

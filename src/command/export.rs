@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 
 use super::{Outcome, print, warn};
 use crate::boundary::{BoundaryProblem, Support};
-use crate::error::{Diagnostic, Error};
+use crate::error::{Diagnostic, Error, suggestion};
 use crate::finite_element::FiniteElements;
 use crate::mesh::Side;
 use crate::output::hand_over::{Code, HandOver, Written, hand_over};
@@ -26,11 +26,21 @@ pub enum Level {
 }
 
 /// What the command line says about an export.
+#[derive(Args)]
 pub struct Options {
+    /// The study file: a plate, or one of the kind specimen
     pub study: PathBuf,
+    /// The code: abaqus, calculix or febio
+    #[arg(long = "to", value_name = "CODE", value_parser = code)]
     pub code: Code,
+    /// Write this file instead of one in output/
+    #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Which of the three finite-element meshes
+    #[arg(long = "mesh", value_enum, default_value = "fine")]
     pub level: Level,
+    /// Bulk modulus over the initial shear modulus, for CalculiX and FEBio
+    #[arg(long, value_name = "RATIO", default_value_t = 1000.0)]
     pub bulk_ratio: f64,
 }
 
@@ -125,4 +135,13 @@ fn plate(path: &Path, text: String, options: &Options) -> Result<Written, Error>
         bulk_ratio: options.bulk_ratio,
     };
     hand_over(&given, options.code)
+}
+
+/// A code by its name.
+fn code(name: &str) -> Result<Code, String> {
+    let known = Code::NAMES.iter().find(|(known, _)| *known == name);
+    let names = Code::NAMES.map(|(known, _)| known);
+    known
+        .map(|(_, code)| *code)
+        .ok_or_else(|| suggestion(name, &names, "codes:"))
 }

@@ -117,12 +117,11 @@ impl<'a> Climb<'a> {
         scheme: DifferenceScheme,
         settings: ClimbSettings,
     ) -> Self {
-        let boundaries = [0, 1].map(|axis| {
+        let elements = [0, 1].map(|axis| {
             assert!(cells[axis].is_multiple_of(scheme.side()), "pairs of cells");
-            let elements = cells[axis] / scheme.side();
-            let at = |index: usize| problem.size[axis] * index as f64 / elements as f64;
-            (0..=elements).map(at).collect()
+            cells[axis] / scheme.side()
         });
+        let boundaries = Grid::even(problem.size, elements).coordinates;
         Self::new(problem, boundaries, scheme, settings)
     }
 
@@ -170,11 +169,7 @@ impl<'a> Climb<'a> {
     /// [`Error::Solve`] when no field was found.
     pub fn correct(&mut self, stretch: f64) -> Result<Climbed, Error> {
         let (field, work) = self.first_field(stretch)?;
-        self.ascend(field, work).map_err(|fault| Error::Solve {
-            model: "corrector (climb)".into(),
-            step: Problem::describe_step(stretch),
-            fault,
-        })
+        self.ascend(field, work).map_err(at_stretch(stretch))
     }
 
     fn sheet(&self) -> Sheet<'a> {
@@ -309,6 +304,15 @@ impl<'a> Climb<'a> {
         field.scale(factor);
         field.add(1.0, &climbed.field);
         Some(field)
+    }
+}
+
+/// A fault of the climb at one stretch.
+fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error + Copy {
+    move |fault| Error::Solve {
+        model: "corrector (climb)".into(),
+        step: Problem::describe_step(stretch),
+        fault,
     }
 }
 

@@ -222,29 +222,17 @@ impl Assembly {
         motion: &[f64],
         forces: &mut [f64],
     ) -> Result<(), Inadmissible> {
-        let (mut values, mut local, mut matrix) = (Vec::new(), Vec::new(), Vec::new());
+        let mut own = ElementTerms::default();
         for element in 0..potential.elements() {
             let unknowns = potential.element_unknowns(element);
             if unknowns.iter().all(|unknown| motion[*unknown] == 0.0) {
                 continue;
             }
             let size = unknowns.len();
-            gather(unknowns, u, &mut values);
-            local.clear();
-            local.resize(size, 0.0);
-            matrix.clear();
-            matrix.resize(size * size, 0.0);
-            potential.evaluate_element(
-                element,
-                &values,
-                Local {
-                    residual: &mut local,
-                    stiffness: Some(&mut matrix),
-                },
-            )?;
+            own.evaluate(potential, element, u)?;
             for row in 0..size {
                 for column in 0..size {
-                    let stiffness = matrix[row.max(column) * size + row.min(column)];
+                    let stiffness = own.stiffness[row.max(column) * size + row.min(column)];
                     forces[unknowns[row]] += stiffness * motion[unknowns[column]];
                 }
             }
@@ -266,31 +254,19 @@ impl Assembly {
         residual.fill(0.0);
         stiffness.clear();
         stiffness.resize(self.pattern.entries(), 0.0);
-        let (mut values, mut local, mut matrix) = (Vec::new(), Vec::new(), Vec::new());
+        let mut own = ElementTerms::default();
         let mut energy = 0.0;
         for element in 0..potential.elements() {
             let unknowns = potential.element_unknowns(element);
             let size = unknowns.len();
-            gather(unknowns, u, &mut values);
-            local.clear();
-            local.resize(size, 0.0);
-            matrix.clear();
-            matrix.resize(size * size, 0.0);
-            energy += potential.evaluate_element(
-                element,
-                &values,
-                Local {
-                    residual: &mut local,
-                    stiffness: Some(&mut matrix),
-                },
-            )?;
+            energy += own.evaluate(potential, element, u)?;
             unknowns
                 .iter()
-                .zip(&local)
+                .zip(&own.residual)
                 .for_each(|(unknown, r)| residual[*unknown] += r);
             let mut places = self.scatter[self.scatter_starts[element]..].iter();
             for row in 0..size {
-                for (value, place) in matrix[row * size..=row * size + row]
+                for (value, place) in own.stiffness[row * size..=row * size + row]
                     .iter()
                     .zip(&mut places)
                 {
@@ -301,6 +277,41 @@ impl Assembly {
             }
         }
         Ok(energy)
+    }
+}
+
+/// Residual and stiffness of one element after the other, in the same memory.
+#[derive(Default)]
+struct ElementTerms {
+    values: Vec<f64>,
+    residual: Vec<f64>,
+    /// Row by row; the lower triangle at least.
+    stiffness: Vec<f64>,
+}
+
+impl ElementTerms {
+    /// Takes an element's terms at `u`; its energy.
+    fn evaluate(
+        &mut self,
+        potential: &dyn Potential,
+        element: usize,
+        u: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        let unknowns = potential.element_unknowns(element);
+        let size = unknowns.len();
+        gather(unknowns, u, &mut self.values);
+        self.residual.clear();
+        self.residual.resize(size, 0.0);
+        self.stiffness.clear();
+        self.stiffness.resize(size * size, 0.0);
+        potential.evaluate_element(
+            element,
+            &self.values,
+            Local {
+                residual: &mut self.residual,
+                stiffness: Some(&mut self.stiffness),
+            },
+        )
     }
 }
 

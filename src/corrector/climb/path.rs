@@ -1,8 +1,7 @@
 //! Many states, each near the one before: a path of stretches, and grips that are moved by hand.
 
-use super::{Climb, Climbed, Field, Inverted, Work, inverted};
+use super::{Climb, Climbed, Field, Inverted, Work, at_stretch, inverted};
 use crate::error::{Error, SolveFault};
-use crate::problem::Problem;
 
 /// States that the next one is extrapolated from.
 const HISTORY: usize = 3;
@@ -76,11 +75,7 @@ impl Climb<'_> {
         }];
         let mut written = false;
         for stretch in between.iter().copied() {
-            let fault = |fault| Error::Solve {
-                model: "corrector (climb)".into(),
-                step: Problem::describe_step(stretch),
-                fault,
-            };
+            let fault = at_stretch(stretch);
             let guess = extrapolate(&known, stretch);
             if !written {
                 let finest = self.levels.len() - 1;

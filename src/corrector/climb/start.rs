@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Climb, Field, Grid, START_TOLERANCE, Work};
+use super::{Climb, Field, Grid, START_TOLERANCE, Work, at_stretch};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::problem::Problem;
@@ -32,11 +32,7 @@ impl Climb<'_> {
             }
             found = self.load_steps(stretch, steps)?;
         }
-        let (field, work) = found.map_err(|fault| Error::Solve {
-            model: "corrector (climb)".into(),
-            step: Problem::describe_step(stretch),
-            fault,
-        })?;
+        let (field, work) = found.map_err(at_stretch(stretch))?;
         Ok((field, vec![(self.levels[self.start].grid.nodes(), work)]))
     }
 
