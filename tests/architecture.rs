@@ -9,6 +9,7 @@ const LAYERS: &[&[&str]] = &[
     &["document"],
     &["mesh", "material", "solve", "multigrid"],
     &["problem", "sheet_energy", "calibration"],
+    &["measurement"],
     &["mass_spring", "finite_element", "boundary"],
     &["corrector"],
     &["compare"],
