@@ -31,6 +31,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("clap::", &["src/command"]),
     ("miette::", &["src/command"]),
     ("toml::", &["src/document"]),
+    ("spade::", &["src/mesh/triangulate.rs"]),
     ("csv::", &["src/calibration/table.rs"]),
     ("rmpfit::", &["src/calibration/least_squares.rs"]),
     (
