@@ -12,6 +12,7 @@ pub mod error;
 pub mod finite_element;
 pub mod mass_spring;
 pub mod material;
+pub mod measured_field;
 pub mod measurement;
 pub mod mesh;
 pub mod multigrid;

@@ -16,6 +16,7 @@ mod table;
 
 pub use plausible::{Placed, place_on};
 pub use read::{Read, Reading, read};
+pub use table::read_lines;
 
 /// One series of frames of one specimen.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -13,6 +13,7 @@ pub mod hand_over;
 mod html;
 mod json;
 mod markdown;
+pub mod measured;
 pub mod picture;
 mod report;
 pub mod vtk;
@@ -64,7 +65,13 @@ pub fn remove_stale(folder: &Path, written: &[PathBuf]) -> Result<(), Error> {
         ("", &["plates_", "error_"][..], "png"),
         (
             "vtk",
-            &["mass_spring_", "springs_", "corrected_", "finite_element_"][..],
+            &[
+                "mass_spring_",
+                "springs_",
+                "corrected_",
+                "finite_element_",
+                "markers_",
+            ][..],
             "vtu",
         ),
     ] {

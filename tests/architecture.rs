@@ -14,7 +14,7 @@ const LAYERS: &[&[&str]] = &[
     &["corrector"],
     &["compare"],
     &["study"],
-    &["results"],
+    &["results", "measured_field"],
     &["output"],
     &["run"],
     &["validation"],

@@ -97,6 +97,40 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
     })
 }
 
+/// Reads closed lines: places in the columns `x`, `y`; several lines have their numbers in a column `line`. `unit` is
+/// the length of the file's unit in mm, where it does not say it.
+///
+/// # Errors
+/// [`Error::Input`] with file, line and reason.
+pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, Error> {
+    let table = Table::parse(&path.display().to_string(), &plain_text(path)?)?;
+    let [x, y] = [
+        length(&table, &["x"], &COLUMNS, unit)?,
+        length(&table, &["y"], &COLUMNS, unit)?,
+    ];
+    let number = table
+        .columns
+        .iter()
+        .position(|column| column.name == "line");
+    let read = [x.0, y.0].into_iter().chain(number);
+    if let Some((reason, place)) = read.into_iter().find_map(|column| table.fault(column)) {
+        let fault = Diagnostic::error("", reason).hint("an outline has numbers x, y alone");
+        return Err(Error::Input(vec![fault.at(&table.source, place)]));
+    }
+    let mut lines: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
+    for (row, _) in &table.rows {
+        let (place, number) = (
+            [row[x.0] * x.1, row[y.0] * y.1],
+            number.map_or(0.0, |n| row[n]),
+        );
+        match lines.iter_mut().find(|(known, _)| *known == number) {
+            Some((_, line)) => line.push(place),
+            None => lines.push((number, vec![place])),
+        }
+    }
+    Ok(lines.into_iter().map(|(_, line)| line).collect())
+}
+
 /// A file's text; the lines before DICe's columns become remarks.
 pub(super) fn plain_text(path: &Path) -> Result<String, Error> {
     let name = path.display();
