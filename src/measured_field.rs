@@ -8,7 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::corrector::measured::{FieldEstimate, Knowledge, Specimen, estimate};
+use crate::corrector::measured::{FieldEstimate, Knowledge, Specimen, estimate, transfer};
 use crate::error::{Diagnostic, Error};
 use crate::material::Card;
 use crate::measurement::{Frame, Measurement, Read, Reading, place_on, read, read_lines};
@@ -72,6 +72,9 @@ pub struct MeasuredField {
     pub mesh: Mesh,
     /// Where the mesh comes from, in words.
     pub mesh_origin: String,
+    /// The mesh that the field came on, where it is brought onto another one: then it is a computed field without
+    /// noise, see [`transfer`].
+    pub coarse: Option<Mesh>,
     /// The markers on the mesh.
     pub measurement: Measurement,
     /// The layout of the files.
@@ -92,7 +95,17 @@ impl MeasuredField {
         let field = read(&request.files, &request.reading)?;
         let (mesh, mesh_origin, mut warnings) = mesh(&request, &field)?;
         request.conditions.check(&mesh)?;
-        let placed = place_on(&mesh, &field.measurement)?;
+        let coarse = match request.mesh {
+            MeshSource::File(..) => field.mesh,
+            _ => None,
+        };
+        let mut placed = place_on(&mesh, &field.measurement)?;
+        if let Some(coarse) = &coarse {
+            whole(coarse, &field.measurement)?;
+            // Interpolation needs all nodes.
+            placed.measurement = field.measurement;
+            placed.outside = 0;
+        }
         if placed.outside > 0 {
             let message = format!("markers outside of the mesh: {}", placed.outside);
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
@@ -104,6 +117,7 @@ impl MeasuredField {
             thickness: request.thickness,
             mesh,
             mesh_origin,
+            coarse,
             measurement: placed.measurement,
             layout: field.layout,
             conditions: request.conditions,
@@ -125,7 +139,14 @@ impl MeasuredField {
         let frames = &self.measurement.frames;
         let of_frame = |frame: &Frame| {
             told(frame);
-            let found = estimate(&specimen, &frame.markers, &knowledge);
+            let found = match &self.coarse {
+                None => estimate(&specimen, &frame.markers, &knowledge),
+                Some(coarse) => {
+                    let markers = frame.markers.iter();
+                    let field: Vec<f64> = markers.flat_map(|marker| marker.displacement).collect();
+                    transfer(&specimen, (coarse, &field), &knowledge)
+                }
+            };
             found.map_err(|error| match error {
                 Error::Solve { model, fault, .. } => Error::Solve {
                     model,
@@ -143,6 +164,23 @@ impl MeasuredField {
             })
         };
         frames.iter().map(of_frame).collect()
+    }
+}
+
+/// Whether a field has a displacement at every node of its mesh.
+fn whole(mesh: &Mesh, measurement: &Measurement) -> Result<(), Error> {
+    let mut frames = measurement.frames.iter();
+    match frames.find(|frame| frame.markers.len() != mesh.nodes.len()) {
+        None => Ok(()),
+        Some(frame) => Err(Error::input(
+            format!(
+                "a field can be brought onto another mesh only if it is whole; the frame {} lacks {} of {} nodes",
+                frame.number,
+                mesh.nodes.len() - frame.markers.len(),
+                mesh.nodes.len()
+            ),
+            "leave out --mesh to correct it as measured data on its own mesh",
+        )),
     }
 }
 

@@ -63,6 +63,7 @@ pub fn write(study: &Study, results: &Results, folder: &Path) -> Result<Vec<Path
 pub fn remove_stale(folder: &Path, written: &[PathBuf]) -> Result<(), Error> {
     for (part, prefixes, ending) in [
         ("", &["plates_", "error_"][..], "png"),
+        ("", &["nodes_", "cells_", "markers_"][..], "csv"),
         (
             "vtk",
             &[

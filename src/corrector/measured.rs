@@ -38,10 +38,12 @@ mod robust;
 mod search;
 mod spline;
 mod start;
+mod transfer;
 
 pub use edge_motion::EdgeCondition;
 pub use result::{EdgeForce, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE};
 pub use robust::Robust;
+pub use transfer::transfer;
 
 use edge_motion::EdgeMotion;
 use outline::{Segment, segments};

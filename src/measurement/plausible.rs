@@ -11,7 +11,7 @@ const LARGEST: f64 = 20.0;
 const SMALLEST: f64 = 1e-5;
 
 /// Markers up to so many sizes of a cell outside of the mesh belong to its boundary.
-const NEAR_CELLS: f64 = 0.5;
+const NEAR_CELLS: f64 = 0.25;
 
 /// Ratios of the units of length that are in use.
 const RATIOS: [f64; 6] = [10.0, 25.4, 100.0, 254.0, 1e3, 1e6];
@@ -67,7 +67,7 @@ pub struct Placed {
     pub outside: usize,
 }
 
-/// Leaves out the markers that lie outside of a mesh by more than half a cell.
+/// Leaves out the markers that lie outside of a mesh by more than a quarter of a cell.
 ///
 /// # Errors
 /// [`Error::Input`] when most do, with what is likely: another unit, or another origin.

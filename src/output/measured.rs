@@ -105,26 +105,29 @@ fn corrected(field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> 
         components,
     };
     let nodal = |name, values: &Vec<f64>| array(name, 2, values.clone());
-    let at_nodes = vec![
-        nodal(
-            "displacement_standard_error_mm",
-            &estimate.displacement_error,
-        ),
+    let mut at_nodes = vec![
         nodal("reaction_N", &estimate.reactions),
         nodal(
             "multiplier_zeta_equilibrium_mm2_per_N",
             &estimate.multipliers,
         ),
     ];
-    let errors = estimate
-        .cells
-        .iter()
-        .flat_map(|cell| nominal(cell.stress_error));
-    let thickness = estimate.cells.iter().map(|cell| cell.thickness_error);
-    let in_cells = vec![
-        array("nominal_stress_standard_error_MPa", 4, errors.collect()),
-        array("thickness_standard_error_mm", 1, thickness.collect()),
-    ];
+    let mut in_cells = Vec::new();
+    if field.coarse.is_none() {
+        at_nodes.push(nodal(
+            "displacement_standard_error_mm",
+            &estimate.displacement_error,
+        ));
+        let errors = estimate
+            .cells
+            .iter()
+            .flat_map(|cell| nominal(cell.stress_error));
+        let thickness = estimate.cells.iter().map(|cell| cell.thickness_error);
+        in_cells = vec![
+            array("nominal_stress_standard_error_MPa", 4, errors.collect()),
+            array("thickness_standard_error_mm", 1, thickness.collect()),
+        ];
+    }
     let title = format!("{}, frame {}", title(field), frame.number);
     vtk::arrays_file(
         &title,

@@ -4,7 +4,7 @@ use crate::corrector::measured::FieldEstimate;
 use crate::measured_field::MeasuredField;
 use crate::measurement::Frame;
 use crate::mesh::Mesh;
-use crate::output::figures::{Figure, cells, deformed};
+use crate::output::figures::{Figure, cells, deformed, mesh_picture};
 use crate::output::picture::Scale;
 use crate::output::picture::fields::{Colours, FieldCell, FieldFigure, Panel};
 
@@ -12,124 +12,139 @@ use super::{left, nominal_stress};
 
 /// The pictures of one frame.
 pub fn figures(field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> Vec<Figure> {
-    let (mesh, u) = (&field.mesh, &estimate.displacement);
-    let at = format!("frame {}", frame.number);
-    let nodal = |label: &str, value: &dyn Fn(usize) -> f64| panel(label, cells(mesh, u, value));
-    let in_cells =
-        |label: &str, value: &dyn Fn(usize) -> f64| panel(label, deformed(mesh, u, value));
-    let length = |values: &[f64], node: usize| values[2 * node].hypot(values[2 * node + 1]);
-    let stress = |cell: usize| largest(nominal_stress(&estimate.cells[cell]));
-    let stress_error = |cell: usize| largest(estimate.cells[cell].stress_error);
-    vec![
-        figure(
-            "displacement.png",
-            &format!(
-                "The corrected displacement of {at}, and its standard error from the noise of the markers."
-            ),
-            FieldFigure {
-                title: format!("Corrected displacement, {at}"),
-                quantity: "displacement [mm]".into(),
-                scale: Scale::Linear,
-                colours: Colours::Diverging,
-                panels: vec![
-                    nodal("along x", &|node| u[2 * node]),
-                    nodal("along y", &|node| u[2 * node + 1]),
-                ],
-            },
+    let pictures = Pictures {
+        mesh: &field.mesh,
+        at: format!("frame {}", frame.number),
+        estimate,
+    };
+    let mut all = vec![
+        pictures.along("displacement_x.png", 0),
+        pictures.along("displacement_y.png", 1),
+        pictures.in_cells(
+            ("stress.png", "Largest component of the nominal stress in every cell."),
+            ("Nominal stress", "largest component [MPa]"),
+            &|cell| largest(nominal_stress(&estimate.cells[cell])),
         ),
-        figure(
-            "displacement_error.png",
-            "Standard error of the corrected displacement.",
-            sequential(
-                "Standard error of the displacement",
-                "standard error [mm]",
-                nodal(&at, &|node| length(&estimate.displacement_error, node)),
-            ),
+        pictures.in_cells(
+            ("thickness.png", "Thickness of the deformed sheet."),
+            ("Thickness", "thickness [mm]"),
+            &|cell| estimate.cells[cell].thickness,
         ),
-        figure(
-            "stress.png",
-            "Largest component of the nominal stress in every cell.",
-            sequential(
-                "Nominal stress",
-                "largest component [MPa]",
-                in_cells(&at, &stress),
-            ),
+        pictures.at_nodes(
+            ("multipliers.png", "The multipliers of equilibrium: where the data pull the field away from the physics."),
+            ("Multipliers of equilibrium", "|ζ| [mm²/N]"),
+            &estimate.multipliers,
         ),
-        figure(
-            "stress_error.png",
-            "Its standard error from the noise of the markers.",
-            sequential(
-                "Standard error of the nominal stress",
-                "largest component [MPa]",
-                in_cells(&at, &stress_error),
-            ),
-        ),
-        figure(
-            "residuals.png",
-            "What is left of every marker in units of its standard deviation, up to 5: sound markers are seldom above 3.7.",
-            sequential(
-                "Standardised residuals of the markers",
-                "standardised residual [–]",
-                panel(&at, marker_squares(frame, estimate)),
-            ),
-        ),
-        figure(
-            "multipliers.png",
-            "The multipliers of equilibrium: where the data pull the field away from the physics.",
-            sequential(
-                "Multipliers of equilibrium",
-                "|ζ| [mm²/N]",
-                nodal(&at, &|node| length(&estimate.multipliers, node)),
-            ),
-        ),
-        figure(
-            "thickness.png",
-            "Thickness of the deformed sheet.",
-            sequential(
-                "Thickness",
-                "thickness [mm]",
-                in_cells(&at, &|cell| estimate.cells[cell].thickness),
-            ),
-        ),
-        figure("mesh.png", "The mesh at rest.", mesh_at_rest(mesh)),
-    ]
-}
-
-fn figure(name: &str, caption: &str, drawn: impl Into<Drawn>) -> Figure {
-    Figure {
-        name: name.to_owned(),
-        caption: caption.to_owned(),
-        png: drawn.into().0,
+    ];
+    match field.coarse {
+        None => all.extend(pictures.uncertainty(frame)),
+        Some(_) => all.push(pictures.correction(frame)),
     }
+    all.push(Figure {
+        name: "mesh.png".into(),
+        caption: "The mesh at rest.".into(),
+        png: mesh_picture("The mesh", &field.mesh),
+    });
+    all
 }
 
-/// A picture.
-struct Drawn(Vec<u8>);
+struct Pictures<'a> {
+    mesh: &'a Mesh,
+    at: String,
+    estimate: &'a FieldEstimate,
+}
 
-impl From<FieldFigure> for Drawn {
-    fn from(figure: FieldFigure) -> Self {
-        Self(figure.png())
+/// File name and caption.
+type Named<'a> = (&'a str, &'a str);
+
+/// Heading and quantity.
+type Headed<'a> = (&'a str, &'a str);
+
+impl Pictures<'_> {
+    fn figure(
+        &self,
+        (name, caption): Named,
+        (title, quantity): Headed,
+        cells: Vec<FieldCell>,
+        colours: Colours,
+    ) -> Figure {
+        let figure = FieldFigure {
+            title: title.to_owned(),
+            quantity: quantity.to_owned(),
+            scale: Scale::Linear,
+            colours,
+            panels: vec![Panel {
+                label: self.at.clone(),
+                cells,
+            }],
+        };
+        Figure {
+            name: name.to_owned(),
+            caption: caption.to_owned(),
+            png: figure.png(),
+        }
     }
-}
 
-fn mesh_at_rest(mesh: &Mesh) -> Drawn {
-    Drawn(crate::output::mesh_picture("The mesh", mesh))
-}
-
-fn panel(label: &str, cells: Vec<FieldCell>) -> Panel {
-    Panel {
-        label: label.to_owned(),
-        cells,
+    fn along(&self, name: &str, axis: usize) -> Figure {
+        let u = &self.estimate.displacement;
+        let caption = format!("The corrected displacement along {}.", ["x", "y"][axis]);
+        let quantity = format!("u{} [mm]", ["x", "y"][axis]);
+        let cells = cells(self.mesh, u, &|node| u[2 * node + axis]);
+        let headed = ("Corrected displacement", quantity.as_str());
+        self.figure((name, &caption), headed, cells, Colours::Diverging)
     }
-}
 
-fn sequential(title: &str, quantity: &str, panel: Panel) -> FieldFigure {
-    FieldFigure {
-        title: title.to_owned(),
-        quantity: quantity.to_owned(),
-        scale: Scale::Linear,
-        colours: Colours::Sequential,
-        panels: vec![panel],
+    fn in_cells(&self, named: Named, headed: Headed, value: &dyn Fn(usize) -> f64) -> Figure {
+        let cells = deformed(self.mesh, &self.estimate.displacement, value);
+        self.figure(named, headed, cells, Colours::Sequential)
+    }
+
+    /// The lengths of vectors at the nodes.
+    fn at_nodes(&self, named: Named, headed: Headed, vectors: &[f64]) -> Figure {
+        let length = |node: usize| vectors[2 * node].hypot(vectors[2 * node + 1]);
+        let cells = cells(self.mesh, &self.estimate.displacement, &length);
+        self.figure(named, headed, cells, Colours::Sequential)
+    }
+
+    fn uncertainty(&self, frame: &Frame) -> [Figure; 3] {
+        let estimate = self.estimate;
+        let residuals = left(estimate).map(|left| left.standardised.min(LARGEST_RESIDUAL));
+        let squares = marker_squares(frame, residuals);
+        [
+            self.at_nodes(
+                ("displacement_error.png", "Standard error of the displacement from the noise of the markers."),
+                ("Standard error of the displacement", "standard error [mm]"),
+                &estimate.displacement_error,
+            ),
+            self.in_cells(
+                ("stress_error.png", "Standard error of the nominal stress from the noise of the markers."),
+                ("Standard error of the nominal stress", "largest component [MPa]"),
+                &|cell| largest(estimate.cells[cell].stress_error),
+            ),
+            self.figure(
+                (
+                    "residuals.png",
+                    "What is left of every marker in units of its standard deviation, shown up to 5; normal noise leaves more \
+                     than 3.7 in one of a thousand.",
+                ),
+                ("Standardised residuals of the markers", "standardised residual [–]"),
+                squares,
+                Colours::Sequential,
+            ),
+        ]
+    }
+
+    fn correction(&self, frame: &Frame) -> Figure {
+        let lengths = left(self.estimate).map(|left| left.residual[0].hypot(left.residual[1]));
+        self.figure(
+            (
+                "correction.png",
+                "How far the correction has moved the nodes of the given field.",
+            ),
+            ("Distance to the given field", "distance [mm]"),
+            marker_squares(frame, lengths),
+            Colours::Sequential,
+        )
     }
 }
 
@@ -140,8 +155,8 @@ fn largest(components: [f64; 4]) -> f64 {
 /// The residual that has the lightest colour.
 const LARGEST_RESIDUAL: f64 = 5.0;
 
-/// A square for every marker where it was measured.
-fn marker_squares(frame: &Frame, estimate: &FieldEstimate) -> Vec<FieldCell> {
+/// A square for every marker with a value where it was measured.
+fn marker_squares(frame: &Frame, values: impl Iterator<Item = f64>) -> Vec<FieldCell> {
     let places = || frame.markers.iter().map(|marker| marker.place);
     let limit =
         |axis: usize, pick: fn(f64, f64) -> f64| places().map(|place| place[axis]).reduce(pick);
@@ -157,15 +172,12 @@ fn marker_squares(frame: &Frame, estimate: &FieldEstimate) -> Vec<FieldCell> {
             corner(1.0, 1.0),
             corner(-1.0, 1.0),
         ];
-        (corners, value.min(LARGEST_RESIDUAL))
+        (corners, value)
     };
     let moved = frame
         .markers
         .iter()
         .map(|marker| [0, 1].map(|axis| marker.place[axis] + marker.displacement[axis]));
-    let known = moved.zip(left(estimate).map(|left| left.standardised));
-    known
-        .filter(|(_, value)| value.is_finite())
-        .map(square)
-        .collect()
+    let known = moved.zip(values).filter(|(_, value)| value.is_finite());
+    known.map(square).collect()
 }

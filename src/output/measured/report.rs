@@ -11,24 +11,38 @@ use crate::output::{Block, Figure};
 /// The figures of every frame, for the terminal.
 pub fn summary(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
     let mut text = format!(
-        "{}; {}; mesh {}: {}\n\
-         frame  markers  outliers  noise [mm]  left [mm]  parameters  largest standard error [mm]\n",
+        "{}; {}; mesh {}: {}\n",
         field.layout,
         field.card.name,
         field.mesh_origin,
         field.mesh.describe()
     );
+    text += match field.coarse {
+        None => {
+            "frame  markers  outliers  noise [mm]  left [mm]  parameters  largest standard error [mm]\n"
+        }
+        Some(_) => "frame    nodes  correction, root mean square [mm]  largest [mm]\n",
+    };
     for (frame, estimate) in field.measurement.frames.iter().zip(estimates) {
-        text += &format!(
-            "{:>5}  {:>7}  {:>8}  {:>10.4}  {:>9.4}  {:>10.1}  {:>27.4}\n",
-            frame.number,
-            used(estimate),
-            outliers(estimate),
-            estimate.noise,
-            left(estimate),
-            estimate.effective_parameters,
-            largest_error(estimate)
-        );
+        text += &match field.coarse {
+            None => format!(
+                "{:>5}  {:>7}  {:>8}  {:>10.4}  {:>9.4}  {:>10.1}  {:>27.4}\n",
+                frame.number,
+                used(estimate),
+                outliers(estimate),
+                estimate.noise,
+                left(estimate),
+                estimate.effective_parameters,
+                largest_error(estimate)
+            ),
+            Some(_) => format!(
+                "{:>5}  {:>7}  {:>33.4}  {:>12.4}\n",
+                frame.number,
+                used(estimate),
+                left(estimate),
+                largest_correction(estimate)
+            ),
+        };
     }
     if let (Some(frame), Some(last)) = (field.measurement.frames.last(), estimates.last()) {
         for force in &last.forces {
@@ -47,7 +61,10 @@ pub fn summary(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
 
 fn newtons(force: &Estimate) -> String {
     let [low, high] = force.interval;
-    format!("{:.4} N ({low:.4} … {high:.4})", force.value)
+    match low < high {
+        true => format!("{:.4} N ({low:.4} … {high:.4})", force.value),
+        false => format!("{:.4} N", force.value),
+    }
 }
 
 /// How many markers lie on the mesh.
@@ -69,6 +86,13 @@ fn left(estimate: &FieldEstimate) -> f64 {
         .flat_map(|marker| marker.residual);
     let squares: f64 = residuals.map(|r| r * r).sum();
     (squares / (2 * used(estimate).max(1)) as f64).sqrt()
+}
+
+/// The largest distance of the given field from the corrected one at its nodes.
+fn largest_correction(estimate: &FieldEstimate) -> f64 {
+    let markers = estimate.markers.iter().flatten();
+    let lengths = markers.map(|marker| marker.residual[0].hypot(marker.residual[1]));
+    lengths.fold(0.0, f64::max)
 }
 
 fn largest_error(estimate: &FieldEstimate) -> f64 {
@@ -110,14 +134,20 @@ pub fn report(
             field.mesh.describe()
         )),
         Block::Heading(2, "Frames".into()),
-        frames(field, estimates),
-        Block::Paragraph(EXPLANATION.into()),
+        match field.coarse {
+            None => frames(field, estimates),
+            Some(_) => transferred_frames(field, estimates),
+        },
+        Block::Paragraph(match field.coarse {
+            None => EXPLANATION.into(),
+            Some(_) => TRANSFERRED.into(),
+        }),
         Block::Heading(2, "Forces on the edges".into()),
         forces(field, estimates),
     ];
     if let Some(last) = estimates.last() {
         blocks.push(Block::Heading(2, "Edges of the last frame".into()));
-        blocks.extend(edges(last));
+        blocks.extend(edges(field, last));
     }
     blocks.push(Block::Heading(2, "Pictures of the last frame".into()));
     let pictures = figures.iter().enumerate();
@@ -138,6 +168,29 @@ const EXPLANATION: &str = "Noise is the standard deviation of each component of 
     mean square of measured less corrected displacements. Standard errors and intervals (95 %) come from the noise \
     alone: they know nothing of a wrong material, a wrong thickness, a coarse mesh or a wrong condition. An outlier is a \
     marker whose residual normal noise would leave in less than one of a thousand.";
+
+const TRANSFERRED: &str = "The given field is taken to be free of noise: edges that are not free keep its displacements, and \
+    the inside and the free edges are brought into equilibrium on the new mesh. The correction is the given field less the \
+    corrected one at the given nodes.";
+
+fn transferred_frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
+    let head = [
+        "frame",
+        "given nodes",
+        "correction, root mean square [mm]",
+        "largest [mm]",
+    ];
+    let frames = field.measurement.frames.iter().zip(estimates);
+    let rows = frames.map(|(frame, estimate)| {
+        vec![
+            frame.number.to_string(),
+            used(estimate).to_string(),
+            format!("{:.5}", left(estimate)),
+            format!("{:.5}", largest_correction(estimate)),
+        ]
+    });
+    Block::table(&head, rows)
+}
 
 fn frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
     let head = [
@@ -189,9 +242,17 @@ fn forces(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
     Block::table(&["frame", "edge", "force along x", "force along y"], rows)
 }
 
-fn edges(last: &FieldEstimate) -> Vec<Block> {
+fn edges(field: &MeasuredField, last: &FieldEstimate) -> Vec<Block> {
+    let known = |known: &EdgeCondition| match (known, &field.coarse) {
+        (EdgeCondition::Unknown, Some(_)) => "as the given field".to_owned(),
+        (EdgeCondition::Rigid, Some(_)) => "rigid, as near as can be to the given field".to_owned(),
+        _ => condition(known),
+    };
     let conditions = last.edges.iter();
-    let conditions = conditions.map(|(edge, known)| vec![edge.clone(), condition(known)]);
+    let conditions = conditions.map(|(edge, condition)| vec![edge.clone(), known(condition)]);
+    if field.coarse.is_some() {
+        return vec![Block::table(&["edge", "condition"], conditions)];
+    }
     let smooth = last.smoothing.iter().map(|smoothing| {
         vec![
             smoothing.edge.clone(),
@@ -254,7 +315,8 @@ pub fn json(field: &MeasuredField, estimates: &[FieldEstimate]) -> Value {
         "material": field.card.name,
         "thickness_mm": field.thickness,
         "mesh": { "origin": field.mesh_origin, "nodes": field.mesh.nodes.len(), "cells": field.mesh.cell_count() },
-        "trade": TRADE,
+        "trade": field.coarse.is_none().then_some(TRADE),
+        "brought_onto_another_mesh": field.coarse.is_some(),
         "frames": frames.collect::<Vec<_>>(),
         "warnings": field.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "gelbench": env!("CARGO_PKG_VERSION"),
