@@ -12,7 +12,7 @@
 //! ∂u/∂p = Φ − K⁻¹ K_B Φ        Φ = ∂u_B/∂p
 //! ```
 //!
-//! and each Gauss–Newton step is a small [regression] with the equations linearised about the field reached so far; the
+//! and each Gauss–Newton step is a small regression with the equations linearised about the field reached so far; the
 //! first one is a polynomial through the markers, never the noisy data. How smooth an edge is, the data decide by restricted
 //! maximum likelihood. Intervals follow from the covariance C of p, to first order in the noise:
 //!
@@ -31,7 +31,9 @@ use crate::measurement::Marker;
 use crate::mesh::Mesh;
 
 mod edge_motion;
+mod free_edges;
 mod outline;
+mod regressed_law;
 mod regression;
 mod result;
 mod robust;
@@ -41,13 +43,15 @@ mod start;
 mod transfer;
 
 pub use edge_motion::EdgeCondition;
-pub use result::{EdgeForce, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE};
+pub use regressed_law::RegressedLaw;
+pub use result::{
+    EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE,
+};
 pub use robust::Robust;
 pub use transfer::transfer;
 
-use edge_motion::EdgeMotion;
 use outline::{Segment, segments};
-use search::{Observations, Search};
+use search::Observations;
 
 /// The sheet whose displacements were measured.
 #[derive(Clone, Debug)]
@@ -65,11 +69,52 @@ pub struct Specimen<'a> {
 pub struct Knowledge {
     /// What is known of named parts of the boundary. Holes that are not named are free.
     pub edges: Vec<(String, EdgeCondition)>,
+    /// What is assumed of the outer boundary where no part is named.
+    pub unnamed: Unnamed,
+    /// Forces that were measured.
+    pub forces: Vec<MeasuredForce>,
     /// Standard deviation of each component of the displacement of markers without one of their own, in mm; nothing where it
     /// is to be estimated.
     pub noise: Option<f64>,
     /// How markers that are far off are weighted.
     pub robust: Robust,
+    /// Parameters of the law that are found with the field; the specimen's law is not used then.
+    pub law: Option<RegressedLaw>,
+}
+
+/// What is assumed of the outer boundary, from corner to corner, where no part is named.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unnamed {
+    /// All parts begin as loaded. One after the other, the longest first, is taken as free where the data do not contradict:
+    /// where the misfit grows by no more than noise would let it in ninety-nine of a hundred cases (F test). One stays loaded.
+    #[default]
+    Tested,
+    /// All parts are loaded: the mesh ends inside of the specimen.
+    Loaded,
+    /// All parts are free.
+    Free,
+}
+
+impl Unnamed {
+    /// The names that conditions use.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("tested", Self::Tested),
+        ("loaded", Self::Loaded),
+        ("free", Self::Free),
+    ];
+}
+
+/// A force that was measured on an edge that is not free.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredForce {
+    /// The group of the edge.
+    pub edge: String,
+    /// 0 along x, 1 along y.
+    pub axis: usize,
+    /// The force of the grip on the sheet in N.
+    pub force: f64,
+    /// Its standard deviation in N.
+    pub standard_deviation: f64,
 }
 
 /// A marker farther outside of the mesh than this share of a cell's size is left out.
@@ -92,21 +137,94 @@ pub fn estimate(
         .map(|(name, _)| name.as_str())
         .collect();
     let outline = segments(specimen.mesh, &names).map_err(input)?;
+    check(knowledge).map_err(input)?;
     let observations = Observations::new(specimen.mesh, markers, knowledge.noise).map_err(input)?;
-    let condition = |segment: &Segment| match segment.condition {
-        Some(number) => knowledge.edges[number].1,
-        None if segment.outer => EdgeCondition::Unknown,
-        None => EdgeCondition::Free,
-    };
-    let conditions: Vec<_> = outline
+    let edges = outline
         .iter()
-        .map(|segment| (segment, condition(segment)))
+        .map(|segment| Edge::new(segment, knowledge))
         .collect();
-    let spacing = observations.spacing(specimen.mesh);
-    let motion = EdgeMotion::new(specimen.mesh, &conditions, spacing);
-    let search = Search::new(specimen, &observations, motion, knowledge.robust)?;
-    let found = search.run()?;
-    found.into_estimate(&conditions)
+    let task = Task {
+        specimen,
+        observations: &observations,
+        knowledge,
+    };
+    let (found, edges) = free_edges::search(&task, edges)?;
+    found.into_estimate(&edges)
+}
+
+/// A part of the boundary with its condition.
+#[derive(Clone, Debug)]
+pub(crate) struct Edge<'a> {
+    segment: &'a Segment,
+    condition: EdgeCondition,
+    /// Whether the data choose between loaded and free.
+    tested: bool,
+    /// Where they have chosen: how probable the misfit of the free edge was.
+    probability: Option<f64>,
+}
+
+impl<'a> Edge<'a> {
+    fn new(segment: &'a Segment, knowledge: &Knowledge) -> Self {
+        let open = segment.outer && segment.condition.is_none();
+        let condition = match segment.condition {
+            Some(number) => knowledge.edges[number].1,
+            None if open && knowledge.unnamed != Unnamed::Free => EdgeCondition::Unknown,
+            None => EdgeCondition::Free,
+        };
+        Self {
+            segment,
+            condition,
+            tested: open && knowledge.unnamed == Unnamed::Tested,
+            probability: None,
+        }
+    }
+}
+
+/// What the search is for.
+#[derive(Clone, Copy)]
+pub(crate) struct Task<'a> {
+    specimen: &'a Specimen<'a>,
+    observations: &'a Observations,
+    knowledge: &'a Knowledge,
+}
+
+/// Looks at the measured forces and the noise.
+fn check(knowledge: &Knowledge) -> Result<(), Diagnostic> {
+    for MeasuredForce {
+        edge,
+        force,
+        standard_deviation,
+        ..
+    } in &knowledge.forces
+    {
+        let condition = knowledge.edges.iter().find(|(name, _)| name == edge);
+        if condition.is_none_or(|(_, condition)| *condition == EdgeCondition::Free) {
+            let fault =
+                format!("the force on `{edge}` was measured, but the edge is not named as held");
+            return Err(Diagnostic::error("", fault).hint("say that it is known, rigid or unknown"));
+        }
+        let sound = force.is_finite() && standard_deviation.is_finite();
+        if !sound || *standard_deviation <= 0.0 {
+            let fault = format!("the force on `{edge}` is {force} ± {standard_deviation} N");
+            return Err(
+                Diagnostic::error("", fault).hint("give finite numbers and a positive deviation")
+            );
+        }
+    }
+    if knowledge.law.is_some() && knowledge.forces.is_empty() {
+        let fault = "a parameter of the law is to be found without a measured force";
+        return Err(Diagnostic::error("", fault).hint(
+            "displacements alone say nothing of a stiffness: give the force on an edge with its deviation",
+        ));
+    }
+    if knowledge
+        .noise
+        .is_some_and(|noise| !(noise > 0.0 && noise.is_finite()))
+    {
+        return Err(Diagnostic::error("", "the noise is not positive")
+            .hint("leave it out to have it estimated"));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

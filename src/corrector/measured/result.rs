@@ -1,17 +1,20 @@
 //! The estimated field and its uncertainty.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
+use super::Edge;
 use super::edge_motion::EdgeCondition;
-use super::outline::Segment;
 use super::robust::Robust;
-use super::search::{Found, Observations, Search};
+use super::search::{Found, Observations, Search, dot};
 use crate::corrector::estimate::Estimate;
 use crate::error::{Error, SolveFault};
-use crate::material::sheet::{Gradient, Kinematics};
-use crate::solve::Assembly;
+use crate::material::HyperelasticLaw;
+use crate::material::parameters::Parameter;
+use crate::material::sheet::{Gradient, Kinematics, cofactor};
 
 /// The field nearest to the markers.
 ///
@@ -48,7 +51,9 @@ pub struct FieldEstimate {
     /// How smooth the edges of unknown motion came out, by [`TRADE`].
     pub smoothing: Vec<Smoothing>,
     /// The condition of each part of the boundary.
-    pub edges: Vec<(String, EdgeCondition)>,
+    pub edges: Vec<EdgeOutcome>,
+    /// The parameters of the law that were found: key, unit, estimate.
+    pub parameters: Vec<(&'static str, &'static str, Estimate)>,
     /// Steps of the search.
     pub steps: usize,
 }
@@ -78,6 +83,19 @@ pub struct EdgeForce {
     pub force: [Estimate; 2],
 }
 
+/// The condition of a part of the boundary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeOutcome {
+    /// The edge.
+    pub edge: String,
+    /// Its length in mm.
+    pub length: f64,
+    /// Its condition.
+    pub condition: EdgeCondition,
+    /// Where the data have chosen between free and loaded: how probable the misfit is if the edge is free.
+    pub probability: Option<f64>,
+}
+
 /// What is left of a marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarkerEstimate {
@@ -104,18 +122,18 @@ pub struct Smoothing {
     pub freedom: f64,
 }
 
+/// A law with one parameter a little smaller and larger, and the width between.
+type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
+
 /// Share of sound markers that are taken for outliers.
 const FALSE_ALARMS: f64 = 1e-3;
 
 impl Found<'_> {
     /// The field with all that follows from it.
-    pub fn into_estimate(
-        self,
-        conditions: &[(&Segment, EdgeCondition)],
-    ) -> Result<FieldEstimate, Error> {
-        let rows = self.design.nrows() as f64;
+    pub fn into_estimate(self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
+        let rows = self.linear.design.nrows() as f64;
         let known_noise = self.observations().known_noise;
-        let robust = self.search.robust != Robust::No;
+        let robust = self.search.task.knowledge.robust != Robust::No;
         let freedom = (rows - self.fit.effective).max(1.0);
         let reach = match known_noise && !robust {
             true => Normal::standard().inverse_cdf(0.975),
@@ -136,11 +154,17 @@ impl Found<'_> {
             weight: *weight,
             freedom: *freedom,
         });
-        let edges = conditions.iter();
+        let outcome = |edge: &Edge| EdgeOutcome {
+            edge: edge.segment.name.clone(),
+            length: edge.segment.length(),
+            condition: edge.condition,
+            probability: edge.probability,
+        };
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(),
             cells: self.cells()?,
-            forces: self.forces(conditions, reach)?,
+            forces: self.forces(edges, reach)?,
+            parameters: self.law_parameters(reach),
             markers: self.markers(),
             noise: (self.trade.sound / mean).sqrt(),
             known_noise,
@@ -148,9 +172,7 @@ impl Found<'_> {
             degrees_of_freedom: freedom,
             reach,
             smoothing: smoothing.collect(),
-            edges: edges
-                .map(|(segment, condition)| (segment.name.clone(), *condition))
-                .collect(),
+            edges: edges.iter().map(outcome).collect(),
             steps: self.steps,
             reactions: self.reactions(),
             multipliers: self.multipliers,
@@ -159,7 +181,7 @@ impl Found<'_> {
     }
 
     fn observations(&self) -> &Observations {
-        self.search.observations
+        self.search.task.observations
     }
 
     /// √(s C sᵀ) of a row s of sensitivities.
@@ -176,6 +198,7 @@ impl Found<'_> {
         let unknowns = (0..self.field.len()).into_par_iter();
         let error = |unknown: usize| {
             let row: Vec<f64> = self
+                .linear
                 .sensitivities
                 .iter()
                 .map(|column| column[unknown])
@@ -186,12 +209,14 @@ impl Found<'_> {
     }
 
     fn cells(&self) -> Result<Vec<StressEstimate>, Error> {
-        let cells = (0..self.search.specimen.mesh.cell_count()).into_par_iter();
-        cells.map(|cell| self.cell(cell)).collect()
+        let cells = (0..self.search.task.specimen.mesh.cell_count()).into_par_iter();
+        let neighbours = self.search.neighbours(&self.parameters);
+        cells.map(|cell| self.cell(cell, &neighbours)).collect()
     }
 
-    fn cell(&self, cell: usize) -> Result<StressEstimate, Error> {
-        let Search { specimen, law, .. } = &self.search;
+    fn cell(&self, cell: usize, neighbours: &[Neighbours]) -> Result<StressEstimate, Error> {
+        let Search { task, law, .. } = &self.search;
+        let specimen = task.specimen;
         let mesh = specimen.mesh;
         let centre = mesh.shape(cell).centre();
         let (gradients, _) = mesh.gradients(cell, centre);
@@ -209,14 +234,21 @@ impl Found<'_> {
             })
         })?;
         let response = law.response(&kinematics);
-        let cofactor = crate::material::sheet::cofactor(&kinematics.deformation_gradient);
+        let cofactor = cofactor(&kinematics.deformation_gradient);
         let thickness = specimen.thickness / kinematics.area_ratio();
         let mut rows: [Vec<f64>; 5] = Default::default();
-        for column in &self.sensitivities {
+        for column in &self.linear.sensitivities {
             let change = gradient(column);
             let stress = response.tangent * change;
             (0..4).for_each(|component| rows[component].push(stress[component]));
             rows[4].push(thickness / kinematics.area_ratio() * cofactor.dot(&change));
+        }
+        let count = rows[0].len();
+        for (index, (laws, width)) in neighbours.iter().enumerate() {
+            let [low, high] = laws.each_ref().map(|law| law.stress(&kinematics).1);
+            let slope = (high - low) / *width;
+            let place = count - neighbours.len() + index;
+            (0..4).for_each(|component| rows[component][place] += slope[component]);
         }
         Ok(StressEstimate {
             first_piola_kirchhoff_stress: response.first_piola_kirchhoff_stress.into(),
@@ -235,48 +267,38 @@ impl Found<'_> {
         reactions
     }
 
-    fn forces(
-        &self,
-        conditions: &[(&Segment, EdgeCondition)],
-        reach: f64,
-    ) -> Result<Vec<EdgeForce>, Error> {
-        let held = conditions
+    fn forces(&self, edges: &[Edge], reach: f64) -> Result<Vec<EdgeForce>, Error> {
+        let reactions = self.reactions();
+        let slopes = self.search.law_slopes(&self.parameters, &self.field)?;
+        let along = |edge: &Edge, axis: usize| -> Result<Estimate, Error> {
+            let grip = self.search.grip(&edge.segment.nodes, axis, &self.field)?;
+            let row = grip.slopes(&self.linear.sensitivities, &slopes);
+            let force = dot(&grip.marks, &reactions);
+            Ok(interval(force, self.error(&row), reach))
+        };
+        let held = edges
             .iter()
-            .filter(|(_, condition)| *condition != EdgeCondition::Free);
-        let force = |(segment, _): &(&Segment, EdgeCondition)| {
-            let [x, y] = [0, 1].map(|axis| self.force(segment, axis, reach));
+            .filter(|edge| edge.condition != EdgeCondition::Free);
+        let force = |edge: &Edge| {
             Ok(EdgeForce {
-                edge: segment.name.clone(),
-                force: [x?, y?],
+                edge: edge.segment.name.clone(),
+                force: [along(edge, 0)?, along(edge, 1)?],
             })
         };
         held.map(force).collect()
     }
 
-    /// The force g·∂Π/∂u of a segment along an axis, g one at its nodes; its sensitivity is g·K ∂u/∂p.
-    fn force(&self, segment: &Segment, axis: usize, reach: f64) -> Result<Estimate, Error> {
-        let mut marks = vec![0.0; self.field.len()];
-        for node in &segment.nodes {
-            marks[2 * node + axis] = 1.0;
-        }
-        let value = dot(&marks, &self.reactions());
-        for unknown in self.search.newton.free() {
-            marks[*unknown] = 0.0;
-        }
-        let mut pull = vec![0.0; marks.len()];
-        Assembly::add_product(&self.search.energy, &self.field, &marks, &mut pull).map_err(
-            |fault| {
-                super::search::solve(SolveFault::Inverted {
-                    element: self.search.specimen.mesh.describe_cell(fault.element),
-                })
-            },
-        )?;
-        let row: Vec<f64> = self
-            .sensitivities
-            .iter()
-            .map(|column| dot(&pull, column))
-            .collect();
-        Ok(interval(value, self.error(&row), reach))
+    fn law_parameters(&self, reach: f64) -> Vec<(&'static str, &'static str, Estimate)> {
+        let first = self.search.motion.parameters();
+        let regressed = self.search.task.knowledge.law.iter();
+        let parameters = regressed.flat_map(|law| law.parameters()).enumerate();
+        let estimate = |(index, parameter): (usize, &Parameter)| {
+            let place = first + index;
+            let error = self.fit.covariance[(place, place)].max(0.0).sqrt();
+            let value = interval(self.parameters[place], error, reach);
+            (parameter.key, parameter.unit(), value)
+        };
+        parameters.map(estimate).collect()
     }
 
     fn markers(&self) -> Vec<Option<MarkerEstimate>> {
@@ -294,7 +316,7 @@ impl Found<'_> {
     fn marker(&self, index: usize, limit: f64) -> MarkerEstimate {
         let left = &self.fit.residual;
         let residual = Vector2::new(left[2 * index], left[2 * index + 1]);
-        let rows = self.design.rows(2 * index, 2);
+        let rows = self.linear.design.rows(2 * index, 2);
         let spread: DMatrix<f64> = rows * &self.fit.covariance * rows.transpose();
         let trust = self.trade.trust[index];
         let own = self.trade.sound / self.observations().weights[index];
@@ -323,8 +345,4 @@ fn interval(value: f64, standard_error: f64, reach: f64) -> Estimate {
         standard_error,
         interval: [value - half, value + half],
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -7,7 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use super::*;
 use crate::boundary::{BoundaryProblem, Support};
 use crate::error::Error;
-use crate::material::NeoHooke;
+use crate::material::{Card, NeoHooke};
 use crate::mesh::{CellShape, Mesh};
 use crate::solve::NewtonSettings;
 
@@ -185,4 +185,113 @@ fn wrong_input_is_told() {
         .copied()
         .collect();
     assert!(told(&line, &grips).contains("affine"));
+}
+
+/// A strip whose sides are not named: the long ones are free, the short ones are pulled.
+#[test]
+fn the_data_tell_which_edges_are_free() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    for noise in [0.02, 0.3] {
+        let markers = truth.markers(noise, 3);
+        let found = estimate(&specimen(&mesh), &markers, &Knowledge::default()).unwrap();
+        let condition = |name: &str| {
+            let edge = found
+                .edges
+                .iter()
+                .find(|edge| edge.edge.starts_with(name))
+                .unwrap();
+            (edge.condition, edge.probability)
+        };
+        for free in ["edge (0.0, 0.0)", "edge (60.0, 30.0)"] {
+            assert_eq!(
+                condition(free).0,
+                EdgeCondition::Free,
+                "{noise} {:?}",
+                found.edges
+            );
+        }
+        for loaded in ["edge (60.0, 0.0)", "edge (0.0, 30.0)"] {
+            let (condition, probability) = condition(loaded);
+            assert_eq!(condition, EdgeCondition::Unknown);
+            assert!(probability.unwrap() < 1e-6);
+        }
+        assert!(truth.error(&mesh, &found.displacement) < 0.2 * noise);
+        let loaded = Knowledge {
+            unnamed: Unnamed::Loaded,
+            ..Knowledge::default()
+        };
+        let inside = estimate(&specimen(&mesh), &markers, &loaded).unwrap();
+        assert!(
+            inside
+                .edges
+                .iter()
+                .all(|edge| edge.condition == EdgeCondition::Unknown)
+        );
+        assert!(truth.error(&mesh, &inside.displacement) < 0.5 * noise);
+    }
+}
+
+#[test]
+fn a_modulus_is_found_with_the_field() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let card = Card::load("neo-hooke", std::path::Path::new(".")).unwrap();
+    let knowledge = Knowledge {
+        forces: vec![MeasuredForce {
+            edge: "right".into(),
+            axis: 0,
+            force: truth.force * 1.01,
+            standard_deviation: truth.force * 0.01,
+        }],
+        law: Some(RegressedLaw::of_card(&card, &["c10"]).unwrap()),
+        ..with_grips(EdgeCondition::Unknown)
+    };
+    let found = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &knowledge).unwrap();
+    let (key, unit, modulus) = found.parameters[0];
+    assert_eq!((key, unit), ("c10", "MPa"));
+    assert!(modulus.standard_error > 0.008 * C10 && modulus.standard_error < 0.03 * C10);
+    assert!(
+        (modulus.value - C10).abs() < 3.0 * modulus.standard_error,
+        "{modulus:?}"
+    );
+    let without = Knowledge {
+        forces: Vec::new(),
+        ..knowledge
+    };
+    let told = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &without).unwrap_err();
+    assert!(told.to_string().contains("without a measured force"));
+}
+
+#[test]
+fn gross_errors_are_found() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let mut markers = truth.markers(0.3, 9);
+    let wrong = |index: &usize| index % 20 == 3;
+    let count = markers.len();
+    for index in (0..count).filter(wrong) {
+        markers[index].displacement[index / 20 % 2] += 2.4 + 0.05 * index as f64;
+    }
+    for robust in [Robust::Huber, Robust::Tukey] {
+        let knowledge = Knowledge {
+            robust,
+            ..with_grips(EdgeCondition::Unknown)
+        };
+        let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        for (index, marker) in found.markers.iter().enumerate() {
+            let marker = marker.unwrap();
+            let alarm = marker.outlier && !wrong(&index);
+            assert!(
+                !alarm && (marker.outlier || !wrong(&index)),
+                "{robust:?} {index} {marker:?}"
+            );
+        }
+        assert!(truth.error(&mesh, &found.displacement) < 0.08);
+        assert!((found.noise / 0.3 - 1.0).abs() < 0.12, "{}", found.noise);
+    }
+    let plain = estimate(
+        &specimen(&mesh),
+        &markers,
+        &with_grips(EdgeCondition::Unknown),
+    )
+    .unwrap();
+    assert!(truth.error(&mesh, &plain.displacement) > 0.1);
 }
