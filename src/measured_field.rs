@@ -7,16 +7,17 @@
 //! ```
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::corrector::measured::{FieldEstimate, Knowledge, Specimen, estimate, transfer};
+use crate::corrector::measured::{FieldEstimate, RegressedLaw, Specimen, estimate, transfer};
 use crate::error::{Diagnostic, Error};
-use crate::material::Card;
+use crate::material::{Card, HyperelasticLaw};
 use crate::measurement::{Frame, Measurement, Read, Reading, place_on, read, read_lines};
 use crate::mesh::{CellShape, Mesh, Outline, import};
 
 mod conditions;
 
-pub use conditions::{Conditions, EdgesByName};
+pub use conditions::{Conditions, EdgesByName, measured_force};
 
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
@@ -81,6 +82,8 @@ pub struct MeasuredField {
     pub layout: &'static str,
     /// What is known besides.
     pub conditions: Conditions,
+    /// The law with parameters that are found with the field, if there are any.
+    pub regressed: Option<RegressedLaw>,
     /// What deserves attention.
     pub warnings: Vec<Diagnostic>,
 }
@@ -95,6 +98,8 @@ impl MeasuredField {
         let field = read(&request.files, &request.reading)?;
         let (mesh, mesh_origin, mut warnings) = mesh(&request, &field)?;
         request.conditions.check(&mesh)?;
+        request.conditions.check_frames(&field.measurement)?;
+        let regressed = request.conditions.regressed_law(&card)?;
         let coarse = match request.mesh {
             MeshSource::File(..) => field.mesh,
             _ => None,
@@ -121,8 +126,20 @@ impl MeasuredField {
             measurement: placed.measurement,
             layout: field.layout,
             conditions: request.conditions,
+            regressed,
             warnings: all,
         })
+    }
+
+    /// The law that an estimate has found, else that of the card.
+    pub fn law(&self, estimate: &FieldEstimate) -> Arc<dyn HyperelasticLaw> {
+        match &self.regressed {
+            Some(regressed) if !estimate.parameters.is_empty() => {
+                let values = estimate.parameters.iter().map(|(.., found)| found.value);
+                regressed.at(&values.collect::<Vec<_>>())
+            }
+            _ => Arc::clone(&self.card.law),
+        }
     }
 
     /// Estimates the field of every frame.
@@ -132,13 +149,14 @@ impl MeasuredField {
     pub fn estimate(&self, told: &dyn Fn(&Frame)) -> Result<Vec<FieldEstimate>, Error> {
         let specimen = Specimen {
             mesh: &self.mesh,
-            law: std::sync::Arc::clone(&self.card.law),
+            law: Arc::clone(&self.card.law),
             thickness: self.thickness,
         };
-        let knowledge: Knowledge = self.conditions.knowledge();
         let frames = &self.measurement.frames;
         let of_frame = |frame: &Frame| {
             told(frame);
+            let law = self.regressed.as_ref();
+            let knowledge = self.conditions.knowledge(frame.number, law);
             let found = match &self.coarse {
                 None => estimate(&specimen, &frame.markers, &knowledge),
                 Some(coarse) => {

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{Outcome, print, progress_bar, warn};
-use crate::corrector::measured::{EdgeCondition, Robust};
+use crate::corrector::measured::{EdgeCondition, MeasuredForce, Robust};
 use crate::error::Error;
-use crate::measured_field::{Conditions, MeasuredField, MeshSource, Request};
+use crate::measured_field::{Conditions, MeasuredField, MeshSource, Request, measured_force};
 use crate::measurement::Reading;
 use crate::mesh::CellShape;
 use crate::output;
@@ -35,6 +35,13 @@ pub struct Options {
     /// Edges that moved as rigid bodies by unknown amounts
     #[arg(long, value_name = "EDGE", value_delimiter = ',')]
     pub rigid: Vec<String>,
+    /// A measured force, the grip's on the specimen: edge, axis, force and, else 1 % of it, its standard deviation, such as
+    /// "right x 1.2 N ± 0.02 N"
+    #[arg(long, value_name = "FORCE", value_parser = force)]
+    pub force: Vec<MeasuredForce>,
+    /// One or two parameters of the law that are found with the field; a force must be measured
+    #[arg(long, value_name = "PARAMETER", value_delimiter = ',')]
+    pub fit: Vec<String>,
     /// The specimen's mesh: .msh, .vtu or .vtk
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
@@ -143,6 +150,9 @@ fn request(options: Options) -> Result<Request, Error> {
             .edges
             .extend(names.into_iter().map(|name| (name, condition)));
     }
+    let forces = options.force.into_iter().map(|force| (None, force));
+    conditions.forces.extend(forces);
+    conditions.fit.extend(options.fit);
     conditions.noise = options.noise.or(conditions.noise);
     if let Some(robust) = options.robust {
         conditions.robust = match robust {
@@ -176,6 +186,31 @@ fn request(options: Options) -> Result<Request, Error> {
         holes: options.holes == Holes::Found,
         conditions,
     })
+}
+
+/// An edge, an axis, a force and its standard deviation.
+fn force(text: &str) -> Result<MeasuredForce, String> {
+    let wanted = "write edge, axis and force, as in \"right x 1.2 N ± 0.02 N\"";
+    let mut words = text.splitn(3, ' ');
+    let (Some(edge), Some(axis), Some(values)) = (words.next(), words.next(), words.next()) else {
+        return Err(wanted.into());
+    };
+    let axis = match axis {
+        "x" => 0,
+        "y" => 1,
+        _ => return Err(wanted.into()),
+    };
+    let newtons = |text: &str| {
+        units::parse(text, Dimension::Force).map_err(|fault| format!("it {fault}; {wanted}"))
+    };
+    let values = values.replace("+-", "±");
+    match values.split_once('±') {
+        None => Ok(measured_force(edge, axis, newtons(&values)?, None)),
+        Some((force, deviation)) => {
+            let deviation = newtons(deviation)?;
+            Ok(measured_force(edge, axis, newtons(force)?, Some(deviation)))
+        }
+    }
 }
 
 /// A length greater than zero in mm.

@@ -4,8 +4,10 @@
 //! title = "Strip, test 12"   # of the report
 //! noise = "0.1 mm"           # standard deviation of each component; estimated where it is left out
 //! robust = "tukey"           # "no", "huber" or "tukey"
+//! unnamed = "tested"         # outer edges that are not named: the data tell which are free, "loaded" or "free"
+//! fit = ["c10"]              # one or two parameters of the law that are found with the field
 //!
-//! [[edges]]                  # edges that are not named: holes are free, outer edges move in an unknown smooth way
+//! [[edges]]                  # holes that are not named are free
 //! names = ["top", "bottom"]
 //! condition = "free"         # "free", "known", "rigid" (moved by unknown amounts) or "unknown"
 //!
@@ -14,13 +16,24 @@
 //! condition = "known"
 //! ux = "0 mm"                # an axis that is left out is free
 //! uy = "0 mm"
+//!
+//! [[force]]                  # that was measured on an edge that is not free
+//! edge = "left"
+//! axis = "x"
+//! force = "-1.2 N"           # of the grip on the specimen, positive along the axis
+//! standard_deviation = "0.02 N"   # 1 % of the force where it is left out
+//! frame = 3                  # may be left out if there is one frame
 //! ```
 
 use std::path::Path;
 
-use crate::corrector::measured::{EdgeCondition, Knowledge, Robust};
+use crate::corrector::measured::{
+    EdgeCondition, Knowledge, MeasuredForce, RegressedLaw, Robust, Unnamed,
+};
 use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error, suggestion};
+use crate::material::Card;
+use crate::measurement::Measurement;
 use crate::mesh::Mesh;
 use crate::study;
 use crate::units::Dimension;
@@ -39,6 +52,30 @@ pub struct Conditions {
     pub noise: Option<f64>,
     /// How markers that are far off are weighted.
     pub robust: Robust,
+    /// What is assumed of outer edges that are not named.
+    pub unnamed: Unnamed,
+    /// Measured forces, with the frame where it is said.
+    pub forces: Vec<(Option<usize>, MeasuredForce)>,
+    /// Parameters of the law that are found with the field.
+    pub fit: Vec<String>,
+}
+
+/// Standard deviation of a force over the force where it is not given.
+const FORCE_DEVIATION: f64 = 0.01;
+
+/// A measured force; without a standard deviation it has one of 1 %.
+pub fn measured_force(
+    edge: &str,
+    axis: usize,
+    force: f64,
+    deviation: Option<f64>,
+) -> MeasuredForce {
+    MeasuredForce {
+        edge: edge.to_owned(),
+        axis,
+        force,
+        standard_deviation: deviation.unwrap_or(FORCE_DEVIATION * force.abs()),
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -95,12 +132,54 @@ impl Conditions {
         }
     }
 
-    /// As the estimate takes it.
-    pub fn knowledge(&self) -> Knowledge {
+    /// Whether the frames have the forces that are given: one frame each, the only one where none is said.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the first force that belongs to no frame.
+    pub fn check_frames(&self, measurement: &Measurement) -> Result<(), Error> {
+        let frames = &measurement.frames;
+        let numbers = || frames.iter().map(|frame| frame.number);
+        for (frame, force) in &self.forces {
+            let known = match frame {
+                None => frames.len() == 1,
+                Some(number) => numbers().any(|known| known == *number),
+            };
+            if !known {
+                let all: Vec<_> = numbers().map(|number| number.to_string()).collect();
+                let fault = format!("the force on `{}` belongs to no frame", force.edge);
+                let hint = format!("give it one: {}", all.join(", "));
+                return Err(Error::input(fault, hint));
+            }
+        }
+        Ok(())
+    }
+
+    /// The law with parameters to be found, if there are any.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the card has no such parameters.
+    pub fn regressed_law(&self, card: &Card) -> Result<Option<RegressedLaw>, Error> {
+        let keys: Vec<&str> = self.fit.iter().map(String::as_str).collect();
+        let regressed = (!keys.is_empty()).then(|| RegressedLaw::of_card(card, &keys));
+        regressed
+            .transpose()
+            .map_err(|fault| Error::Input(vec![fault]))
+    }
+
+    /// What the estimate of a frame takes; a law is regressed in frames with a force.
+    pub fn knowledge(&self, frame: usize, law: Option<&RegressedLaw>) -> Knowledge {
+        let own = self.forces.iter();
+        let own = own.filter(|(of, _)| of.is_none_or(|number| number == frame));
+        let forces: Vec<_> = own.map(|(_, force)| force.clone()).collect();
         Knowledge {
             edges: self.edges.clone(),
+            unnamed: self.unnamed,
             noise: self.noise,
             robust: self.robust,
+            law: law
+                .filter(|_| !forces.is_empty() || self.forces.is_empty())
+                .cloned(),
+            forces,
         }
     }
 }
@@ -116,6 +195,16 @@ fn read(root: &Section) -> Conditions {
     if root.has("robust") {
         conditions.robust = root.choice("robust", &Robust::NAMES).unwrap_or_default();
     }
+    if root.has("unnamed") {
+        conditions.unnamed = root.choice("unnamed", &Unnamed::NAMES).unwrap_or_default();
+    }
+    if root.has("fit") {
+        conditions.fit = root.texts("fit");
+    }
+    if root.has("force") {
+        let forces = root.tables("force");
+        conditions.forces = forces.iter().map(force).collect();
+    }
     if root.has("edges") {
         for section in root.tables("edges") {
             let names = section.texts("names");
@@ -128,6 +217,18 @@ fn read(root: &Section) -> Conditions {
     }
     root.unknown_keys();
     conditions
+}
+
+fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
+    let edge = section.text("edge");
+    let axis = section.choice("axis", &[("x", 0), ("y", 1)]).unwrap_or(0);
+    let force = section.quantity("force", Dimension::Force, Bound::Any);
+    let has = |key| section.has(key);
+    let deviation = has("standard_deviation")
+        .then(|| section.quantity("standard_deviation", Dimension::Force, Bound::Positive));
+    let frame = has("frame").then(|| section.count("frame", 0, usize::MAX >> 1));
+    section.unknown_keys();
+    (frame, measured_force(&edge, axis, force, deviation))
 }
 
 fn condition(section: &Section) -> EdgeCondition {

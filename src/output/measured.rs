@@ -95,8 +95,9 @@ fn title(field: &MeasuredField) -> String {
 }
 
 fn corrected(field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> Vec<u8> {
+    let law = field.law(estimate);
     let sheet = vtk::Sheet {
-        law: &*field.card.law,
+        law: &*law,
         thickness: field.thickness,
     };
     let array = |name, components, values| Array {

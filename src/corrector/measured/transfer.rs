@@ -13,7 +13,8 @@ use std::sync::Arc;
 use super::outline::{Segment, segments};
 use super::search::solve;
 use super::{
-    EdgeCondition, EdgeForce, FieldEstimate, Knowledge, MarkerEstimate, Specimen, StressEstimate,
+    Edge, EdgeCondition, EdgeForce, EdgeOutcome, FieldEstimate, Knowledge, MarkerEstimate,
+    Specimen, StressEstimate,
 };
 use crate::corrector::estimate::Estimate;
 use crate::error::{Error, SolveFault};
@@ -82,10 +83,8 @@ pub fn transfer(
         degrees_of_freedom: 0.0,
         reach: 0.0,
         smoothing: Vec::new(),
-        edges: edges
-            .iter()
-            .map(|(segment, condition)| (segment.name.clone(), *condition))
-            .collect(),
+        edges: edges.iter().map(outcome).collect(),
+        parameters: Vec::new(),
         steps,
         reactions,
         multipliers,
@@ -102,14 +101,19 @@ fn conditions(mesh: &Mesh, knowledge: &Knowledge) -> Result<Vec<(Segment, EdgeCo
         .collect();
     let segments = segments(mesh, &names).map_err(|fault| Error::Input(vec![fault]))?;
     let with = |segment: Segment| {
-        let condition = match segment.condition {
-            Some(number) => knowledge.edges[number].1,
-            None if segment.outer => EdgeCondition::Unknown,
-            None => EdgeCondition::Free,
-        };
+        let condition = Edge::new(&segment, knowledge).condition;
         (segment, condition)
     };
     Ok(segments.into_iter().map(with).collect())
+}
+
+fn outcome((segment, condition): &(Segment, EdgeCondition)) -> EdgeOutcome {
+    EdgeOutcome {
+        edge: segment.name.clone(),
+        length: segment.length(),
+        condition: *condition,
+        probability: None,
+    }
 }
 
 /// The values of the unknowns that are held.

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::title;
 use crate::corrector::Estimate;
-use crate::corrector::measured::{EdgeCondition, FieldEstimate, TRADE};
+use crate::corrector::measured::{EdgeCondition, EdgeOutcome, FieldEstimate, TRADE};
 use crate::measured_field::MeasuredField;
 use crate::output::{Block, Figure};
 
@@ -43,6 +43,15 @@ pub fn summary(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
                 largest_correction(estimate)
             ),
         };
+    }
+    for (frame, estimate) in field.measurement.frames.iter().zip(estimates) {
+        for (key, unit, found) in &estimate.parameters {
+            let [low, high] = found.interval;
+            text += &format!(
+                "{key} in frame {}: {:.6} {unit} ({low:.6} … {high:.6})\n",
+                frame.number, found.value
+            );
+        }
     }
     if let (Some(frame), Some(last)) = (field.measurement.frames.last(), estimates.last()) {
         for force in &last.forces {
@@ -145,6 +154,10 @@ pub fn report(
         Block::Heading(2, "Forces on the edges".into()),
         forces(field, estimates),
     ];
+    if field.regressed.is_some() {
+        blocks.push(Block::Heading(2, "Parameters of the law".into()));
+        blocks.push(parameters(field, estimates));
+    }
     if let Some(last) = estimates.last() {
         blocks.push(Block::Heading(2, "Edges of the last frame".into()));
         blocks.extend(edges(field, last));
@@ -242,16 +255,60 @@ fn forces(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
     Block::table(&["frame", "edge", "force along x", "force along y"], rows)
 }
 
+/// The parameters of the law that were found with the field.
+fn parameters(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
+    let frames = field.measurement.frames.iter().zip(estimates);
+    let rows = frames.flat_map(|(frame, estimate)| {
+        estimate.parameters.iter().map(move |(key, unit, found)| {
+            let [low, high] = found.interval;
+            vec![
+                frame.number.to_string(),
+                (*key).to_owned(),
+                (*unit).to_owned(),
+                format!("{:.6}", found.value),
+                format!("{:.6}", found.standard_error),
+                format!("{low:.6} … {high:.6}"),
+            ]
+        })
+    });
+    let head = [
+        "frame",
+        "parameter",
+        "unit",
+        "value",
+        "standard error",
+        "95 %",
+    ];
+    Block::table(&head, rows)
+}
+
 fn edges(field: &MeasuredField, last: &FieldEstimate) -> Vec<Block> {
     let known = |known: &EdgeCondition| match (known, &field.coarse) {
         (EdgeCondition::Unknown, Some(_)) => "as the given field".to_owned(),
         (EdgeCondition::Rigid, Some(_)) => "rigid, as near as can be to the given field".to_owned(),
         _ => condition(known),
     };
-    let conditions = last.edges.iter();
-    let conditions = conditions.map(|(edge, condition)| vec![edge.clone(), known(condition)]);
+    let row = |outcome: &EdgeOutcome| {
+        let chosen = outcome.probability.map(|p| format!("{p:.3}"));
+        vec![
+            outcome.edge.clone(),
+            format!("{:.3}", outcome.length),
+            known(&outcome.condition),
+            chosen.unwrap_or_default(),
+        ]
+    };
+    let conditions = last.edges.iter().map(row);
+    let head = [
+        "edge",
+        "length [mm]",
+        "condition",
+        "probability of the misfit if it is free",
+    ];
     if field.coarse.is_some() {
-        return vec![Block::table(&["edge", "condition"], conditions)];
+        return vec![Block::table(
+            &head[..3],
+            conditions.map(|row| row[..3].to_vec()),
+        )];
     }
     let smooth = last.smoothing.iter().map(|smoothing| {
         vec![
@@ -262,7 +319,7 @@ fn edges(field: &MeasuredField, last: &FieldEstimate) -> Vec<Block> {
         ]
     });
     let mut blocks = vec![
-        Block::table(&["edge", "condition"], conditions),
+        Block::table(&head, conditions),
         Block::Paragraph(format!("Data and physics: {TRADE}.")),
     ];
     if !last.smoothing.is_empty() {
@@ -307,6 +364,17 @@ pub fn json(field: &MeasuredField, estimates: &[FieldEstimate]) -> Value {
             "largest_standard_error_mm": largest_error(estimate),
             "steps": estimate.steps,
             "forces": forces.collect::<Vec<_>>(),
+            "parameters": estimate.parameters.iter().map(|(key, unit, found)| json!({
+                "key": key,
+                "unit": unit,
+                "value": found.value,
+                "standard_error": found.standard_error,
+                "interval": found.interval,
+            })).collect::<Vec<_>>(),
+            "free_edges": estimate.edges.iter()
+                .filter(|outcome| outcome.condition == EdgeCondition::Free)
+                .map(|outcome| outcome.edge.as_str())
+                .collect::<Vec<_>>(),
         })
     });
     json!({
