@@ -13,6 +13,9 @@ const SMALLEST: f64 = 1e-5;
 /// Markers up to so many sizes of a cell outside of the mesh belong to its boundary.
 const NEAR_CELLS: f64 = 0.25;
 
+/// No marker farther outside of the box around the mesh than this share of its size is looked for.
+const MARGIN: f64 = 0.5;
+
 /// Ratios of the units of length that are in use.
 const RATIOS: [f64; 6] = [10.0, 25.4, 100.0, 254.0, 1e3, 1e6];
 
@@ -72,7 +75,14 @@ pub struct Placed {
 /// # Errors
 /// [`Error::Input`] when most do, with what is likely: another unit, or another origin.
 pub fn place_on(mesh: &Mesh, measurement: &Measurement) -> Result<Placed, Error> {
-    let within = |marker: &&Marker| mesh.outside(marker.place) <= NEAR_CELLS;
+    let [low, high] = mesh.bounding_box();
+    let near = |place: [f64; 2]| {
+        let margin = [0, 1].map(|axis| MARGIN * (high[axis] - low[axis]));
+        (0..2).all(|axis| {
+            (low[axis] - margin[axis]..=high[axis] + margin[axis]).contains(&place[axis])
+        })
+    };
+    let within = |marker: &&Marker| near(marker.place) && mesh.outside(marker.place) <= NEAR_CELLS;
     let frame = |frame: &Frame| Frame {
         markers: frame.markers.iter().filter(within).copied().collect(),
         ..frame.clone()

@@ -103,7 +103,7 @@ impl Outline {
             if line.len() > 1 && line.first() == line.last() {
                 line.pop();
             }
-            if line.len() < 3 || area(line) == 0.0 {
+            if line.len() < 3 || polygon::is_straight(line) {
                 return Err("a line of the outline encloses no area".into());
             }
         }

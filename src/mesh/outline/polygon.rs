@@ -38,6 +38,14 @@ pub fn area(line: &[[f64; 2]]) -> f64 {
     twice.sum::<f64>() / 2.0
 }
 
+/// Whether all points lie on one straight line.
+pub fn is_straight(line: &[[f64; 2]]) -> bool {
+    let mut corners = line
+        .windows(2)
+        .map(|pair| area(&[line[0], pair[0], pair[1]]));
+    corners.all(|area| area == 0.0)
+}
+
 /// The distance of two points.
 pub fn length(a: [f64; 2], b: [f64; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
