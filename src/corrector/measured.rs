@@ -30,8 +30,11 @@ use crate::material::HyperelasticLaw;
 use crate::measurement::Marker;
 use crate::mesh::Mesh;
 
+mod body_force;
 mod edge_motion;
 mod free_edges;
+mod linearise;
+mod observations;
 mod outline;
 mod regressed_law;
 mod regression;
@@ -46,12 +49,13 @@ pub use edge_motion::EdgeCondition;
 pub use regressed_law::RegressedLaw;
 pub use result::{
     EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE,
+    TRADE_WEIGHTED,
 };
 pub use robust::Robust;
 pub use transfer::transfer;
 
+use observations::Observations;
 use outline::{Segment, segments};
-use search::Observations;
 
 /// The sheet whose displacements were measured.
 #[derive(Clone, Debug)]
@@ -78,6 +82,8 @@ pub struct Knowledge {
     pub noise: Option<f64>,
     /// How markers that are far off are weighted.
     pub robust: Robust,
+    /// Whether equilibrium holds exactly.
+    pub physics: Physics,
     /// Parameters of the law that are found with the field; the specimen's law is not used then.
     pub law: Option<RegressedLaw>,
 }
@@ -104,6 +110,23 @@ impl Unnamed {
     ];
 }
 
+/// How far the equations hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Physics {
+    /// F(u) = 0.
+    #[default]
+    Exact,
+    /// F(u) = f with smooth forces f on the interior, which stand for what law, thickness and equations lack: the weight of
+    /// ∫ f² beside the misfit follows by restricted maximum likelihood. Where the physics is right, f comes out as nothing.
+    Weighted,
+}
+
+impl Physics {
+    /// The names that conditions use.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("exact", Self::Exact), ("weighted", Self::Weighted)];
+}
+
 /// A force that was measured on an edge that is not free.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredForce {
@@ -116,9 +139,6 @@ pub struct MeasuredForce {
     /// Its standard deviation in N.
     pub standard_deviation: f64,
 }
-
-/// A marker farther outside of the mesh than this share of a cell's size is left out.
-const OUTSIDE: f64 = 0.25;
 
 /// Estimates the field from the markers of one frame.
 ///

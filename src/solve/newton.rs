@@ -217,13 +217,12 @@ impl Newton {
     /// A [`SolveFault`] when the tangent is singular to working precision.
     pub fn changes(&mut self, residuals: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, SolveFault> {
         const TOGETHER: usize = 8;
-        let Some(first) = residuals.first() else {
+        let Some((first, others)) = residuals.split_first() else {
             return Ok(Vec::new());
         };
-        self.step(first)?;
-        let mut changes = Vec::with_capacity(residuals.len());
+        let mut changes = vec![self.change(first)?];
         let free = self.assembly.free();
-        for group in residuals.chunks(TOGETHER) {
+        for group in others.chunks(TOGETHER) {
             let right = group.iter().flat_map(|r| free.iter().map(|i| -r[*i]));
             let mut columns: Vec<f64> = right.collect();
             self.cholesky.substitute_columns(&mut columns, group.len());

@@ -1,18 +1,17 @@
 //! The estimated field and its uncertainty.
 
-use std::sync::Arc;
-
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 use super::Edge;
 use super::edge_motion::EdgeCondition;
+use super::linearise::{Neighbours, dot};
+use super::observations::Observations;
 use super::robust::Robust;
-use super::search::{Found, Observations, Search, dot};
+use super::search::{Found, Search};
 use crate::corrector::estimate::Estimate;
 use crate::error::{Error, SolveFault};
-use crate::material::HyperelasticLaw;
 use crate::material::parameters::Parameter;
 use crate::material::sheet::{Gradient, Kinematics, cofactor};
 
@@ -48,7 +47,11 @@ pub struct FieldEstimate {
     pub degrees_of_freedom: f64,
     /// Half the width of a 95 % interval over the standard error.
     pub reach: f64,
-    /// How smooth the edges of unknown motion came out, by [`TRADE`].
+    /// Forces on the interior in N on node after node that stand for what the physics lacks; nothing where it is exact.
+    pub interior_forces: Vec<f64>,
+    /// The rule by which data, smoothness and physics were traded.
+    pub rule: &'static str,
+    /// How smooth the edges of unknown motion came out by the rule, and how large the forces on the interior.
     pub smoothing: Vec<Smoothing>,
     /// The condition of each part of the boundary.
     pub edges: Vec<EdgeOutcome>,
@@ -60,6 +63,9 @@ pub struct FieldEstimate {
 
 /// The rule by which data and smoothness are traded.
 pub const TRADE: &str = "equilibrium holds exactly; the roughness of each edge of unknown motion is weighted by restricted maximum likelihood";
+
+/// The rule where the physics is weighted.
+pub const TRADE_WEIGHTED: &str = "equilibrium holds up to smooth forces on the interior; these forces and the roughness of each edge of unknown motion are weighted by restricted maximum likelihood";
 
 /// The state in the middle of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,14 +122,12 @@ pub struct Smoothing {
     pub edge: String,
     /// x or y: 0 or 1.
     pub axis: usize,
-    /// λ in 1/mm²: the inverse of the variance of the curvature over the edge.
+    /// λ in 1/mm²: the inverse of the variance of the curvature over the edge; of forces on the interior, that of b over the
+    /// area in mm²/N².
     pub weight: f64,
     /// Parameters beyond a straight line that the data determine.
     pub freedom: f64,
 }
-
-/// A law with one parameter a little smaller and larger, and the width between.
-type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
 
 /// Share of sound markers that are taken for outliers.
 const FALSE_ALARMS: f64 = 1e-3;
@@ -143,7 +147,7 @@ impl Found<'_> {
         };
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        let motion = self.search.motion.roughness(&self.parameters);
+        let motion = self.search.priors(&self.parameters);
         let smoothing = motion
             .iter()
             .zip(&self.trade.smoothing)
@@ -172,6 +176,11 @@ impl Found<'_> {
             degrees_of_freedom: freedom,
             reach,
             smoothing: smoothing.collect(),
+            rule: match self.search.body {
+                Some(_) => TRADE_WEIGHTED,
+                None => TRADE,
+            },
+            interior_forces: self.search.forces.clone(),
             edges: edges.iter().map(outcome).collect(),
             steps: self.steps,
             reactions: self.reactions(),
@@ -243,11 +252,10 @@ impl Found<'_> {
             (0..4).for_each(|component| rows[component].push(stress[component]));
             rows[4].push(thickness / kinematics.area_ratio() * cofactor.dot(&change));
         }
-        let count = rows[0].len();
         for (index, (laws, width)) in neighbours.iter().enumerate() {
             let [low, high] = laws.each_ref().map(|law| law.stress(&kinematics).1);
             let slope = (high - low) / *width;
-            let place = count - neighbours.len() + index;
+            let place = self.search.motion.parameters() + index;
             (0..4).for_each(|component| rows[component][place] += slope[component]);
         }
         Ok(StressEstimate {
@@ -267,12 +275,13 @@ impl Found<'_> {
         reactions
     }
 
-    fn forces(&self, edges: &[Edge], reach: f64) -> Result<Vec<EdgeForce>, Error> {
+    pub fn forces(&self, edges: &[Edge], reach: f64) -> Result<Vec<EdgeForce>, Error> {
         let reactions = self.reactions();
         let slopes = self.search.law_slopes(&self.parameters, &self.field)?;
+        let first = self.search.motion.parameters();
         let along = |edge: &Edge, axis: usize| -> Result<Estimate, Error> {
             let grip = self.search.grip(&edge.segment.nodes, axis, &self.field)?;
-            let row = grip.slopes(&self.linear.sensitivities, &slopes);
+            let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
             let force = dot(&grip.marks, &reactions);
             Ok(interval(force, self.error(&row), reach))
         };

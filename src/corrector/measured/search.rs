@@ -4,149 +4,19 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::edge_motion::EdgeMotion;
+use super::body_force::{BodyForce, Pushed};
+use super::edge_motion::{EdgeMotion, Roughness};
+use super::linearise::Linear;
+use super::observations::Observations;
 use super::regression::{Fit, Regression, Trade, Undetermined};
 use super::robust::Robust;
-use super::start::{DEGREE, Points, Polynomial};
-use super::{Edge, MeasuredForce, OUTSIDE, Specimen, Task};
-use crate::error::{Diagnostic, Error, SolveFault};
+use super::start::{DEGREE, Polynomial};
+use super::{Edge, Physics, Specimen, Task};
+use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
-use crate::measurement::Marker;
-use crate::mesh::Mesh;
 use crate::sheet_energy::SheetEnergy;
 use crate::solve::sparse::largest;
-use crate::solve::{Assembly, Inadmissible, Newton, NewtonSettings, Potential, SparseRows};
-
-/// The markers on the mesh.
-#[derive(Clone, Debug)]
-pub struct Observations {
-    /// Number of all markers.
-    pub markers: usize,
-    /// Index of each marker that lies on the mesh.
-    pub chosen: Vec<usize>,
-    /// Their places in mm.
-    pub places: Vec<[f64; 2]>,
-    /// Their displacements in mm.
-    pub displacements: Vec<[f64; 2]>,
-    /// Their weights: 1/variance in 1/mm² where the noise is known, else 1.
-    pub weights: Vec<f64>,
-    /// Whether the noise is known.
-    pub known_noise: bool,
-    /// H: two rows a marker.
-    pub interpolation: SparseRows,
-}
-
-impl Observations {
-    /// Finds the markers on a mesh; `noise` is the standard deviation in mm of those that have none.
-    ///
-    /// # Errors
-    /// A [`Diagnostic`] when a number is not finite, a standard deviation is not positive or known for some markers
-    /// only, or fewer than three markers lie on the mesh.
-    pub fn new(mesh: &Mesh, markers: &[Marker], noise: Option<f64>) -> Result<Self, Diagnostic> {
-        let deviation = |marker: &Marker| marker.standard_deviation.or(noise);
-        let known = markers
-            .iter()
-            .filter(|marker| deviation(marker).is_some())
-            .count();
-        if known > 0 && known < markers.len() {
-            let fault = format!(
-                "{known} of {} markers have a standard deviation",
-                markers.len()
-            );
-            return Err(Diagnostic::error("", fault).hint("give all of them one, or none"));
-        }
-        let mut all = Self {
-            markers: markers.len(),
-            chosen: Vec::new(),
-            places: Vec::new(),
-            displacements: Vec::new(),
-            weights: Vec::new(),
-            known_noise: known > 0,
-            interpolation: SparseRows::new(2 * mesh.nodes.len()),
-        };
-        for (index, marker) in markers.iter().enumerate() {
-            all.add(mesh, index, marker, deviation(marker))?;
-        }
-        if all.chosen.len() < 3 {
-            let fault = format!(
-                "{} of {} markers lie on the mesh",
-                all.chosen.len(),
-                markers.len()
-            );
-            return Err(Diagnostic::error("", fault)
-                .hint("look at the units and the origins of markers and mesh"));
-        }
-        Ok(all)
-    }
-
-    fn add(
-        &mut self,
-        mesh: &Mesh,
-        index: usize,
-        marker: &Marker,
-        deviation: Option<f64>,
-    ) -> Result<(), Diagnostic> {
-        let Marker {
-            number,
-            place,
-            displacement,
-            ..
-        } = *marker;
-        let numbers = place.iter().chain(&displacement);
-        if numbers.chain(&deviation).any(|value| !value.is_finite()) {
-            let fault = format!("marker {number} has a value that is not a number");
-            return Err(Diagnostic::error("", fault).hint("leave the marker out of the frame"));
-        }
-        let deviation = deviation.unwrap_or(1.0);
-        if deviation <= 0.0 {
-            let fault = format!("marker {number} has the standard deviation {deviation} mm");
-            return Err(Diagnostic::error("", fault).hint("give a positive one, or none"));
-        }
-        let (cell, local) = mesh.locate(place);
-        let shape = mesh.shape(cell);
-        let size = if shape.is_triangle() { 1.0 } else { 2.0 };
-        if shape.outside(local) / size > OUTSIDE {
-            return Ok(());
-        }
-        let values = shape.values(local);
-        for axis in [0, 1] {
-            let nodes = mesh.cell(cell).iter().zip(&values);
-            self.interpolation
-                .push(nodes.map(|(node, value)| (2 * node + axis, *value)));
-        }
-        self.chosen.push(index);
-        self.places.push(place);
-        self.displacements.push(displacement);
-        self.weights.push(deviation.powi(-2));
-        Ok(())
-    }
-
-    /// The mean distance of neighbouring markers in mm, from the area of the mesh.
-    pub fn spacing(&self, mesh: &Mesh) -> f64 {
-        let area = |cell: usize| -> f64 {
-            let points = mesh.shape(cell).quadrature().into_iter();
-            points
-                .map(|(local, weight)| weight * mesh.gradients(cell, local).1)
-                .sum()
-        };
-        let area: f64 = (0..mesh.cell_count()).map(area).sum();
-        (area / self.chosen.len() as f64).sqrt()
-    }
-
-    /// d − H u, two numbers a marker.
-    fn residual(&self, field: &[f64]) -> DVector<f64> {
-        let there = self.interpolation.multiply(field);
-        let data = self.displacements.iter().flatten();
-        DVector::from_iterator(there.len(), data.zip(there).map(|(d, u)| d - u))
-    }
-
-    fn points(&self) -> Points<'_> {
-        Points {
-            places: &self.places,
-            displacements: &self.displacements,
-        }
-    }
-}
+use crate::solve::{Assembly, Newton, NewtonSettings, Potential};
 
 /// How equilibria on the way and at the end are solved.
 const ON_THE_WAY: NewtonSettings = NewtonSettings {
@@ -159,7 +29,7 @@ const AT_THE_END: NewtonSettings = NewtonSettings {
 };
 
 /// Steps allowed.
-const MOST_STEPS: usize = 40;
+pub const MOST_STEPS: usize = 40;
 
 /// Steps after which the trade stays as it is: two of equal likelihood could take turns.
 const TRADING: usize = 6;
@@ -169,32 +39,23 @@ const MOVEMENT: f64 = 1e-3;
 
 /// The search on one mesh with one set of conditions.
 ///
-/// Its parameters p are those of the edges' motion, then those of the law.
+/// Its parameters p are those of the edges' motion, then those of the law, then those of the forces on the interior.
 pub struct Search<'a> {
     pub task: Task<'a>,
     pub motion: EdgeMotion,
     pub law: Arc<dyn HyperelasticLaw>,
     pub energy: SheetEnergy,
     pub newton: Newton,
+    /// Forces on the interior, where they are wanted, and their present values in N.
+    pub body: Option<BodyForce>,
+    pub forces: Vec<f64>,
 }
 
 /// Where the search is.
 #[derive(Clone, Debug)]
-struct Place {
-    parameters: Vec<f64>,
-    field: Vec<f64>,
-}
-
-/// The equations and the observations linearised about a place.
-pub struct Linear {
-    /// −K⁻¹ F.
-    still: Vec<f64>,
-    /// ∂u/∂p of one parameter after the other.
-    pub sensitivities: Vec<Vec<f64>>,
-    /// H ∂u/∂p.
-    pub design: DMatrix<f64>,
-    /// The derivatives of the measured forces by p, and what is measured more than there, over the deviations.
-    facts: (DMatrix<f64>, DVector<f64>),
+pub struct Place {
+    pub parameters: Vec<f64>,
+    pub field: Vec<f64>,
 }
 
 /// The field where the search ends, with what was known on the last step.
@@ -242,75 +103,28 @@ impl<'a> Search<'a> {
                 "say which edges are held, or leave their conditions open",
             ));
         }
-        let newton = Newton::new(&energy, &held).map_err(solve)?;
+        let weighted = task.knowledge.physics == Physics::Weighted;
+        let forces = vec![0.0; energy.unknowns()];
+        let newton = match weighted {
+            true => Newton::new(&Pushed::new(&energy, &forces), &held),
+            false => Newton::new(&energy, &held),
+        };
         Ok(Self {
             task: *task,
             motion,
             law,
             energy,
-            newton,
-        })
-    }
-
-    /// The values of the law's parameters among all.
-    pub fn law_values<'b>(&self, parameters: &'b [f64]) -> &'b [f64] {
-        &parameters[self.motion.parameters()..]
-    }
-
-    /// Takes the law with the parameters.
-    fn take_law(&mut self, parameters: &[f64]) {
-        if let Some(regressed) = &self.task.knowledge.law {
-            self.law = regressed.at(self.law_values(parameters));
-            self.energy = self.energy.with_law(Arc::clone(&self.law));
-        }
-    }
-
-    /// The laws with each of the law's parameters a little smaller and larger, and twice the difference.
-    pub fn neighbours(&self, parameters: &[f64]) -> Vec<([Arc<dyn HyperelasticLaw>; 2], f64)> {
-        const STEP: f64 = 1e-5;
-        let Some(regressed) = &self.task.knowledge.law else {
-            return Vec::new();
-        };
-        let values = self.law_values(parameters);
-        let pair = |index: usize| {
-            let step = STEP * values[index].abs();
-            let moved = [-step, step].map(|step| {
-                let mut moved = values.to_vec();
-                moved[index] += step;
-                regressed.at(&moved)
-            });
-            (moved, 2.0 * step)
-        };
-        (0..values.len()).map(pair).collect()
-    }
-
-    /// ∂F/∂θ of each parameter θ of the law, at held unknowns too.
-    pub fn law_slopes(&self, parameters: &[f64], field: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
-        let mut slopes = Vec::new();
-        for (laws, width) in self.neighbours(parameters) {
-            let mut sides = laws.map(|law| (self.energy.with_law(law), vec![0.0; field.len()]));
-            for (energy, residual) in &mut sides {
-                Assembly::residual(energy, field, residual)
-                    .map_err(|fault| self.inverted(fault))?;
-            }
-            let [(_, low), (_, high)] = sides;
-            let slope = high
-                .iter()
-                .zip(&low)
-                .map(|(high, low)| (high - low) / width);
-            slopes.push(slope.collect());
-        }
-        Ok(slopes)
-    }
-
-    pub fn inverted(&self, fault: Inadmissible) -> Error {
-        solve(SolveFault::Inverted {
-            element: self.task.specimen.mesh.describe_cell(fault.element),
+            newton: newton.map_err(solve)?,
+            body: weighted.then(|| BodyForce::new(mesh, &held)),
+            forces,
         })
     }
 
     /// Finds the equilibrium nearest to the data.
-    pub fn run(mut self) -> Result<Found<'a>, Error> {
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the data do not determine it, [`Error::Solve`] when `most` steps do not reach it.
+    pub fn run(mut self, most: usize) -> Result<Found<'a>, Error> {
         let (mut place, trust) = self.start()?;
         let mut trade = Trade {
             smoothing: Vec::new(),
@@ -318,12 +132,14 @@ impl<'a> Search<'a> {
             variance: self.first_variance(&place.field),
             sound: 1.0,
         };
-        for steps in 1..=MOST_STEPS {
+        let mut moved = f64::NAN;
+        for steps in 1..=most {
             let linear = self.linearise(&place)?;
             let fit = self.regress((&place, steps), &linear, &mut trade)?;
             let change = combined(&linear.still, &linear.sensitivities, fit.step.as_slice());
             let close = self.close(&trade, &place.field);
             let rest = largest(&change);
+            moved = rest / largest(&place.field);
             let cut = self.advance(&mut place, &change, fit.step.as_slice())?;
             if rest <= close && !cut {
                 let multipliers = self.multipliers(&fit, &trade)?;
@@ -342,8 +158,8 @@ impl<'a> Search<'a> {
             }
         }
         Err(solve(SolveFault::Stalled {
-            iterations: MOST_STEPS,
-            residual: f64::NAN,
+            iterations: most,
+            residual: moved,
             tolerance: MOVEMENT,
         }))
     }
@@ -380,6 +196,8 @@ impl<'a> Search<'a> {
             if let Some(regressed) = &self.task.knowledge.law {
                 parameters.extend(regressed.start());
             }
+            let body = self.body.as_ref().map_or(0, |body| body.columns().len());
+            parameters.resize(parameters.len() + body, 0.0);
             let mut place = Place { parameters, field };
             match self.settle(&mut place, ON_THE_WAY) {
                 Ok(_) => {
@@ -431,107 +249,36 @@ impl<'a> Search<'a> {
 
     /// Brings the inner nodes into equilibrium while the edges stay; the residual.
     fn settle(&mut self, place: &mut Place, settings: NewtonSettings) -> Result<Vec<f64>, Error> {
-        self.take_law(&place.parameters);
+        self.take(&place.parameters);
         self.motion.at(&place.parameters).write(&mut place.field);
         let mut residual = vec![0.0; place.field.len()];
         let mesh = self.task.specimen.mesh;
         let describe = |cell: usize| mesh.describe_cell(cell);
-        self.newton
-            .solve(
-                &self.energy,
-                &mut place.field,
-                &mut residual,
-                settings,
-                &describe,
-            )
-            .map_err(solve)?;
+        let field = &mut place.field;
+        let solved = match self.body {
+            Some(_) => {
+                let pushed = Pushed::new(&self.energy, &self.forces);
+                let newton = &mut self.newton;
+                newton.solve(&pushed, field, &mut residual, settings, &describe)
+            }
+            None => {
+                let newton = &mut self.newton;
+                newton.solve(&self.energy, field, &mut residual, settings, &describe)
+            }
+        };
+        solved.map_err(solve)?;
         Ok(residual)
     }
 
-    fn linearise(&mut self, place: &Place) -> Result<Linear, Error> {
-        let (mesh, field) = (self.task.specimen.mesh, &place.field);
-        let describe = |cell: usize| mesh.describe_cell(cell);
-        let residual = self
-            .newton
-            .tangent(&self.energy, field, &describe)
-            .map_err(solve)?;
-        let motions = self.motion.at(&place.parameters);
-        let motions = motions.motions(self.motion.parameters(), field.len());
-        let slopes = self.law_slopes(&place.parameters, field)?;
-        let mut forces = vec![residual.clone()];
-        for motion in &motions {
-            let mut force = vec![0.0; field.len()];
-            let added = Assembly::add_product(&self.energy, field, motion, &mut force);
-            added.map_err(|fault| self.inverted(fault))?;
-            forces.push(force);
+    /// What is held down: the roughness of the edges' motion, and the forces on the interior.
+    pub fn priors(&self, parameters: &[f64]) -> Vec<Roughness> {
+        let mut priors = self.motion.roughness(parameters);
+        for prior in &mut priors {
+            let slopes = std::mem::take(&mut prior.slopes);
+            prior.slopes = slopes.resize_horizontally(parameters.len(), 0.0);
         }
-        forces.extend(slopes.iter().cloned());
-        let mut changes = self.newton.changes(&forces).map_err(solve)?;
-        let mut sensitivities = changes.split_off(1);
-        for (sensitivity, motion) in sensitivities.iter_mut().zip(motions) {
-            sensitivity
-                .iter_mut()
-                .zip(motion)
-                .for_each(|(s, m)| *s += m);
-        }
-        let still = changes.remove(0);
-        let interpolation = &self.task.observations.interpolation;
-        let columns = sensitivities
-            .iter()
-            .flat_map(|column| interpolation.multiply(column));
-        let design = DMatrix::from_iterator(interpolation.len(), sensitivities.len(), columns);
-        let facts = self.facts(field, &residual, &still, &sensitivities, &slopes)?;
-        Ok(Linear {
-            still,
-            sensitivities,
-            design,
-            facts,
-        })
-    }
-
-    /// The measured forces, linearised.
-    fn facts(
-        &self,
-        field: &[f64],
-        residual: &[f64],
-        still: &[f64],
-        sensitivities: &[Vec<f64>],
-        slopes: &[Vec<f64>],
-    ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
-        let measured = &self.task.knowledge.forces;
-        let mut rows = DMatrix::zeros(measured.len(), sensitivities.len());
-        let mut values = DVector::zeros(measured.len());
-        for (row, measured) in measured.iter().enumerate() {
-            let MeasuredForce {
-                edge,
-                axis,
-                force,
-                standard_deviation,
-            } = measured;
-            let nodes = &self.task.specimen.mesh.groups()[edge].nodes;
-            let grip = self.grip(nodes, *axis, field)?;
-            let there = dot(&grip.marks, residual) + dot(&grip.pull, still);
-            values[row] = (force - there) / standard_deviation;
-            let slopes = grip.slopes(sensitivities, slopes);
-            for (column, slope) in slopes.into_iter().enumerate() {
-                rows[(row, column)] = slope / standard_deviation;
-            }
-        }
-        Ok((rows, values))
-    }
-
-    /// The force on nodes along an axis as a function of the field.
-    pub fn grip(&self, nodes: &[usize], axis: usize, field: &[f64]) -> Result<Grip, Error> {
-        let mut marks = vec![0.0; field.len()];
-        nodes.iter().for_each(|node| marks[2 * node + axis] = 1.0);
-        self.newton
-            .free()
-            .iter()
-            .for_each(|unknown| marks[*unknown] = 0.0);
-        let mut pull = vec![0.0; field.len()];
-        let added = Assembly::add_product(&self.energy, field, &marks, &mut pull);
-        added.map_err(|fault| self.inverted(fault))?;
-        Ok(Grip { marks, pull })
+        priors.extend(self.body.iter().flat_map(|body| body.roughness(parameters)));
+        priors
     }
 
     fn regress(
@@ -543,11 +290,7 @@ impl<'a> Search<'a> {
         let Linear { still, design, .. } = linear;
         let ahead: Vec<f64> = place.field.iter().zip(still).map(|(u, s)| u + s).collect();
         let residual = self.task.observations.residual(&ahead);
-        let mut priors = self.motion.roughness(&place.parameters);
-        for prior in &mut priors {
-            let rows = prior.slopes.nrows();
-            prior.slopes.resize_mut(rows, design.ncols(), 0.0);
-        }
+        let priors = self.priors(&place.parameters);
         let regression = Regression {
             design,
             residual: &residual,
@@ -595,7 +338,6 @@ impl<'a> Search<'a> {
     /// where it is lost. Whether the step was cut.
     fn advance(&mut self, place: &mut Place, change: &[f64], step: &[f64]) -> Result<bool, Error> {
         const SHORTEST: f64 = 1.0 / 64.0;
-        const LOST: f64 = 1e-2;
         const NEAR: f64 = 0.5;
         let values = self.law_values(&place.parameters).iter();
         let share = values
@@ -608,49 +350,32 @@ impl<'a> Search<'a> {
             parameters.for_each(|(p, step)| *p += length * step);
             let field = next.field.iter_mut().zip(change);
             field.for_each(|(u, change)| *u += length * change);
-            self.take_law(&next.parameters);
-            self.motion.at(&next.parameters).write(&mut next.field);
-            let mut residual = vec![0.0; change.len()];
-            match Assembly::residual(&self.energy, &next.field, &mut residual) {
-                Ok(_) => {
-                    let free = self.newton.free().iter();
-                    let lost = free.fold(0.0, |most: f64, i| most.max(residual[*i].abs()));
+            match self.balance(&mut next) {
+                Ok(()) => {
                     *place = next;
-                    if lost > LOST * largest(&residual) {
-                        self.settle(place, ON_THE_WAY)?;
-                    }
                     return Ok(length < 1.0);
                 }
-                Err(fault) if length <= SHORTEST => return Err(self.inverted(fault)),
+                Err(fault) if length <= SHORTEST => return Err(fault),
                 Err(_) => length *= 0.5,
             }
         }
     }
-}
 
-/// The force g·∂Π/∂u of a grip.
-pub struct Grip {
-    /// g: one at the grip's held unknowns.
-    pub marks: Vec<f64>,
-    /// g·K.
-    pub pull: Vec<f64>,
-}
-
-impl Grip {
-    /// Its derivatives by p; the last parameters change the law.
-    pub fn slopes(&self, sensitivities: &[Vec<f64>], law: &[Vec<f64>]) -> Vec<f64> {
-        let columns = sensitivities.iter();
-        let mut slopes: Vec<f64> = columns.map(|column| dot(&self.pull, column)).collect();
-        let first = slopes.len() - law.len();
-        for (slope, own) in slopes[first..].iter_mut().zip(law) {
-            *slope += dot(&self.marks, own);
+    /// Looks at the equilibrium of a place, and restores it where it is lost.
+    fn balance(&mut self, place: &mut Place) -> Result<(), Error> {
+        const LOST: f64 = 1e-2;
+        self.take(&place.parameters);
+        self.motion.at(&place.parameters).write(&mut place.field);
+        let mut residual = vec![0.0; place.field.len()];
+        let admissible = Assembly::residual(&*self.potential(), &place.field, &mut residual);
+        admissible.map_err(|fault| self.inverted(fault))?;
+        let free = self.newton.free().iter();
+        let lost = free.fold(0.0, |most: f64, unknown| most.max(residual[*unknown].abs()));
+        if lost > LOST * largest(&residual) {
+            self.settle(place, ON_THE_WAY)?;
         }
-        slopes
+        Ok(())
     }
-}
-
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// still + Σ stepⱼ columnⱼ.

@@ -295,3 +295,43 @@ fn gross_errors_are_found() {
     .unwrap();
     assert!(truth.error(&mesh, &plain.displacement) > 0.1);
 }
+
+#[test]
+fn forces_on_the_interior_make_up_for_a_wrong_law_and_vanish_with_the_right_one() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let markers = truth.markers(0.02, 2);
+    let pva = Card::load("pva-10", std::path::Path::new(".")).unwrap();
+    let run = |law: Arc<dyn HyperelasticLaw>, physics: Physics| {
+        let wrong = Specimen {
+            law,
+            ..specimen(&mesh)
+        };
+        let knowledge = Knowledge {
+            physics,
+            ..with_grips(EdgeCondition::Rigid)
+        };
+        let found = estimate(&wrong, &markers, &knowledge).unwrap();
+        (truth.error(&mesh, &found.displacement), found)
+    };
+    let (exact, plain) = run(Arc::clone(&pva.law), Physics::Exact);
+    let (weighted, forced) = run(Arc::clone(&pva.law), Physics::Weighted);
+    assert!(weighted < 0.5 * exact, "{weighted} {exact}");
+    assert!(plain.noise > 0.03 && (forced.noise / 0.02 - 1.0).abs() < 0.15);
+    let (exact, _) = run(law(), Physics::Exact);
+    let (weighted, right) = run(law(), Physics::Weighted);
+    assert!(weighted < 1.5 * exact, "{weighted} {exact}");
+    let size = |found: &FieldEstimate| {
+        found
+            .interior_forces
+            .iter()
+            .map(|f| f * f)
+            .sum::<f64>()
+            .sqrt()
+    };
+    assert!(
+        size(&right) < 0.05 * size(&forced),
+        "{} {}",
+        size(&right),
+        size(&forced)
+    );
+}
