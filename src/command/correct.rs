@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{Outcome, print, progress_bar, warn};
-use crate::corrector::measured::{EdgeCondition, MeasuredForce, Robust};
+use crate::corrector::measured::{EdgeCondition, MeasuredForce, Physics, Robust};
 use crate::error::Error;
 use crate::measured_field::{Conditions, MeasuredField, MeshSource, Request, measured_force};
 use crate::measurement::Reading;
@@ -76,6 +76,9 @@ pub struct Options {
     /// Weights of markers that are far off
     #[arg(long, value_enum)]
     pub robust: Option<Weights>,
+    /// How far the physics holds
+    #[arg(long, value_enum)]
+    pub physics: Option<Holds>,
     /// Write into this folder
     #[arg(long, value_name = "FOLDER", default_value = "output/correct")]
     pub output: PathBuf,
@@ -112,6 +115,15 @@ pub enum Weights {
     Huber,
     /// Not at all from a distance on
     Tukey,
+}
+
+/// How far the physics holds.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Holds {
+    /// Equilibrium holds exactly
+    Exact,
+    /// Up to smooth forces that are weighted against the data, for a law that is not exactly right
+    Weighted,
 }
 
 /// Corrects, prints, and writes.
@@ -159,6 +171,12 @@ fn request(options: Options) -> Result<Request, Error> {
             Weights::No => Robust::No,
             Weights::Huber => Robust::Huber,
             Weights::Tukey => Robust::Tukey,
+        };
+    }
+    if let Some(physics) = options.physics {
+        conditions.physics = match physics {
+            Holds::Exact => Physics::Exact,
+            Holds::Weighted => Physics::Weighted,
         };
     }
     let mesh = match (options.mesh, options.outline) {

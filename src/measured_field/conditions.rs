@@ -4,6 +4,7 @@
 //! title = "Strip, test 12"   # of the report
 //! noise = "0.1 mm"           # standard deviation of each component; estimated where it is left out
 //! robust = "tukey"           # "no", "huber" or "tukey"
+//! physics = "exact"          # or "weighted" against the data, for a law that is not exactly right
 //! unnamed = "tested"         # outer edges that are not named: the data tell which are free, "loaded" or "free"
 //! fit = ["c10"]              # one or two parameters of the law that are found with the field
 //!
@@ -28,7 +29,7 @@
 use std::path::Path;
 
 use crate::corrector::measured::{
-    EdgeCondition, Knowledge, MeasuredForce, RegressedLaw, Robust, Unnamed,
+    EdgeCondition, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
 };
 use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error, suggestion};
@@ -52,6 +53,8 @@ pub struct Conditions {
     pub noise: Option<f64>,
     /// How markers that are far off are weighted.
     pub robust: Robust,
+    /// Whether equilibrium holds exactly.
+    pub physics: Physics,
     /// What is assumed of outer edges that are not named.
     pub unnamed: Unnamed,
     /// Measured forces, with the frame where it is said.
@@ -176,6 +179,7 @@ impl Conditions {
             unnamed: self.unnamed,
             noise: self.noise,
             robust: self.robust,
+            physics: self.physics,
             law: law
                 .filter(|_| !forces.is_empty() || self.forces.is_empty())
                 .cloned(),
@@ -194,6 +198,9 @@ fn read(root: &Section) -> Conditions {
     }
     if root.has("robust") {
         conditions.robust = root.choice("robust", &Robust::NAMES).unwrap_or_default();
+    }
+    if root.has("physics") {
+        conditions.physics = root.choice("physics", &Physics::NAMES).unwrap_or_default();
     }
     if root.has("unnamed") {
         conditions.unnamed = root.choice("unnamed", &Unnamed::NAMES).unwrap_or_default();

@@ -113,6 +113,9 @@ fn corrected(field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> 
             &estimate.multipliers,
         ),
     ];
+    if estimate.interior_forces.len() == estimate.displacement.len() {
+        at_nodes.push(nodal("interior_force_N", &estimate.interior_forces));
+    }
     let mut in_cells = Vec::new();
     if field.coarse.is_none() {
         at_nodes.push(nodal(

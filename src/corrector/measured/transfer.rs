@@ -28,6 +28,10 @@ const NEWTON: NewtonSettings = NewtonSettings {
     max_iterations: 40,
 };
 
+/// The rule by which data and physics are traded.
+const RULE: &str =
+    "equilibrium holds exactly; edges that are not free keep the displacements of the given field";
+
 /// Parts of the given field that are solved one after the other where it is too far from equilibrium.
 const PARTS: [&[f64]; 3] = [
     &[1.0],
@@ -82,6 +86,8 @@ pub fn transfer(
         effective_parameters: 0.0,
         degrees_of_freedom: 0.0,
         reach: 0.0,
+        interior_forces: Vec::new(),
+        rule: RULE,
         smoothing: Vec::new(),
         edges: edges.iter().map(outcome).collect(),
         parameters: Vec::new(),

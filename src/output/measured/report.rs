@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::title;
 use crate::corrector::Estimate;
-use crate::corrector::measured::{EdgeCondition, EdgeOutcome, FieldEstimate, TRADE};
+use crate::corrector::measured::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::measured_field::MeasuredField;
 use crate::output::{Block, Figure};
 
@@ -320,7 +320,7 @@ fn edges(field: &MeasuredField, last: &FieldEstimate) -> Vec<Block> {
     });
     let mut blocks = vec![
         Block::table(&head, conditions),
-        Block::Paragraph(format!("Data and physics: {TRADE}.")),
+        Block::Paragraph(format!("Data and physics: {}.", last.rule)),
     ];
     if !last.smoothing.is_empty() {
         let head = [
@@ -383,7 +383,7 @@ pub fn json(field: &MeasuredField, estimates: &[FieldEstimate]) -> Value {
         "material": field.card.name,
         "thickness_mm": field.thickness,
         "mesh": { "origin": field.mesh_origin, "nodes": field.mesh.nodes.len(), "cells": field.mesh.cell_count() },
-        "trade": field.coarse.is_none().then_some(TRADE),
+        "trade": estimates.first().map(|estimate| estimate.rule),
         "brought_onto_another_mesh": field.coarse.is_some(),
         "frames": frames.collect::<Vec<_>>(),
         "warnings": field.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
