@@ -10,6 +10,7 @@ pub mod corrector;
 pub mod document;
 pub mod error;
 pub mod finite_element;
+pub mod identification;
 pub mod mass_spring;
 pub mod material;
 pub mod mesh;

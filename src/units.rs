@@ -18,6 +18,8 @@ pub enum Dimension {
     Stress,
     /// Internal unit tonne/mm³.
     Density,
+    /// Internal unit tonne.
+    Mass,
     /// Internal unit s.
     Time,
     /// Internal unit rad.
@@ -56,6 +58,10 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("kg/m^3", Dimension::Density, 1e-12),
     ("g/cm^3", Dimension::Density, 1e-9),
     ("tonne/mm^3", Dimension::Density, 1.0),
+    ("g", Dimension::Mass, 1e-6),
+    ("kg", Dimension::Mass, 1e-3),
+    ("mg", Dimension::Mass, 1e-9),
+    ("tonne", Dimension::Mass, 1.0),
     ("s", Dimension::Time, 1.0),
     ("ms", Dimension::Time, 1e-3),
     ("min", Dimension::Time, 60.0),
@@ -75,6 +81,7 @@ impl Dimension {
             Self::Force => "force",
             Self::Stress => "stress",
             Self::Density => "density",
+            Self::Mass => "mass",
             Self::Time => "time",
             Self::Angle => "angle",
             Self::Ratio => "ratio",
@@ -97,6 +104,7 @@ impl Dimension {
             Self::Force => "N",
             Self::Stress => "MPa",
             Self::Density => "tonne/mm^3",
+            Self::Mass => "tonne",
             Self::Time => "s",
             Self::Angle => "rad",
             Self::Ratio => "",
@@ -111,6 +119,7 @@ impl Dimension {
             Self::Force => "\"1.5 N\"",
             Self::Stress => "\"0.0611 MPa\"",
             Self::Density => "\"1020 kg/m^3\"",
+            Self::Mass => "\"5 g\"",
             Self::Time => "\"10 s\"",
             Self::Angle => "\"30 deg\"",
             Self::Ratio => "0.5 or \"50 %\"",

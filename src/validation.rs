@@ -23,6 +23,7 @@ mod plate_ablation;
 pub mod report;
 mod smoothing;
 pub mod specimen;
+mod spring_identification;
 mod vibrating_spring;
 
 pub use outcome::{Check, Claim, Computed, Outcome, Wanted};
@@ -77,6 +78,13 @@ pub const CASES: &[Case] = &[
         file: "examples/vibrating_spring.toml",
         slow: false,
         prepare: vibrating_spring::prepare,
+    },
+    Case {
+        kind: "spring-identification",
+        study: include_str!("../examples/spring_identification.toml"),
+        file: "examples/spring_identification.toml",
+        slow: true,
+        prepare: spring_identification::prepare,
     },
     Case {
         kind: "smoothing",

@@ -11,7 +11,7 @@ const LAYERS: &[&[&str]] = &[
     &["problem", "sheet_energy", "calibration"],
     &["mass_spring", "finite_element", "boundary"],
     &["corrector"],
-    &["compare"],
+    &["compare", "identification"],
     &["study"],
     &["results"],
     &["output"],
