@@ -25,7 +25,7 @@ use crate::error::Error;
 use band::reach;
 use joint::{Joint, Linearised, State};
 use penalty::{Exponents, Penalised};
-use smoothing::{FEWEST, Sampled, Smoothed, nearest, smooth};
+use smoothing::{Sampled, Smoothed, nearest, smooth};
 use spline::UniformSpline;
 
 mod band;
@@ -118,13 +118,16 @@ pub struct Identification {
 const MOST_STEPS: usize = 60;
 const CHOICES: usize = 6;
 
-/// Change of the penalised sum of squares that is left undone; a change of one is a standard error.
-const SETTLED: f64 = 1e-6;
+/// Change of the penalised sum of squares that is left undone, over the misfit; a change of one is a standard error.
+const SETTLED: f64 = 1e-3;
 
 /// Parts of the motion for each part that cross-validation asks for in either signal alone: two derivatives of the
 /// motion count, and where it cannot follow them they make a bias. Finer parts cost little, since the equation of
 /// motion ties them together.
 const FINER: usize = 4;
+
+/// Instants for each part of the motion at least: both signals count at each.
+const FEWEST_IN_MOTION: usize = 2;
 
 /// Least noise, over the largest value of its signal: that of sums in floating point.
 const LEAST_NOISE: f64 = 1e-9;
@@ -156,7 +159,7 @@ pub fn identify(
         state: start,
         exponents: [0.0; 2],
     };
-    let found = fit.improve().ok_or_else(|| undetermined("K(·) and D(·)"))?;
+    let found = fit.improve()?;
     fit.conclude(settings, &found, &signals)
         .ok_or_else(|| undetermined("K(·) and D(·)"))
 }
@@ -177,7 +180,7 @@ fn begin<'a>(
     let times = &recording.times;
     let span = [times[0], times[times.len() - 1]];
     let mut intervals =
-        (FINER * extension.intervals.max(force.intervals)).min(times.len() / FEWEST);
+        (FINER * extension.intervals.max(force.intervals)).min(times.len() / FEWEST_IN_MOTION);
     let (spline, motion) = loop {
         let spline = UniformSpline::new(span, intervals, 5);
         match nearest(&spline, times, &recording.extension) {
@@ -243,30 +246,36 @@ impl Fit<'_> {
     }
 
     /// Gauss–Newton steps until nothing moves; the functions with the motion as it is come first.
-    fn improve(&mut self) -> Option<Penalised> {
+    fn improve(&mut self) -> Result<Penalised, Error> {
+        let unknown = || undetermined("K(·) and D(·)");
         let functions = &self.joint.functions;
         let fixed = self.joint.with_motion_fixed(&self.state);
-        let first = fixed.minimum(&self.state.functions, functions, self.exponents)?;
+        let first = fixed
+            .minimum(&self.state.functions, functions, self.exponents)
+            .ok_or_else(unknown)?;
         self.state.functions = first.coefficients;
         let mut merit = f64::INFINITY;
         for step in 0..MOST_STEPS {
-            let linearised = self.joint.linearise(&self.state).ok()?;
+            let linearised = self.joint.linearise(&self.state).map_err(|_| unknown())?;
             if step < CHOICES {
                 let counts = [self.observations(), linearised.motion_count() as f64];
                 let from = &self.state.functions;
                 self.exponents = linearised.reduced.choose(from, functions, counts);
             }
-            let found =
-                linearised
-                    .reduced
-                    .minimum(&self.state.functions, functions, self.exponents)?;
+            let found = linearised
+                .reduced
+                .minimum(&self.state.functions, functions, self.exponents)
+                .ok_or_else(unknown)?;
             let next = self.advance(&linearised, &found);
-            if step >= CHOICES && merit - next < SETTLED {
-                return Some(found);
+            if step >= CHOICES && merit - next < SETTLED * next / self.observations() {
+                return Ok(found);
             }
             merit = next;
         }
-        None
+        Err(Error::input(
+            "the steps towards K(·) and D(·) do not settle",
+            "look at the mass and the length at rest, or take constants or polynomials",
+        ))
     }
 
     /// Takes the longest share of a step that lowers the penalised sum of squares, and returns that sum.

@@ -16,6 +16,7 @@ mod json;
 mod markdown;
 pub mod picture;
 mod report;
+pub mod series;
 pub mod vtk;
 pub mod wrinkling;
 

@@ -26,6 +26,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("vtkio::", &["src/output/vtk.rs", "src/mesh/import/vtk.rs"]),
     ("plotters::", &["src/output/picture"]),
     ("resvg::", &["src/output/picture"]),
+    ("png::", &["src/output/picture/animation.rs"]),
     ("maud::", &["src/output/html.rs"]),
     ("clap::", &["src/command"]),
     ("miette::", &["src/command"]),

@@ -43,6 +43,9 @@ pub struct Options {
     /// The length at rest
     #[arg(long)]
     length: Option<String>,
+    /// The cross-section at rest: with it and the length the law is one of the material, for springs of any length
+    #[arg(long)]
+    area: Option<String>,
     /// Form of K(·): constant, polynomial-N, spline or spline-N
     #[arg(long, value_name = "FORM", default_value = "spline", value_parser = Form::parse)]
     stiffness: Form,
@@ -112,6 +115,7 @@ pub fn run(options: Options) -> Outcome {
     let said = Said {
         mass: options.mass,
         length: options.length,
+        area: options.area,
     };
     let recording = Recording::read(&path, &said)?;
     let settings = IdentificationSettings {

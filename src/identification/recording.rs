@@ -13,6 +13,8 @@ pub struct Said {
     pub mass: Option<String>,
     /// The length at rest, such as `50 mm`.
     pub length: Option<String>,
+    /// The cross-section at rest, such as `20 mm^2`.
+    pub area: Option<String>,
 }
 
 /// Force and motion at increasing instants.
@@ -28,6 +30,8 @@ pub struct Recording {
     pub mass: f64,
     /// Length at rest in mm, where it is known.
     pub length: Option<f64>,
+    /// Cross-section at rest in mm², where it is known.
+    pub area: Option<f64>,
 }
 
 /// Fewest instants that are taken.
@@ -78,6 +82,7 @@ impl Recording {
         let force = reader.column("force", Dimension::Force);
         let mass = reader.setting("mass", said.mass.as_deref(), Dimension::Mass);
         let length = reader.setting("length", said.length.as_deref(), Dimension::Length);
+        let area = reader.setting("area", said.area.as_deref(), Dimension::Area);
         let kind = motion.map_or(Motion::Extension, |(_, kind, _)| *kind);
         if kind != Motion::Extension && length.is_none() {
             let message = "the length at rest is not stated";
@@ -103,6 +108,7 @@ impl Recording {
             force,
             mass: mass.unwrap_or_default(),
             length,
+            area,
         };
         recording.moving(&reader)?;
         Ok(recording)

@@ -4,7 +4,7 @@ use super::spline::{Local, MOST, UniformSpline};
 use crate::solve::{Cholesky, NotPositiveDefinite, SymmetricPattern};
 
 /// Instants for each part of a spline at least.
-pub const FEWEST: usize = 4;
+const FEWEST: usize = 4;
 
 /// A signal's own spline.
 #[derive(Clone, Debug)]

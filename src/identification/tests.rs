@@ -38,7 +38,7 @@ fn without_noise_the_functions_are_found_to_the_accuracy_of_their_splines() {
     let found = identify(&exact, IdentificationSettings::default()).unwrap();
     for x in PLACES {
         let [k, d] = [&found.stiffness, &found.damping].map(|function| function.at(x).value);
-        assert!((k / Sample::stiffness(x) - 1.0).abs() < 1e-3, "{x}: {k}");
+        assert!((k / Sample::stiffness(x) - 1.0).abs() < 5e-4, "{x}: {k}");
         assert!((d / Sample::damping(x) - 1.0).abs() < 5e-3, "{x}: {d}");
     }
 }
@@ -68,20 +68,18 @@ fn constants_and_polynomials_come_back_with_their_coefficients() {
         assert!(estimate.standard_error < 1e-4 * truth);
     }
     let text = law_text(&found, &recording, "a.csv");
-    assert!(
-        text.contains("kind = \"polynomial\"\nof = \"extension\"\ncoefficients = [0.2, 0.01]"),
-        "{text}"
-    );
-    assert!(text.contains("kind = \"linear\"\nvalue = 0.05 #"), "{text}");
-    let with_length = Recording {
+    let polynomial = "kind = \"polynomial\"\nof = \"extension_mm\"\ncoefficients = [0.2, 0.01]";
+    assert!(text.contains(polynomial), "{text}");
+    assert!(text.contains("unit = \"N·s/mm\""), "{text}");
+    let specimen = Recording {
         length: Some(50.0),
+        area: Some(10.0),
         ..recording
     };
-    let text = law_text(&found, &with_length, "a.csv");
-    assert!(
-        text.contains("of = \"stretch - 1\"\ncoefficients = [0.2, 0.5]"),
-        "{text}"
-    );
+    let text = law_text(&found, &specimen, "a.csv");
+    let polynomial =
+        "unit = \"MPa\"\nkind = \"polynomial\"\nof = \"strain\"\ncoefficients = [1.0, 2.5]";
+    assert!(text.contains(polynomial), "{text}");
 }
 
 #[test]
@@ -97,33 +95,28 @@ fn a_dashpot_may_depend_on_the_rate() {
         let d = found.damping.at(v).value;
         assert!((d / damping(v) - 1.0).abs() < 5e-3, "{v}: {d}");
     }
-    assert!(law_text(&found, &recording, "a.csv").contains("kind = \"table\"\nextension_rate = ["));
+    assert!(
+        law_text(&found, &recording, "a.csv").contains("of = \"extension_rate_mm_per_s\"\nat = [")
+    );
 }
 
 #[test]
-fn a_shape_is_kept_where_noise_breaks_it() {
-    let sample = Sample {
-        noise: 0.25,
-        seed: 3,
-        ..Sample::default()
-    };
-    let recording = sample.recording();
-    let falls = |shapes: [Shape; 2]| {
+fn a_shape_is_kept_against_the_data() {
+    let recording = Sample::default().recording();
+    let rise = |shape: Shape| {
         let wanted = IdentificationSettings {
-            shapes,
+            shapes: [Shape::Free, shape],
             ..IdentificationSettings::default()
         };
         let found = identify(&recording, wanted).unwrap();
         let places = found.damping.places(200);
         let values: Vec<f64> = places.iter().map(|x| found.damping.at(*x).value).collect();
         let size = values.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-        values
-            .windows(2)
-            .fold(0.0, |most: f64, pair| most.max(pair[0] - pair[1]))
-            / size
+        let rises = values.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0));
+        rises.sum::<f64>() / size
     };
-    assert!(falls([Shape::Free; 2]) > 1e-3);
-    assert!(falls([Shape::Increasing; 2]) < 1e-5);
+    assert!(rise(Shape::Free) > 0.3);
+    assert!(rise(Shape::Decreasing) < 1e-3);
     let wanted = IdentificationSettings {
         shapes: [Shape::Increasing; 2],
         ..settings([Form::Constant, Form::SPLINE])
