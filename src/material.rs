@@ -21,6 +21,7 @@ pub mod registry;
 pub mod sheet;
 pub mod stability;
 mod veronda_westmann;
+pub mod viscosity;
 mod yeoh;
 
 #[cfg(test)]
