@@ -10,6 +10,7 @@
 use crate::error::SolveFault;
 
 mod central;
+mod dashpots;
 pub mod frequency;
 mod implicit;
 mod march;
@@ -20,6 +21,7 @@ mod tangents;
 mod time_function;
 pub mod viscosity;
 
+pub use dashpots::Dashpots;
 pub use march::{Integrator, MotionEnd, Step, TimeSettings, follow};
 pub use mass::lumped_mass;
 pub use motion::{Motion, MovingForce, MovingSupport, Start};
@@ -131,3 +133,5 @@ fn finite(values: &[f64], what: &str) -> Result<(), SolveFault> {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod viscous_tests;

@@ -9,7 +9,7 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::Card;
 use crate::mesh::{Mesh, Side};
-use crate::problem::Problem;
+use crate::problem::{Model, Problem};
 use crate::solve::{Inadmissible, Local, NewtonSettings, Potential};
 
 /// One unknown with the energy ½ k u² + ¼ q u⁴, in mJ, and a dashpot of constant c in N·s/mm.
@@ -79,7 +79,7 @@ fn motion(spring: &Spring, start: f64) -> Motion<'_> {
 
 const VERLET: Integrator = Integrator::VelocityVerlet;
 
-fn alpha(spectral_radius: f64) -> Integrator {
+pub fn alpha(spectral_radius: f64) -> Integrator {
     Integrator::GeneralisedAlpha {
         spectral_radius,
         tolerance: 1e-12,
@@ -95,7 +95,7 @@ fn settings(integrator: Integrator, duration: f64, step: f64) -> TimeSettings {
     }
 }
 
-fn run(motion: &Motion, settings: TimeSettings) -> History {
+pub fn run(motion: &Motion, settings: TimeSettings) -> History {
     follow(motion, settings, &|_| ())
         .map_err(|end| (end.time, end.fault))
         .unwrap()
@@ -290,26 +290,32 @@ fn dead_forces_push() {
     assert!((last.energy.external_work - 4.0 * last.displacement[0]).abs() < 1e-12);
 }
 
-/// A small plate of PVA, stretched by 30 % and then released at its right grip.
-fn released(problem: &Problem, model: &crate::problem::Model<'_>, stretch: f64) -> Start {
+/// A plate in equilibrium between its grips.
+pub fn solved(problem: &Problem, mesh: &Mesh, potential: &dyn Potential, stretch: f64) -> Vec<f64> {
     let problem = Problem {
         stretches: vec![stretch],
         ..problem.clone()
     };
     let newton = NewtonSettings {
-        tolerance: 1e-10,
+        tolerance: 1e-11,
         max_iterations: 50,
     };
-    let solution = problem.follow(model, newton, &|_| ()).unwrap().remove(0);
-    Start::held_at(solution.displacement)
+    let model = Model {
+        name: String::new(),
+        mesh,
+        potential,
+        describe: Box::new(|element| element.to_string()),
+    };
+    let solution = problem.follow(&model, newton, &|_| ()).unwrap().remove(0);
+    solution.displacement
 }
 
-fn clamp(mesh: &Mesh) -> MovingSupport {
+pub fn clamp(mesh: &Mesh) -> MovingSupport {
     let nodes = (0..mesh.nodes.len()).filter(|node| mesh.on(Side::Left, *node));
     MovingSupport::fixed(nodes.flat_map(|node| [2 * node, 2 * node + 1]).collect())
 }
 
-fn plate() -> Problem {
+pub fn plate() -> Problem {
     Problem {
         size: [30.0, 10.0],
         thickness: 2.0,
@@ -318,7 +324,7 @@ fn plate() -> Problem {
     }
 }
 
-const DENSITY: f64 = 1.1e-9;
+pub const DENSITY: f64 = 1.1e-9;
 
 #[test]
 fn the_energy_of_an_undamped_plate_stays_for_ten_thousand_steps() {
@@ -332,7 +338,7 @@ fn the_energy_of_an_undamped_plate_stays_for_ten_thousand_steps() {
             mass: lumped_mass(model.mesh, DENSITY, problem.thickness),
             supports: vec![clamp(model.mesh)],
             forces: Vec::new(),
-            start: released(&problem, &model, 0.3),
+            start: Start::held_at(solved(&problem, model.mesh, model.potential, 0.3)),
             describe: Box::new(|element| model.mesh.describe_cell(element)),
         };
         let step = 2e-6;
