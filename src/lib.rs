@@ -8,6 +8,7 @@ pub mod command;
 pub mod compare;
 pub mod corrector;
 pub mod document;
+pub mod dynamics;
 pub mod error;
 pub mod finite_element;
 pub mod identification;

@@ -10,6 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["mesh", "material", "solve", "multigrid"],
     &["problem", "sheet_energy", "calibration"],
     &["mass_spring", "finite_element", "boundary"],
+    &["dynamics"],
     &["corrector"],
     &["compare", "identification"],
     &["study"],
