@@ -14,6 +14,7 @@ use crate::output::{Figure, mesh_picture};
 mod correction_matrix;
 mod cost;
 mod finite_elements;
+mod motion_correction;
 mod nonlinear_spring;
 mod oscillator;
 mod other_codes;
@@ -162,6 +163,13 @@ pub const CASES: &[Case] = &[
         file: "validation/cases/cook.toml",
         slow: false,
         prepare: finite_elements::cook::prepare,
+    },
+    Case {
+        kind: "motion-correction",
+        study: include_str!("../validation/cases/motion_correction.toml"),
+        file: "validation/cases/motion_correction.toml",
+        slow: true,
+        prepare: motion_correction::prepare,
     },
     Case {
         kind: "own-error",
