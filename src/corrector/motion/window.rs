@@ -219,8 +219,9 @@ impl EquationOfMotion<'_> {
         let mut changes: Vec<Vec<f64>> = vec![vec![0.0; values[0].len()]; window.states.len()];
         for (row, value) in (window.begin..).zip(values) {
             let mut right: Vec<f64> = value.iter().map(|f| -f).collect();
-            for instant in (window.begin + 1).max(row.saturating_sub(1))..=row {
-                let moved = pattern.multiply(&self.block(row, instant, stretch), &changes[instant]);
+            let earliest = (window.begin + 1).max(row.saturating_sub(1));
+            for (instant, change) in changes.iter().enumerate().take(row + 1).skip(earliest) {
+                let moved = pattern.multiply(&self.block(row, instant, stretch), change);
                 right
                     .iter_mut()
                     .zip(moved)
@@ -275,8 +276,8 @@ impl EquationOfMotion<'_> {
                 .zip(&window.states[instant])
                 .map(|(data, u)| data - u)
                 .collect();
-            for later in instant..rows.min(instant + 2) {
-                let moved = pattern.multiply(&self.block(later, instant, stretch), &psi[later]);
+            for (later, psi) in psi.iter().enumerate().skip(instant).take(2) {
+                let moved = pattern.multiply(&self.block(later, instant, stretch), psi);
                 right
                     .iter_mut()
                     .zip(moved)
