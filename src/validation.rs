@@ -14,6 +14,7 @@ use crate::output::{Figure, mesh_picture};
 mod correction_matrix;
 mod cost;
 mod finite_elements;
+mod motion;
 mod nonlinear_spring;
 mod oscillator;
 mod other_codes;
@@ -23,6 +24,7 @@ mod plate_ablation;
 pub mod report;
 mod smoothing;
 pub mod specimen;
+mod vibrating_plate;
 mod vibrating_spring;
 
 pub use outcome::{Check, Claim, Computed, Outcome, Wanted};
@@ -93,6 +95,13 @@ pub const CASES: &[Case] = &[
         prepare: specimen::prepare,
     },
     Case {
+        kind: "motion",
+        study: include_str!("../examples/released_plate.toml"),
+        file: "examples/released_plate.toml",
+        slow: true,
+        prepare: motion::prepare,
+    },
+    Case {
         kind: "cost",
         study: include_str!("../examples/cost.toml"),
         file: "examples/cost.toml",
@@ -154,6 +163,13 @@ pub const CASES: &[Case] = &[
         file: "validation/cases/cook.toml",
         slow: false,
         prepare: finite_elements::cook::prepare,
+    },
+    Case {
+        kind: "vibrating-plate",
+        study: include_str!("../validation/cases/vibrating_plate.toml"),
+        file: "validation/cases/vibrating_plate.toml",
+        slow: false,
+        prepare: vibrating_plate::prepare,
     },
     Case {
         kind: "own-error",
