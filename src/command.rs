@@ -195,6 +195,9 @@ fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Ou
         written.push(output::save(&folder.join("vtk").join(name), bytes)?);
     }
     output::remove_stale(&folder, &written)?;
+    for (name, bytes) in &computed.outcome.files {
+        output::save(&folder.join(name), bytes)?;
+    }
     let cases = [computed];
     let (blocks, figures) = validation::report::report(&title, &cases);
     output::write_pictures(&folder, &figures)?;

@@ -14,6 +14,7 @@ use crate::output::{Figure, mesh_picture};
 mod correction_matrix;
 mod cost;
 mod finite_elements;
+mod motion;
 mod motion_correction;
 mod nonlinear_spring;
 mod oscillator;
@@ -25,6 +26,7 @@ pub mod report;
 mod smoothing;
 pub mod specimen;
 mod spring_identification;
+mod vibrating_plate;
 mod vibrating_spring;
 
 pub use outcome::{Check, Claim, Computed, Outcome, Wanted};
@@ -102,6 +104,13 @@ pub const CASES: &[Case] = &[
         prepare: specimen::prepare,
     },
     Case {
+        kind: "motion",
+        study: include_str!("../examples/released_plate.toml"),
+        file: "examples/released_plate.toml",
+        slow: true,
+        prepare: motion::prepare,
+    },
+    Case {
         kind: "cost",
         study: include_str!("../examples/cost.toml"),
         file: "examples/cost.toml",
@@ -170,6 +179,13 @@ pub const CASES: &[Case] = &[
         file: "validation/cases/motion_correction.toml",
         slow: true,
         prepare: motion_correction::prepare,
+    },
+    Case {
+        kind: "vibrating-plate",
+        study: include_str!("../validation/cases/vibrating_plate.toml"),
+        file: "validation/cases/vibrating_plate.toml",
+        slow: false,
+        prepare: vibrating_plate::prepare,
     },
     Case {
         kind: "own-error",

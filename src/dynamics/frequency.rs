@@ -18,6 +18,18 @@ pub struct Mode {
     pub shape: Vec<f64>,
 }
 
+/// The mode that takes most of a motion of the whole body along an axis: (Σ mᵢ φᵢ)² over its unknowns is its effective
+/// mass.
+pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
+    let effective = |mode: &Mode| {
+        let along = (axis..mass.len()).step_by(2);
+        along.map(|i| mass[i] * mode.shape[i]).sum::<f64>().abs()
+    };
+    let pairs = modes.into_iter().map(|mode| (effective(&mode), mode));
+    let most = pairs.max_by(|a, b| a.0.total_cmp(&b.0));
+    most.map(|(_, mode)| mode)
+}
+
 /// A vector without any symmetry.
 fn irregular(size: usize, seed: usize) -> Vec<f64> {
     let entry = |i: usize| ((i + 1) as f64 * (2.0 + seed as f64).sqrt()).sin();

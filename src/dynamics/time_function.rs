@@ -14,12 +14,14 @@ pub enum TimeFunction {
         /// Where it is complete.
         end: f64,
     },
-    /// sin(2π f t + φ) − sin φ.
+    /// m + a sin(2π f t).
     Sine {
+        /// m.
+        mean: f64,
+        /// a.
+        amplitude: f64,
         /// f in Hz.
         frequency: f64,
-        /// φ in rad.
-        phase: f64,
     },
     /// Straight between points of ascending times in s, constant beyond them.
     Table(Vec<[f64; 2]>),
@@ -32,10 +34,18 @@ impl TimeFunction {
         match self {
             Self::Constant(value) => [*value, 0.0, 0.0],
             Self::Ramp { begin, end } => between(&[[*begin, 0.0], [*end, 1.0]], time, within),
-            Self::Sine { frequency, phase } => {
+            Self::Sine {
+                mean,
+                amplitude,
+                frequency,
+            } => {
                 let omega = TAU * frequency;
-                let (sine, cosine) = (omega * time + phase).sin_cos();
-                [sine - phase.sin(), omega * cosine, -omega * omega * sine]
+                let (sine, cosine) = (omega * time).sin_cos();
+                [
+                    mean + amplitude * sine,
+                    amplitude * omega * cosine,
+                    -amplitude * omega * omega * sine,
+                ]
             }
             Self::Table(points) => between(points, time, within),
         }
@@ -90,10 +100,12 @@ mod tests {
         assert_eq!(table.at(2.0, 1.5), [2.0, -2.0, 0.0]);
         assert_eq!(table.kinks(), [0.0, 1.0, 3.0]);
         let sine = TimeFunction::Sine {
+            mean: 0.3,
+            amplitude: 2.0,
             frequency: 0.5,
-            phase: 0.3,
         };
-        assert_eq!(sine.value(0.0), 0.0);
+        assert_eq!(sine.value(0.0), 0.3);
+        assert!((sine.value(0.5) - 2.3).abs() < 1e-15);
         let step = 1e-4;
         let [before, now, after] = [-step, 0.0, step].map(|d| sine.at(0.7 + d, 0.7));
         assert!(((after[0] - before[0]) / (2.0 * step) - now[1]).abs() < 1e-6);

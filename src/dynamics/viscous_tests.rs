@@ -223,8 +223,9 @@ fn loss(
                 displacement: vec![amplitude * problem.size[0]; right.len()],
                 unknowns: right,
                 time: TimeFunction::Sine {
+                    mean: 0.0,
+                    amplitude: 1.0,
                     frequency,
-                    phase: 0.0,
                 },
                 until: None,
             },

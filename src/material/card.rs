@@ -236,7 +236,8 @@ impl Card {
     }
 }
 
-fn read_viscosity(section: &Section) -> ViscousMaterial {
+/// Reads the viscous part of a material from its section.
+pub fn read_viscosity(section: &Section) -> ViscousMaterial {
     let shear_viscosity = match section.has("shear") {
         true => section.quantity("shear", Dimension::Viscosity, Bound::NonNegative),
         false => 0.0,

@@ -186,8 +186,8 @@ fn explanation(settings: &Settings) -> Block {
     Block::Paragraph(format!(
         "White noise of {} % of the root mean square lies on force and extension; the seeds are {} to {}. A band holds \
          for both functions at all places together, an interval at one place. At the ends of the range the motion turns: \
-         its velocity vanishes there, the recording does not determine D(·), and single trials stray far within wide bands, \
-         which means show and medians do not.",
+         its velocity vanishes there, the recording does not determine D(·), and single \
+         trials stray far there, which the means of the table show. The error that is checked is therefore the median.",
         number(100.0 * settings.sample.noise),
         settings.sample.seed,
         settings.sample.seed + settings.trials as u64 - 1
