@@ -143,6 +143,22 @@ pub fn field_file(
     encode(title, plate(sheet, mesh, displacement, more, None))
 }
 
+/// The `.vtu` file of a moving sheet at one instant: displacement in mm, velocity in mm/s, the stresses of the elastic
+/// material, and the difference to a reference field at the nodes, where there is one.
+pub fn moving_file(
+    title: &str,
+    sheet: &Sheet,
+    mesh: &Mesh,
+    [displacement, velocity]: [&[f64]; 2],
+    reference: Option<&[f64]>,
+) -> Vec<u8> {
+    let velocity = planar_vectors("velocity_mm_per_s", velocity);
+    let reference =
+        reference.map(|reference| difference(TO_FINITE_ELEMENTS, displacement, reference));
+    let more = [velocity].into_iter().chain(reference).collect();
+    encode(title, plate(sheet, mesh, displacement, more, None))
+}
+
 /// The `.vtu` file of a finite-element field, with the stresses that follow and its estimated error.
 pub fn finite_element_file(
     title: &str,
