@@ -32,6 +32,7 @@ pub mod estimate;
 pub mod factor;
 pub mod matrix;
 pub mod measured;
+pub mod motion;
 pub mod plate;
 pub mod retained;
 pub mod specimen;

@@ -169,6 +169,16 @@ pub enum SolveFault {
         /// The tolerance that was asked for.
         tolerance: f64,
     },
+    /// A motion that gains energy from nowhere, however short its steps.
+    #[error(
+        "the motion explodes after {time:.6} s, and steps down to {step:.1e} s do not avoid it"
+    )]
+    Explodes {
+        /// The last time in s at which all was well.
+        time: f64,
+        /// The shortest step in s that was tried.
+        step: f64,
+    },
     /// A number is not finite, so nothing computed from it means anything.
     #[error("{0} is not a finite number")]
     NotFinite(String),
@@ -195,6 +205,9 @@ impl SolveFault {
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
                 "add smaller stretches or load factors before this one, or raise the iteration limit"
+            }
+            Self::Explodes { .. } => {
+                "look at the supports and loads at that time; take shorter steps or generalised-α"
             }
             Self::NotFinite(_) => "look at the material's parameters and the load",
         }

@@ -87,6 +87,11 @@ impl FiniteElements {
         }
     }
 
+    /// The strain energy.
+    pub fn energy(&self) -> &SheetEnergy {
+        &self.energy
+    }
+
     /// `Q2, 120 × 40 cells`.
     pub fn describe(&self) -> String {
         format!("{}, {}", self.element.name(), self.mesh.describe())

@@ -49,6 +49,40 @@ pub struct SpringState {
     pub force: f64,
 }
 
+/// A spring in a deformed lattice, with what its forces follow from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringPose {
+    /// λ = |x|/x₀.
+    pub stretch: f64,
+    /// x/|x|.
+    pub unit: [f64; 2],
+    /// The tension curve at λ.
+    pub response: TensionResponse,
+}
+
+impl SpringPose {
+    /// Adds a force in N along the spring, positive in tension, to those of its ends.
+    pub fn add_force(&self, force: f64, ends: &mut [f64]) {
+        let (near, far) = ends.split_at_mut(2);
+        for (axis, direction) in self.unit.iter().enumerate() {
+            near[axis] -= force * direction;
+            far[axis] += force * direction;
+        }
+    }
+
+    /// Adds stiffnesses along and across the spring in N/mm to those of its ends, row by row.
+    pub fn add_stiffness(&self, [along, across]: [f64; 2], stiffness: &mut [f64]) {
+        for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let identity = if i == k { 1.0 } else { 0.0 };
+            let value = (along - across) * self.unit[i] * self.unit[k] + across * identity;
+            stiffness[4 * i + k] += value;
+            stiffness[4 * i + 2 + k] -= value;
+            stiffness[4 * (2 + i) + k] -= value;
+            stiffness[4 * (2 + i) + 2 + k] += value;
+        }
+    }
+}
+
 /// What the lattice consists of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LatticeSettings {
@@ -69,6 +103,7 @@ pub struct MassSpring {
 #[derive(Clone, Debug)]
 struct Lattice {
     law: Arc<dyn HyperelasticLaw>,
+    spring_law: SpringLaw,
     unknowns: usize,
     /// Unknowns of the springs, then of the cells.
     element_unknowns: Vec<usize>,
@@ -168,11 +203,27 @@ impl MassSpring {
             &springs,
             self.lattice.area_stiffness,
         );
+        let lattice = Lattice {
+            spring_law: self.lattice.spring_law,
+            ..lattice
+        };
         Self {
             mesh: self.mesh,
             springs,
             lattice,
         }
+    }
+
+    /// The lattice with springs of another stiffness than the material's.
+    #[must_use]
+    pub fn with_spring_law(mut self, law: SpringLaw) -> Self {
+        self.lattice.spring_law = law;
+        self
+    }
+
+    /// How a spring lies with the displacements `u` of its ends.
+    pub fn pose(&self, spring: usize, u: &[f64]) -> SpringPose {
+        self.lattice.pose(spring, u)
     }
 
     /// The lattice's energy as a potential of the nodal displacements.
@@ -268,6 +319,7 @@ impl Lattice {
         };
         Self {
             law: Arc::clone(law),
+            spring_law: SpringLaw::Material,
             unknowns: 2 * mesh.nodes.len(),
             element_unknowns,
             starts,
@@ -284,37 +336,35 @@ impl Lattice {
     /// The sheet's tension curve along a spring.
     fn tension(&self, spring: usize, strain: f64) -> TensionResponse {
         let unit = self.directions[spring].map(|component| component * self.springs[spring].0);
-        self.law.tension(unit, strain)
+        self.spring_law.tension(&*self.law, unit, strain)
+    }
+
+    fn pose(&self, index: usize, u: &[f64]) -> SpringPose {
+        let (rest_length, _) = self.springs[index];
+        let direction = self.directions[index];
+        let relative = [u[2] - u[0], u[3] - u[1]];
+        let strain = strain(direction, relative);
+        let current =
+            [0, 1].map(|axis| direction[axis] * rest_length + relative[axis] / rest_length);
+        let stretch = 1.0 + strain;
+        SpringPose {
+            stretch,
+            unit: current.map(|component| component / stretch),
+            response: self.tension(index, strain),
+        }
     }
 
     /// Energy a x₀ Ψ(λ), force a P and stiffness of one spring.
     fn evaluate_spring(&self, index: usize, u: &[f64], local: Local<'_>) -> f64 {
         let (rest_length, area) = self.springs[index];
-        let direction = self.directions[index];
-        let relative = [u[2] - u[0], u[3] - u[1]];
-        let strain = strain(direction, relative);
-        let response = self.tension(index, strain);
-        let current =
-            [0, 1].map(|axis| direction[axis] * rest_length + relative[axis] / rest_length);
-        let stretch = 1.0 + strain;
-        let unit = current.map(|component| component / stretch);
+        let pose = self.pose(index, u);
+        let response = pose.response;
         let force = area * response.nominal_stress;
-        let (near, far) = local.residual.split_at_mut(2);
-        for (axis, direction) in unit.iter().enumerate() {
-            near[axis] -= force * direction;
-            far[axis] += force * direction;
-        }
+        pose.add_force(force, local.residual);
         if let Some(stiffness) = local.stiffness {
             let along = area * response.slope / rest_length;
-            let across = force / (stretch * rest_length);
-            for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let identity = if i == k { 1.0 } else { 0.0 };
-                let value = (along - across) * unit[i] * unit[k] + across * identity;
-                stiffness[4 * i + k] += value;
-                stiffness[4 * i + 2 + k] -= value;
-                stiffness[4 * (2 + i) + k] -= value;
-                stiffness[4 * (2 + i) + 2 + k] += value;
-            }
+            let across = force / (pose.stretch * rest_length);
+            pose.add_stiffness([along, across], stiffness);
         }
         area * rest_length * response.energy
     }
@@ -415,6 +465,9 @@ impl Potential for Lattice {
 }
 
 pub mod calibration;
+mod spring_law;
+
+pub use spring_law::{DashpotLaw, SpringLaw};
 
 #[cfg(test)]
 mod tests;

@@ -18,9 +18,11 @@ mod ogden;
 pub mod parameters;
 mod polynomial;
 pub mod registry;
+pub mod scalar_function;
 pub mod sheet;
 pub mod stability;
 mod veronda_westmann;
+pub mod viscosity;
 mod yeoh;
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub struct Model<'a> {
     /// Its strain energy.
     pub potential: &'a dyn Potential,
     /// Names an element of the potential with its place, for messages.
-    pub describe: Box<dyn Fn(usize) -> String + 'a>,
+    pub describe: Box<dyn Fn(usize) -> String + Sync + 'a>,
 }
 
 /// A model's equilibrium at one stretch.

@@ -94,16 +94,37 @@ impl SheetEnergy {
         &self.points[self.point_starts[cell]..self.point_starts[cell + 1]]
     }
 
-    /// Kinematics at a sampling point of a cell with the nodal displacements `u`.
-    fn kinematics(point: &SamplingPoint, u: &[f64]) -> Result<Kinematics, ()> {
+    /// The material.
+    pub fn law(&self) -> &dyn HyperelasticLaw {
+        &*self.law
+    }
+}
+
+impl SamplingPoint {
+    /// ∂u/∂X, or ∂u̇/∂X, from nodal values: components 11, 12, 21, 22.
+    pub fn gradient(&self, u: &[f64]) -> Gradient {
         let mut h = Gradient::zeros();
-        for (g, u) in point.gradients.iter().zip(u.chunks_exact(2)) {
+        for (g, u) in self.gradients.iter().zip(u.chunks_exact(2)) {
             h[0] += u[0] * g[0];
             h[1] += u[0] * g[1];
             h[2] += u[1] * g[0];
             h[3] += u[1] * g[1];
         }
-        Kinematics::new(&h).map_err(|_| ())
+        h
+    }
+
+    /// Adds the nodal forces of a first Piola–Kirchhoff stress in MPa.
+    pub fn add_force(&self, stress: &Gradient, force: &mut [f64]) {
+        let traction = stress * self.volume;
+        for (r, g) in force.chunks_exact_mut(2).zip(&self.gradients) {
+            r[0] += traction[0] * g[0] + traction[1] * g[1];
+            r[1] += traction[2] * g[0] + traction[3] * g[1];
+        }
+    }
+
+    /// Kinematics with the nodal displacements `u`.
+    fn kinematics(&self, u: &[f64]) -> Result<Kinematics, ()> {
+        Kinematics::new(&self.gradient(u)).map_err(|_| ())
     }
 }
 
@@ -132,7 +153,7 @@ impl Potential for SheetEnergy {
     ) -> Result<f64, Inadmissible> {
         let mut energy = 0.0;
         for point in self.cell_points(element) {
-            let kinematics = Self::kinematics(point, u).map_err(|()| Inadmissible { element })?;
+            let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
             let (density, stress) = match &mut local.stiffness {
                 None => self.law.stress(&kinematics),
                 Some(stiffness) => {
@@ -143,11 +164,7 @@ impl Potential for SheetEnergy {
                 }
             };
             energy += point.volume * density;
-            let traction = stress * point.volume;
-            for (r, g) in local.residual.chunks_exact_mut(2).zip(&point.gradients) {
-                r[0] += traction[0] * g[0] + traction[1] * g[1];
-                r[1] += traction[2] * g[0] + traction[3] * g[1];
-            }
+            point.add_force(&stress, local.residual);
         }
         if energy.is_finite() {
             Ok(energy)
@@ -159,7 +176,7 @@ impl Potential for SheetEnergy {
     /// The first sampling point at which the law is not stable after Drucker.
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         self.cell_points(element).iter().find_map(|point| {
-            let kinematics = Self::kinematics(point, u).ok()?;
+            let kinematics = point.kinematics(u).ok()?;
             let unstable = !is_stable(&*self.law, &kinematics);
             unstable.then(|| format!("I₁ = {:.2}", 3.0 + kinematics.invariants.i1_minus_3))
         })
@@ -167,7 +184,7 @@ impl Potential for SheetEnergy {
 }
 
 /// K_(a i)(b k) += gₐ_J A_(i J)(k L) g_b_L over the lower triangle; `a` is symmetric, 4 × 4.
-fn add_stiffness(stiffness: &mut [f64], gradients: &[[f64; 2]], a: &[f64]) {
+pub fn add_stiffness(stiffness: &mut [f64], gradients: &[[f64; 2]], a: &[f64]) {
     let size = 2 * gradients.len();
     for (b, g) in gradients.iter().enumerate() {
         for k in 0..2 {

@@ -18,8 +18,16 @@ pub enum Dimension {
     Stress,
     /// Internal unit tonne/mm³.
     Density,
+    /// Internal unit tonne.
+    Mass,
     /// Internal unit s.
     Time,
+    /// Internal unit Hz = 1/s.
+    Frequency,
+    /// Internal unit mm/s².
+    Acceleration,
+    /// Internal unit MPa·s.
+    Viscosity,
     /// Internal unit rad.
     Angle,
     /// A ratio, written as a bare number or in percent.
@@ -56,10 +64,23 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("kg/m^3", Dimension::Density, 1e-12),
     ("g/cm^3", Dimension::Density, 1e-9),
     ("tonne/mm^3", Dimension::Density, 1.0),
+    ("g", Dimension::Mass, 1e-6),
+    ("kg", Dimension::Mass, 1e-3),
+    ("mg", Dimension::Mass, 1e-9),
+    ("tonne", Dimension::Mass, 1.0),
     ("s", Dimension::Time, 1.0),
     ("ms", Dimension::Time, 1e-3),
     ("min", Dimension::Time, 60.0),
     ("h", Dimension::Time, 3600.0),
+    ("Hz", Dimension::Frequency, 1.0),
+    ("kHz", Dimension::Frequency, 1e3),
+    ("1/s", Dimension::Frequency, 1.0),
+    ("m/s^2", Dimension::Acceleration, 1e3),
+    ("mm/s^2", Dimension::Acceleration, 1.0),
+    ("Pa·s", Dimension::Viscosity, 1e-6),
+    ("mPa·s", Dimension::Viscosity, 1e-9),
+    ("kPa·s", Dimension::Viscosity, 1e-3),
+    ("MPa·s", Dimension::Viscosity, 1.0),
     ("rad", Dimension::Angle, 1.0),
     ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
     ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
@@ -75,7 +96,11 @@ impl Dimension {
             Self::Force => "force",
             Self::Stress => "stress",
             Self::Density => "density",
+            Self::Mass => "mass",
             Self::Time => "time",
+            Self::Frequency => "frequency",
+            Self::Acceleration => "acceleration",
+            Self::Viscosity => "viscosity",
             Self::Angle => "angle",
             Self::Ratio => "ratio",
         }
@@ -97,7 +122,11 @@ impl Dimension {
             Self::Force => "N",
             Self::Stress => "MPa",
             Self::Density => "tonne/mm^3",
+            Self::Mass => "tonne",
             Self::Time => "s",
+            Self::Frequency => "Hz",
+            Self::Acceleration => "mm/s^2",
+            Self::Viscosity => "MPa·s",
             Self::Angle => "rad",
             Self::Ratio => "",
         }
@@ -111,7 +140,11 @@ impl Dimension {
             Self::Force => "\"1.5 N\"",
             Self::Stress => "\"0.0611 MPa\"",
             Self::Density => "\"1020 kg/m^3\"",
+            Self::Mass => "\"5 g\"",
             Self::Time => "\"10 s\"",
+            Self::Frequency => "\"2 Hz\"",
+            Self::Acceleration => "\"9.81 m/s^2\"",
+            Self::Viscosity => "\"50 Pa·s\"",
             Self::Angle => "\"30 deg\"",
             Self::Ratio => "0.5 or \"50 %\"",
         }
@@ -169,7 +202,11 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
             _ => Err(QuantityFault::MissingUnit),
         };
     }
-    let normalised = unit.replace('³', "^3").replace('²', "^2").replace('μ', "µ");
+    let normalised = unit
+        .replace('³', "^3")
+        .replace('²', "^2")
+        .replace('μ', "µ")
+        .replace('*', "·");
     match UNITS.iter().find(|(symbol, ..)| *symbol == normalised) {
         Some((_, found, factor)) if *found == dimension => Ok(number * factor),
         Some((_, found, _)) => Err(QuantityFault::WrongDimension {
@@ -210,6 +247,8 @@ mod tests {
         assert_eq!(parse("-1.5e-1 m", Dimension::Length), Ok(-150.0));
         assert_eq!(parse("61.1 kPa", Dimension::Stress), Ok(61.1 * 1e-3));
         assert_eq!(parse("1020 kg/m³", Dimension::Density), Ok(1020.0 * 1e-12));
+        assert_eq!(parse("9.81 m/s²", Dimension::Acceleration), Ok(9810.0));
+        assert_eq!(parse("3 kPa*s", Dimension::Viscosity), Ok(3e-3));
         assert_eq!(parse("50 %", Dimension::Ratio), Ok(0.5));
         assert_eq!(parse("0.5", Dimension::Ratio), Ok(0.5));
     }

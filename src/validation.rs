@@ -15,6 +15,8 @@ mod correction_matrix;
 mod cost;
 mod finite_elements;
 mod measured_fields;
+mod motion;
+mod motion_correction;
 mod nonlinear_spring;
 mod oscillator;
 mod other_codes;
@@ -24,6 +26,8 @@ mod plate_ablation;
 pub mod report;
 mod smoothing;
 pub mod specimen;
+mod spring_identification;
+mod vibrating_plate;
 mod vibrating_spring;
 
 pub use outcome::{Check, Claim, Computed, Outcome, Wanted};
@@ -80,6 +84,13 @@ pub const CASES: &[Case] = &[
         prepare: vibrating_spring::prepare,
     },
     Case {
+        kind: "spring-identification",
+        study: include_str!("../examples/spring_identification.toml"),
+        file: "examples/spring_identification.toml",
+        slow: true,
+        prepare: spring_identification::prepare,
+    },
+    Case {
         kind: "smoothing",
         study: include_str!("../examples/smoothing.toml"),
         file: "examples/smoothing.toml",
@@ -99,6 +110,13 @@ pub const CASES: &[Case] = &[
         file: "examples/strip_with_hole.toml",
         slow: true,
         prepare: specimen::prepare,
+    },
+    Case {
+        kind: "motion",
+        study: include_str!("../examples/released_plate.toml"),
+        file: "examples/released_plate.toml",
+        slow: true,
+        prepare: motion::prepare,
     },
     Case {
         kind: "cost",
@@ -162,6 +180,20 @@ pub const CASES: &[Case] = &[
         file: "validation/cases/cook.toml",
         slow: false,
         prepare: finite_elements::cook::prepare,
+    },
+    Case {
+        kind: "motion-correction",
+        study: include_str!("../validation/cases/motion_correction.toml"),
+        file: "validation/cases/motion_correction.toml",
+        slow: true,
+        prepare: motion_correction::prepare,
+    },
+    Case {
+        kind: "vibrating-plate",
+        study: include_str!("../validation/cases/vibrating_plate.toml"),
+        file: "validation/cases/vibrating_plate.toml",
+        slow: false,
+        prepare: vibrating_plate::prepare,
     },
     Case {
         kind: "own-error",

@@ -160,6 +160,30 @@ fn moduli(card: &Card) -> String {
     format!("E₀ = {young:.6} MPa{along}, μ₀ = {shear:.6} MPa")
 }
 
+/// Density, viscosity and relaxation, as far as the card says them.
+fn in_time(card: &Card) -> String {
+    let mut text = String::new();
+    if let Some(density) = card.density {
+        text += &format!("  density    {:.6} kg/m³\n", 1e12 * density);
+    }
+    let viscosity = &card.viscosity;
+    if viscosity.shear_viscosity > 0.0 {
+        let shear = 1e6 * viscosity.shear_viscosity;
+        text += &format!("  viscosity  η = {shear:.6} Pa·s beside the law\n");
+    }
+    for term in &viscosity.relaxation {
+        let (share, time) = (100.0 * term.share, term.time);
+        text += &format!("  relaxation {share:.4} % of a sudden stress in τ = {time} s\n");
+    }
+    if !viscosity.relaxation.is_empty() {
+        let at_once = viscosity.relaxation_function(0.0);
+        text += &format!(
+            "  relaxation the law is that of long times; a sudden stress is {at_once:.6} times as large\n"
+        );
+    }
+    text
+}
+
 /// Everything about a card.
 pub fn card(card: &Card) -> String {
     let [low, high] = card.stretch_range;
@@ -175,6 +199,7 @@ pub fn card(card: &Card) -> String {
         text += &format!("  parameter  {key} = {name}\n");
     }
     text += &format!("  moduli     {}\n", moduli(card));
+    text += &in_time(card);
     text += &format!(
         "  measures   {} stress, {} strain, offset {}\n",
         card.stress_measure.name(),

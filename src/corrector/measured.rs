@@ -43,6 +43,7 @@ mod robust;
 mod search;
 mod spline;
 mod start;
+mod transfer;
 
 pub use edge_motion::EdgeCondition;
 pub use regressed_law::RegressedLaw;
@@ -51,6 +52,7 @@ pub use result::{
     TRADE_WEIGHTED,
 };
 pub use robust::Robust;
+pub use transfer::transfer;
 
 use observations::Observations;
 use outline::{Segment, segments};

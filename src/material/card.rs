@@ -7,6 +7,7 @@ use super::curve::Mode;
 use super::law::HyperelasticLaw;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS};
+use super::viscosity::{Relaxation, ViscousMaterial};
 use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
@@ -28,6 +29,10 @@ pub struct Card {
     pub parameters: Vec<Parameter>,
     /// What else the law's card states: key and choice.
     pub choices: Vec<(&'static str, String)>,
+    /// Mass density in tonne/mm³; nothing where the card does not say it.
+    pub density: Option<f64>,
+    /// The viscous part; none at all where the card does not say it.
+    pub viscosity: ViscousMaterial,
     /// The stress that the curve behind the card gives.
     pub stress_measure: StressMeasure,
     /// The strain that the curve behind the card takes.
@@ -108,6 +113,14 @@ impl Card {
         let laws: Vec<_> = LAWS.iter().map(|law| (law.name, law)).collect();
         let law = root.choice("law", &laws);
 
+        let density = root
+            .has("density")
+            .then(|| root.quantity("density", Dimension::Density, Bound::Positive));
+        let viscosity = match root.has("viscosity") {
+            true => read_viscosity(&root.section("viscosity")),
+            false => ViscousMaterial::default(),
+        };
+
         let data = root.section("data");
         let stress_measure = data
             .choice("stress_measure", &StressMeasure::NAMES)
@@ -157,6 +170,8 @@ impl Card {
             law,
             parameters: asked.parameters,
             choices: asked.choices,
+            density,
+            viscosity,
             stress_measure,
             strain_measure,
             offset,
@@ -221,6 +236,36 @@ impl Card {
     }
 }
 
+/// Reads the viscous part of a material from its section.
+pub fn read_viscosity(section: &Section) -> ViscousMaterial {
+    let shear_viscosity = match section.has("shear") {
+        true => section.quantity("shear", Dimension::Viscosity, Bound::NonNegative),
+        false => 0.0,
+    };
+    let terms = match section.has("relaxation") {
+        true => section.tables("relaxation"),
+        false => Vec::new(),
+    };
+    let term = |term: &Section| {
+        let read = Relaxation {
+            share: term.quantity("share", Dimension::Ratio, Bound::Within(0.0, 0.999)),
+            time: term.quantity("time", Dimension::Time, Bound::Positive),
+        };
+        term.unknown_keys();
+        read
+    };
+    let relaxation: Vec<Relaxation> = terms.iter().map(term).collect();
+    if relaxation.iter().map(|term| term.share).sum::<f64>() > 0.999 {
+        let hint = "they are parts of the stress right after a sudden stretch; what remains is that of long times";
+        section.fault("relaxation", "the shares must add up to less than 1", hint);
+    }
+    section.unknown_keys();
+    ViscousMaterial {
+        shear_viscosity,
+        relaxation,
+    }
+}
+
 fn read_fit(section: &Section) -> FitRecord {
     let optional = |key: &'static str| {
         if section.has(key) {
@@ -277,6 +322,35 @@ mod tests {
         }
         let card = Card::load("neo-hooke", Path::new(".")).unwrap();
         assert_eq!(card.fit_error_percent(), None);
+    }
+
+    #[test]
+    fn density_and_viscosity_are_read_and_their_faults_told() {
+        let with = |more: &str, viscosity: &str| {
+            let text = CARDS[0]
+                .1
+                .replacen("[parameters]", &format!("{more}\n[parameters]"), 1);
+            Card::parse("x", "x.toml", &format!("{text}\n[viscosity]\n{viscosity}"))
+        };
+        let plain = Card::load(CARDS[0].0, Path::new(".")).unwrap();
+        assert!(plain.density.is_none() && plain.viscosity.is_none());
+        let viscosity = "shear = \"50 Pa·s\"\nrelaxation = [{ share = 0.3, time = \"2 s\" }]";
+        let card = with("density = \"1100 kg/m³\"", viscosity).unwrap();
+        assert!((card.density.unwrap() - 1.1e-9).abs() < 1e-24);
+        assert!((card.viscosity.shear_viscosity - 5e-5).abs() < 1e-19);
+        assert_eq!(card.viscosity.relaxation[0].time, 2.0);
+        let fault = with(
+            "",
+            "relaxation = [{ share = 0.6, time = \"2 s\" }, { share = 0.5, time = \"1 s\" }]",
+        );
+        assert!(fault.unwrap_err().to_string().contains("less than 1"));
+        let fault = with("density = \"1100\"", "shere = \"1 Pa·s\"")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            fault.contains("density") && fault.contains("did you mean `shear`"),
+            "{fault}"
+        );
     }
 
     #[test]

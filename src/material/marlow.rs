@@ -33,6 +33,7 @@ mod table;
 
 pub use exponential::ExponentialCurve;
 pub use table::TableCurve;
+pub(super) use table::slopes;
 
 /// A tension curve P(x) of the strain x = λ − 1 ≥ 0, with P(0) = 0.
 pub trait TensionCurve: Send + Sync + std::fmt::Debug {

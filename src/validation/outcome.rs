@@ -90,6 +90,8 @@ pub struct Outcome {
     pub figures: Vec<Figure>,
     /// VTK files: name and content.
     pub vtk: Vec<(String, Vec<u8>)>,
+    /// Tables and other files beside the report: name and content.
+    pub files: Vec<(String, Vec<u8>)>,
     /// Times that were measured: what, and seconds.
     pub times: Vec<(String, f64)>,
 }

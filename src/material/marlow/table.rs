@@ -183,7 +183,7 @@ pub fn nominal_points(
 }
 
 /// Slopes at the points: a weighted harmonic mean of the neighbours', zero at extrema.
-fn slopes(points: &[[f64; 2]]) -> Vec<f64> {
+pub fn slopes(points: &[[f64; 2]]) -> Vec<f64> {
     let widths: Vec<f64> = points.windows(2).map(|p| p[1][0] - p[0][0]).collect();
     let means: Vec<f64> = points
         .windows(2)

@@ -1,0 +1,260 @@
+//! Generalised-α with a retained factor.
+//!
+//! ```text
+//! (1 − αₘ) M ü₁ + αₘ M ü₀ + (1 − α_f) r₁ + α_f r₀ = 0,   r = ∂Π/∂u + f_v − f            [N]
+//! u₁ = u₀ + h u̇₀ + h² ((½ − β) ü₀ + β ü₁),   u̇₁ = u̇₀ + h ((1 − γ) ü₀ + γ ü₁)
+//! αₘ = (2ρ∞ − 1)/(ρ∞ + 1),  α_f = ρ∞/(ρ∞ + 1),  γ = ½ − αₘ + α_f,  β = ¼ (1 − αₘ + α_f)²
+//! ```
+//!
+//! With ρ∞ = 1 every instant is in balance, and the method is Newmark's with the average acceleration. u₁ is found by
+//! Newton's method with the factor of an earlier tangent as long as it converges quickly.
+//!
+//! # References
+//! J. Chung, G. M. Hulbert, J. Appl. Mech. 60, 371 (1993), doi:10.1115/1.2900803
+
+use super::frequency;
+use super::march::Stepper;
+use super::motion::{Motion, Moving};
+use super::tangents::Tangents;
+use crate::error::SolveFault;
+use crate::solve::{Assembly, Cholesky};
+
+/// The constants of generalised-α.
+#[derive(Clone, Copy, Debug)]
+struct Constants {
+    alpha_m: f64,
+    alpha_f: f64,
+    beta: f64,
+    gamma: f64,
+}
+
+impl Constants {
+    fn new(rho: f64) -> Self {
+        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+        Self {
+            alpha_m,
+            alpha_f,
+            beta: 0.25 * (1.0 - alpha_m + alpha_f).powi(2),
+            gamma: 0.5 - alpha_m + alpha_f,
+        }
+    }
+}
+
+/// Generalised-α.
+pub(super) struct Implicit {
+    constants: Constants,
+    tolerance: f64,
+    system: Option<(Assembly, Cholesky)>,
+    /// The step in s whose matrix is factorised.
+    factorised: Option<f64>,
+    factorisations: usize,
+    /// A hundredth of the slowest period in s.
+    longest: Option<f64>,
+}
+
+/// Iterations of a step.
+const ITERATIONS: usize = 25;
+
+/// A factor is renewed when an iteration leaves more than this part of the residual.
+const SLOW: f64 = 0.2;
+
+/// Relative residual at which an iteration that stagnates has converged by rounding.
+const ROUNDING_FLOOR: f64 = 1e-9;
+
+/// Steps in the slowest period where the step is chosen here: the period is right to 3e-4.
+const STEPS_IN_PERIOD: f64 = 100.0;
+
+impl Implicit {
+    pub fn new(spectral_radius: f64, tolerance: f64) -> Self {
+        Self {
+            constants: Constants::new(spectral_radius),
+            tolerance,
+            system: None,
+            factorised: None,
+            factorisations: 0,
+            longest: None,
+        }
+    }
+
+    /// Factorises K + γ/(β h) C + (1 − αₘ)/((1 − α_f) β h²) M at a state.
+    fn factorise(&mut self, motion: &Motion, at: &Moving, step: f64) -> Result<(), SolveFault> {
+        let Constants {
+            alpha_m,
+            alpha_f,
+            beta,
+            gamma,
+        } = self.constants;
+        let (assembly, cholesky) = self.system.as_mut().expect("prepared");
+        let tangents = Tangents::new(motion, at, step);
+        let mut values = tangents.combined(assembly, gamma / (beta * step))?;
+        let inertia = (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * step * step);
+        for (i, place) in assembly.free().iter().zip(assembly.pattern().diagonal()) {
+            values[*place] += inertia * motion.mass[*i];
+        }
+        self.factorised = None;
+        cholesky
+            .factorise(&values)
+            .map_err(|_| SolveFault::NotPositiveDefinite)?;
+        self.factorised = Some(step);
+        self.factorisations += 1;
+        Ok(())
+    }
+
+    /// Writes u₁ and u̇₁ of the free unknowns that follow from ü₁, which is the unknown: it would lose its digits in
+    /// differences of displacements.
+    fn follow(&self, before: &Moving, after: &mut Moving, step: f64) {
+        let Constants { beta, gamma, .. } = self.constants;
+        let (assembly, _) = self.system.as_ref().expect("prepared");
+        for i in assembly.free().iter().copied() {
+            let (v, a, next) = (
+                before.velocity[i],
+                before.acceleration[i],
+                after.acceleration[i],
+            );
+            let mean = (0.5 - beta) * a + beta * next;
+            after.displacement[i] = before.displacement[i] + step * (v + step * mean);
+            after.velocity[i] = v + step * ((1.0 - gamma) * a + gamma * next);
+        }
+    }
+
+    /// −1/(1 − α_f) times the residual of the free unknowns, and its size relative to the largest force.
+    fn defect(&self, motion: &Motion, before: &Moving, after: &Moving) -> (Vec<f64>, f64) {
+        let Constants {
+            alpha_m, alpha_f, ..
+        } = self.constants;
+        let (assembly, _) = self.system.as_ref().expect("prepared");
+        let imbalance = |moving: &Moving, i: usize| {
+            let forces = &moving.forces;
+            forces.elastic[i] + forces.viscous[i] - forces.external[i]
+        };
+        let defect = |i: &usize| {
+            let inertia =
+                (1.0 - alpha_m) * after.acceleration[*i] + alpha_m * before.acceleration[*i];
+            let force = (1.0 - alpha_f) * imbalance(after, *i) + alpha_f * imbalance(before, *i);
+            -(motion.mass[*i] * inertia + force) / (1.0 - alpha_f)
+        };
+        let defect: Vec<f64> = assembly.free().iter().map(defect).collect();
+        let scale = after
+            .largest_force(motion)
+            .max(before.largest_force(motion));
+        let most = defect.iter().fold(0.0_f64, |most, r| {
+            if r.is_finite() {
+                most.max(r.abs())
+            } else {
+                f64::NAN
+            }
+        });
+        let relative = if most == 0.0 { 0.0 } else { most / scale };
+        (defect, relative)
+    }
+
+    /// Newton's method from a first guess.
+    fn iterate(
+        &mut self,
+        motion: &Motion,
+        before: &Moving,
+        mut after: Moving,
+        step: f64,
+    ) -> Result<Moving, SolveFault> {
+        let (mut last, mut fresh) = (f64::INFINITY, false);
+        let by_acceleration = self.constants.beta * step * step;
+        for iteration in 0..ITERATIONS {
+            self.follow(before, &mut after, step);
+            motion.evaluate(&mut after, step)?;
+            let (change, relative) = self.defect(motion, before, &after);
+            let stagnant = fresh && relative > 0.5 * last;
+            if relative <= self.tolerance || (stagnant && relative < ROUNDING_FLOOR) {
+                return Ok(after);
+            }
+            if relative.is_nan() || (stagnant && relative > 2.0 * last && iteration > 2) {
+                break;
+            }
+            fresh = self.factorised != Some(step) || relative > SLOW * last;
+            if fresh {
+                self.factorise(motion, &after, step)?;
+            }
+            last = relative;
+            let (assembly, cholesky) = self.system.as_mut().expect("prepared");
+            let mut change = change;
+            cholesky.substitute(&mut change);
+            for (i, change) in assembly.free().iter().zip(change) {
+                after.acceleration[*i] += change / by_acceleration;
+            }
+        }
+        Err(SolveFault::Explodes {
+            time: before.time,
+            step,
+        })
+    }
+}
+
+impl Moving {
+    /// The largest force on an unknown in N, reactions and inertia included.
+    fn largest_force(&self, motion: &Motion) -> f64 {
+        let forces = &self.forces;
+        let size = |i: usize| {
+            let inertia = (motion.mass[i] * self.acceleration[i]).abs();
+            let others = [forces.elastic[i], forces.viscous[i], forces.external[i]];
+            others
+                .into_iter()
+                .fold(inertia, |most, force| most.max(force.abs()))
+        };
+        (0..motion.mass.len()).map(size).fold(0.0, f64::max)
+    }
+}
+
+impl Stepper for Implicit {
+    fn prepare(&mut self, motion: &Motion, held: &[bool]) -> Result<(), SolveFault> {
+        let assembly = Assembly::new(motion.energy, held);
+        let cholesky = assembly.analyse(motion.energy);
+        let cholesky = cholesky.map_err(|_| SolveFault::Singular)?;
+        self.system = Some((assembly, cholesky));
+        self.factorised = None;
+        self.longest = None;
+        Ok(())
+    }
+
+    fn longest(&mut self, motion: &Motion, moving: &Moving) -> Result<Option<f64>, SolveFault> {
+        if self.longest.is_none() {
+            let held = motion.held(moving.time);
+            let modes = frequency::slowest(motion, &held, &moving.displacement, 1)?;
+            self.longest = modes
+                .first()
+                .map(|mode| 1.0 / (STEPS_IN_PERIOD * mode.frequency));
+        }
+        Ok(self.longest)
+    }
+
+    fn step(
+        &mut self,
+        motion: &Motion,
+        before: &Moving,
+        step: f64,
+        held: &[bool],
+    ) -> Result<Moving, SolveFault> {
+        let guess = before.moved(motion, step);
+        let beta = self.constants.beta;
+        let resting = |i: usize| {
+            let flown = before.velocity[i] + step * (0.5 - beta) * before.acceleration[i];
+            -flown / (beta * step)
+        };
+        let outcome = self.iterate(motion, before, guess, step);
+        // Free nodes that fly on may turn a cell inside out where nodes that rest do not.
+        if let Err(SolveFault::Inverted { .. }) = outcome {
+            let mut rest = before.moved(motion, step);
+            for i in (0..held.len()).filter(|i| !held[*i]) {
+                rest.acceleration[i] = resting(i);
+            }
+            return self.iterate(motion, before, rest, step);
+        }
+        outcome
+    }
+
+    fn conserves(&self) -> bool {
+        self.constants.gamma == 0.5
+    }
+
+    fn factorisations(&self) -> usize {
+        self.factorisations
+    }
+}

@@ -1,0 +1,182 @@
+//! The viscous forces of a sheet of finite elements.
+
+use super::viscosity::{Passing, Viscosity, ViscousLocal};
+use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::viscosity::{
+    ViscousMaterial, first_piola_kirchhoff, geometric_tangent, second_piola_kirchhoff,
+};
+use crate::sheet_energy::{SamplingPoint, SheetEnergy, add_stiffness};
+use crate::solve::Inadmissible;
+
+/// The viscous part of a material at the sampling points of an energy. A point remembers S∞ and the stress Qᵢ of every
+/// branch of the Prony series.
+#[derive(Clone, Copy, Debug)]
+pub struct SheetViscosity<'a> {
+    energy: &'a SheetEnergy,
+    material: &'a ViscousMaterial,
+}
+
+/// The viscous stress at a point, and its derivatives by F and Ḟ.
+struct PointStress {
+    stress: Gradient,
+    tangents: Option<[nalgebra::Matrix4<f64>; 2]>,
+}
+
+impl<'a> SheetViscosity<'a> {
+    /// The viscous forces of `energy`.
+    pub fn new(energy: &'a SheetEnergy, material: &'a ViscousMaterial) -> Self {
+        Self { energy, material }
+    }
+
+    /// Numbers that a point remembers: S∞ and Qᵢ, three components each.
+    fn of_point(&self) -> usize {
+        match self.material.relaxation.len() {
+            0 => 0,
+            branches => 3 * (1 + branches),
+        }
+    }
+
+    /// The stresses Qᵢ of all branches at the end of a step.
+    fn branches(&self, memory: &[f64], now: [f64; 3], elapsed: f64) -> Vec<[f64; 3]> {
+        let before = &memory[..3];
+        let branches = self
+            .material
+            .recursions(elapsed)
+            .zip(memory[3..].chunks_exact(3));
+        branches
+            .map(|(recursion, q)| {
+                [0, 1, 2].map(|i| recursion.keeps * q[i] + recursion.takes * (now[i] - before[i]))
+            })
+            .collect()
+    }
+
+    fn point_stress(
+        &self,
+        kinematics: &Kinematics,
+        rate: &Gradient,
+        memory: &[f64],
+        elapsed: f64,
+        with_tangents: bool,
+    ) -> PointStress {
+        let (law, material) = (self.energy.law(), self.material);
+        let mut stress = material.newtonian_stress(kinematics, rate);
+        let mut by_displacement = nalgebra::Matrix4::zeros();
+        if !material.relaxation.is_empty() {
+            let (long, tangent) = if with_tangents {
+                let response = law.response(kinematics);
+                (response.first_piola_kirchhoff_stress, response.tangent)
+            } else {
+                (law.stress(kinematics).1, by_displacement)
+            };
+            let now = second_piola_kirchhoff(kinematics, &long);
+            let branches = self.branches(memory, now, elapsed);
+            let q = [0, 1, 2].map(|i| branches.iter().map(|q| q[i]).sum());
+            stress += first_piola_kirchhoff(kinematics, q);
+            if with_tangents {
+                let takes: f64 = material.recursions(elapsed).map(|own| own.takes).sum();
+                let rest = [0, 1, 2].map(|i| q[i] - takes * now[i]);
+                by_displacement = takes * tangent + geometric_tangent(rest);
+            }
+        }
+        PointStress {
+            stress,
+            tangents: with_tangents
+                .then(|| [by_displacement, material.newtonian_tangent(kinematics)]),
+        }
+    }
+
+    /// Sampling points of an element with their kinematics and their part of the element's memory.
+    fn points(
+        &self,
+        element: usize,
+        u: &[f64],
+    ) -> Result<Vec<(&'a SamplingPoint, Kinematics)>, Inadmissible> {
+        let points = self.energy.cell_points(element).iter();
+        points
+            .map(|point| {
+                let kinematics = Kinematics::new(&point.gradient(u));
+                Ok((point, kinematics.map_err(|_| Inadmissible { element })?))
+            })
+            .collect()
+    }
+
+    fn part<'m>(&self, memory: &'m [f64], point: usize) -> &'m [f64] {
+        &memory[point * self.of_point()..(point + 1) * self.of_point()]
+    }
+}
+
+impl Viscosity for SheetViscosity<'_> {
+    fn memory(&self, element: usize) -> usize {
+        self.of_point() * self.energy.cell_points(element).len()
+    }
+
+    fn depends_on_rates(&self) -> bool {
+        self.material.shear_viscosity > 0.0
+    }
+
+    fn add_element(
+        &self,
+        element: usize,
+        passing: Passing<'_>,
+        mut local: ViscousLocal<'_>,
+    ) -> Result<(), Inadmissible> {
+        let points = self.points(element, passing.displacement)?;
+        for (index, (point, kinematics)) in points.into_iter().enumerate() {
+            let own = self.point_stress(
+                &kinematics,
+                &point.gradient(passing.velocity),
+                self.part(passing.memory, index),
+                passing.elapsed,
+                local.tangents.is_some(),
+            );
+            point.add_force(&own.stress, local.force);
+            if let (Some(sums), Some(tangents)) = (&mut local.tangents, own.tangents) {
+                for (sum, tangent) in sums.iter_mut().zip(tangents) {
+                    let scaled = tangent * point.volume;
+                    add_stiffness(sum, &point.gradients, scaled.as_slice());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn remember(
+        &self,
+        element: usize,
+        passing: Passing<'_>,
+        next: &mut [f64],
+    ) -> Result<(), Inadmissible> {
+        let points = self.points(element, passing.displacement)?;
+        for (index, (_, kinematics)) in points.into_iter().enumerate() {
+            let (_, long) = self.energy.law().stress(&kinematics);
+            let now = second_piola_kirchhoff(&kinematics, &long);
+            let part = self.part(passing.memory, index);
+            let branches = self.branches(part, now, passing.elapsed);
+            let values = now.into_iter().chain(branches.into_iter().flatten());
+            let start = index * self.of_point();
+            next[start..]
+                .iter_mut()
+                .zip(values)
+                .for_each(|(to, value)| *to = value);
+        }
+        Ok(())
+    }
+
+    fn relaxed(
+        &self,
+        element: usize,
+        displacement: &[f64],
+        memory: &mut [f64],
+    ) -> Result<(), Inadmissible> {
+        memory.fill(0.0);
+        if self.of_point() == 0 {
+            return Ok(());
+        }
+        let points = self.points(element, displacement)?;
+        for (part, (_, kinematics)) in memory.chunks_exact_mut(self.of_point()).zip(points) {
+            let (_, long) = self.energy.law().stress(&kinematics);
+            part[..3].copy_from_slice(&second_piola_kirchhoff(&kinematics, &long));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,254 @@
+//! Pictures, VTK files and tables of a motion.
+
+use std::fmt::Write;
+
+use super::Moved;
+use super::outcome::expected;
+use super::read::{MovingPlate, Probe};
+use crate::dynamics::{EnergyBalance, Instant};
+use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::output::picture::{PALETTE, Scale};
+use crate::output::{self, Figure, vtk};
+
+/// How a model's lines are drawn.
+const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];
+
+fn line(label: String, points: Vec<[f64; 2]>, colour: usize, stroke: Stroke) -> Line {
+    Line {
+        label,
+        points,
+        colour: PALETTE[colour % PALETTE.len()],
+        stroke,
+    }
+}
+
+fn chart(title: &str, x: &str, y: &str, lines: Vec<Line>) -> LineChart {
+    LineChart {
+        title: title.to_owned(),
+        x: Axis::linear(x),
+        y: Axis::linear(y),
+        lines,
+        band: None,
+    }
+}
+
+fn figure(name: &str, caption: &str, png: Vec<u8>) -> Figure {
+    Figure {
+        name: name.to_owned(),
+        caption: caption.to_owned(),
+        png,
+    }
+}
+
+impl Moved {
+    /// Pairs of figures of all instants.
+    fn points(&self, pair: impl Fn(&Instant) -> [f64; 2]) -> Vec<[f64; 2]> {
+        self.history.instants.iter().map(pair).collect()
+    }
+
+    fn at(&self, values: &[f64], probe: &Probe) -> [f64; 2] {
+        self.mesh.displacement_at(values, probe.at)
+    }
+}
+
+/// Displacement of the probes, phase of the first, energies, force of the grip, and the plates at the end.
+pub fn figures(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<Figure> {
+    let mut figures = vec![
+        figure(
+            "motion_probes.png",
+            "Displacement of the probes along the plate in both models.",
+            probes(plate, models).png(),
+        ),
+        figure(
+            "motion_energy.png",
+            "Where the energy is: springs above, finite elements below.",
+            output::picture::lines::stacked(&[
+                (energy(&models[0]), 380),
+                (energy(&models[1]), 380),
+            ]),
+        ),
+        figure(
+            "motion_plates.png",
+            "The plates at the last instant, with the size of their velocity.",
+            plates(models),
+        ),
+    ];
+    if plate.release != Some(0.0) {
+        figures.push(figure(
+            "motion_force.png",
+            "Force of the right grip along the plate over its displacement and over time.",
+            output::picture::lines::stacked(&[
+                (force(models, "time [s]", |_, now| now.time), 380),
+                (
+                    force(models, "displacement of the right side [mm]", right_side),
+                    380,
+                ),
+            ]),
+        ));
+    }
+    if let Some(probe) = plate.probes.first() {
+        let phase = models
+            .iter()
+            .zip(STROKES)
+            .zip(0..)
+            .map(|((model, stroke), colour)| {
+                let points = model.points(|now| {
+                    [
+                        model.at(&now.displacement, probe)[0],
+                        model.at(&now.velocity, probe)[0],
+                    ]
+                });
+                line(model.name.to_owned(), points, colour, stroke)
+            });
+        let title = format!("Phase of the probe `{}`", probe.name);
+        let chart = chart(
+            &title,
+            "displacement [mm]",
+            "velocity [mm/s]",
+            phase.collect(),
+        );
+        let caption = "Velocity over displacement of the first probe along the plate.";
+        figures.push(figure("motion_phase.png", caption, chart.png()));
+    }
+    figures
+}
+
+fn probes(plate: &MovingPlate, models: &[Moved; 2]) -> LineChart {
+    let mut lines = Vec::new();
+    for (colour, probe) in plate.probes.iter().enumerate() {
+        for (model, stroke) in models.iter().zip(STROKES) {
+            let points = model.points(|now| [now.time, model.at(&now.displacement, probe)[0]]);
+            lines.push(line(
+                format!("{}, {}", probe.name, model.name),
+                points,
+                colour,
+                stroke,
+            ));
+        }
+    }
+    chart(
+        "Displacement of the probes",
+        "time [s]",
+        "displacement along the plate [mm]",
+        lines,
+    )
+}
+
+fn energy(model: &Moved) -> LineChart {
+    let names = [
+        "kinetic",
+        "stored",
+        "dissipated",
+        "work of grips and loads",
+        "balance",
+    ];
+    let parts = |energy: &EnergyBalance| {
+        let EnergyBalance {
+            kinetic,
+            stored,
+            dissipated,
+            external_work,
+        } = *energy;
+        [kinetic, stored, dissipated, external_work, energy.total()]
+    };
+    let lines = names.iter().enumerate().map(|(part, name)| {
+        let points = model.points(|now| [now.time, parts(&now.energy)[part]]);
+        line((*name).to_owned(), points, part, Stroke::Solid)
+    });
+    let title = format!("Energies of the {}", model.name);
+    chart(&title, "time [s]", "energy [mJ]", lines.collect())
+}
+
+fn right_side(model: &Moved, now: &Instant) -> f64 {
+    let [length, width] = model.mesh.grid().size;
+    model
+        .mesh
+        .displacement_at(&now.displacement, [length, 0.5 * width])[0]
+}
+
+fn force(models: &[Moved; 2], axis: &str, x: fn(&Moved, &Instant) -> f64) -> LineChart {
+    let lines = models
+        .iter()
+        .zip(STROKES)
+        .zip(0..)
+        .map(|((model, stroke), colour)| {
+            let points = model.points(|now| [x(model, now), now.support_forces[1][0]]);
+            line(model.name.to_owned(), points, colour, stroke)
+        });
+    chart(
+        "Force of the right grip",
+        axis,
+        "force [N]",
+        lines.collect(),
+    )
+}
+
+fn plates(models: &[Moved; 2]) -> Vec<u8> {
+    let fields = models.each_ref().map(|model| {
+        let last = &model.history.instants[model.history.instants.len() - 1];
+        let speeds: Vec<f64> = last
+            .velocity
+            .chunks_exact(2)
+            .map(|v| v[0].hypot(v[1]))
+            .collect();
+        (model.name, &model.mesh, &last.displacement[..], speeds)
+    });
+    output::field_figure(
+        "Plates at the last instant",
+        "speed [mm/s]",
+        Scale::Linear,
+        &fields,
+    )
+}
+
+/// A series of VTK files for each model.
+pub fn vtk_files(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<(String, Vec<u8>)> {
+    let [springs, elements] = models;
+    let expected = expected(&springs.mesh, elements);
+    let sheet = vtk::Sheet::from(&plate.problem);
+    let mut files = Vec::new();
+    for model in models {
+        let mut named = Vec::new();
+        for (index, now) in model.history.instants.iter().enumerate() {
+            let name = format!("{}_{:05}.vtu", model.file, index + 1);
+            let reference = (model.file == springs.file).then(|| &expected[index][..]);
+            let title = format!("{} at {} s", model.name, now.time);
+            let file = vtk::field_file(&title, &sheet, &model.mesh, &now.displacement, reference);
+            files.push((name.clone(), file));
+            named.push((now.time, name));
+        }
+        files.push((format!("{}.pvd", model.file), vtk::collection(&named)));
+    }
+    files
+}
+
+/// Probes, energies and the grip's force over time, one table for each model.
+pub fn tables(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<(String, Vec<u8>)> {
+    let table = |model: &Moved| {
+        let mut text = String::from(
+            "time_s,kinetic_mJ,stored_mJ,dissipated_mJ,external_work_mJ,grip_force_x_N,grip_force_y_N",
+        );
+        for probe in &plate.probes {
+            let name = probe.name.replace([',', '"', ' '], "_");
+            for column in ["ux_mm", "uy_mm", "vx_mm_per_s", "vy_mm_per_s"] {
+                let _ = write!(text, ",{name}_{column}");
+            }
+        }
+        text.push('\n');
+        for now in &model.history.instants {
+            let energy = &now.energy;
+            let [fx, fy] = now.support_forces[1];
+            let mut values = vec![now.time, energy.kinetic, energy.stored, energy.dissipated];
+            values.extend([energy.external_work, fx, fy]);
+            for probe in &plate.probes {
+                values.extend(model.at(&now.displacement, probe));
+                values.extend(model.at(&now.velocity, probe));
+            }
+            let values: Vec<String> = values.iter().map(f64::to_string).collect();
+            text += &values.join(",");
+            text.push('\n');
+        }
+        (format!("motion_{}.csv", model.file), text.into_bytes())
+    };
+    models.iter().map(table).collect()
+}

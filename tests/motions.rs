@@ -1,0 +1,86 @@
+//! Studies of motions, as a user meets them.
+
+use std::fs;
+
+mod common;
+
+use common::{folder_with, gelbench, words};
+
+/// A motion study with little to compute.
+fn motion(rest: &str) -> String {
+    format!(
+        "kind = \"motion\"\ntitle = \"small\"\n\
+         [plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\nthickness = \"1 mm\"\ncells = [6, 2]\n\
+         [finite_element]\nelement = \"Q1\"\ncells = [6, 2]\n\
+         [[probe]]\nname = \"end\"\nat = [\"30 mm\", \"5 mm\"]\n{rest}\n"
+    )
+}
+
+const TIME: &str = "[time]\nduration = \"20 ms\"\ninterval = \"2 ms\"\n";
+
+#[test]
+fn a_released_plate_is_written_with_tables_and_series() {
+    let folder = folder_with(&motion(TIME));
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    let table = fs::read_to_string(folder.path().join("out/motion_mass_spring.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines.len(), 12);
+    assert!(lines[0].starts_with("time_s,kinetic_mJ"));
+    assert!(lines[0].ends_with("end_ux_mm,end_uy_mm,end_vx_mm_per_s,end_vy_mm_per_s"));
+    let numbers =
+        |line: &str| -> Vec<f64> { line.split(',').map(|word| word.parse().unwrap()).collect() };
+    let (first, second) = (numbers(lines[1]), numbers(lines[2]));
+    // Released at 10 %: the end flies back.
+    assert!(
+        (first[7] - 3.0).abs() < 1e-12 && second[7] < 3.0,
+        "{first:?} {second:?}"
+    );
+    let series = fs::read_to_string(folder.path().join("out/vtk/finite_element.pvd")).unwrap();
+    assert!(series.contains("timestep=\"0.02\""), "{series}");
+    assert!(folder.path().join("out/motion_energy.png").exists());
+}
+
+#[test]
+fn a_viscous_plate_in_sine_motion_dissipates_under_gravity_and_a_force() {
+    let rest = "[material]\ndensity = \"1 g/cm^3\"\n\
+        [material.viscosity]\nshear = \"100 Pa·s\"\nrelaxation = [{ share = 0.2, time = \"5 ms\" }]\n\
+        [grip]\nmotion = \"sine\"\namplitude = \"2 %\"\nfrequency = \"50 Hz\"\n\
+        [gravity]\nx = \"0 m/s^2\"\ny = \"-9.81 m/s^2\"\n\
+        [[force]]\nat = [\"15 mm\", \"10 mm\"]\nx = \"0 N\"\ny = \"5 mN\"\nbegin = \"0 s\"\nend = \"10 ms\"\n\
+        [mass_spring.stiffness]\nkind = \"polynomial\"\ncoefficients = [\"0.14 MPa\", \"0.1 MPa\"]\n";
+    for integrator in ["velocity-verlet", "generalised-alpha"] {
+        let time = format!("{TIME}integrator = \"{integrator}\"\n");
+        let folder = folder_with(&motion(&format!("{rest}{time}")));
+        gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+        let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+        let row = report
+            .lines()
+            .find(|line| line.starts_with("| finite elements |"))
+            .unwrap();
+        let dissipated: f64 = row.split('|').nth(9).unwrap().trim().parse().unwrap();
+        assert!(dissipated > 0.0, "{row}");
+    }
+}
+
+#[test]
+fn every_fault_of_a_motion_is_told_with_its_remedy() {
+    let rest = "[material]\ndensity = \"1 mm\"\n\
+        [grip]\nmotion = \"table\"\ntimes = [\"0 s\", \"0 s\"]\nstretches = [\"10 %\", \"20 %\"]\n\
+        [time]\nduration = \"1 s\"\ninterval = \"2 s\"\nintegrator = \"verlet\"\n\
+        [[force]]\nat = [\"40 mm\", \"0 mm\"]\nx = \"1 N\"\ny = \"0 N\"\n\
+        [mass_spring.damping]\nkind = \"table\"\nat = [0.0]\nvalues = [\"1 Pa·s\"]\n";
+    let folder = folder_with(&motion(rest));
+    let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
+    let told = words(&done.get_output().stderr);
+    for fault in [
+        "measures length",
+        "must ascend",
+        "longer than the duration",
+        "\"velocity-verlet\"",
+        "must be a point of the plate",
+        "two points",
+    ] {
+        assert!(told.contains(fault), "{fault}: {told}");
+    }
+    assert!(!folder.path().join("output").exists());
+}
