@@ -11,11 +11,14 @@ const RADIUS: f64 = 1.9;
 /// A part with a smaller share of the area is a stray group of points.
 const STRAY: f64 = 0.02;
 
+/// The points of a closed line.
+type Line = Vec<[f64; 2]>;
+
 /// The closed lines around different points, those around holes clockwise, and the points' spacing.
 ///
 /// # Errors
 /// Says why there is no such line, or that there are several parts.
-pub fn lines(points: &[[f64; 2]]) -> Result<(Vec<Vec<[f64; 2]>>, f64), String> {
+pub fn lines(points: &[[f64; 2]]) -> Result<(Vec<Line>, f64), String> {
     let triangles = delaunay(points);
     if triangles.is_empty() {
         return Err("the points lie on one line".into());
