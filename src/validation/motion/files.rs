@@ -183,16 +183,38 @@ fn force(models: &[Moved; 2], axis: &str, x: fn(&Moved, &Instant) -> f64) -> Lin
     )
 }
 
+/// The plates of all models at an instant, with the size of their velocity.
+fn speeds(models: &[Moved; 2], instant: usize) -> Vec<output::Field<'_>> {
+    let field = |model| {
+        let Moved {
+            name,
+            mesh,
+            history,
+            ..
+        }: &Moved = model;
+        let now = &history.instants[instant];
+        let speeds = now.velocity.chunks_exact(2).map(|v| v[0].hypot(v[1]));
+        (*name, mesh, &now.displacement[..], speeds.collect())
+    };
+    models.iter().map(field).collect()
+}
+
+/// The plates in motion: a picture that plays in every browser.
+pub fn animation(models: &[Moved; 2]) -> (String, Vec<u8>) {
+    const FRAMES: usize = 60;
+    const MILLISECONDS: u16 = 80;
+    let instants = &models[0].history.instants;
+    let every = instants.len().div_ceil(FRAMES).max(1);
+    let frames = (0..instants.len()).step_by(every);
+    let frames: Vec<_> = frames
+        .map(|instant| (instants[instant].time, speeds(models, instant)))
+        .collect();
+    let png = output::field_animation("Plates in motion", "speed [mm/s]", &frames, MILLISECONDS);
+    ("motion.png".into(), png)
+}
+
 fn plates(models: &[Moved; 2]) -> Vec<u8> {
-    let fields = models.each_ref().map(|model| {
-        let last = &model.history.instants[model.history.instants.len() - 1];
-        let speeds: Vec<f64> = last
-            .velocity
-            .chunks_exact(2)
-            .map(|v| v[0].hypot(v[1]))
-            .collect();
-        (model.name, &model.mesh, &last.displacement[..], speeds)
-    });
+    let fields = speeds(models, models[0].history.instants.len() - 1);
     output::field_figure(
         "Plates at the last instant",
         "speed [mm/s]",
