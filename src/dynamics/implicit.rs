@@ -16,6 +16,7 @@ use super::frequency;
 use super::march::Stepper;
 use super::motion::{Motion, Moving};
 use super::tangents::Tangents;
+use super::viscosity::inverted;
 use crate::error::SolveFault;
 use crate::solve::{Assembly, Cholesky};
 
@@ -148,6 +149,46 @@ impl Implicit {
         (defect, relative)
     }
 
+    /// The state a step later by the tangent before it: the answer to the motion of the supports and to the imbalance.
+    fn predict(
+        &mut self,
+        motion: &Motion,
+        before: &Moving,
+        step: f64,
+        held: &[bool],
+    ) -> Result<Moving, SolveFault> {
+        let beta = self.constants.beta;
+        let mut after = before.moved(motion, step);
+        let target = std::mem::replace(&mut after.displacement, before.displacement.clone());
+        for i in (0..held.len()).filter(|i| !held[*i]) {
+            let flown = before.velocity[i] + step * (0.5 - beta) * before.acceleration[i];
+            after.acceleration[i] = -flown / (beta * step);
+        }
+        self.follow(before, &mut after, step);
+        motion.evaluate(&mut after, step)?;
+        let mut support = vec![0.0; held.len()];
+        for i in (0..held.len()).filter(|i| held[*i]) {
+            support[i] = target[i] - before.displacement[i];
+        }
+        let mut forces = vec![0.0; held.len()];
+        Assembly::add_product(motion.energy, &after.displacement, &support, &mut forces)
+            .map_err(inverted(&*motion.describe))?;
+        self.factorise(motion, &after, step)?;
+        let (mut change, _) = self.defect(motion, before, &after);
+        let (assembly, cholesky) = self.system.as_mut().expect("prepared");
+        for (change, i) in change.iter_mut().zip(assembly.free()) {
+            *change -= forces[*i];
+        }
+        cholesky.substitute(&mut change);
+        for (i, change) in assembly.free().iter().zip(change) {
+            after.acceleration[*i] += change / (beta * step * step);
+        }
+        for i in (0..held.len()).filter(|i| held[*i]) {
+            after.displacement[i] = target[i];
+        }
+        Ok(after)
+    }
+
     /// Newton's method from a first guess.
     fn iterate(
         &mut self,
@@ -232,22 +273,15 @@ impl Stepper for Implicit {
         step: f64,
         held: &[bool],
     ) -> Result<Moving, SolveFault> {
-        let guess = before.moved(motion, step);
-        let beta = self.constants.beta;
-        let resting = |i: usize| {
-            let flown = before.velocity[i] + step * (0.5 - beta) * before.acceleration[i];
-            -flown / (beta * step)
-        };
-        let outcome = self.iterate(motion, before, guess, step);
-        // Free nodes that fly on may turn a cell inside out where nodes that rest do not.
-        if let Err(SolveFault::Inverted { .. }) = outcome {
-            let mut rest = before.moved(motion, step);
-            for i in (0..held.len()).filter(|i| !held[*i]) {
-                rest.acceleration[i] = resting(i);
+        let flying = before.moved(motion, step);
+        match self.iterate(motion, before, flying, step) {
+            // Supports that move far, or nodes that fly far, turn cells inside out where the tangent's answer does not.
+            Err(SolveFault::Inverted { .. } | SolveFault::Explodes { .. }) => {
+                let predicted = self.predict(motion, before, step, held)?;
+                self.iterate(motion, before, predicted, step)
             }
-            return self.iterate(motion, before, rest, step);
+            other => other,
         }
-        outcome
     }
 
     fn conserves(&self) -> bool {
