@@ -56,8 +56,9 @@ pub(super) struct Implicit {
 /// Iterations of a step.
 const ITERATIONS: usize = 25;
 
-/// A factor is renewed when an iteration leaves more than this part of the residual.
-const SLOW: f64 = 0.2;
+/// A factor is renewed when an iteration leaves more than this part of the residual: a new one costs as much as five
+/// iterations.
+const SLOW: f64 = 0.5;
 
 /// Relative residual at which an iteration that stagnates has converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-9;
