@@ -78,6 +78,12 @@ impl Implicit {
         }
     }
 
+    /// Whether there is a factor for a step of this length, rounding of times apart.
+    fn has_factor(&self, step: f64) -> bool {
+        self.factorised
+            .is_some_and(|own| (own / step - 1.0).abs() < 1e-6)
+    }
+
     /// Factorises K + γ/(β h) C + (1 − αₘ)/((1 − α_f) β h²) M at a state.
     fn factorise(&mut self, motion: &Motion, at: &Moving, step: f64) -> Result<(), SolveFault> {
         let Constants {
@@ -211,7 +217,7 @@ impl Implicit {
             if relative.is_nan() || (stagnant && relative > 2.0 * last && iteration > 2) {
                 break;
             }
-            fresh = self.factorised != Some(step) || relative > SLOW * last;
+            fresh = !self.has_factor(step) || relative > SLOW * last;
             if fresh {
                 self.factorise(motion, &after, step)?;
             }
