@@ -11,10 +11,13 @@ mod figures;
 mod fit;
 pub mod hand_over;
 mod html;
+mod identification;
 mod json;
 mod markdown;
+pub mod measured;
 pub mod picture;
 mod report;
+pub mod series;
 pub mod vtk;
 pub mod wrinkling;
 
@@ -22,6 +25,7 @@ pub use figures::{
     Figure, cell_figure, comparison_chart, field_figure, material_chart, mesh_picture,
 };
 pub use fit::{fit_json, fit_picture};
+pub use identification::{identification_json, identification_picture};
 pub use report::Block;
 
 /// Writes everything a study asks for into its folder and returns the files in the order of writing.
@@ -62,9 +66,16 @@ pub fn write(study: &Study, results: &Results, folder: &Path) -> Result<Vec<Path
 pub fn remove_stale(folder: &Path, written: &[PathBuf]) -> Result<(), Error> {
     for (part, prefixes, ending) in [
         ("", &["plates_", "error_"][..], "png"),
+        ("", &["nodes_", "cells_", "markers_"][..], "csv"),
         (
             "vtk",
-            &["mass_spring_", "springs_", "corrected_", "finite_element_"][..],
+            &[
+                "mass_spring_",
+                "springs_",
+                "corrected_",
+                "finite_element_",
+                "markers_",
+            ][..],
             "vtu",
         ),
     ] {

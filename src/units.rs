@@ -18,6 +18,8 @@ pub enum Dimension {
     Stress,
     /// Internal unit tonne/mm³.
     Density,
+    /// Internal unit tonne.
+    Mass,
     /// Internal unit s.
     Time,
     /// Internal unit Hz = 1/s.
@@ -62,6 +64,10 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("kg/m^3", Dimension::Density, 1e-12),
     ("g/cm^3", Dimension::Density, 1e-9),
     ("tonne/mm^3", Dimension::Density, 1.0),
+    ("g", Dimension::Mass, 1e-6),
+    ("kg", Dimension::Mass, 1e-3),
+    ("mg", Dimension::Mass, 1e-9),
+    ("tonne", Dimension::Mass, 1.0),
     ("s", Dimension::Time, 1.0),
     ("ms", Dimension::Time, 1e-3),
     ("min", Dimension::Time, 60.0),
@@ -90,6 +96,7 @@ impl Dimension {
             Self::Force => "force",
             Self::Stress => "stress",
             Self::Density => "density",
+            Self::Mass => "mass",
             Self::Time => "time",
             Self::Frequency => "frequency",
             Self::Acceleration => "acceleration",
@@ -115,6 +122,7 @@ impl Dimension {
             Self::Force => "N",
             Self::Stress => "MPa",
             Self::Density => "tonne/mm^3",
+            Self::Mass => "tonne",
             Self::Time => "s",
             Self::Frequency => "Hz",
             Self::Acceleration => "mm/s^2",
@@ -132,6 +140,7 @@ impl Dimension {
             Self::Force => "\"1.5 N\"",
             Self::Stress => "\"0.0611 MPa\"",
             Self::Density => "\"1020 kg/m^3\"",
+            Self::Mass => "\"5 g\"",
             Self::Time => "\"10 s\"",
             Self::Frequency => "\"2 Hz\"",
             Self::Acceleration => "\"9.81 m/s^2\"",

@@ -14,7 +14,9 @@ use crate::output::{Figure, mesh_picture};
 mod correction_matrix;
 mod cost;
 mod finite_elements;
+mod measured_fields;
 mod motion;
+mod motion_correction;
 mod nonlinear_spring;
 mod oscillator;
 mod other_codes;
@@ -24,6 +26,7 @@ mod plate_ablation;
 pub mod report;
 mod smoothing;
 pub mod specimen;
+mod spring_identification;
 mod vibrating_plate;
 mod vibrating_spring;
 
@@ -81,11 +84,25 @@ pub const CASES: &[Case] = &[
         prepare: vibrating_spring::prepare,
     },
     Case {
+        kind: "spring-identification",
+        study: include_str!("../examples/spring_identification.toml"),
+        file: "examples/spring_identification.toml",
+        slow: true,
+        prepare: spring_identification::prepare,
+    },
+    Case {
         kind: "smoothing",
         study: include_str!("../examples/smoothing.toml"),
         file: "examples/smoothing.toml",
         slow: true,
         prepare: smoothing::prepare,
+    },
+    Case {
+        kind: "measured-fields",
+        study: include_str!("../validation/cases/measured_fields.toml"),
+        file: "validation/cases/measured_fields.toml",
+        slow: true,
+        prepare: measured_fields::prepare,
     },
     Case {
         kind: specimen::KIND,
@@ -163,6 +180,13 @@ pub const CASES: &[Case] = &[
         file: "validation/cases/cook.toml",
         slow: false,
         prepare: finite_elements::cook::prepare,
+    },
+    Case {
+        kind: "motion-correction",
+        study: include_str!("../validation/cases/motion_correction.toml"),
+        file: "validation/cases/motion_correction.toml",
+        slow: true,
+        prepare: motion_correction::prepare,
     },
     Case {
         kind: "vibrating-plate",

@@ -5,9 +5,11 @@
 //! linearised once, and a few conjugate-gradient iterations, each preconditioned by one V-cycle and each with
 //! one evaluation of F, bring the correction that the finer grid asks for. No load steps, no factorisation.
 //!
-//! **When to stop.** The first correction d on a grid is what the grid adds to the one before. With the ratio
-//! q of two grids' corrections, what the grids that follow would add is d q/(1 − q): the discretisation error.
-//! The iteration ends when its last correction is below a stated share of that.
+//! **Where to begin.** The change d is what a grid adds to the one before. Changes shrink by a ratio q from grid to
+//! grid, so that the next one is about q d: the iteration begins with it.
+//!
+//! **When to stop.** What the grids that follow would add is d q/(1 − q): the discretisation error. The iteration
+//! ends when what it leaves, by the fall of its corrections, is below a stated share of that.
 
 use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};
@@ -33,7 +35,7 @@ pub use path::{Grips, Interactive, RigidMotion};
 /// How exactly the climb solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimbSettings {
-    /// The last correction on each grid relative to the grid's discretisation error.
+    /// What the iteration may leave on the finest grid, relative to its discretisation error.
     pub tolerance: f64,
     /// Iterations allowed after a linearisation.
     pub max_iterations: usize,
@@ -42,7 +44,7 @@ pub struct ClimbSettings {
 impl Default for ClimbSettings {
     fn default() -> Self {
         Self {
-            tolerance: 0.2,
+            tolerance: 0.1,
             max_iterations: 20,
         }
     }
@@ -55,13 +57,13 @@ pub struct Climbed {
     pub field: Field,
     /// Force on the moving grip in N.
     pub force: f64,
-    /// The field on the grid before, where the finest one is not the only one.
-    coarser: Option<Field>,
+    /// What the finest grid added to the field of the one before, where it is not the only one.
+    change: Option<Field>,
     /// The estimated discretisation error of the field, root mean square over the nodes in mm; not a number where
     /// there is one grid alone.
     pub discretisation_error: f64,
-    /// The last correction, root mean square over the nodes in mm.
-    pub last_correction: f64,
+    /// What the iteration left, estimated, root mean square over the nodes in mm.
+    pub iteration_error: f64,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
     /// What was done on each grid, coarse to fine: its nodes, and the work.
@@ -97,13 +99,15 @@ pub struct Climb<'a> {
 /// Unknowns of the coarsest grid at most.
 const COARSEST: usize = 100;
 /// Nodes of the lattice of springs at least, where the finest grid has as many.
-const SPRINGS: usize = 90;
-/// The ratio of the corrections of two grids where it is not known yet, and the ratios that are believed.
+const SPRINGS: usize = 30;
+/// The ratio of the changes of two grids where it is not known yet, and the ratios that are believed.
 const RATIO: f64 = 1.0 / 3.0;
 const RATIOS: [f64; 2] = [0.15, 0.7];
 /// Times that a grid's equation is linearised anew before it is given up.
 const LINEARISATIONS: usize = 6;
-/// The last correction relative to the first one on the lattice of springs.
+/// What the iteration may leave on all grids but the finest, relative to what it may leave there.
+const ON_THE_WAY: f64 = 3.0;
+/// What the iteration may leave on the lattice of springs, relative to its first correction.
 const START_TOLERANCE: f64 = 1e-3;
 
 impl<'a> Climb<'a> {
@@ -186,23 +190,35 @@ impl<'a> Climb<'a> {
         mut field: Field,
         mut work: Vec<(usize, Work)>,
     ) -> Result<Climbed, SolveFault> {
-        let mut previous: Option<f64> = None;
-        let (mut own_error, mut last_correction) = (f64::NAN, f64::NAN);
-        let tolerance = self.settings.tolerance;
-        let (mut coarser, mut corrections) = (None, Vec::new());
+        let mut change: Option<Field> = None;
+        let (mut size, mut ratio) = (f64::NAN, RATIO);
+        let mut iteration_error = f64::NAN;
+        let mut corrections = Vec::new();
         for index in self.start + 1..self.levels.len() {
-            let finer = field.onto(&self.levels[index - 1].grid, &self.levels[index].grid);
-            coarser = Some(std::mem::replace(&mut field, finer));
-            let ratio = |first: f64| {
-                let [least, most] = RATIOS;
-                previous.map_or(RATIO, |previous| (first / previous).clamp(least, most))
+            let [coarse, fine] = [index - 1, index].map(|index| &self.levels[index].grid);
+            let mut interpolated = field.onto(coarse, fine);
+            field.clone_from(&interpolated);
+            if let Some(before) = &change {
+                field.add(ratio, &before.onto(coarse, fine));
+            }
+            let expected = ratio * size;
+            let tolerance = match index + 1 < self.levels.len() {
+                true => ON_THE_WAY * self.settings.tolerance,
+                false => self.settings.tolerance,
             };
-            let error = |first: f64| first * ratio(first) / (1.0 - ratio(first));
-            let enough = |first: f64, last: f64| last <= tolerance * error(first);
+            let enough = |first: f64, left: f64| {
+                let change = if expected.is_nan() { first } else { expected };
+                left <= tolerance * geometric_tail(change, ratio)
+            };
             let reached = self.solve(index, &mut field, &enough)?;
-            own_error = error(reached.first());
-            last_correction = reached.last();
-            previous = Some(reached.first());
+            interpolated.scale(-1.0);
+            interpolated.add(1.0, &field);
+            let own = interpolated.size();
+            if !size.is_nan() {
+                ratio = (own / size).clamp(RATIOS[0], RATIOS[1]);
+            }
+            (size, change) = (own, Some(interpolated));
+            iteration_error = reached.left();
             corrections = reached.corrections;
             work.push((self.levels[index].grid.nodes(), reached.work));
         }
@@ -213,9 +229,9 @@ impl<'a> Climb<'a> {
         Ok(Climbed {
             field,
             force,
-            coarser,
-            discretisation_error: own_error,
-            last_correction,
+            change,
+            discretisation_error: geometric_tail(size, ratio),
+            iteration_error,
             corrections,
             work,
         })
@@ -236,7 +252,7 @@ impl<'a> Climb<'a> {
                 .linearise(sheet, field, &mut self.multigrid)
                 .map_err(|Inverted| inverted())?;
             let first = whole.as_ref().map(Reached::first);
-            let enough = |own: f64, last: f64| enough(first.unwrap_or(own), last);
+            let enough = |own: f64, left: f64| enough(first.unwrap_or(own), left);
             let mut reached = level
                 .iterate(sheet, field, &mut self.multigrid, most, &enough)
                 .map_err(|Inverted| inverted())?;
@@ -246,14 +262,14 @@ impl<'a> Climb<'a> {
                 whole.corrections.append(&mut reached.corrections);
                 reached.corrections = whole.corrections;
             }
-            if enough(reached.first(), reached.last()) {
+            if enough(reached.first(), reached.left()) {
                 return Ok(reached);
             }
             whole = Some(reached);
         }
         Err(SolveFault::Stalled {
             iterations: LINEARISATIONS * most,
-            residual: whole.map_or(f64::NAN, |whole| whole.last() / whole.first()),
+            residual: whole.map_or(f64::NAN, |whole| whole.left() / whole.first()),
             tolerance: self.settings.tolerance,
         })
     }
@@ -296,15 +312,16 @@ impl<'a> Climb<'a> {
     /// The field extrapolated after Richardson from the finest grid and the one before it; nothing where there is
     /// one grid alone.
     pub fn extrapolated(&self, climbed: &Climbed) -> Option<Field> {
-        let coarser = climbed.coarser.as_ref()?;
-        let before = &self.levels[self.levels.len() - 2].grid;
+        let change = climbed.change.as_ref()?;
         let mut field = climbed.field.clone();
-        field.add(-1.0, &coarser.onto(before, self.grid()));
-        let factor = climbed.discretisation_error / field.size();
-        field.scale(factor);
-        field.add(1.0, &climbed.field);
+        field.add(climbed.discretisation_error / change.size(), change);
         Some(field)
     }
+}
+
+/// The sum of d q + d q² + …: what all finer grids would add after a change d.
+fn geometric_tail(change: f64, ratio: f64) -> f64 {
+    change * ratio / (1.0 - ratio)
 }
 
 /// A fault of the climb at one stretch.

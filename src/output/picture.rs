@@ -8,6 +8,7 @@ use std::sync::{Arc, LazyLock};
 use plotters::prelude::*;
 use resvg::{tiny_skia, usvg};
 
+pub mod animation;
 pub mod fields;
 pub mod lines;
 
@@ -55,6 +56,17 @@ fn render(
     size: (u32, u32),
     draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> DrawResult<()>,
 ) -> Vec<u8> {
+    rasterise(size, PIXELS, draw)
+        .encode_png()
+        .expect("an image can be encoded to memory")
+}
+
+/// Draws on a white area of `size` points with so many pixels a point.
+fn rasterise(
+    size: (u32, u32),
+    pixels_per_point: f32,
+    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> DrawResult<()>,
+) -> tiny_skia::Pixmap {
     let fonts = Arc::clone(&FONTS);
     let mut svg = String::new();
     {
@@ -71,15 +83,13 @@ fn render(
         ..usvg::Options::default()
     };
     let tree = usvg::Tree::from_str(&svg, &options).expect("plotters writes valid SVG");
-    let pixels = |points: u32| (points as f32 * PIXELS) as u32;
+    let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
     let mut image =
         tiny_skia::Pixmap::new(pixels(size.0), pixels(size.1)).expect("a positive size");
-    let scale = PIXELS / FINE as f32;
+    let scale = pixels_per_point / FINE as f32;
     let transform = tiny_skia::Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut image.as_mut());
     image
-        .encode_png()
-        .expect("an image can be encoded to memory")
 }
 
 /// Points of the design in units of the drawing.

@@ -11,7 +11,7 @@ const HALVINGS: usize = 10;
 
 impl Climb<'_> {
     /// Corrects at one stretch by Newton's method from the affine stretch, on the finest grid from the first step on:
-    /// no springs, no coarser field.
+    /// no springs, no change from a coarser one.
     ///
     /// ```text
     /// K(u) d = −F(u) at the free nodes,   u ← u + d,   until |d| ≤ tolerance |u − affine|
@@ -58,9 +58,9 @@ impl Climb<'_> {
                 return Ok(Climbed {
                     field,
                     force,
-                    coarser: None,
+                    change: None,
                     discretisation_error: f64::NAN,
-                    last_correction: last,
+                    iteration_error: last,
                     corrections,
                     work: vec![(self.grid().nodes(), work)],
                 });

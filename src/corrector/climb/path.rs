@@ -1,13 +1,13 @@
 //! Many states, each near the one before: a path of stretches, and grips that are moved by hand.
 
-use super::{Climb, Climbed, Field, Inverted, Work, at_stretch, inverted};
+use super::{Climb, Climbed, Field, Inverted, Reached, Work, at_stretch, inverted};
 use crate::error::{Error, SolveFault};
 
 /// States that the next one is extrapolated from.
 const HISTORY: usize = 3;
 
-/// Cycles for one state above which the operators are written anew for the next one.
-const CYCLES: usize = 1;
+/// Cycles too many after which the operators are written anew.
+const BEYOND: usize = 2;
 
 /// A rigid motion of a grip in its plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -73,17 +73,22 @@ impl Climb<'_> {
             parameter: *first,
             field: first_state.field,
         }];
-        let mut written = false;
+        // Cycles beyond those that fresh operators, which are of linear cells, take: as many as an element's side has
+        // cells. Writing the operators anew costs about as much as a few of them.
+        let mut beyond = usize::MAX;
         for stretch in between.iter().copied() {
             let fault = at_stretch(stretch);
-            let guess = extrapolate(&known, stretch);
-            if !written {
+            let mut field = combine(&known, &value_shares(&known, stretch));
+            if beyond > BEYOND {
+                beyond = 0;
                 let finest = self.levels.len() - 1;
-                self.linearise_below(finest, &guess).map_err(fault)?;
+                self.linearise_below(finest, &field).map_err(fault)?;
             }
-            let error = relative_error * self.departure(&guess, stretch);
-            let climbed = self.near(guess, error).map_err(fault)?;
-            written = climbed.work[0].1.cycles <= CYCLES;
+            let error = relative_error * self.departure(&field, stretch);
+            let reached = self.near(&mut field, error).map_err(fault)?;
+            beyond += reached.work.cycles.saturating_sub(self.scheme.side());
+            let force = self.force_along(&combine(&known, &rate_shares(&known, stretch)));
+            let climbed = Climbed::near(field, force, error, reached);
             told(&climbed);
             if known.len() == HISTORY {
                 known.remove(0);
@@ -110,59 +115,95 @@ impl Climb<'_> {
 
     /// Corrects a field that is near the result, with the operators written before, to a share of its
     /// discretisation error.
-    fn near(&mut self, mut field: Field, error: f64) -> Result<Climbed, SolveFault> {
+    fn near(&mut self, field: &mut Field, error: f64) -> Result<Reached, SolveFault> {
         let finest = self.levels.len() - 1;
         let limit = self.settings.tolerance * error;
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
         let level = &mut self.levels[finest];
-        let iterated = level.iterate(sheet, &mut field, &mut self.multigrid, most, &|_, last| {
-            last <= limit
+        let iterated = level.iterate(sheet, field, &mut self.multigrid, most, &|_, left| {
+            left <= limit
         });
         let reached = iterated.map_err(|Inverted| inverted())?;
-        if reached.last() > limit {
+        if reached.left() > limit {
             return Err(SolveFault::Stalled {
                 iterations: most,
-                residual: reached.last(),
+                residual: reached.left(),
                 tolerance: limit,
             });
         }
-        let mut work = reached.work;
-        work.evaluations += 1;
-        let force = self.force(&field).map_err(|Inverted| inverted())?;
-        Ok(Climbed {
-            field,
-            force,
-            coarser: None,
-            discretisation_error: error,
-            last_correction: reached.last(),
-            corrections: reached.corrections,
-            work: vec![(self.grid().nodes(), work)],
-        })
+        Ok(reached)
+    }
+
+    /// The force on the moving grip in N from the F that the last iteration left, r = F(u + z): r · w with the
+    /// field's rate w by the stretch. Equilibrium is kept along the path, K w = 0 between the grips: the correction z,
+    /// which is not in r yet, does not change r · w, and no evaluation is needed.
+    fn force_along(&self, rate: &Field) -> f64 {
+        let residual = &self.levels[self.levels.len() - 1].residual;
+        residual.product(rate) / self.problem.size[0]
     }
 }
 
-/// The polynomial through the known states at another parameter.
-fn extrapolate(known: &[Known], parameter: f64) -> Field {
-    let share = |own: usize| -> f64 {
-        let others = known.iter().enumerate().filter(|(other, _)| *other != own);
-        others
-            .map(|(_, other)| {
-                (parameter - other.parameter) / (known[own].parameter - other.parameter)
-            })
-            .product()
-    };
-    let first = &known[0];
-    let mut field = first.field.clone();
-    let scale = match known.len() {
-        // One state alone is scaled with the motion of the grip.
-        1 => parameter / first.parameter,
-        _ => share(0),
-    };
-    field.scale(scale);
-    for (index, state) in known.iter().enumerate().skip(1) {
-        field.add(share(index), &state.field);
+impl Climbed {
+    /// A state found near another one.
+    fn near(field: Field, force: f64, discretisation_error: f64, reached: Reached) -> Self {
+        let nodes = field.components[0].len();
+        Self {
+            field,
+            force,
+            change: None,
+            discretisation_error,
+            iteration_error: reached.left(),
+            work: vec![(nodes, reached.work)],
+            corrections: reached.corrections,
+        }
+    }
+}
+
+/// The sum of the known fields, each with its share.
+fn combine(known: &[Known], shares: &[f64]) -> Field {
+    let mut field = known[0].field.clone();
+    field.scale(shares[0]);
+    for (state, share) in known.iter().zip(shares).skip(1) {
+        field.add(*share, &state.field);
     }
     field
+}
+
+/// The shares of the known states in the polynomial through them and the state of rest, at another parameter.
+fn value_shares(known: &[Known], parameter: f64) -> Vec<f64> {
+    shares(known, |others| {
+        others.iter().map(|other| parameter - other).product()
+    })
+}
+
+/// The shares of the known states in that polynomial's derivative.
+fn rate_shares(known: &[Known], parameter: f64) -> Vec<f64> {
+    shares(known, |others| {
+        let without = |left_out: usize| -> f64 {
+            let kept = others
+                .iter()
+                .enumerate()
+                .filter(|(place, _)| *place != left_out);
+            kept.map(|(_, other)| parameter - other).product()
+        };
+        (0..others.len()).map(without).sum()
+    })
+}
+
+/// For each state what `product` says of the parameters of the others and of the state of rest, over what the
+/// Lagrange polynomial has at the state itself.
+fn shares(known: &[Known], product: impl Fn(&[f64]) -> f64) -> Vec<f64> {
+    let at_rest = (known.len() < HISTORY).then_some(0.0);
+    let share = |own: usize| {
+        let others = known.iter().enumerate().filter(|(other, _)| *other != own);
+        let others: Vec<f64> = others
+            .map(|(_, other)| other.parameter)
+            .chain(at_rest)
+            .collect();
+        let own = known[own].parameter;
+        product(&others) / others.iter().map(|other| own - other).product::<f64>()
+    };
+    (0..known.len()).map(share).collect()
 }
 
 /// A plate in the hand: its grips are moved, the corrected field follows.
@@ -232,21 +273,22 @@ impl<'a> Interactive<'a> {
     fn move_in(&mut self, parts: usize, grips: Grips) -> Result<Climbed, SolveFault> {
         let mut field = self.climbed.field.clone();
         let mut work = Work::default();
-        let mut climbed = None;
+        let mut reached = None;
         for part in 1..=parts {
             let share = 1.0 / (parts - part + 1) as f64;
             self.impose(grips, share, &mut field);
             self.climb
                 .linearise_below(self.climb.levels.len() - 1, &field)?;
             let error = self.relative_error * field.size();
-            let found = self.climb.near(field, error)?;
-            work.add(found.work[0].1);
-            field = found.field.clone();
-            climbed = Some(found);
+            let mut own = self.climb.near(&mut field, error)?;
+            own.work.add(work);
+            work = own.work;
+            reached = Some((error, own));
         }
-        let mut climbed = climbed.expect("one part at least");
-        climbed.work[0].1 = work;
-        Ok(climbed)
+        let (error, mut reached) = reached.expect("one part at least");
+        reached.work.evaluations += 1;
+        let force = self.climb.force(&field).map_err(|Inverted| inverted())?;
+        Ok(Climbed::near(field, force, error, reached))
     }
 
     /// Moves the grips by a share of the way that is left, and the nodes between them in proportion.

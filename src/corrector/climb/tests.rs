@@ -246,14 +246,14 @@ fn a_path_has_the_states_that_climbs_have() {
         let expected = exact.correct(*stretch).unwrap();
         let mut difference = state.field.clone();
         difference.add(-1.0, &expected.field);
-        let limit = 0.2 * state.discretisation_error;
+        let limit = 0.1 * state.discretisation_error;
         assert!(
             difference.size() < limit,
             "{stretch}: {} mm",
             difference.size()
         );
         assert!(
-            (state.force / expected.force - 1.0).abs() < 1e-4,
+            (state.force / expected.force - 1.0).abs() < 5e-5,
             "{stretch}"
         );
     }

@@ -53,10 +53,10 @@ const AXIS_HEIGHT: f64 = 46.0;
 const HIGHEST_PLATE: f64 = 420.0;
 
 /// Positions of the lowest and the highest colour on the colour bar.
-type Range = (f64, f64);
+pub(super) type Range = (f64, f64);
 
 /// Where the panels lie, in points.
-struct Layout {
+pub(super) struct Layout {
     low: [f64; 2],
     high: [f64; 2],
     points_per_mm: f64,
@@ -117,34 +117,47 @@ pub fn outlines(title: &str, cells: &[Vec<[f64; 2]>]) -> Vec<u8> {
 impl FieldFigure {
     /// The figure as a PNG.
     pub fn png(&self) -> Vec<u8> {
-        let layout = self.layout();
-        let range = self.range();
-        let bottom = layout.panel_top(self.panels.len());
-        render((WIDTH as u32, (bottom + AXIS_HEIGHT) as u32), |area| {
-            let pen = Pen(area);
-            pen.write(&self.title, [LEFT, 24.0], bold(17), HPos::Left)?;
-            pen.write(&self.quantity, [WIDTH - 16.0, 24.0], text(13), HPos::Right)?;
-            for (index, panel) in self.panels.iter().enumerate() {
-                let label = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
-                pen.write(&panel.label, label, text(14), HPos::Left)?;
-                for (corners, value) in &panel.cells {
-                    let position = self.scale.position(*value).unwrap_or(range.0);
-                    let corners = corners.map(|corner| layout.place(index, corner));
-                    pen.fill(&corners, self.colour(share(position, range)))?;
-                }
-                draw_width_axis(&pen, &layout, index)?;
-            }
-            draw_length_axis(&pen, &layout, self.panels.len() - 1)?;
-            self.draw_bar(&pen, range, [TITLE_HEIGHT + LABEL_HEIGHT, bottom])
-        })
+        let (layout, range) = (self.layout(), self.range());
+        render(self.size(&layout), |area| self.draw(area, &layout, range))
     }
 
-    fn layout(&self) -> Layout {
+    /// Width and height in points.
+    pub(super) fn size(&self, layout: &Layout) -> (u32, u32) {
+        let bottom = layout.panel_top(self.panels.len());
+        (WIDTH as u32, (bottom + AXIS_HEIGHT) as u32)
+    }
+
+    /// Draws the figure with a layout and a range of colours, which may be those of several figures.
+    pub(super) fn draw(
+        &self,
+        area: &DrawingArea<SVGBackend<'_>, Shift>,
+        layout: &Layout,
+        range: Range,
+    ) -> DrawResult<()> {
+        let pen = Pen(area);
+        pen.write(&self.title, [LEFT, 24.0], bold(17), HPos::Left)?;
+        pen.write(&self.quantity, [WIDTH - 16.0, 24.0], text(13), HPos::Right)?;
+        for (index, panel) in self.panels.iter().enumerate() {
+            let label = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
+            pen.write(&panel.label, label, text(14), HPos::Left)?;
+            for (corners, value) in &panel.cells {
+                let position = self.scale.position(*value).unwrap_or(range.0);
+                let corners = corners.map(|corner| layout.place(index, corner));
+                pen.fill(&corners, self.colour(share(position, range)))?;
+            }
+            draw_width_axis(&pen, layout, index)?;
+        }
+        draw_length_axis(&pen, layout, self.panels.len() - 1)?;
+        let bottom = layout.panel_top(self.panels.len());
+        self.draw_bar(&pen, range, [TITLE_HEIGHT + LABEL_HEIGHT, bottom])
+    }
+
+    pub(super) fn layout(&self) -> Layout {
         let cells = self.panels.iter().flat_map(|panel| &panel.cells);
         Layout::of(cells.flat_map(|cell| cell.0))
     }
 
-    fn range(&self) -> Range {
+    pub(super) fn range(&self) -> Range {
         let cells = self.panels.iter().flat_map(|panel| &panel.cells);
         let positions = cells.filter_map(|cell| self.scale.position(cell.1));
         let (mut low, mut high) = positions

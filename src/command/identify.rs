@@ -1,0 +1,236 @@
+//! `gelbench identify`: the functions of a spring and a dashpot from recorded force and motion.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::{Outcome, print, warn};
+use crate::error::{Diagnostic, Error};
+use crate::identification::{
+    Argument, Form, Function, Identification, IdentificationSettings, Recording, Said, Sample,
+    Shape, identify, law_text,
+};
+use crate::output;
+use crate::validation::number;
+
+pub const HELP: &str = "\
+The file is a table of instants with units in the heads; what it does not say can be given by options:
+
+  # mass: 200 g
+  # length: 50 mm
+  time [s],extension [mm],force [N]
+  0.000,0.00,0.000
+  0.005,0.12,0.031
+
+Instead of extension it may have length or stretch, which need the length at rest. Without a mass inertia is left out.
+
+Samples:
+  gelbench identify --sample spring.csv --seed 1         write a computed recording to try it out
+  gelbench identify spring.csv
+  gelbench identify spring.csv --stiffness polynomial-2 --damping constant
+  gelbench identify gel.csv --mass \"5 g\" --length \"3 cm\" --stiffness-shape increasing";
+
+/// What the command line says about an identification.
+#[derive(Args)]
+pub struct Options {
+    /// The recording
+    #[arg(required_unless_present = "sample")]
+    data: Option<PathBuf>,
+    /// The mass that the force moves
+    #[arg(long)]
+    mass: Option<String>,
+    /// The length at rest
+    #[arg(long)]
+    length: Option<String>,
+    /// The cross-section at rest: with it and the length the law is one of the material, for springs of any length
+    #[arg(long)]
+    area: Option<String>,
+    /// Form of K(·): constant, polynomial-N, spline or spline-N
+    #[arg(long, value_name = "FORM", default_value = "spline", value_parser = Form::parse)]
+    stiffness: Form,
+    /// Form of D(·)
+    #[arg(long, value_name = "FORM", default_value = "spline", value_parser = Form::parse)]
+    damping: Form,
+    /// What is known of K(·)
+    #[arg(long, value_enum, default_value = "free")]
+    stiffness_shape: KnownShape,
+    /// What is known of D(·)
+    #[arg(long, value_enum, default_value = "free")]
+    damping_shape: KnownShape,
+    /// What D(·) is a function of
+    #[arg(long, value_enum, default_value = "extension")]
+    damping_over: Over,
+    /// Write the law, the picture and the figures into this folder instead of output/NAME/
+    #[arg(long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Write a computed recording of known functions into this file, and do no more
+    #[arg(long, value_name = "FILE", conflicts_with = "data")]
+    sample: Option<PathBuf>,
+    /// Seed of the computed recording's noise
+    #[arg(long, default_value_t = 1, requires = "sample")]
+    seed: u64,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum KnownShape {
+    /// Nothing
+    Free,
+    /// It nowhere falls
+    Increasing,
+    /// It nowhere rises
+    Decreasing,
+}
+
+impl From<KnownShape> for Shape {
+    fn from(known: KnownShape) -> Self {
+        match known {
+            KnownShape::Free => Self::Free,
+            KnownShape::Increasing => Self::Increasing,
+            KnownShape::Decreasing => Self::Decreasing,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Over {
+    /// The extension
+    Extension,
+    /// Its rate
+    Rate,
+}
+
+/// Identifies, prints, and writes law, picture and figures.
+pub fn run(options: Options) -> Outcome {
+    if let Some(file) = options.sample {
+        let sample = Sample {
+            seed: options.seed,
+            ..Sample::default()
+        };
+        output::save(&file, sample.csv().as_bytes())?;
+        print(&format!("{} written\n", file.display()))?;
+        return Ok(0);
+    }
+    let path = options.data.unwrap_or_default();
+    let said = Said {
+        mass: options.mass,
+        length: options.length,
+        area: options.area,
+    };
+    let recording = Recording::read(&path, &said)?;
+    let settings = IdentificationSettings {
+        forms: [options.stiffness, options.damping],
+        shapes: [options.stiffness_shape.into(), options.damping_shape.into()],
+        argument: match options.damping_over {
+            Over::Extension => Argument::Extension,
+            Over::Rate => Argument::Rate,
+        },
+    };
+    let found = identify(&recording, settings)?;
+    for warning in &found.warnings {
+        warn(&[Diagnostic::warning("", warning)]);
+    }
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let folder = options
+        .output
+        .unwrap_or_else(|| Path::new("output").join(&stem));
+    let law = write(&found, &recording, &path, &folder, &stem)?;
+    print(&format!(
+        "{}written: {} with .png and .json\n",
+        message(&found, &recording, &path),
+        law.display()
+    ))?;
+    Ok(0)
+}
+
+fn write(
+    found: &Identification,
+    recording: &Recording,
+    path: &Path,
+    folder: &Path,
+    stem: &str,
+) -> Result<PathBuf, Error> {
+    output::prepare(folder)?;
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    let target = |ending: &str| folder.join(format!("{stem}.{ending}"));
+    let json = output::identification_json(found, recording, &file);
+    output::save(&target("json"), format!("{json:#}\n").as_bytes())?;
+    output::save(
+        &target("png"),
+        &output::identification_picture(found, recording),
+    )?;
+    output::save(
+        &target("toml"),
+        law_text(found, recording, &file).as_bytes(),
+    )
+}
+
+fn message(found: &Identification, recording: &Recording, path: &Path) -> String {
+    let mut text = format!(
+        "{}: {} instants\nnoise: {} mm of the extension, {} N of the force\n\
+         misfit: {} (1 where force, motion and forms fit together)\n",
+        path.display(),
+        recording.times.len(),
+        number(found.noise[0]),
+        number(found.noise[1]),
+        number(found.misfit)
+    );
+    for (index, (symbol, unit, function)) in found.functions().into_iter().enumerate() {
+        let rate = index == 1 && found.settings.argument == Argument::Rate;
+        let (argument, of) = if rate {
+            ("rate [mm/s]", "mm/s")
+        } else {
+            ("extension [mm]", "mm")
+        };
+        let _ = write!(
+            text,
+            "\n{symbol}(·) in {unit}, {} effective coefficients\n",
+            number(function.degrees)
+        );
+        text += &powers(function, of);
+        text += &curve(function, argument);
+    }
+    text
+}
+
+/// The coefficients of constants and polynomials.
+fn powers(function: &Function, unit: &str) -> String {
+    let mut text = String::new();
+    for (power, estimate) in function.powers().into_iter().enumerate() {
+        let [low, high] = estimate.interval.map(number);
+        let per = if power == 0 {
+            String::new()
+        } else {
+            format!(" per ({unit})^{power}")
+        };
+        let value = number(estimate.value);
+        let error = number(estimate.standard_error);
+        let _ = writeln!(text, "  {value} ± {error}{per}   95 % {low} … {high}");
+    }
+    text
+}
+
+fn curve(function: &Function, argument: &str) -> String {
+    const PLACES: usize = 7;
+    let mut text = format!(
+        "  {argument:>14}  {:>10}  {:>10}  95 % at one place; band\n",
+        "value", "std error"
+    );
+    for x in function.places(PLACES) {
+        let estimate = function.at(x);
+        let [low, high] = estimate.interval.map(number);
+        let [below, above] = function.band(x).map(number);
+        let _ = writeln!(
+            text,
+            "  {:>14}  {:>10}  {:>10}  {low} … {high}; {below} … {above}",
+            format!("{x:.3}"),
+            number(estimate.value),
+            number(estimate.standard_error)
+        );
+    }
+    text
+}

@@ -1,0 +1,419 @@
+//! The corrective technique in time: a motion ū(t) on the nodes is brought to the nearest one that satisfies the equation
+//! of motion at every three consecutive instants, Eq. 5–19 of the publication with F of order 2.
+//!
+//! ```text
+//! F₁ = M (u₂ − 2 u₁ + u₀)/h² + β g₀ + (1 − 2β) g₁ + β g₂ + ½ (c₁₂ + c₀₁) = 0,   g = ∂Π/∂u − f(t)      [N]
+//! F₀ = M (u₁ − u₀ − h u̇₀)/h² + (½ − β) g₀ + β g₁ + ½ c₀₁ = 0                        at the start, with u₀ and u̇₀
+//! ```
+//!
+//! c₀₁ are the viscous forces in the middle of a step: at ½ (u₀ + u₁) with the rate (u₁ − u₀)/h. β = ¼ is Newmark's average
+//! acceleration, β = 0 the central differences of Eq. 5; both are of second order in h.
+//!
+//! **Known start.** With u₀ and u̇₀ (or the first two instants), the supports and all loads, there is one equation for
+//! each unknown. B is square, and lower triangular in blocks of one instant: the correction is Newton's method in time that
+//! begins at ū, and its result does not depend on ū, which has a say in the multipliers only. [`EquationOfMotion::correct`]
+//! goes through windows of time with one factor of the block on the diagonal, retained as long as it serves.
+//!
+//! **Unknown start.** A recorded motion has no known start: there are two equations fewer than instants at each unknown,
+//! and [`EquationOfMotion::smooth`] solves the least-squares problem of Eq. 6–12 in earnest. Noise that no motion of the
+//! body makes is removed: of white noise over n instants about √(2/n) is left.
+//!
+//! # References
+//! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems, Eq. 5–19;
+//! N. M. Newmark, J. Eng. Mech. Div. ASCE 85, 67 (1959)
+
+use rayon::prelude::*;
+
+use super::{Condition, Corrector, CorrectorSettings, Linearised};
+use crate::dynamics::Motion;
+use crate::dynamics::viscosity::{Passing, ViscousLocal};
+use crate::error::SolveFault;
+use crate::solve::{Assembly, Inadmissible, Local, Potential, SparseRows};
+
+mod window;
+
+pub use window::{CorrectedMotion, WindowSettings};
+
+#[cfg(test)]
+mod tests;
+
+/// The name of the condition.
+const NAME: &str = "equation of motion";
+
+/// The equation of motion of a body at equal steps of time.
+pub struct EquationOfMotion<'a> {
+    motion: &'a Motion<'a>,
+    assembly: Assembly,
+    step: f64,
+    weight: f64,
+}
+
+/// Forces g and their tangent at an instant, over the free unknowns.
+struct Frame {
+    force: Vec<f64>,
+    stiffness: Vec<f64>,
+}
+
+/// Viscous forces of a step and their tangents by its two ends.
+struct Link {
+    force: Vec<f64>,
+    by_ends: [Vec<f64>; 2],
+}
+
+/// A stretch of instants, linearised.
+struct Stretch {
+    frames: Vec<Frame>,
+    links: Vec<Link>,
+}
+
+/// What an equation takes of an instant: its number, and the factors of M u/h² and of g.
+type Term = (usize, f64, f64);
+
+impl<'a> EquationOfMotion<'a> {
+    /// The equation of `motion` at instants from time 0 on that are `step` apart in s, with β = `weight`.
+    ///
+    /// # Errors
+    /// Says why the motion does not take it: a support that lets go, stresses that remember, or a free unknown without
+    /// mass.
+    pub fn new(motion: &'a Motion<'a>, step: f64, weight: f64) -> Result<Self, String> {
+        if motion
+            .supports
+            .iter()
+            .any(|support| support.until.is_some_and(|until| until > 0.0))
+        {
+            return Err("a support lets go: begin at the release".into());
+        }
+        let remembers = |viscosity: &dyn crate::dynamics::Viscosity| {
+            (0..motion.energy.elements()).any(|element| viscosity.memory(element) > 0)
+        };
+        if motion.viscosity.is_some_and(remembers) {
+            return Err("three instants do not tell the stresses of a Prony series".into());
+        }
+        let assembly = Assembly::new(motion.energy, &motion.held(0.0));
+        if assembly
+            .free()
+            .iter()
+            .any(|unknown| motion.mass[*unknown] <= 0.0)
+        {
+            return Err("a free unknown has no mass".into());
+        }
+        Ok(Self {
+            motion,
+            assembly,
+            step,
+            weight,
+        })
+    }
+
+    /// Corrects a recorded motion with an unknown start: all unknowns at all instants, of which `data` are measured and
+    /// `start` is a guess without noise. Each stretch of `instants` is corrected by itself.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when a stretch has no solution that is found.
+    ///
+    /// # Panics
+    /// When `data` and `start` have different numbers of instants.
+    pub fn smooth(
+        &self,
+        data: &[Vec<f64>],
+        start: &[Vec<f64>],
+        instants: usize,
+        settings: CorrectorSettings,
+    ) -> Result<Vec<Vec<f64>>, SolveFault> {
+        assert_eq!(data.len(), start.len(), "a guess for every instant");
+        let count = data.len();
+        let mut smoothed = Vec::with_capacity(count);
+        while smoothed.len() < count {
+            let first = smoothed.len();
+            let rest = count - first;
+            // A rest of one or two instants would have no equation.
+            let own = if rest < instants + 3 { rest } else { instants };
+            let stacked = |fields: &[Vec<f64>]| -> Vec<f64> {
+                fields[first..first + own]
+                    .iter()
+                    .flat_map(|field| self.free(field))
+                    .collect()
+            };
+            let size = own * self.assembly.free().len();
+            let condition = Stacked {
+                equation: self,
+                first,
+                instants: own,
+            };
+            let corrector = Corrector::new(vec![Box::new(condition)], vec![1.0; size], settings);
+            let correction = corrector.correct(&stacked(data), &stacked(start))?;
+            let fields = correction
+                .field()
+                .chunks_exact(self.assembly.free().len())
+                .enumerate();
+            smoothed.extend(fields.map(|(i, field)| self.whole(first + i, field)));
+        }
+        Ok(smoothed)
+    }
+
+    fn time(&self, instant: usize) -> f64 {
+        self.step * instant as f64
+    }
+
+    /// The free unknowns of a field.
+    fn free(&self, field: &[f64]) -> Vec<f64> {
+        self.assembly
+            .free()
+            .iter()
+            .map(|unknown| field[*unknown])
+            .collect()
+    }
+
+    /// The whole field of an instant from its free unknowns.
+    fn whole(&self, instant: usize, free: &[f64]) -> Vec<f64> {
+        let size = self.motion.energy.unknowns();
+        let (mut field, mut rate, mut second) = (vec![0.0; size], vec![0.0; size], vec![0.0; size]);
+        let time = self.time(instant);
+        self.motion
+            .impose(time, time, [&mut field, &mut rate, &mut second]);
+        for (unknown, value) in self.assembly.free().iter().zip(free) {
+            field[*unknown] = *value;
+        }
+        field
+    }
+
+    /// All instants and steps of a stretch whose first instant has the number `first`.
+    fn linearise(&self, first: usize, states: &[Vec<f64>]) -> Result<Stretch, Inadmissible> {
+        let numbered: Vec<_> = states.iter().enumerate().collect();
+        let fields: Vec<Vec<f64>> = numbered
+            .par_iter()
+            .map(|(i, state)| self.whole(first + i, state))
+            .collect();
+        let frames = fields.par_iter().enumerate();
+        let frames = frames
+            .map(|(i, field)| self.frame(first + i, field))
+            .collect::<Result<_, _>>()?;
+        let links = fields
+            .par_windows(2)
+            .map(|pair| self.link(&pair[0], &pair[1]));
+        Ok(Stretch {
+            frames,
+            links: links.collect::<Result<_, _>>()?,
+        })
+    }
+
+    fn frame(&self, instant: usize, field: &[f64]) -> Result<Frame, Inadmissible> {
+        let (mut residual, mut stiffness) = (vec![0.0; field.len()], Vec::new());
+        self.assembly
+            .linearise(self.motion.energy, field, &mut residual, &mut stiffness)?;
+        let external = self.motion.external_forces(self.time(instant));
+        let free = self.assembly.free().iter();
+        Ok(Frame {
+            force: free.map(|i| residual[*i] - external[*i]).collect(),
+            stiffness,
+        })
+    }
+
+    fn link(&self, from: &[f64], to: &[f64]) -> Result<Link, Inadmissible> {
+        let size = self.assembly.free().len();
+        let empty = || vec![0.0; self.assembly.pattern().entries()];
+        let Some(viscosity) = self.motion.viscosity else {
+            return Ok(Link {
+                force: vec![0.0; size],
+                by_ends: [empty(), empty()],
+            });
+        };
+        let pairs = || from.iter().zip(to);
+        let middle: Vec<f64> = pairs().map(|(a, b)| 0.5 * (a + b)).collect();
+        let rate: Vec<f64> = pairs().map(|(a, b)| (b - a) / self.step).collect();
+        let mut force = vec![0.0; from.len()];
+        let mut by_end = |by_rate: f64| -> Result<Vec<f64>, Inadmissible> {
+            let step = ViscousStep {
+                energy: self.motion.energy,
+                viscosity,
+                rate: &rate,
+                elapsed: self.step,
+                by_rate,
+            };
+            let mut values = Vec::new();
+            self.assembly
+                .linearise(&step, &middle, &mut force, &mut values)?;
+            Ok(values)
+        };
+        let by_ends = [by_end(-1.0 / self.step)?, by_end(1.0 / self.step)?];
+        Ok(Link {
+            force: self.free(&force),
+            by_ends,
+        })
+    }
+
+    /// What the equation of a row takes of each instant; row 0 is the start.
+    fn terms(&self, row: usize) -> Vec<Term> {
+        let beta = self.weight;
+        match row {
+            0 => vec![(0, -1.0, 0.5 - beta), (1, 1.0, beta)],
+            _ => vec![
+                (row - 1, 1.0, beta),
+                (row, -2.0, 1.0 - 2.0 * beta),
+                (row + 1, 1.0, beta),
+            ],
+        }
+    }
+
+    /// F of a row; without the start's velocity.
+    fn value(&self, row: usize, stretch: &Stretch, states: &[Vec<f64>]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.assembly.free().len()];
+        for (instant, inertia, elastic) in self.terms(row) {
+            let own = states[instant].iter().zip(&stretch.frames[instant].force);
+            for ((sum, unknown), (u, force)) in sum.iter_mut().zip(self.assembly.free()).zip(own) {
+                *sum += inertia * self.inertia(*unknown) * u + elastic * force;
+            }
+        }
+        for link in row.saturating_sub(1)..=row {
+            let own = sum.iter_mut().zip(&stretch.links[link].force);
+            own.for_each(|(sum, force)| *sum += 0.5 * force);
+        }
+        sum
+    }
+
+    /// ∂F/∂u of a row by one of its instants, on the pattern of the stiffness: symmetric.
+    fn block(&self, row: usize, instant: usize, stretch: &Stretch) -> Vec<f64> {
+        let terms = self.terms(row);
+        let Some((_, inertia, elastic)) = terms.into_iter().find(|(own, ..)| *own == instant)
+        else {
+            return vec![0.0; self.assembly.pattern().entries()];
+        };
+        let mut values: Vec<f64> = stretch.frames[instant]
+            .stiffness
+            .iter()
+            .map(|k| elastic * k)
+            .collect();
+        for link in row.saturating_sub(1)..=row {
+            if let Some(end) = instant.checked_sub(link).filter(|end| *end < 2) {
+                let own = values.iter_mut().zip(&stretch.links[link].by_ends[end]);
+                own.for_each(|(sum, c)| *sum += 0.5 * c);
+            }
+        }
+        let diagonal = self.assembly.pattern().diagonal();
+        for (unknown, place) in self.assembly.free().iter().zip(diagonal) {
+            values[*place] += inertia * self.inertia(*unknown);
+        }
+        values
+    }
+
+    /// M/h² of an unknown.
+    fn inertia(&self, unknown: usize) -> f64 {
+        self.motion.mass[unknown] / (self.step * self.step)
+    }
+
+    fn inverted(&self, fault: Inadmissible) -> SolveFault {
+        SolveFault::Inverted {
+            element: (self.motion.describe)(fault.element),
+        }
+    }
+}
+
+/// Viscous forces in the middle of a step as if they were those of a potential, with the tangent by one of its ends.
+struct ViscousStep<'a> {
+    energy: &'a dyn Potential,
+    viscosity: &'a dyn crate::dynamics::Viscosity,
+    rate: &'a [f64],
+    elapsed: f64,
+    /// ∂rate/∂end in 1/s.
+    by_rate: f64,
+}
+
+impl Potential for ViscousStep<'_> {
+    fn unknowns(&self) -> usize {
+        self.energy.unknowns()
+    }
+
+    fn elements(&self) -> usize {
+        self.energy.elements()
+    }
+
+    fn element_unknowns(&self, element: usize) -> &[usize] {
+        self.energy.element_unknowns(element)
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        let velocity: Vec<f64> = self
+            .element_unknowns(element)
+            .iter()
+            .map(|i| self.rate[*i])
+            .collect();
+        let passing = Passing {
+            displacement: u,
+            velocity: &velocity,
+            memory: &[],
+            elapsed: self.elapsed,
+        };
+        let [mut by_place, mut by_rate] = [(); 2].map(|()| vec![0.0; u.len() * u.len()]);
+        let wanted = local.stiffness.is_some();
+        let tangents = wanted.then(|| [&mut by_place[..], &mut by_rate[..]]);
+        self.viscosity.add_element(
+            element,
+            passing,
+            ViscousLocal {
+                force: local.residual,
+                tangents,
+            },
+        )?;
+        for (sum, (k, c)) in local
+            .stiffness
+            .into_iter()
+            .flatten()
+            .zip(by_place.iter().zip(&by_rate))
+        {
+            *sum += 0.5 * k + self.by_rate * c;
+        }
+        Ok(0.0)
+    }
+}
+
+/// The equations of a stretch of instants, one above the other, over the free unknowns of all its instants.
+struct Stacked<'a> {
+    equation: &'a EquationOfMotion<'a>,
+    first: usize,
+    instants: usize,
+}
+
+impl Stacked<'_> {
+    fn states(&self, field: &[f64]) -> Vec<Vec<f64>> {
+        let size = self.equation.assembly.free().len();
+        field.chunks_exact(size).map(<[f64]>::to_vec).collect()
+    }
+}
+
+impl Condition for Stacked<'_> {
+    fn name(&self) -> &str {
+        NAME
+    }
+
+    fn rows(&self) -> usize {
+        (self.instants - 2) * self.equation.assembly.free().len()
+    }
+
+    fn linearise(&self, field: &[f64]) -> Result<Linearised, Inadmissible> {
+        let (equation, states) = (self.equation, self.states(field));
+        let size = equation.assembly.free().len();
+        let stretch = equation.linearise(self.first, &states)?;
+        let (mut values, mut jacobian) = (Vec::new(), SparseRows::new(field.len()));
+        for row in 1..self.instants - 1 {
+            values.extend(equation.value(row, &stretch, &states));
+            let blocks = [row - 1, row, row + 1].map(|instant| {
+                let block = equation.block(row, instant, &stretch);
+                (instant, equation.assembly.pattern().full_rows(&block))
+            });
+            for unknown in 0..size {
+                let entries = blocks.iter().flat_map(|(instant, rows)| {
+                    rows[unknown]
+                        .iter()
+                        .map(move |(column, value)| (instant * size + column, *value))
+                });
+                jacobian.push(entries);
+            }
+        }
+        Ok(Linearised { values, jacobian })
+    }
+}

@@ -1,0 +1,321 @@
+//! Newton's method in time with a known start: windows, a retained factor, and multipliers.
+
+use super::{EquationOfMotion, Stretch};
+use crate::dynamics::Start;
+use crate::error::SolveFault;
+use crate::solve::Cholesky;
+use crate::solve::sparse::largest;
+
+/// How a motion is corrected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowSettings {
+    /// Steps of time that are corrected together; fewer where that fails.
+    pub steps: usize,
+    /// Largest residual relative to the largest force.
+    pub tolerance: f64,
+    /// Newton steps allowed for a window.
+    pub max_iterations: usize,
+}
+
+/// A corrected motion.
+#[derive(Clone, Debug)]
+pub struct CorrectedMotion {
+    /// The displacement at every instant, in mm.
+    pub displacement: Vec<Vec<f64>>,
+    /// The multipliers of the equation that determines each instant, zero at the first and where unknowns are held, in
+    /// mm²/N: where and when ū contradicts the equation of motion.
+    pub multipliers: Vec<Vec<f64>>,
+    /// Newton steps of all windows.
+    pub iterations: usize,
+    /// Factorisations.
+    pub factorisations: usize,
+    /// Windows that were corrected.
+    pub windows: usize,
+}
+
+/// A stretch of instants on the way.
+struct Window {
+    /// The number of the first instant, which is known.
+    first: usize,
+    /// The first row: 0 at the start, else 1.
+    begin: usize,
+    states: Vec<Vec<f64>>,
+}
+
+/// The factor of ∂F/∂u of the newest instant.
+struct Retained {
+    cholesky: Cholesky,
+    fresh: bool,
+    made: usize,
+}
+
+/// A factor is renewed when an iteration leaves more than this part of the residual.
+const SLOW: f64 = 0.2;
+
+/// A residual that stagnates below this share of the forces is rounding.
+const ROUNDING_FLOOR: f64 = 1e-8;
+
+impl EquationOfMotion<'_> {
+    /// Corrects a motion that is given at instants from time 0 on, with a known start.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when a window of a single step fails.
+    pub fn correct(
+        &self,
+        data: &[Vec<f64>],
+        start: &Start,
+        settings: WindowSettings,
+    ) -> Result<CorrectedMotion, SolveFault> {
+        let singular = |_| SolveFault::Singular;
+        let cholesky = self
+            .assembly
+            .analyse(self.motion.energy)
+            .map_err(singular)?;
+        let mut retained = Retained {
+            cholesky,
+            fresh: false,
+            made: 0,
+        };
+        let size = self.motion.energy.unknowns();
+        let mut corrected = CorrectedMotion {
+            displacement: vec![self.whole(0, &self.free(&start.displacement))],
+            multipliers: vec![vec![0.0; size]],
+            iterations: 0,
+            factorisations: 0,
+            windows: 0,
+        };
+        let velocity = self.free(&start.velocity);
+        let mut steps = settings.steps.max(1);
+        while corrected.displacement.len() < data.len() {
+            let done = corrected.displacement.len();
+            let count = steps.min(data.len() - done);
+            let mut window = self.window(&corrected.displacement, data, count);
+            let solved = self.solve(&mut window, &velocity, &mut retained, settings);
+            match solved {
+                Ok((stretch, iterations)) => {
+                    self.append(&window, data, &stretch, &mut retained, &mut corrected)?;
+                    corrected.iterations += iterations;
+                    corrected.windows += 1;
+                    steps = (2 * steps).min(settings.steps.max(1));
+                }
+                Err(fault) if count == 1 => return Err(fault),
+                Err(_) => steps = count / 2,
+            }
+        }
+        corrected.factorisations = retained.made;
+        Ok(corrected)
+    }
+
+    /// The next instants: those of ū, moved on by what its last known instants were corrected by.
+    fn window(&self, known: &[Vec<f64>], data: &[Vec<f64>], count: usize) -> Window {
+        let last = known.len() - 1;
+        let (first, begin) = if last == 0 { (0, 0) } else { (last - 1, 1) };
+        let mut states: Vec<Vec<f64>> = known[first..]
+            .iter()
+            .map(|field| self.free(field))
+            .collect();
+        let wrong = |instant: usize| -> Vec<f64> {
+            let pair = self
+                .free(&known[instant])
+                .into_iter()
+                .zip(self.free(&data[instant]));
+            pair.map(|(u, data)| u - data).collect()
+        };
+        let (before, now) = (wrong(first), wrong(last));
+        for ahead in 1..=count {
+            let data = self.free(&data[last + ahead]).into_iter();
+            let guess = data.zip(now.iter().zip(&before));
+            states.push(
+                guess
+                    .map(|(u, (now, before))| u + now + ahead as f64 * (now - before))
+                    .collect(),
+            );
+        }
+        Window {
+            first,
+            begin,
+            states,
+        }
+    }
+
+    /// Newton steps: one sweep through the blocks of a row each, with the retained factor of the newest instant.
+    fn solve(
+        &self,
+        window: &mut Window,
+        velocity: &[f64],
+        retained: &mut Retained,
+        settings: WindowSettings,
+    ) -> Result<(Stretch, usize), SolveFault> {
+        let mut last = f64::INFINITY;
+        for iteration in 0..=settings.max_iterations {
+            let stretch = self.linearise(window.first, &window.states);
+            let stretch = stretch.map_err(|fault| self.inverted(fault))?;
+            let values = self.values(window, &stretch, velocity);
+            let residual = values
+                .iter()
+                .fold(0.0, |most: f64, row| most.max(largest(row)))
+                / self.scale(&stretch, window);
+            if !residual.is_finite() {
+                return Err(SolveFault::NotFinite("the corrected motion".into()));
+            }
+            let settled = residual < ROUNDING_FLOOR && residual > 0.5 * last;
+            if residual <= settings.tolerance || settled {
+                return Ok((stretch, iteration));
+            }
+            if !retained.fresh || residual > SLOW * last {
+                let newest = self.block(window.begin, window.begin + 1, &stretch);
+                retained
+                    .cholesky
+                    .factorise(&newest)
+                    .map_err(|_| SolveFault::NotPositiveDefinite)?;
+                retained.fresh = true;
+                retained.made += 1;
+            }
+            self.sweep(window, &stretch, &values, &mut retained.cholesky);
+            last = residual;
+        }
+        Err(SolveFault::Stalled {
+            iterations: settings.max_iterations,
+            residual: last,
+            tolerance: settings.tolerance,
+        })
+    }
+
+    /// F of all rows.
+    fn values(&self, window: &Window, stretch: &Stretch, velocity: &[f64]) -> Vec<Vec<f64>> {
+        let rows = window.begin..window.states.len() - 1;
+        let mut values: Vec<Vec<f64>> = rows
+            .map(|row| self.value(row, stretch, &window.states))
+            .collect();
+        if window.begin == 0 {
+            let own = values[0].iter_mut().zip(self.assembly.free()).zip(velocity);
+            own.for_each(|((value, unknown), v)| *value -= self.inertia(*unknown) * self.step * v);
+        }
+        values
+    }
+
+    /// The largest force in N: elastic, or that of inertia.
+    fn scale(&self, stretch: &Stretch, window: &Window) -> f64 {
+        let forces = stretch.frames.iter().map(|frame| largest(&frame.force));
+        let second = window.states.windows(3).map(|three| {
+            let free = self.assembly.free().iter().enumerate();
+            free.fold(0.0, |most: f64, (i, unknown)| {
+                let change = three[0][i] - 2.0 * three[1][i] + three[2][i];
+                most.max((self.inertia(*unknown) * change).abs())
+            })
+        });
+        forces.chain(second).fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    /// B δ = −F, forward in time.
+    fn sweep(
+        &self,
+        window: &mut Window,
+        stretch: &Stretch,
+        values: &[Vec<f64>],
+        cholesky: &mut Cholesky,
+    ) {
+        let pattern = self.assembly.pattern();
+        let mut changes: Vec<Vec<f64>> = vec![vec![0.0; values[0].len()]; window.states.len()];
+        for (row, value) in (window.begin..).zip(values) {
+            let mut right: Vec<f64> = value.iter().map(|f| -f).collect();
+            let earliest = (window.begin + 1).max(row.saturating_sub(1));
+            for (instant, change) in changes.iter().enumerate().take(row + 1).skip(earliest) {
+                let moved = pattern.multiply(&self.block(row, instant, stretch), change);
+                right
+                    .iter_mut()
+                    .zip(moved)
+                    .for_each(|(right, moved)| *right -= moved);
+            }
+            cholesky.substitute(&mut right);
+            let own = window.states[row + 1].iter_mut().zip(&right);
+            own.for_each(|(u, change)| *u += change);
+            changes[row + 1] = right;
+        }
+    }
+
+    /// Takes a window's instants and multipliers over.
+    fn append(
+        &self,
+        window: &Window,
+        data: &[Vec<f64>],
+        stretch: &Stretch,
+        retained: &mut Retained,
+        corrected: &mut CorrectedMotion,
+    ) -> Result<(), SolveFault> {
+        let multipliers = self.multipliers(window, data, stretch, &mut retained.cholesky)?;
+        for (row, psi) in (window.begin..).zip(multipliers) {
+            let instant = window.first + row + 1;
+            corrected
+                .displacement
+                .push(self.whole(instant, &window.states[row + 1]));
+            let mut whole = vec![0.0; self.motion.energy.unknowns()];
+            for (unknown, value) in self.assembly.free().iter().zip(psi) {
+                whole[*unknown] = value;
+            }
+            corrected.multipliers.push(whole);
+        }
+        Ok(())
+    }
+
+    /// u − ū + Bᵀ ψ = 0 in the window, backward in time.
+    fn multipliers(
+        &self,
+        window: &Window,
+        data: &[Vec<f64>],
+        stretch: &Stretch,
+        cholesky: &mut Cholesky,
+    ) -> Result<Vec<Vec<f64>>, SolveFault> {
+        let pattern = self.assembly.pattern();
+        let rows = window.states.len() - 1;
+        let mut psi: Vec<Vec<f64>> = vec![Vec::new(); rows];
+        for row in (window.begin..rows).rev() {
+            let instant = row + 1;
+            let data = self.free(&data[window.first + instant]).into_iter();
+            let mut right: Vec<f64> = data
+                .zip(&window.states[instant])
+                .map(|(data, u)| data - u)
+                .collect();
+            for (later, psi) in psi.iter().enumerate().skip(instant).take(2) {
+                let moved = pattern.multiply(&self.block(later, instant, stretch), psi);
+                right
+                    .iter_mut()
+                    .zip(moved)
+                    .for_each(|(right, moved)| *right -= moved);
+            }
+            psi[row] = self.refined(&self.block(row, instant, stretch), &right, cholesky)?;
+        }
+        Ok(psi.split_off(window.begin))
+    }
+
+    /// A⁻¹ b by the retained factor, repeated on its defect.
+    fn refined(
+        &self,
+        values: &[f64],
+        right: &[f64],
+        cholesky: &mut Cholesky,
+    ) -> Result<Vec<f64>, SolveFault> {
+        const REPEATS: usize = 40;
+        const TOLERANCE: f64 = 1e-10;
+        let mut found = vec![0.0; right.len()];
+        let mut defect = right.to_vec();
+        let scale = largest(right);
+        for _ in 0..REPEATS {
+            if largest(&defect) <= TOLERANCE * scale {
+                return Ok(found);
+            }
+            cholesky.substitute(&mut defect);
+            found
+                .iter_mut()
+                .zip(&defect)
+                .for_each(|(x, change)| *x += change);
+            let product = self.assembly.pattern().multiply(values, &found);
+            defect = right
+                .iter()
+                .zip(product)
+                .map(|(b, product)| b - product)
+                .collect();
+        }
+        Err(SolveFault::Singular)
+    }
+}

@@ -1,0 +1,401 @@
+//! From recorded force and motion to the functions K(·) and D(·) of a spring with a dashpot.
+//!
+//! ```text
+//! m ẍ + D(·) ẋ + K(·) x = f                        x: extension beyond the length at rest, f: force that pulls
+//! minimise  ‖x̃ − x‖²/s_x² + ‖f̃ − f‖²/s_f² + penalty      over the motion x(t), K(·) and D(·)
+//! ```
+//!
+//! Both signals are data of one motion. It is a spline of degree 5 over time, with as many parts as generalised
+//! cross-validation asks for in either signal, and its derivatives are exact. No noisy signal is ever differentiated
+//! or put into a regressor, so that noise makes no bias: a regression of f̃ on derivatives of x̃ underestimates
+//! K and D. What is left of either signal's own spline gives its noise s_x, s_f.
+//!
+//! K(·) and D(·) are constants, polynomials, or cubic B-splines with a penalty on the squares of third differences
+//! of their coefficients. Its weights are a tenth of those of least generalised cross-validation, so that intervals hold;
+//! splines may be held to rise or to fall. Force and motion must be sampled at the same instants, their noise be white.
+//!
+//! # References
+//! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems, Eq. 2–5;
+//! P. H. C. Eilers, B. D. Marx, Stat. Sci. 11, 89 (1996), doi:10.1214/ss/1038425655;
+//! P. Craven, G. Wahba, Numer. Math. 31, 377 (1979), doi:10.1007/BF01404567
+
+use nalgebra::DVector;
+
+use crate::error::Error;
+use band::reach;
+use joint::{Joint, Linearised, State};
+use penalty::{Exponents, Penalised};
+use smoothing::{Sampled, Smoothed, nearest, smooth};
+use spline::UniformSpline;
+
+mod band;
+mod basis;
+mod joint;
+mod law_text;
+mod penalty;
+mod recording;
+mod sample;
+mod smoothing;
+mod spline;
+
+pub use band::Function;
+pub use basis::{Basis, Form, Shape};
+pub use joint::Argument;
+pub use law_text::law_text;
+pub use recording::{Recording, Said};
+pub use sample::Sample;
+
+#[cfg(test)]
+mod tests;
+
+/// What is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IdentificationSettings {
+    /// The forms of K(·) and D(·).
+    pub forms: [Form; 2],
+    /// What is known of their shapes.
+    pub shapes: [Shape; 2],
+    /// What D(·) is a function of.
+    pub argument: Argument,
+}
+
+impl Identification {
+    /// The functions with their symbols and units.
+    pub fn functions(&self) -> [(&'static str, &'static str, &Function); 2] {
+        [
+            ("K", "N/mm", &self.stiffness),
+            ("D", "N·s/mm", &self.damping),
+        ]
+    }
+}
+
+impl Default for IdentificationSettings {
+    /// Free splines of the extension.
+    fn default() -> Self {
+        Self {
+            forms: [Form::SPLINE; 2],
+            shapes: [Shape::Free; 2],
+            argument: Argument::Extension,
+        }
+    }
+}
+
+/// The motion that was found, at the instants of the recording.
+#[derive(Clone, Debug, Default)]
+pub struct FoundMotion {
+    /// x in mm.
+    pub extension: Vec<f64>,
+    /// ẋ in mm/s.
+    pub rate: Vec<f64>,
+    /// ẍ in mm/s².
+    pub acceleration: Vec<f64>,
+    /// m ẍ + D ẋ + K x in N.
+    pub force: Vec<f64>,
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Identification {
+    /// What was looked for.
+    pub settings: IdentificationSettings,
+    /// K(·) in N/mm.
+    pub stiffness: Function,
+    /// D(·) in N·s/mm.
+    pub damping: Function,
+    /// The motion.
+    pub motion: FoundMotion,
+    /// Standard deviations of extension in mm and force in N, from either signal alone.
+    pub noise: [f64; 2],
+    /// ‖r‖²/(N − p) over these: one where force, motion and forms fit together.
+    pub misfit: f64,
+    /// N − p.
+    pub freedom: f64,
+    /// What deserves attention.
+    pub warnings: Vec<String>,
+}
+
+/// Gauss–Newton steps allowed, and those at which the penalties are still chosen.
+const MOST_STEPS: usize = 60;
+const CHOICES: usize = 6;
+
+/// Change of the penalised sum of squares that is left undone, over the misfit; a change of one is a standard error.
+const SETTLED: f64 = 1e-3;
+
+/// Parts of the motion for each part that cross-validation asks for in either signal alone: two derivatives of the
+/// motion count, and where it cannot follow them they make a bias. Finer parts cost little, since the equation of
+/// motion ties them together.
+const FINER: usize = 4;
+
+/// Instants for each part of the motion at least: both signals count at each.
+const FEWEST_IN_MOTION: usize = 2;
+
+/// Least noise, over the largest value of its signal: that of sums in floating point.
+const LEAST_NOISE: f64 = 1e-9;
+
+/// Finds K(·) and D(·).
+///
+/// # Errors
+/// [`Error::Input`] when the recording does not determine them, or when a form cannot take a shape.
+pub fn identify(
+    recording: &Recording,
+    settings: IdentificationSettings,
+) -> Result<Identification, Error> {
+    for (form, shape) in settings.forms.iter().zip(settings.shapes) {
+        if shape != Shape::Free && !matches!(form, Form::Spline(_)) {
+            let message = "only splines can be held to rise or to fall";
+            return Err(Error::input(
+                message,
+                "leave out the shape, or take the form `spline`",
+            ));
+        }
+    }
+    let signals = smooth(&recording.times, &recording.extension, 5)
+        .zip(smooth(&recording.times, &recording.force, 3))
+        .ok_or_else(|| undetermined("the motion"))?;
+    let (joint, start) =
+        begin(recording, settings, &signals).ok_or_else(|| undetermined("the motion"))?;
+    let mut fit = Fit {
+        joint: &joint,
+        state: start,
+        exponents: [0.0; 2],
+    };
+    let found = fit.improve()?;
+    fit.conclude(settings, &found, &signals)
+        .ok_or_else(|| undetermined("K(·) and D(·)"))
+}
+
+fn undetermined(what: &str) -> Error {
+    Error::input(
+        format!("the recording does not determine {what}"),
+        "record a longer motion with several speeds at each extension, without gaps, or take constants or polynomials",
+    )
+}
+
+/// The motion's spline with the coefficients nearest to the recorded motion.
+fn begin<'a>(
+    recording: &'a Recording,
+    settings: IdentificationSettings,
+    (extension, force): &(Smoothed, Smoothed),
+) -> Option<(Joint<'a>, State)> {
+    let times = &recording.times;
+    let span = [times[0], times[times.len() - 1]];
+    let mut intervals =
+        (FINER * extension.intervals.max(force.intervals)).min(times.len() / FEWEST_IN_MOTION);
+    let (spline, motion) = loop {
+        let spline = UniformSpline::new(span, intervals, 5);
+        match nearest(&spline, times, &recording.extension) {
+            Ok(motion) => break (spline, motion),
+            Err(_) if intervals > 1 => intervals -= 1 + intervals / 9,
+            Err(_) => return None,
+        }
+    };
+    let orders = [0, 1, 2].map(|order| Sampled::new(&spline, times, order));
+    let range = |order: usize| {
+        let values = (0..times.len()).map(|i| orders[order].value(i, &motion));
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+            [low.min(value), high.max(value)]
+        })
+    };
+    let arguments = [
+        range(0),
+        range(usize::from(settings.argument == Argument::Rate)),
+    ];
+    let functions = [0, 1].map(|index| Basis {
+        form: settings.forms[index],
+        shape: settings.shapes[index],
+        range: arguments[index],
+    });
+    let floor = |signal: &[f64]| {
+        LEAST_NOISE
+            * signal
+                .iter()
+                .fold(0.0, |most: f64, value| most.max(value.abs()))
+    };
+    let noise = [
+        extension.noise.max(floor(&recording.extension)),
+        force.noise.max(floor(&recording.force)),
+    ];
+    let coefficients = functions.iter().map(Basis::count).sum();
+    let state = State {
+        motion,
+        functions: DVector::zeros(coefficients),
+    };
+    let argument = settings.argument;
+    Some((
+        Joint {
+            recording,
+            orders,
+            noise,
+            functions,
+            argument,
+        },
+        state,
+    ))
+}
+
+/// A fit on its way.
+struct Fit<'a> {
+    joint: &'a Joint<'a>,
+    state: State,
+    exponents: Exponents,
+}
+
+impl Fit<'_> {
+    fn observations(&self) -> f64 {
+        2.0 * self.joint.recording.times.len() as f64
+    }
+
+    /// Gauss–Newton steps until nothing moves; the functions with the motion as it is come first.
+    fn improve(&mut self) -> Result<Penalised, Error> {
+        let unknown = || undetermined("K(·) and D(·)");
+        let functions = &self.joint.functions;
+        let fixed = self.joint.with_motion_fixed(&self.state);
+        let first = fixed
+            .minimum(&self.state.functions, functions, self.exponents)
+            .ok_or_else(unknown)?;
+        self.state.functions = first.coefficients;
+        let mut merit = f64::INFINITY;
+        for step in 0..MOST_STEPS {
+            let linearised = self.joint.linearise(&self.state).map_err(|_| unknown())?;
+            if step < CHOICES {
+                let counts = [self.observations(), linearised.motion_count() as f64];
+                let from = &self.state.functions;
+                self.exponents = linearised.reduced.choose(from, functions, counts);
+            }
+            let found = linearised
+                .reduced
+                .minimum(&self.state.functions, functions, self.exponents)
+                .ok_or_else(unknown)?;
+            let next = self.advance(&linearised, &found);
+            if step >= CHOICES && merit - next < SETTLED * next / self.observations() {
+                return Ok(found);
+            }
+            merit = next;
+        }
+        Err(Error::input(
+            "the steps towards K(·) and D(·) do not settle",
+            "look at the mass and the length at rest, or take constants or polynomials",
+        ))
+    }
+
+    /// Takes the longest share of a step that lowers the penalised sum of squares, and returns that sum.
+    fn advance(&mut self, linearised: &Linearised, found: &Penalised) -> f64 {
+        const HALVINGS: i32 = 12;
+        let functions = &found.coefficients - &self.state.functions;
+        let motion = linearised.motion_step(&functions);
+        let before = self.merit(&self.state, found);
+        let mut length = 1.0;
+        for _ in 0..HALVINGS {
+            let along = self.state.motion.iter().zip(&motion);
+            let next = State {
+                motion: along.map(|(c, step)| c + length * step).collect(),
+                functions: &self.state.functions + &functions * length,
+            };
+            let merit = self.merit(&next, found);
+            if merit <= before {
+                self.state = next;
+                return merit;
+            }
+            length *= 0.5;
+        }
+        before
+    }
+
+    fn merit(&self, state: &State, found: &Penalised) -> f64 {
+        let penalty = state.functions.dot(&(&found.penalty * &state.functions));
+        self.joint.sum_of_squares(state) + penalty
+    }
+
+    fn conclude(
+        &self,
+        settings: IdentificationSettings,
+        found: &Penalised,
+        signals: &(Smoothed, Smoothed),
+    ) -> Option<Identification> {
+        let joint = self.joint;
+        let used = self.state.motion.len() as f64 + found.degrees.iter().sum::<f64>();
+        let freedom = self.observations() - used;
+        let misfit = joint.sum_of_squares(&self.state) / freedom;
+        let mut first = 0;
+        let mut functions = [0, 1].map(|index| {
+            let basis = joint.functions[index];
+            let (own, count) = (first, basis.count());
+            first += count;
+            Function {
+                basis,
+                coefficients: self.state.functions.rows(own, count).into_owned(),
+                covariance: found.inverse.view((own, own), (count, count)) * misfit,
+                degrees: found.degrees[index],
+                reach: [0.0; 2],
+            }
+        });
+        let reach = reach(&functions, freedom)?;
+        functions
+            .iter_mut()
+            .for_each(|function| function.reach = reach);
+        let [stiffness, damping] = functions;
+        let mut identification = Identification {
+            settings,
+            stiffness,
+            damping,
+            motion: self.motion(),
+            noise: joint.noise,
+            misfit,
+            freedom,
+            warnings: Vec::new(),
+        };
+        identification.warnings = warnings(&identification, joint.recording, signals);
+        Some(identification)
+    }
+
+    fn motion(&self) -> FoundMotion {
+        let mut motion = FoundMotion::default();
+        for instant in 0..self.joint.recording.times.len() {
+            let at = self.joint.instant(instant, &self.state);
+            motion.extension.push(at.extension);
+            motion.rate.push(at.rate);
+            motion.acceleration.push(at.acceleration);
+            motion.force.push(at.force);
+        }
+        motion
+    }
+}
+
+fn warnings(
+    found: &Identification,
+    recording: &Recording,
+    signals: &(Smoothed, Smoothed),
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if signals.0.coarse || signals.1.coarse {
+        warnings
+            .push("the motion is sampled too coarsely for its noise to be told from it".to_owned());
+    }
+    let excess = (found.misfit - 1.0) / (2.0 / found.freedom).sqrt();
+    if excess > 4.0 {
+        warnings.push(format!(
+            "force and motion do not fit together: what is left is {:.2} times the noise; the mass, the length at rest or \
+             the forms are wrong, or there is more than one spring and one dashpot",
+            found.misfit.sqrt()
+        ));
+    }
+    for (name, _, function) in found.functions() {
+        let estimates: Vec<_> = function
+            .places(41)
+            .into_iter()
+            .map(|x| function.at(x))
+            .collect();
+        if estimates.iter().all(|estimate| estimate.interval[0] <= 0.0) {
+            warnings.push(format!("the recording does not tell {name}(·) from zero"));
+        }
+        if estimates.iter().any(|estimate| estimate.interval[1] < 0.0) {
+            warnings.push(format!(
+                "{name}(·) is negative somewhere: no passive spring does that"
+            ));
+        }
+    }
+    if recording.mass == 0.0 {
+        warnings.push("no mass is stated: inertia is left out".to_owned());
+    }
+    warnings
+}

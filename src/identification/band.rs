@@ -1,0 +1,124 @@
+//! How well a function is known.
+//!
+//! With the penalty taken as what is known of the function beforehand, its coefficients have the covariance
+//! s² (A + P)⁻¹, which counts the bias of the penalty too. Intervals hold at one place; the band holds at all places
+//! of both functions together: its half width is c standard errors with
+//!
+//! ```text
+//! Σ κ/π (1 + c²/ν)^(−ν/2) + P(|t_ν| > c) = 5 %        κ = ∫ ‖d(l/‖l‖)/dx‖ dx,  l lᵀ = b(x)ᵀ Cov b(x)
+//! ```
+//!
+//! # References
+//! D. Nychka, J. Am. Stat. Assoc. 83, 1134 (1988), doi:10.1080/01621459.1988.10478711;
+//! J. Sun, C. R. Loader, Ann. Stat. 22, 1328 (1994), doi:10.1214/aos/1176325631
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::basis::{Basis, Form};
+use crate::corrector::Estimate;
+
+/// An identified function.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Its basis.
+    pub basis: Basis,
+    /// Its coefficients.
+    pub coefficients: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// Effective number of coefficients.
+    pub degrees: f64,
+    /// Half widths in standard errors: of the 95 % interval at one place and of the 95 % band.
+    pub reach: [f64; 2],
+}
+
+impl Function {
+    /// Coefficients of a constant or a polynomial in powers of x, with their uncertainty.
+    pub fn powers(&self) -> Vec<Estimate> {
+        let scale = self.basis.scale();
+        let estimate = |power: usize| {
+            let unit = scale.powi(-i32::try_from(power).unwrap_or(i32::MAX));
+            let value = self.coefficients[power] * unit;
+            let standard_error = self.covariance[(power, power)].max(0.0).sqrt() * unit;
+            self.estimate(value, standard_error)
+        };
+        match self.basis.form {
+            Form::Spline(_) => Vec::new(),
+            Form::Constant | Form::Polynomial(_) => (0..self.basis.count()).map(estimate).collect(),
+        }
+    }
+
+    fn estimate(&self, value: f64, standard_error: f64) -> Estimate {
+        let reach = self.reach[0] * standard_error;
+        Estimate {
+            value,
+            standard_error,
+            interval: [value - reach, value + reach],
+        }
+    }
+
+    /// The value at `x` with its standard error and its 95 % interval at this place alone.
+    pub fn at(&self, x: f64) -> Estimate {
+        let value = self.coefficients.dot(&self.basis.values(x, 0));
+        self.estimate(value, self.product(x, x).max(0.0).sqrt())
+    }
+
+    /// The 95 % band at `x`, which holds at all places of both functions together.
+    pub fn band(&self, x: f64) -> [f64; 2] {
+        let Estimate {
+            value,
+            standard_error,
+            ..
+        } = self.at(x);
+        [-1.0, 1.0].map(|sign| value + sign * self.reach[1] * standard_error)
+    }
+
+    /// Evenly spaced arguments over the range of the data.
+    pub fn places(&self, count: usize) -> Vec<f64> {
+        let [low, high] = self.basis.range;
+        let place = |i: usize| low + (high - low) * i as f64 / (count - 1) as f64;
+        (0..count).map(place).collect()
+    }
+
+    fn product(&self, x: f64, y: f64) -> f64 {
+        let [x, y] = [x, y].map(|place| self.basis.values(place, 0));
+        x.dot(&(&self.covariance * y))
+    }
+
+    /// κ: the length of the curve of unit vectors that the function's errors follow.
+    fn length(&self) -> f64 {
+        const STEPS: usize = 400;
+        let places = self.places(STEPS + 1);
+        let angle = |pair: &[f64]| {
+            let own = self.product(pair[0], pair[0]) * self.product(pair[1], pair[1]);
+            let cosine = self.product(pair[0], pair[1]) / own.sqrt();
+            (2.0 - 2.0 * cosine).max(0.0).sqrt()
+        };
+        places.windows(2).map(angle).sum()
+    }
+}
+
+/// Half widths in standard errors for so many degrees of freedom.
+pub fn reach(functions: &[Function; 2], freedom: f64) -> Option<[f64; 2]> {
+    const MISSED: f64 = 0.05;
+    let student = StudentsT::new(0.0, 1.0, freedom).ok()?;
+    let lengths = functions.each_ref().map(Function::length);
+    let missed = |c: f64| -> f64 {
+        let tube = (1.0 + c * c / freedom).powf(-0.5 * freedom) / std::f64::consts::PI;
+        lengths
+            .iter()
+            .map(|length| length * tube + 2.0 * student.sf(c))
+            .sum()
+    };
+    let (mut low, mut high) = (1.0, 40.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        *(if missed(middle) > MISSED {
+            &mut low
+        } else {
+            &mut high
+        }) = middle;
+    }
+    Some([student.inverse_cdf(1.0 - 0.5 * MISSED), high])
+}

@@ -1,0 +1,199 @@
+//! One motion behind both signals.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::basis::Basis;
+use super::penalty::Reduced;
+use super::recording::Recording;
+use super::smoothing::{Banded, Sampled};
+use super::spline::Local;
+use crate::solve::{Cholesky, NotPositiveDefinite};
+
+/// What D(·) is a function of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Argument {
+    /// The extension in mm.
+    #[default]
+    Extension,
+    /// Its rate in mm/s.
+    Rate,
+}
+
+/// Both signals with their noise, and the motion's spline with its derivatives at all instants.
+pub struct Joint<'a> {
+    pub recording: &'a Recording,
+    /// Values, first and second derivatives.
+    pub orders: [Sampled; 3],
+    /// Standard deviations of extension and force.
+    pub noise: [f64; 2],
+    /// K(·) and D(·).
+    pub functions: [Basis; 2],
+    pub argument: Argument,
+}
+
+/// Coefficients of the motion, and of K(·) and D(·) one after the other.
+#[derive(Clone, Debug)]
+pub struct State {
+    pub motion: Vec<f64>,
+    pub functions: DVector<f64>,
+}
+
+/// What acts at an instant.
+pub struct Instant {
+    pub extension: f64,
+    pub rate: f64,
+    pub acceleration: f64,
+    /// Force in N that the state asks for.
+    pub force: f64,
+    /// ∂force/∂extension and ∂force/∂rate.
+    slopes: [f64; 2],
+    /// ∂force/∂coefficient of K(·) and D(·).
+    by_functions: DVector<f64>,
+}
+
+/// The equations of one Gauss–Newton step.
+pub struct Linearised {
+    /// What is left when the motion is eliminated.
+    pub reduced: Reduced,
+    elimination: Cholesky,
+    /// H⁻¹ G and H⁻¹ g of the motion.
+    by_functions: DMatrix<f64>,
+    by_data: DVector<f64>,
+}
+
+impl Linearised {
+    /// The step of the motion that belongs to a step of the functions.
+    pub fn motion_step(&self, functions: &DVector<f64>) -> DVector<f64> {
+        &self.by_data - &self.by_functions * functions
+    }
+
+    /// Number of the motion's coefficients.
+    pub fn motion_count(&self) -> usize {
+        self.elimination.pattern().size()
+    }
+}
+
+impl Joint<'_> {
+    /// What acts at an instant: m ẍ + D ẋ + K x and its derivatives.
+    pub fn instant(&self, instant: usize, state: &State) -> Instant {
+        let [x, v, a] = [0, 1, 2].map(|order| self.orders[order].value(instant, &state.motion));
+        let (stiffness, damping) = (&self.functions[0], &self.functions[1]);
+        let argument = if self.argument == Argument::Rate {
+            v
+        } else {
+            x
+        };
+        let [k, k_slope] = [0, 1].map(|order| stiffness.values(x, order));
+        let [d, d_slope] = [0, 1].map(|order| damping.values(argument, order));
+        let split = stiffness.count();
+        let [of_k, of_d] = [(0, split), (split, damping.count())]
+            .map(|(first, count)| state.functions.rows(first, count));
+        let mut slopes = [of_k.dot(&k) + of_k.dot(&k_slope) * x, of_d.dot(&d)];
+        slopes[usize::from(self.argument == Argument::Rate)] += of_d.dot(&d_slope) * v;
+        let force = self.recording.mass * a + of_k.dot(&k) * x + of_d.dot(&d) * v;
+        let mut by_functions = DVector::zeros(state.functions.len());
+        by_functions.rows_mut(0, split).copy_from(&(k * x));
+        by_functions
+            .rows_mut(split, damping.count())
+            .copy_from(&(d * v));
+        Instant {
+            extension: x,
+            rate: v,
+            acceleration: a,
+            force,
+            slopes,
+            by_functions,
+        }
+    }
+
+    /// What is left of both signals, over their noise.
+    fn left(&self, instant: usize, at: &Instant) -> [f64; 2] {
+        [
+            (self.recording.extension[instant] - at.extension) / self.noise[0],
+            (self.recording.force[instant] - at.force) / self.noise[1],
+        ]
+    }
+
+    /// Sum of squares of all that is left, over the noise.
+    pub fn sum_of_squares(&self, state: &State) -> f64 {
+        let square = |instant| -> f64 {
+            let left = self.left(instant, &self.instant(instant, state));
+            left[0] * left[0] + left[1] * left[1]
+        };
+        (0..self.recording.times.len()).map(square).sum()
+    }
+
+    /// The normal equations with the motion as it is: K(·) and D(·) by linear least squares.
+    pub fn with_motion_fixed(&self, state: &State) -> Reduced {
+        let count = state.functions.len();
+        let mut reduced = Reduced::new(count);
+        for instant in 0..self.recording.times.len() {
+            let at = self.instant(instant, state);
+            let [_, left] = self.left(instant, &at);
+            reduced.add(&(&at.by_functions / self.noise[1]), left);
+        }
+        reduced
+    }
+
+    /// The normal equations of motion and functions,
+    ///
+    /// ```text
+    /// [H G; Gᵀ F] [δc; δθ] = [g; h]      reduced to      (F − Gᵀ H⁻¹ G) δθ = h − Gᵀ H⁻¹ g
+    /// ```
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when the instants do not determine the motion.
+    pub fn linearise(&self, state: &State) -> Result<Linearised, NotPositiveDefinite> {
+        let (motions, count) = (state.motion.len(), state.functions.len());
+        let mut reduced = Reduced::new(count);
+        let mut matrix = Banded::new(motions)?;
+        let mut coupling = DMatrix::zeros(motions, count);
+        let mut pull = vec![0.0; motions];
+        for instant in 0..self.recording.times.len() {
+            let at = self.instant(instant, state);
+            let left = self.left(instant, &at);
+            let (first, by_motion) = self.by_motion(instant, &at);
+            let by_functions = &at.by_functions / self.noise[1];
+            reduced.add(&by_functions, left[1]);
+            reduced.sum += left[0] * left[0];
+            for (row, left) in by_motion.iter().zip(left) {
+                matrix.add(first, row);
+                for (sum, value) in pull[first..].iter_mut().zip(row) {
+                    *sum += value * left;
+                }
+            }
+            for (row, value) in by_motion[1].iter().enumerate().take(motions - first) {
+                let mut target = coupling.row_mut(first + row);
+                target += *value * by_functions.transpose();
+            }
+        }
+        let mut elimination = matrix.factorise()?;
+        let by_data = DVector::from_vec(elimination.solve(&pull)?);
+        let mut by_functions = DMatrix::zeros(motions, count);
+        for (index, column) in coupling.column_iter().enumerate() {
+            let solved = elimination.solve(column.as_slice())?;
+            by_functions.column_mut(index).copy_from_slice(&solved);
+        }
+        reduced.information -= coupling.transpose() * &by_functions;
+        reduced.gradient -= coupling.transpose() * &by_data;
+        reduced.sum -= DVector::from_vec(pull).dot(&by_data);
+        Ok(Linearised {
+            reduced,
+            elimination,
+            by_functions,
+            by_data,
+        })
+    }
+
+    /// The derivatives of extension and force by the motion's coefficients, over the noise.
+    fn by_motion(&self, instant: usize, at: &Instant) -> (usize, [Local; 2]) {
+        let [x, v, a] = [0, 1, 2].map(|order: usize| &self.orders[order].rows[instant].1);
+        let mut rows = [Local::default(); 2];
+        for i in 0..x.len() {
+            rows[0][i] = x[i] / self.noise[0];
+            let force = self.recording.mass * a[i] + at.slopes[0] * x[i] + at.slopes[1] * v[i];
+            rows[1][i] = force / self.noise[1];
+        }
+        (self.orders[0].rows[instant].0, rows)
+    }
+}

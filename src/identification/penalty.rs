@@ -1,0 +1,208 @@
+//! How smooth K(·) and D(·) are: penalties on their roughness, chosen by generalised cross-validation.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::basis::Basis;
+
+/// Normal equations of the coefficients of K(·) and D(·).
+#[derive(Clone, Debug)]
+pub struct Reduced {
+    /// A = Jᵀ J, over the noise.
+    pub information: DMatrix<f64>,
+    /// b = Jᵀ r.
+    pub gradient: DVector<f64>,
+    /// ‖r‖² that is left when the motion has moved.
+    pub sum: f64,
+}
+
+/// Weights of the penalties of K(·) and D(·), as decimal exponents of their shares in the information.
+pub type Exponents = [f64; 2];
+
+/// The range of the exponents, and their steps.
+const RANGE: [f64; 2] = [-6.0, 8.0];
+const STEP: f64 = 0.5;
+
+/// What a coefficient counts in cross-validation: a little more than one, since it is prone to rough functions.
+///
+/// # References
+/// Y.-J. Kim, C. Gu, J. R. Stat. Soc. B 66, 337 (2004), doi:10.1046/j.1369-7412.2003.05316.x
+const DEARNESS: f64 = 1.4;
+
+/// Added to the exponent of least cross-validation: a tenth of that weight keeps the bias of the penalty small beside
+/// the standard errors, so that intervals hold.
+///
+/// # References
+/// P. Hall, Ann. Stat. 20, 675 (1992), doi:10.1214/aos/1176348651
+const UNDERSMOOTHING: f64 = -1.0;
+
+/// How strongly a spline is held in its shape, over its share in the information.
+const SHAPE_WEIGHT: f64 = 1e6;
+
+/// A minimum of the penalised sum of squares.
+#[derive(Clone, Debug)]
+pub struct Penalised {
+    /// The coefficients.
+    pub coefficients: DVector<f64>,
+    /// The penalty as a quadratic form.
+    pub penalty: DMatrix<f64>,
+    /// (A + P)⁻¹.
+    pub inverse: DMatrix<f64>,
+    /// Effective number of coefficients of either function.
+    pub degrees: [f64; 2],
+    /// The sum of squares that is left.
+    pub sum: f64,
+}
+
+impl Reduced {
+    /// No data yet.
+    pub fn new(count: usize) -> Self {
+        Self {
+            information: DMatrix::zeros(count, count),
+            gradient: DVector::zeros(count),
+            sum: 0.0,
+        }
+    }
+
+    /// Adds an observation: its derivatives and what is left of it.
+    pub fn add(&mut self, row: &DVector<f64>, left: f64) {
+        self.information.ger(1.0, row, row, 1.0);
+        self.gradient.axpy(left, row, 1.0);
+        self.sum += left * left;
+    }
+
+    /// The minimum near `from` with given penalties; nothing where the data do not determine it.
+    pub fn minimum(
+        &self,
+        from: &DVector<f64>,
+        functions: &[Basis; 2],
+        exponents: Exponents,
+    ) -> Option<Penalised> {
+        /// Changes of which differences have the wrong sign; more than there are differences is a circle.
+        const MOST: usize = 40;
+        let mut found = self.solve(from, from, functions, exponents)?;
+        for _ in 0..MOST {
+            if functions
+                .iter()
+                .all(|basis| basis.shape == super::Shape::Free)
+            {
+                break;
+            }
+            let next = self.solve(from, &found.coefficients, functions, exponents)?;
+            let moved = (&next.coefficients - &found.coefficients).amax();
+            found = next;
+            if moved <= 1e-9 * found.coefficients.amax() {
+                break;
+            }
+        }
+        Some(found)
+    }
+
+    /// A minimum with the shapes held where the coefficients `shaped` break them.
+    fn solve(
+        &self,
+        from: &DVector<f64>,
+        shaped: &DVector<f64>,
+        functions: &[Basis; 2],
+        exponents: Exponents,
+    ) -> Option<Penalised> {
+        let size = from.len();
+        let mut penalty = DMatrix::zeros(size, size);
+        let mut first = 0;
+        for (basis, exponent) in functions.iter().zip(exponents) {
+            let count = basis.count();
+            let own = self
+                .information
+                .view((first, first), (count, count))
+                .trace();
+            let mut block = penalty.view_mut((first, first), (count, count));
+            if let Some(roughness) = basis.roughness() {
+                block += &roughness * (10f64.powf(exponent) * own / roughness.trace());
+            }
+            if let Some(violation) =
+                basis.violation(shaped.rows(first, count).into_owned().as_slice())
+            {
+                block += violation * (SHAPE_WEIGHT * own / count as f64);
+            }
+            first += count;
+        }
+        let inverse = inverse(&(&self.information + &penalty))?;
+        let coefficients = &inverse * (&self.gradient + &self.information * from);
+        let step = &coefficients - from;
+        let sum =
+            self.sum - 2.0 * step.dot(&self.gradient) + step.dot(&(&self.information * &step));
+        let split = functions[0].count();
+        let hat = &inverse * &self.information;
+        let degrees = [(0, split), (split, size - split)]
+            .map(|(first, count)| hat.view((first, first), (count, count)).trace());
+        Some(Penalised {
+            coefficients,
+            penalty,
+            inverse,
+            degrees,
+            sum,
+        })
+    }
+
+    /// The exponents of least (‖r‖²/N)/(1 − γ p/N)², γ = 1.4, for N observations and p effective coefficients, `others` of
+    /// them in the motion, one function after the other; less [`UNDERSMOOTHING`].
+    pub fn choose(
+        &self,
+        from: &DVector<f64>,
+        functions: &[Basis; 2],
+        [observations, others]: [f64; 2],
+    ) -> Exponents {
+        const SWEEPS: usize = 3;
+        let score = |exponents: Exponents| -> f64 {
+            let Some(found) = self.minimum(from, functions, exponents) else {
+                return f64::INFINITY;
+            };
+            let used = others + DEARNESS * found.degrees.iter().sum::<f64>();
+            found.sum / (1.0 - used / observations).powi(2)
+        };
+        let mut best = (score([0.0; 2]), [0.0; 2]);
+        for _ in 0..SWEEPS {
+            let before = best.1;
+            for (index, function) in functions.iter().enumerate() {
+                if function.roughness().is_none() {
+                    continue;
+                }
+                let steps = ((RANGE[1] - RANGE[0]) / STEP) as usize;
+                for step in 0..=steps {
+                    let mut exponents = best.1;
+                    exponents[index] = RANGE[0] + STEP * step as f64;
+                    let value = score(exponents);
+                    if value < best.0 {
+                        best = (value, exponents);
+                    }
+                }
+            }
+            if best.1 == before {
+                break;
+            }
+        }
+        best.1.map(|exponent| exponent + UNDERSMOOTHING)
+    }
+}
+
+/// The inverse of a matrix scaled to a unit diagonal; nothing where it is singular to working precision.
+fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    const LEAST_PIVOT: f64 = 1e-7;
+    let scales = matrix.diagonal().map(|entry| entry.sqrt().recip());
+    if scales.iter().any(|scale| !scale.is_finite()) {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        matrix[(i, j)] * scales[i] * scales[j]
+    });
+    let cholesky = scaled.cholesky()?;
+    if cholesky.l_dirty().diagonal().min() < LEAST_PIVOT {
+        return None;
+    }
+    let mut inverse = cholesky.inverse();
+    for i in 0..inverse.nrows() {
+        for j in 0..inverse.ncols() {
+            inverse[(i, j)] *= scales[i] * scales[j];
+        }
+    }
+    Some(inverse)
+}

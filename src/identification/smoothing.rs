@@ -1,0 +1,184 @@
+//! Least-squares splines of a signal over time, with as many parts as its noise allows.
+
+use super::spline::{Local, MOST, UniformSpline};
+use crate::solve::{Cholesky, NotPositiveDefinite, SymmetricPattern};
+
+/// Instants for each part of a spline at least.
+const FEWEST: usize = 4;
+
+/// A signal's own spline.
+#[derive(Clone, Debug)]
+pub struct Smoothed {
+    /// Equal parts of the duration.
+    pub intervals: usize,
+    /// Standard deviation of the noise, in the signal's unit.
+    pub noise: f64,
+    /// Whether more parts than the sampling allows would be better still.
+    pub coarse: bool,
+}
+
+/// The values of a spline's functions, or of their derivatives, at each instant.
+#[derive(Clone, Debug)]
+pub struct Sampled {
+    /// First function and values, instant after instant.
+    pub rows: Vec<(usize, Local)>,
+}
+
+impl Sampled {
+    /// Derivatives of some order at all `times`.
+    pub fn new(spline: &UniformSpline, times: &[f64], order: usize) -> Self {
+        Self {
+            rows: times.iter().map(|t| spline.local(*t, order)).collect(),
+        }
+    }
+
+    /// The sum of functions with these coefficients at an instant.
+    pub fn value(&self, instant: usize, coefficients: &[f64]) -> f64 {
+        let (first, values) = &self.rows[instant];
+        let own = coefficients[*first..].iter();
+        own.zip(values).map(|(c, value)| c * value).sum()
+    }
+}
+
+/// A symmetric matrix of B-splines: sums of products of neighbouring functions.
+pub struct Banded {
+    cholesky: Cholesky,
+    values: Vec<f64>,
+}
+
+impl Banded {
+    /// The zero matrix for so many functions.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when there is no memory for it.
+    pub fn new(count: usize) -> Result<Self, NotPositiveDefinite> {
+        let columns = (0..count).map(|column| {
+            (column..=column + MOST)
+                .filter(|row| *row < count)
+                .collect()
+        });
+        let pattern = SymmetricPattern::new(columns);
+        let order: Vec<usize> = (0..count).collect();
+        Ok(Self {
+            values: vec![0.0; pattern.entries()],
+            cholesky: Cholesky::analyse_in_order(pattern, &order)?,
+        })
+    }
+
+    /// Adds the square of a row.
+    pub fn add(&mut self, first: usize, row: &Local) {
+        for (i, a) in row.iter().enumerate() {
+            for (j, b) in row.iter().enumerate().skip(i) {
+                // Rows of lower degrees end with zeros, which may lie beyond the last function.
+                let product = a * b;
+                if product == 0.0 {
+                    continue;
+                }
+                if let Some(place) = self.cholesky.pattern().position(first + j, first + i) {
+                    self.values[place] += product;
+                }
+            }
+        }
+    }
+
+    /// Factorises the matrix.
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when the rows leave a function undetermined.
+    pub fn factorise(mut self) -> Result<Cholesky, NotPositiveDefinite> {
+        self.cholesky.factorise(&self.values)?;
+        Ok(self.cholesky)
+    }
+}
+
+/// The coefficients of the spline nearest to `signal`.
+///
+/// # Errors
+/// [`NotPositiveDefinite`] when the instants leave gaps of several parts.
+pub fn nearest(
+    spline: &UniformSpline,
+    times: &[f64],
+    signal: &[f64],
+) -> Result<Vec<f64>, NotPositiveDefinite> {
+    let sampled = Sampled::new(spline, times, 0);
+    let mut matrix = Banded::new(spline.count())?;
+    let mut right = vec![0.0; spline.count()];
+    for ((first, row), value) in sampled.rows.iter().zip(signal) {
+        matrix.add(*first, row);
+        for (sum, b) in right[*first..].iter_mut().zip(row) {
+            *sum += b * value;
+        }
+    }
+    matrix.factorise()?.solve(&right)
+}
+
+/// The number of equal parts for which generalised cross-validation, (‖y − ŷ‖²/n)/(1 − p/n)² with p functions, is
+/// least, and the noise ‖y − ŷ‖²/(n − p) that is left.
+pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<Smoothed> {
+    let n = times.len() as f64;
+    let range = [times[0], times[times.len() - 1]];
+    let mut best: Option<(f64, Smoothed)> = None;
+    let (mut intervals, most) = (2, times.len() / FEWEST);
+    while intervals <= most {
+        let spline = UniformSpline::new(range, intervals, degree);
+        if let Ok(coefficients) = nearest(&spline, times, signal) {
+            let sampled = Sampled::new(&spline, times, 0);
+            let left = signal.iter().enumerate();
+            let left = left.map(|(i, y)| (y - sampled.value(i, &coefficients)).powi(2));
+            let free = n - spline.count() as f64;
+            let variance = left.sum::<f64>() / free;
+            let score = variance * n / free;
+            if best.as_ref().is_none_or(|(least, _)| score < *least) {
+                let noise = variance.sqrt();
+                best = Some((
+                    score,
+                    Smoothed {
+                        intervals,
+                        noise,
+                        coarse: false,
+                    },
+                ));
+            }
+        }
+        intervals += 1 + intervals / 8;
+    }
+    let (_, mut found) = best?;
+    found.coarse = found.intervals + found.intervals / 8 + 1 > most;
+    Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn the_noise_of_a_signal_is_found() {
+        let times: Vec<f64> = (0..800).map(|i| 0.01 * f64::from(i)).collect();
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let draw = |random: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(random) };
+        let signal: Vec<f64> = times
+            .iter()
+            .map(|t| (3.0 * t + 0.2 * t * t).sin() + 0.05 * draw(&mut random))
+            .collect();
+        let found = smooth(&times, &signal, 5).unwrap();
+        assert!((found.noise / 0.05 - 1.0).abs() < 0.08, "{found:?}");
+        assert!(
+            (6..60).contains(&found.intervals) && !found.coarse,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn instants_with_a_gap_take_a_spline_that_bridges_it() {
+        let mut times: Vec<f64> = (0..200).map(f64::from).collect();
+        times.retain(|t| !(60.0..90.0).contains(t));
+        let signal: Vec<f64> = times.iter().map(|t| (0.02 * t).sin()).collect();
+        assert!(smooth(&times, &signal, 5).is_some());
+        let fine = UniformSpline::new([0.0, 199.0], 60, 5);
+        assert!(nearest(&fine, &times, &signal).is_err());
+    }
+}

@@ -1,0 +1,201 @@
+//! Fields that move, as an animated PNG: every browser plays it, and where it is not played its first picture shows.
+
+use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Writer};
+use resvg::tiny_skia::Pixmap;
+
+use super::fields::{Colours, FieldFigure, Panel};
+use super::{Scale, rasterise};
+
+/// One picture of an animation.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Time in s, shown in the title.
+    pub time: f64,
+    /// The plates; as many in every frame.
+    pub panels: Vec<Panel>,
+}
+
+/// Plates that move, all frames in true proportions, at one place and on one colour scale.
+#[derive(Clone, Debug)]
+pub struct Animation {
+    /// Heading.
+    pub title: String,
+    /// What the colours show, with its unit.
+    pub quantity: String,
+    /// The colours.
+    pub colours: Colours,
+    /// The pictures in order.
+    pub frames: Vec<Frame>,
+    /// How long each is shown, in ms.
+    pub milliseconds: u16,
+}
+
+/// A part of a picture: left, top, width, height in pixels.
+type Part = [u32; 4];
+
+impl Animation {
+    /// The animation as an APNG that plays again and again; of every picture only the part that moves is stored.
+    ///
+    /// # Panics
+    /// Without frames.
+    pub fn png(&self) -> Vec<u8> {
+        let all = self.frames.iter().flat_map(|frame| &frame.panels);
+        let together = self.figure(String::new(), all.cloned().collect());
+        let (layout, range) = (together.layout(), together.range());
+        let pictures = self.frames.iter().map(|frame| {
+            let title = format!("{}, t = {:.3} s", self.title, frame.time);
+            let figure = self.figure(title, frame.panels.clone());
+            let size = figure.size(&layout);
+            rasterise(size, 1.0, |area| figure.draw(area, &layout, range))
+        });
+        self.encode(pictures)
+            .expect("an animation can be encoded to memory")
+    }
+
+    fn figure(&self, title: String, panels: Vec<Panel>) -> FieldFigure {
+        FieldFigure {
+            title,
+            quantity: self.quantity.clone(),
+            scale: Scale::Linear,
+            colours: self.colours,
+            panels,
+        }
+    }
+
+    fn encode(
+        &self,
+        mut pictures: impl Iterator<Item = Pixmap>,
+    ) -> Result<Vec<u8>, png::EncodingError> {
+        let mut bytes = Vec::new();
+        let mut shown = pictures.next().expect("an animation has frames");
+        let count = u32::try_from(self.frames.len()).unwrap_or(u32::MAX);
+        let mut encoder = Encoder::new(&mut bytes, shown.width(), shown.height());
+        encoder.set_color(ColorType::Rgb);
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_compression(Compression::High);
+        encoder.set_animated(count, 0)?;
+        encoder.set_frame_delay(self.milliseconds, 1000)?;
+        encoder.set_blend_op(BlendOp::Source)?;
+        encoder.set_dispose_op(DisposeOp::None)?;
+        let mut writer = encoder.write_header()?;
+        let whole = [0, 0, shown.width(), shown.height()];
+        writer.write_image_data(&colours(&shown, whole))?;
+        for picture in pictures {
+            put(&mut writer, &picture, changed(&shown, &picture))?;
+            shown = picture;
+        }
+        writer.finish()?;
+        Ok(bytes)
+    }
+}
+
+fn put(
+    writer: &mut Writer<&mut Vec<u8>>,
+    picture: &Pixmap,
+    part: Part,
+) -> Result<(), png::EncodingError> {
+    let [left, top, width, height] = part;
+    // The position is held against the size that was set last.
+    writer.reset_frame_position()?;
+    writer.set_frame_dimension(width, height)?;
+    writer.set_frame_position(left, top)?;
+    writer.write_image_data(&colours(picture, part))
+}
+
+/// Red, green and blue of a part; pictures are opaque.
+fn colours(picture: &Pixmap, [left, top, width, height]: Part) -> Vec<u8> {
+    let line = |y: u32| {
+        let start = 4 * (y * picture.width() + left) as usize;
+        &picture.data()[start..start + 4 * width as usize]
+    };
+    let pixels = (top..top + height).flat_map(|y| line(y).chunks_exact(4));
+    pixels
+        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
+        .collect()
+}
+
+/// The smallest part that holds all differences; one pixel where there are none.
+fn changed(before: &Pixmap, after: &Pixmap) -> Part {
+    let width = after.width();
+    let pairs = before
+        .data()
+        .chunks_exact(4)
+        .zip(after.data().chunks_exact(4));
+    let different = pairs.enumerate().filter(|(_, (a, b))| a != b);
+    let start = [u32::MAX, u32::MAX, 0, 0];
+    let [left, top, right, bottom] =
+        different.fold(start, |[left, top, right, bottom], (index, _)| {
+            let index = index as u32;
+            let (x, y) = (index % width, index / width);
+            [left.min(x), top.min(y), right.max(x), bottom.max(y)]
+        });
+    if left == u32::MAX {
+        return [0, 0, 1, 1];
+    }
+    [left, top, right - left + 1, bottom - top + 1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn animation() -> Animation {
+        let frame = |step: u32| {
+            let x = f64::from(step);
+            let corners = [[x, 0.0], [x + 10.0, 0.0], [x + 10.0, 5.0], [x, 5.0]];
+            let label = "a square".to_owned();
+            Frame {
+                time: 0.1 * x,
+                panels: vec![Panel {
+                    label,
+                    cells: vec![(corners, x)],
+                }],
+            }
+        };
+        Animation {
+            title: "Test".into(),
+            quantity: "x [mm]".into(),
+            colours: Colours::Sequential,
+            frames: (0..4).map(frame).collect(),
+            milliseconds: 40,
+        }
+    }
+
+    #[test]
+    fn an_animation_holds_its_frames_and_is_the_same_each_time() {
+        let bytes = animation().png();
+        assert_eq!(bytes, animation().png());
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
+            .read_info()
+            .unwrap();
+        let info = reader.info();
+        assert_eq!(
+            info.animation_control().map(|control| control.num_frames),
+            Some(4)
+        );
+        let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
+        let mut parts = Vec::new();
+        for _ in 0..4 {
+            reader.next_frame(&mut buffer).unwrap();
+            let control = *reader.info().frame_control().unwrap();
+            assert_eq!((control.delay_num, control.delay_den), (40, 1000));
+            parts.push(control.width * control.height);
+        }
+        assert!(
+            parts[1..]
+                .iter()
+                .all(|part| *part > 100 && *part < parts[0]),
+            "{parts:?}"
+        );
+    }
+
+    #[test]
+    fn the_changed_part_is_the_smallest_that_holds_all_differences() {
+        let before = Pixmap::new(5, 4).unwrap();
+        let mut after = before.clone();
+        after.data_mut()[4 * (5 + 2)] = 9;
+        after.data_mut()[4 * (3 * 5 + 3)] = 9;
+        assert_eq!(changed(&before, &after), [2, 1, 2, 3]);
+        assert_eq!(changed(&before, &before), [0, 0, 1, 1]);
+    }
+}

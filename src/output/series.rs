@@ -1,0 +1,176 @@
+//! Quantities over time: tables, charts, and the files of a motion.
+
+use std::fmt::Write;
+
+use super::picture::PALETTE;
+use super::picture::lines::{Axis, Line, LineChart, Stroke};
+use super::vtk;
+
+/// A quantity at all instants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name, such as `grip force, corrected`.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// One number an instant.
+    pub values: Vec<f64>,
+}
+
+impl Series {
+    /// A named quantity.
+    pub fn new(name: &str, unit: &str, values: Vec<f64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values,
+        }
+    }
+
+    fn head(&self) -> String {
+        format!("{} [{}]", self.name, self.unit)
+    }
+}
+
+/// Instants in s with their quantities as a CSV table, units in its heads. `gelbench identify` reads one with the
+/// columns `extension` and `force`.
+pub fn csv(times: &[f64], series: &[Series]) -> String {
+    let quoted = |head: String| match head.contains([',', '"']) {
+        true => format!("\"{}\"", head.replace('"', "\"\"")),
+        false => head,
+    };
+    let mut text = String::from("time [s]");
+    for one in series {
+        text += ",";
+        text += &quoted(one.head());
+    }
+    text.push('\n');
+    for (instant, time) in times.iter().enumerate() {
+        text += &time.to_string();
+        for one in series {
+            let _ = write!(text, ",{}", one.values[instant]);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn lines(series: &[Series], points: impl Fn(&Series) -> Vec<[f64; 2]>) -> Vec<Line> {
+    let line = |(index, one): (usize, &Series)| Line {
+        label: one.name.clone(),
+        points: points(one),
+        colour: PALETTE[index % PALETTE.len()],
+        stroke: if index % 2 == 0 {
+            Stroke::Solid
+        } else {
+            Stroke::Dashed
+        },
+    };
+    series.iter().enumerate().map(line).collect()
+}
+
+/// Quantities of one unit over time: displacements, forces, energies.
+pub fn chart(title: &str, quantity: &str, times: &[f64], series: &[Series]) -> LineChart {
+    let unit = series.first().map_or("", |one| &one.unit);
+    LineChart {
+        title: title.to_owned(),
+        x: Axis::linear("time [s]"),
+        y: Axis::linear(&format!("{quantity} [{unit}]")),
+        lines: lines(series, |one| {
+            times
+                .iter()
+                .zip(&one.values)
+                .map(|(t, y)| [*t, *y])
+                .collect()
+        }),
+        band: None,
+    }
+}
+
+/// Quantities over others at the same instants: velocity over displacement, or the loop of force over displacement.
+pub fn phase(title: &str, axes: [&str; 2], pairs: &[(Series, Series)]) -> LineChart {
+    let over: Vec<Series> = pairs.iter().map(|(_, y)| y.clone()).collect();
+    let mut all = lines(&over, |_| Vec::new());
+    for (line, (x, y)) in all.iter_mut().zip(pairs) {
+        line.points = x
+            .values
+            .iter()
+            .zip(&y.values)
+            .map(|(x, y)| [*x, *y])
+            .collect();
+    }
+    LineChart {
+        title: title.to_owned(),
+        x: Axis::linear(axes[0]),
+        y: Axis::linear(axes[1]),
+        lines: all,
+        band: None,
+    }
+}
+
+/// The files of a model that moves: `MODEL_00001.vtu` and so on, and `MODEL.pvd`, which plays them with their times in s.
+pub fn vtk_files<'a>(
+    model: &'a str,
+    times: &'a [f64],
+    file: impl Fn(usize) -> Vec<u8> + 'a,
+) -> impl Iterator<Item = (String, Vec<u8>)> + 'a {
+    let name = move |instant: usize| format!("{model}_{:05}.vtu", instant + 1);
+    let named: Vec<(f64, String)> = times
+        .iter()
+        .enumerate()
+        .map(|(instant, time)| (*time, name(instant)))
+        .collect();
+    let collection = (format!("{model}.pvd"), vtk::collection(&named));
+    let files = (0..times.len()).map(move |instant| (name(instant), file(instant)));
+    files.chain([collection])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::Table;
+
+    #[test]
+    fn a_table_of_probes_is_read_back() {
+        let series = [
+            Series::new("extension", "mm", vec![0.0, 0.5]),
+            Series::new("force, corrected", "N", vec![-1e-7, 2.5]),
+        ];
+        let text = csv(&[0.0, 0.1], &series);
+        let table = Table::parse("probes.csv", &text).unwrap();
+        assert_eq!(table.columns[2].name, "force,_corrected");
+        assert_eq!(table.columns[1].unit.as_deref(), Some("mm"));
+        assert_eq!(table.rows[0].0, [0.0, 0.0, -1e-7]);
+        assert_eq!(table.rows[1].0, [0.1, 0.5, 2.5]);
+    }
+
+    #[test]
+    fn files_of_a_motion_have_stable_names_and_a_collection_of_their_times() {
+        let files: Vec<_> =
+            vtk_files("corrected", &[0.0, 0.25], |instant| vec![instant as u8]).collect();
+        let names: Vec<&str> = files.iter().map(|(name, _)| &**name).collect();
+        assert_eq!(
+            names,
+            [
+                "corrected_00001.vtu",
+                "corrected_00002.vtu",
+                "corrected.pvd"
+            ]
+        );
+        let collection = String::from_utf8(files[2].1.clone()).unwrap();
+        assert!(
+            collection.contains("timestep=\"0.25\" part=\"0\" file=\"corrected_00002.vtu\""),
+            "{collection}"
+        );
+    }
+
+    #[test]
+    fn a_loop_keeps_the_order_of_its_instants() {
+        let pair = (
+            Series::new("u", "mm", vec![0.0, 1.0, 0.5]),
+            Series::new("f", "N", vec![0.0, 2.0, 0.1]),
+        );
+        let chart = phase("Loop", ["u [mm]", "f [N]"], &[pair]);
+        assert_eq!(chart.lines[0].points, [[0.0, 0.0], [1.0, 2.0], [0.5, 0.1]]);
+    }
+}

@@ -1,0 +1,227 @@
+//! Identification of spring and dashpot functions, Eq. 2–5 and the end of § 2.1 of the publication.
+//!
+//! A trial is counted as good when K(·) *and* D(·) lie within the 95 % band at *all* fixed extensions. The shares of
+//! single places within their own 95 % intervals stand beside it.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
+use crate::document::{Bound, Section};
+use crate::error::Error;
+use crate::identification::{Function, Identification, IdentificationSettings, Sample, identify};
+use crate::output::{Block, Figure, identification_picture};
+use crate::units::Dimension;
+
+#[derive(Clone, Copy)]
+struct Settings {
+    sample: Sample,
+    trials: usize,
+    places: usize,
+}
+
+/// Reads a study of this case.
+pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+    let section = root.section("recording");
+    let sample = Sample {
+        duration: section.quantity("duration", Dimension::Time, Bound::Positive),
+        instants: section.count("instants", 100, 100_000),
+        noise: section.quantity("noise", Dimension::Ratio, Bound::Positive),
+        seed: section.count("first_seed", 0, usize::MAX) as u64,
+    };
+    let trials = section.count("trials", 3, 10_000);
+    section.unknown_keys();
+    let section = root.section("comparison");
+    let places = section.count("places", 3, 1000);
+    section.unknown_keys();
+    let settings = Settings {
+        sample,
+        trials,
+        places,
+    };
+    Box::new(move |progress| compute(settings, progress))
+}
+
+/// One function at one place: how far it is from the truth, and what it claims.
+#[derive(Clone, Copy)]
+struct Place {
+    error: f64,
+    standard_error: f64,
+    truth: f64,
+    within_interval: bool,
+    within_band: bool,
+}
+
+/// Both functions at all places.
+type Trial = [Vec<Place>; 2];
+
+const TRUTH: [fn(f64) -> f64; 2] = [Sample::stiffness, Sample::damping];
+
+fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
+    progress("trials");
+    let places = places(&settings);
+    let seeds: Vec<u64> = (0..settings.trials as u64).collect();
+    let one = |seed: &u64| -> Result<Trial, Error> {
+        let sample = Sample {
+            seed: settings.sample.seed + seed,
+            ..settings.sample
+        };
+        let found = identify(&sample.recording(), IdentificationSettings::default())?;
+        Ok(compare(&found, &places))
+    };
+    let trials: Vec<Trial> = seeds.par_iter().map(one).collect::<Result<_, _>>()?;
+    let recording = settings.sample.recording();
+    let drawn = identify(&recording, IdentificationSettings::default())?;
+    let within = |trial: &&Trial| trial.iter().flatten().all(|place| place.within_band);
+    let good = trials.iter().filter(within).count();
+    Ok(Outcome {
+        checks: checks(&trials, good),
+        claims: vec![claim(&settings, good)],
+        blocks: vec![explanation(&settings), table(&trials, &places)],
+        figures: vec![Figure {
+            name: "spring_identification.png".into(),
+            caption: format!(
+                "K(·) and D(·) identified from the recording of seed {}: K = 0.15 + 0.05 e^(x/8 mm) N/mm, \
+                 D = 0.004 + 0.0015 tanh(x/5 mm) N·s/mm.",
+                settings.sample.seed
+            ),
+            png: identification_picture(&drawn, &recording),
+        }],
+        ..Outcome::default()
+    })
+}
+
+/// Fixed extensions from the smallest to the largest of the exact motion.
+fn places(settings: &Settings) -> Vec<f64> {
+    let exact = settings.sample.exact().extension;
+    let low = exact.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = exact.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let place = |i: usize| low + (high - low) * i as f64 / (settings.places - 1) as f64;
+    (0..settings.places).map(place).collect()
+}
+
+fn compare(found: &Identification, places: &[f64]) -> Trial {
+    let at = |function: &Function, truth: fn(f64) -> f64, x: f64| {
+        let (estimate, truth) = (function.at(x), truth(x));
+        let within = |[low, high]: [f64; 2]| (low..=high).contains(&truth);
+        Place {
+            error: estimate.value - truth,
+            standard_error: estimate.standard_error,
+            truth,
+            within_interval: within(estimate.interval),
+            within_band: within(function.band(x)),
+        }
+    };
+    [0, 1].map(|index| {
+        let (_, _, function) = found.functions()[index];
+        places
+            .iter()
+            .map(|x| at(function, TRUTH[index], *x))
+            .collect()
+    })
+}
+
+fn share(trials: &[Trial], index: usize, holds: impl Fn(&Place) -> bool) -> f64 {
+    let all = || trials.iter().flat_map(|trial| &trial[index]);
+    100.0 * all().filter(|place| holds(place)).count() as f64 / all().count() as f64
+}
+
+/// Median of |error| over trials and places, in % of the truth.
+fn median_error(trials: &[Trial], index: usize) -> f64 {
+    let all = trials.iter().flat_map(|trial| &trial[index]);
+    let mut errors: Vec<f64> = all
+        .map(|place| 100.0 * (place.error / place.truth).abs())
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    errors[errors.len() / 2]
+}
+
+fn checks(trials: &[Trial], good: usize) -> Vec<Check> {
+    let percent = 100.0 * good as f64 / trials.len() as f64;
+    let mut checks = vec![Check::new(
+        format!(
+            "trials of {} with K(·) and D(·) within the 95 % band at all places",
+            trials.len()
+        ),
+        "%",
+        Wanted::AtLeast(90.0),
+        "95 %, less what chance allows",
+        percent,
+    )];
+    for (index, name) in ["K(·)", "D(·)"].into_iter().enumerate() {
+        checks.extend([
+            Check::new(
+                format!("{name}: places within their own 95 % interval"),
+                "%",
+                Wanted::AtLeast(90.0),
+                "95 %, less what chance allows",
+                share(trials, index, |place| place.within_interval),
+            ),
+            Check::new(
+                format!("{name}: error, median over trials and places"),
+                "%",
+                Wanted::AtMost(5.0),
+                "the noise of one instant",
+                median_error(trials, index),
+            ),
+        ]);
+    }
+    checks
+}
+
+fn claim(settings: &Settings, good: usize) -> Claim {
+    Claim {
+        claim: "§ 2.1: given input and output data, the non-linear functions K(·) and D(·) can be approximated",
+        reproduced: format!(
+            "splines from force and motion with {} % noise each: both functions within their 95 % band everywhere in \
+             {good} of {} trials",
+            number(100.0 * settings.sample.noise),
+            settings.trials
+        ),
+    }
+}
+
+fn explanation(settings: &Settings) -> Block {
+    Block::Paragraph(format!(
+        "White noise of {} % of the root mean square lies on force and extension; the seeds are {} to {}. A band holds \
+         for both functions at all places together, an interval at one place. At the ends of the range the motion turns: \
+         its velocity vanishes there, the recording does not determine D(·), and single \
+         trials stray far there, which the means of the table show. The error that is checked is therefore the median.",
+        number(100.0 * settings.sample.noise),
+        settings.sample.seed,
+        settings.sample.seed + settings.trials as u64 - 1
+    ))
+}
+
+fn table(trials: &[Trial], places: &[f64]) -> Block {
+    const ROWS: usize = 10;
+    let count = trials.len() as f64;
+    let mean = |index: usize, place: usize, of: fn(&Place) -> f64| -> f64 {
+        trials
+            .iter()
+            .map(|trial| of(&trial[index][place]))
+            .sum::<f64>()
+            / count
+    };
+    let rows = (0..places.len()).step_by((places.len() / ROWS).max(1));
+    let row = |place: usize| {
+        let mut cells = vec![number(places[place])];
+        for (index, truth) in TRUTH.iter().enumerate() {
+            cells.push(number(truth(places[place])));
+            cells.push(number(mean(index, place, |one| one.error)));
+            cells.push(number(mean(index, place, |one| one.standard_error)));
+        }
+        cells
+    };
+    let head = [
+        "x [mm]",
+        "K [N/mm]",
+        "mean error of K",
+        "mean standard error of K",
+        "D [N·s/mm]",
+        "mean error of D",
+        "mean standard error of D",
+    ];
+    Block::table(&head, rows.map(row))
+}
