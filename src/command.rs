@@ -22,6 +22,7 @@ use crate::validation::{self, Case, Computed};
 use crate::{output, run};
 
 mod compare;
+mod correct;
 mod export;
 mod fit_message;
 mod identify;
@@ -36,6 +37,7 @@ Samples:
   gelbench export my_plate.toml --to abaqus  write it as the input file of another code
   gelbench compare my_plate.toml abaqus.vtu  compare its models with a field of another program
   gelbench identify spring.csv               spring and dashpot functions from recorded force and motion
+  gelbench correct markers.csv …             make measured displacements satisfy the physics
   gelbench validate                          redo the publication's claims, write validation/REPORT.md
   gelbench materials list                    the cards that come along
   gelbench materials show pva-10             one card with its moduli and its source
@@ -72,6 +74,12 @@ enum Command {
         after_help = "Sample: gelbench compare examples/strip_with_hole.toml strip.frd --factor 0.5"
     )]
     Compare(compare::Options),
+    /// Make a measured displacement field satisfy the physics; stresses, forces and their uncertainty follow
+    #[command(
+        after_help = "Sample: gelbench correct examples/measured_plate.csv --material pva-10 --thickness \"2 mm\" \\\n  \
+                      --study examples/measured_plate.toml"
+    )]
+    Correct(Box<correct::Options>),
     /// Write a study as the input file of Abaqus, CalculiX or FEBio
     #[command(
         after_help = "Sample: gelbench export examples/strip_with_hole.toml --to calculix --output strip.inp"
@@ -123,6 +131,7 @@ pub fn main() -> ExitCode {
         Command::Run { study, output } => run_study(&study, output),
         Command::Check { study } => check(&study),
         Command::Compare(options) => compare::run(options),
+        Command::Correct(options) => correct::run(*options),
         Command::Export(options) => export::run(&options),
         Command::Identify(options) => identify::run(*options),
         Command::New { name } => new_study(name),

@@ -31,6 +31,7 @@ mod difference_scheme;
 pub mod estimate;
 pub mod factor;
 pub mod matrix;
+pub mod measured;
 pub mod motion;
 pub mod plate;
 pub mod retained;

@@ -14,6 +14,8 @@ pub mod finite_element;
 pub mod identification;
 pub mod mass_spring;
 pub mod material;
+pub mod measured_field;
+pub mod measurement;
 pub mod mesh;
 pub mod multigrid;
 pub mod output;

@@ -9,14 +9,19 @@ mod cell_shape;
 mod grid;
 mod import;
 mod locate;
+mod outline;
 mod refine;
 mod shapes;
+mod triangulate;
 
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, GAUSS_3, GAUSS_5, QuadraturePoint};
 pub use grid::{Grid, Side};
-pub use import::{ImportedField, import, import_field};
+pub use import::{
+    ImportedField, ImportedSeries, ImportedStep, import, import_field, import_series,
+};
 use locate::Buckets;
+pub use outline::{Found, Outline};
 pub use shapes::Shape;
 
 /// A named part of the boundary, or a set of nodes.

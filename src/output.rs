@@ -14,6 +14,7 @@ mod html;
 mod identification;
 mod json;
 mod markdown;
+pub mod measured;
 pub mod picture;
 mod report;
 pub mod series;
@@ -66,9 +67,16 @@ pub fn write(study: &Study, results: &Results, folder: &Path) -> Result<Vec<Path
 pub fn remove_stale(folder: &Path, written: &[PathBuf]) -> Result<(), Error> {
     for (part, prefixes, ending) in [
         ("", &["plates_", "error_"][..], "png"),
+        ("", &["nodes_", "cells_", "markers_"][..], "csv"),
         (
             "vtk",
-            &["mass_spring_", "springs_", "corrected_", "finite_element_"][..],
+            &[
+                "mass_spring_",
+                "springs_",
+                "corrected_",
+                "finite_element_",
+                "markers_",
+            ][..],
             "vtu",
         ),
     ] {

@@ -80,6 +80,15 @@ impl SheetEnergy {
         }
     }
 
+    /// The energy of the same cells of another law.
+    #[must_use]
+    pub fn with_law(&self, law: Arc<dyn HyperelasticLaw>) -> Self {
+        Self {
+            law,
+            ..self.clone()
+        }
+    }
+
     /// The sampling points of a cell.
     pub fn cell_points(&self, cell: usize) -> &[SamplingPoint] {
         &self.points[self.point_starts[cell]..self.point_starts[cell + 1]]

@@ -14,6 +14,7 @@ use crate::output::{Figure, mesh_picture};
 mod correction_matrix;
 mod cost;
 mod finite_elements;
+mod measured_fields;
 mod motion;
 mod motion_correction;
 mod nonlinear_spring;
@@ -95,6 +96,13 @@ pub const CASES: &[Case] = &[
         file: "examples/smoothing.toml",
         slow: true,
         prepare: smoothing::prepare,
+    },
+    Case {
+        kind: "measured-fields",
+        study: include_str!("../validation/cases/measured_fields.toml"),
+        file: "validation/cases/measured_fields.toml",
+        slow: true,
+        prepare: measured_fields::prepare,
     },
     Case {
         kind: specimen::KIND,

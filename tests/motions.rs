@@ -16,7 +16,7 @@ fn motion(rest: &str) -> String {
     )
 }
 
-const TIME: &str = "[time]\nduration = \"20 ms\"\ninterval = \"2 ms\"\n";
+const TIME: &str = "[time]\nduration = \"20 ms\"\ninterval = \"2 ms\"\nstep = \"0.05 ms\"\n";
 
 #[test]
 fn a_released_plate_is_written_with_tables_and_series() {

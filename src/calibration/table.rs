@@ -45,6 +45,8 @@ pub struct Table {
     pub rows: Vec<(Vec<f64>, Range<usize>)>,
     /// The first field of each column that is no number: its row and what is wrong.
     faults: Vec<Option<(usize, String)>>,
+    /// The same without fields that say that there is no number: empty ones and NaN.
+    nonsense: Vec<Option<(usize, String)>>,
     /// Keys of the head that are said twice in different ways, with their places.
     pub contradictions: Vec<(String, Range<usize>)>,
 }
@@ -115,6 +117,7 @@ impl Table {
             columns_place: 0..0,
             rows: Vec::new(),
             faults: Vec::new(),
+            nonsense: Vec::new(),
             contradictions: Vec::new(),
         };
         table.read_head(text);
@@ -148,9 +151,14 @@ impl Table {
                 return Err(refuse(place, &message, hint));
             }
             table.faults.resize(record.len(), None);
+            table.nonsense.resize(record.len(), None);
             let row = record.iter().enumerate().map(|(column, field)| {
                 decimals.read(field).unwrap_or_else(|reason| {
-                    table.faults[column].get_or_insert((table.rows.len(), reason));
+                    let fault = (table.rows.len(), reason);
+                    if !is_hole(field) {
+                        table.nonsense[column].get_or_insert(fault.clone());
+                    }
+                    table.faults[column].get_or_insert(fault);
                     f64::NAN
                 })
             });
@@ -172,6 +180,13 @@ impl Table {
     /// What is wrong with the first field of a column that is no number, and where.
     pub fn fault(&self, column: usize) -> Option<(&str, Range<usize>)> {
         let (row, reason) = self.faults.get(column)?.as_ref()?;
+        Some((reason, self.rows[*row].1.clone()))
+    }
+
+    /// What is wrong with the first field of a column that is neither a number nor a hole in the data (empty, NaN),
+    /// and where.
+    pub fn nonsense(&self, column: usize) -> Option<(&str, Range<usize>)> {
+        let (row, reason) = self.nonsense.get(column)?.as_ref()?;
         Some((reason, self.rows[*row].1.clone()))
     }
 
@@ -274,6 +289,14 @@ fn number(field: &str) -> Option<f64> {
         1 if !field.contains('.') => field.replace(',', ".").parse().ok(),
         _ => None,
     }
+}
+
+/// Whether a field says that there is no number.
+fn is_hole(field: &str) -> bool {
+    field.is_empty()
+        || field
+            .trim_start_matches(['+', '-'])
+            .eq_ignore_ascii_case("nan")
 }
 
 /// The separator of the first line that is no comment.

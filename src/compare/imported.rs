@@ -81,7 +81,7 @@ const NEAR_CELLS: f64 = 0.25;
 const NEAR_SIZE: f64 = 0.02;
 
 impl Imported {
-    /// Reads `.vtu`, `.vtk`, `.frd` or `.csv`.
+    /// Reads `.vtu`, `.vtk`, `.pvd`, `.msh`, `.frd` or `.csv`.
     ///
     /// # Errors
     /// [`Error::Input`] with what is wrong.
@@ -99,7 +99,7 @@ impl Imported {
             settings.time.unwrap_or(settings.factor),
         );
         field.map(|field| Self::OnMesh(Box::new(field))).map_err(|reason| {
-            let hint = "a field stands in .vtu, .vtk (to version 4), CalculiX' .frd (ASCII), or .csv with X, Y, ux, uy";
+            let hint = "a field stands in .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with $NodeData, CalculiX' .frd (ASCII), or .csv with X, Y, ux, uy";
             Error::input(format!("{} {reason}", path.display()), hint)
         })
     }

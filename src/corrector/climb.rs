@@ -9,7 +9,7 @@
 //! grid, so that the next one is about q d: the iteration begins with it.
 //!
 //! **When to stop.** What the grids that follow would add is d q/(1 − q): the discretisation error. The iteration
-//! ends when its last correction is below a stated share of that.
+//! ends when what it leaves, by the fall of its corrections, is below a stated share of that.
 
 use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};
@@ -35,7 +35,7 @@ pub use path::{Grips, Interactive, RigidMotion};
 /// How exactly the climb solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimbSettings {
-    /// The last correction on the finest grid relative to its discretisation error.
+    /// What the iteration may leave on the finest grid, relative to its discretisation error.
     pub tolerance: f64,
     /// Iterations allowed after a linearisation.
     pub max_iterations: usize,
@@ -62,8 +62,8 @@ pub struct Climbed {
     /// The estimated discretisation error of the field, root mean square over the nodes in mm; not a number where
     /// there is one grid alone.
     pub discretisation_error: f64,
-    /// The last correction, root mean square over the nodes in mm.
-    pub last_correction: f64,
+    /// What the iteration left, estimated, root mean square over the nodes in mm.
+    pub iteration_error: f64,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
     /// What was done on each grid, coarse to fine: its nodes, and the work.
@@ -105,9 +105,9 @@ const RATIO: f64 = 1.0 / 3.0;
 const RATIOS: [f64; 2] = [0.15, 0.7];
 /// Times that a grid's equation is linearised anew before it is given up.
 const LINEARISATIONS: usize = 6;
-/// The last correction relative to the discretisation error on all grids but the finest.
-const ON_THE_WAY: f64 = 0.3;
-/// The last correction relative to the first one on the lattice of springs.
+/// What the iteration may leave on all grids but the finest, relative to what it may leave there.
+const ON_THE_WAY: f64 = 3.0;
+/// What the iteration may leave on the lattice of springs, relative to its first correction.
 const START_TOLERANCE: f64 = 1e-3;
 
 impl<'a> Climb<'a> {
@@ -192,7 +192,7 @@ impl<'a> Climb<'a> {
     ) -> Result<Climbed, SolveFault> {
         let mut change: Option<Field> = None;
         let (mut size, mut ratio) = (f64::NAN, RATIO);
-        let mut last_correction = f64::NAN;
+        let mut iteration_error = f64::NAN;
         let mut corrections = Vec::new();
         for index in self.start + 1..self.levels.len() {
             let [coarse, fine] = [index - 1, index].map(|index| &self.levels[index].grid);
@@ -203,12 +203,12 @@ impl<'a> Climb<'a> {
             }
             let expected = ratio * size;
             let tolerance = match index + 1 < self.levels.len() {
-                true => ON_THE_WAY.max(self.settings.tolerance),
+                true => ON_THE_WAY * self.settings.tolerance,
                 false => self.settings.tolerance,
             };
-            let enough = |first: f64, last: f64| {
+            let enough = |first: f64, left: f64| {
                 let change = if expected.is_nan() { first } else { expected };
-                last <= tolerance * geometric_tail(change, ratio)
+                left <= tolerance * geometric_tail(change, ratio)
             };
             let reached = self.solve(index, &mut field, &enough)?;
             interpolated.scale(-1.0);
@@ -218,7 +218,7 @@ impl<'a> Climb<'a> {
                 ratio = (own / size).clamp(RATIOS[0], RATIOS[1]);
             }
             (size, change) = (own, Some(interpolated));
-            last_correction = reached.last();
+            iteration_error = reached.left();
             corrections = reached.corrections;
             work.push((self.levels[index].grid.nodes(), reached.work));
         }
@@ -231,7 +231,7 @@ impl<'a> Climb<'a> {
             force,
             change,
             discretisation_error: geometric_tail(size, ratio),
-            last_correction,
+            iteration_error,
             corrections,
             work,
         })
@@ -252,7 +252,7 @@ impl<'a> Climb<'a> {
                 .linearise(sheet, field, &mut self.multigrid)
                 .map_err(|Inverted| inverted())?;
             let first = whole.as_ref().map(Reached::first);
-            let enough = |own: f64, last: f64| enough(first.unwrap_or(own), last);
+            let enough = |own: f64, left: f64| enough(first.unwrap_or(own), left);
             let mut reached = level
                 .iterate(sheet, field, &mut self.multigrid, most, &enough)
                 .map_err(|Inverted| inverted())?;
@@ -262,14 +262,14 @@ impl<'a> Climb<'a> {
                 whole.corrections.append(&mut reached.corrections);
                 reached.corrections = whole.corrections;
             }
-            if enough(reached.first(), reached.last()) {
+            if enough(reached.first(), reached.left()) {
                 return Ok(reached);
             }
             whole = Some(reached);
         }
         Err(SolveFault::Stalled {
             iterations: LINEARISATIONS * most,
-            residual: whole.map_or(f64::NAN, |whole| whole.last() / whole.first()),
+            residual: whole.map_or(f64::NAN, |whole| whole.left() / whole.first()),
             tolerance: self.settings.tolerance,
         })
     }

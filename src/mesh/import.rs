@@ -11,9 +11,10 @@ use super::{CellShape, Mesh};
 mod field;
 mod frd;
 mod gmsh;
+mod pvd;
 mod vtk;
 
-pub use field::{ImportedField, import_field};
+pub use field::{ImportedField, ImportedSeries, ImportedStep, import_field, import_series};
 
 /// What a file holds, before it is a flat mesh: places in the file's unit, and elements by their kinds.
 #[derive(Default)]

@@ -74,8 +74,10 @@ impl Buckets {
                 break;
             }
         }
-        let (_, cell, local) = best.expect("a mesh has a cell with an inverse map");
-        (cell, local)
+        match best {
+            Some((_, cell, local)) => (cell, local),
+            None => far_away(mesh, point),
+        }
     }
 
     /// The cells of all squares at a distance of `reach` squares.
@@ -94,5 +96,55 @@ impl Buckets {
         found.sort_unstable();
         found.dedup();
         found
+    }
+}
+
+/// The cell whose centre is nearest to a point far away from all cells, and the point's coordinates by the map at the
+/// centre.
+fn far_away(mesh: &Mesh, point: [f64; 2]) -> (usize, [f64; 2]) {
+    let distance = |cell: &usize| {
+        let centre = mesh.centre(*cell);
+        (point[0] - centre[0]).hypot(point[1] - centre[1])
+    };
+    let cell = (0..mesh.cell_count()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let cell = cell.expect("a mesh has a cell");
+    let shape = mesh.shape(cell);
+    let start = shape.centre();
+    let from = mesh.place(cell, start);
+    let (gradients, _) = mesh.gradients(cell, start);
+    // ∂ξ/∂X = Σ ξₐ ∂Nₐ/∂X over the nodes of the cell.
+    let nodes = || shape.reference_nodes().iter().zip(&gradients);
+    let local = [0, 1].map(|axis| {
+        let slope = |along: usize| {
+            nodes()
+                .map(|(place, g)| place[axis] * g[along])
+                .sum::<f64>()
+        };
+        start[axis] + slope(0) * (point[0] - from[0]) + slope(1) * (point[1] - from[1])
+    });
+    (cell, local)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::CellShape;
+
+    #[test]
+    fn points_far_away_are_outside_of_the_nearest_cell() {
+        let mesh = Mesh::new(
+            vec![[0.0, 0.0], [0.02, 0.0], [0.02, 0.01], [0.0, 0.01]],
+            [
+                (CellShape::Triangle3, vec![0, 1, 2]),
+                (CellShape::Triangle3, vec![0, 2, 3]),
+            ],
+        );
+        let (cell, local) = mesh.locate([9.0, 1.0]);
+        let there = mesh.place(cell, local);
+        assert!(
+            (there[0] - 9.0).abs() < 1e-9 && (there[1] - 1.0).abs() < 1e-9,
+            "{there:?}"
+        );
+        assert!(mesh.outside([9.0, 1.0]) > 100.0);
     }
 }

@@ -340,7 +340,11 @@ pub fn cell_figure(
 }
 
 /// Deformed cells with the mean of their corners' values.
-fn cells(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec<FieldCell> {
+pub(super) fn cells(
+    mesh: &Mesh,
+    displacement: &[f64],
+    value: &dyn Fn(usize) -> f64,
+) -> Vec<FieldCell> {
     let mean = |cell: usize| {
         let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
         let sum: f64 = corners.iter().map(|node| value(*node)).sum();
@@ -350,7 +354,11 @@ fn cells(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec
 }
 
 /// Deformed cells with their values.
-fn deformed(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec<FieldCell> {
+pub(super) fn deformed(
+    mesh: &Mesh,
+    displacement: &[f64],
+    value: &dyn Fn(usize) -> f64,
+) -> Vec<FieldCell> {
     let place =
         |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + displacement[2 * node + axis]);
     let cell = |cell: usize| {

@@ -188,6 +188,47 @@ pub fn imported_file(
     encode(title, plate(sheet, mesh, displacement, more, None))
 }
 
+/// An array for a file.
+#[derive(Clone, Debug)]
+pub struct Array {
+    /// Its name with the unit.
+    pub name: &'static str,
+    /// Its values.
+    pub values: Vec<f64>,
+    /// How many belong to one point or cell: 1, 2 (x, y) or 4 (xx, xy, yx, yy).
+    pub components: usize,
+}
+
+impl From<Array> for Attribute {
+    fn from(given: Array) -> Self {
+        match given.components {
+            1 => array(given.name, scalars(), given.values),
+            2 => planar_vectors(given.name, &given.values),
+            _ => {
+                let planar = given.values.chunks_exact(4);
+                let whole = planar.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, 0.0]);
+                array(given.name, ElementType::Tensors, whole.collect())
+            }
+        }
+    }
+}
+
+/// The `.vtu` file of a displacement field on a mesh with more arrays at its nodes and in its cells.
+pub fn arrays_file(
+    title: &str,
+    sheet: &Sheet,
+    mesh: &Mesh,
+    displacement: &[f64],
+    at_nodes: Vec<Array>,
+    in_cells: Vec<Array>,
+) -> Vec<u8> {
+    let at_nodes = at_nodes.into_iter().map(Attribute::from).collect();
+    let mut grid = plate(sheet, mesh, displacement, at_nodes, None);
+    let in_cells = in_cells.into_iter().map(Attribute::from);
+    grid.data.cell.extend(in_cells);
+    encode(title, grid)
+}
+
 /// The `.vtu` file of scattered points with a displacement field and an imported one at them.
 pub fn points_file(
     title: &str,
@@ -195,21 +236,31 @@ pub fn points_file(
     displacement: &[f64],
     imported: &[f64],
 ) -> Vec<u8> {
+    let arrays = vec![
+        planar_vectors("displacement_mm", displacement),
+        planar_vectors("imported_displacement_mm", imported),
+        difference(TO_IMPORTED, displacement, imported),
+    ];
+    encode(title, scattered(places, arrays))
+}
+
+/// The `.vtu` file of scattered points with arrays at them.
+pub fn markers_file(title: &str, places: &[[f64; 2]], arrays: Vec<Array>) -> Vec<u8> {
+    let arrays = arrays.into_iter().map(Attribute::from).collect();
+    encode(title, scattered(places, arrays))
+}
+
+fn scattered(places: &[[f64; 2]], arrays: Vec<Attribute>) -> UnstructuredGridPiece {
     let nodes: Vec<usize> = (0..places.len()).collect();
     let cells: Vec<&[usize]> = nodes.chunks(1).collect();
-    let grid = UnstructuredGridPiece {
+    UnstructuredGridPiece {
         points: IOBuffer::F64(places.iter().flat_map(|[x, y]| [*x, *y, 0.0]).collect()),
         cells: connect(&cells, vec![CellType::Vertex; cells.len()]),
         data: Attributes {
-            point: vec![
-                planar_vectors("displacement_mm", displacement),
-                planar_vectors("imported_displacement_mm", imported),
-                difference(TO_IMPORTED, displacement, imported),
-            ],
+            point: arrays,
             cell: Vec::new(),
         },
-    };
-    encode(title, grid)
+    }
 }
 
 const TO_FINITE_ELEMENTS: &str = "difference_to_finite_elements_mm";

@@ -166,15 +166,12 @@ impl Newton {
         motion: &[f64],
         describe: &dyn Fn(usize) -> String,
     ) -> Result<Vec<f64>, SolveFault> {
+        let mut residual = self.tangent(potential, u, describe)?;
         let inverted = |fault: Inadmissible| SolveFault::Inverted {
             element: describe(fault.element),
         };
-        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
-        self.assembly
-            .linearise(potential, u, &mut residual, &mut stiffness)
-            .map_err(inverted)?;
         Assembly::add_product(potential, u, motion, &mut residual).map_err(inverted)?;
-        self.change(&mut stiffness, &residual)
+        self.change(&residual)
     }
 
     /// The change of the free unknowns by the tangent at `u` under small forces on them; nothing at held unknowns.
@@ -188,25 +185,58 @@ impl Newton {
         forces: &[f64],
         describe: &dyn Fn(usize) -> String,
     ) -> Result<Vec<f64>, SolveFault> {
+        self.tangent(potential, u, describe)?;
+        let opposed: Vec<f64> = forces.iter().map(|force| -force).collect();
+        self.change(&opposed)
+    }
+
+    /// Factorises the tangent at `u` for [`Self::changes`]; the residual there, at held unknowns too.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when `u` is not admissible or the tangent cannot be factorised.
+    pub fn tangent(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        describe: &dyn Fn(usize) -> String,
+    ) -> Result<Vec<f64>, SolveFault> {
         let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
         self.assembly
             .linearise(potential, u, &mut residual, &mut stiffness)
             .map_err(|fault| SolveFault::Inverted {
                 element: describe(fault.element),
             })?;
-        let opposed: Vec<f64> = forces.iter().map(|force| -force).collect();
-        self.change(&mut stiffness, &opposed)
+        self.factorise(&mut stiffness)?;
+        Ok(residual)
+    }
+
+    /// −K⁻¹ r at the free unknowns, by the tangent factorised last, of many residuals one after the other; nothing at held
+    /// unknowns. The first one proves the factor right.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when the tangent is singular to working precision.
+    pub fn changes(&mut self, residuals: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, SolveFault> {
+        const TOGETHER: usize = 8;
+        let Some((first, others)) = residuals.split_first() else {
+            return Ok(Vec::new());
+        };
+        let mut changes = vec![self.change(first)?];
+        let free = self.assembly.free();
+        for group in others.chunks(TOGETHER) {
+            let right = group.iter().flat_map(|r| free.iter().map(|i| -r[*i]));
+            let mut columns: Vec<f64> = right.collect();
+            self.cholesky.substitute_columns(&mut columns, group.len());
+            for (residual, column) in group.iter().zip(columns.chunks(free.len().max(1))) {
+                changes.push(spread(free, column, residual.len()));
+            }
+        }
+        Ok(changes)
     }
 
     /// −K⁻¹ r at the free unknowns.
-    fn change(&mut self, stiffness: &mut [f64], residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
-        self.factorise(stiffness)?;
-        let mut change = vec![0.0; residual.len()];
+    fn change(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
         let step = self.step(residual)?;
-        for (unknown, step) in self.assembly.free().iter().zip(step) {
-            change[*unknown] = step;
-        }
-        Ok(change)
+        Ok(spread(self.assembly.free(), &step, residual.len()))
     }
 
     /// The direction φ of least stiffness at `u`, ‖φ‖ = 1, by inverse iteration, and φᵀ K φ; φ is nothing at held
@@ -234,11 +264,7 @@ impl Newton {
         }
         let forces = self.assembly.pattern().multiply(&tangent, &mode);
         let stiffness = mode.iter().zip(&forces).map(|(a, b)| a * b).sum();
-        let mut all = vec![0.0; u.len()];
-        for (unknown, entry) in self.assembly.free().iter().zip(mode) {
-            all[*unknown] = entry;
-        }
-        Some((stiffness, all))
+        Some((stiffness, spread(self.assembly.free(), &mode, u.len())))
     }
 
     /// The largest entry of the diagonal of a stiffness.
@@ -342,4 +368,13 @@ impl Newton {
             length *= 0.5;
         }
     }
+}
+
+/// Entries of the free unknowns among all, the others nothing.
+fn spread(free: &[usize], entries: &[f64], count: usize) -> Vec<f64> {
+    let mut all = vec![0.0; count];
+    for (unknown, entry) in free.iter().zip(entries) {
+        all[*unknown] = *entry;
+    }
+    all
 }

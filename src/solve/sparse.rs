@@ -1,6 +1,6 @@
 //! Sparse matrices and their factorisation. The only file that names faer.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::linalg::solvers::SolveCore;
 use faer::perm::PermRef;
@@ -120,6 +120,8 @@ pub struct Cholesky {
     factor: Vec<f64>,
     values: Vec<f64>,
     workspace: MemBuffer,
+    /// What a factorisation or a single right-hand side needs.
+    scratch: StackReq,
 }
 
 impl Cholesky {
@@ -174,6 +176,7 @@ impl Cholesky {
         Ok(Self {
             factor: vec![0.0; symbolic.len_val()],
             workspace: MemBuffer::new(scratch),
+            scratch,
             values: Vec::new(),
             pattern,
             symbolic,
@@ -269,10 +272,21 @@ impl Cholesky {
 
     /// x ← A⁻¹ x by substitution alone, without refinement and proof: for iterations that look at their own residual.
     pub fn substitute(&mut self, x: &mut [f64]) {
-        let size = x.len();
+        self.substitute_columns(x, 1);
+    }
+
+    /// X ← A⁻¹ X for columns one after the other, as [`Self::substitute`]: eight together take less than three times as
+    /// long as one.
+    pub fn substitute_columns(&mut self, x: &mut [f64], columns: usize) {
+        let needed = self
+            .symbolic
+            .solve_in_place_scratch::<f64>(columns, Par::Seq);
+        if columns > 1 {
+            self.workspace = MemBuffer::new(needed.or(self.scratch));
+        }
         LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(x, size, 1),
+            MatMut::from_column_major_slice_mut(x, self.pattern.size(), columns),
             Par::Seq,
             MemStack::new(&mut self.workspace),
         );

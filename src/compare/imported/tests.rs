@@ -202,7 +202,11 @@ fn fields_that_do_not_fit_are_refused_with_the_reason() {
             "stretch,X_mm,Y_mm,ux_mm,uy_mm\n0.7,3,2,1,1\n".into(),
             "no rows for the load factor 0.5",
         ),
-        (".txt", String::new(), "is no .vtu, .vtk, .frd or .csv file"),
+        (
+            ".txt",
+            String::new(),
+            "is no .vtu, .vtk, .pvd, .msh, .frd or .csv file",
+        ),
     ] {
         let found = refusal(name, &text);
         assert!(

@@ -60,7 +60,7 @@ impl Climb<'_> {
                     force,
                     change: None,
                     discretisation_error: f64::NAN,
-                    last_correction: last,
+                    iteration_error: last,
                     corrections,
                     work: vec![(self.grid().nodes(), work)],
                 });

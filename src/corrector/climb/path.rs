@@ -6,6 +6,9 @@ use crate::error::{Error, SolveFault};
 /// States that the next one is extrapolated from.
 const HISTORY: usize = 3;
 
+/// Cycles too many after which the operators are written anew.
+const BEYOND: usize = 2;
+
 /// A rigid motion of a grip in its plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidMotion {
@@ -70,18 +73,20 @@ impl Climb<'_> {
             parameter: *first,
             field: first_state.field,
         }];
-        // Fresh operators, which are those of linear cells, take about as many cycles as an element's side has cells.
-        let mut written = false;
+        // Cycles beyond those that fresh operators, which are of linear cells, take: as many as an element's side has
+        // cells. Writing the operators anew costs about as much as a few of them.
+        let mut beyond = usize::MAX;
         for stretch in between.iter().copied() {
             let fault = at_stretch(stretch);
             let mut field = combine(&known, &value_shares(&known, stretch));
-            if !written {
+            if beyond > BEYOND {
+                beyond = 0;
                 let finest = self.levels.len() - 1;
                 self.linearise_below(finest, &field).map_err(fault)?;
             }
             let error = relative_error * self.departure(&field, stretch);
             let reached = self.near(&mut field, error).map_err(fault)?;
-            written = reached.work.cycles <= self.scheme.side();
+            beyond += reached.work.cycles.saturating_sub(self.scheme.side());
             let force = self.force_along(&combine(&known, &rate_shares(&known, stretch)));
             let climbed = Climbed::near(field, force, error, reached);
             told(&climbed);
@@ -115,14 +120,14 @@ impl Climb<'_> {
         let limit = self.settings.tolerance * error;
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
         let level = &mut self.levels[finest];
-        let iterated = level.iterate(sheet, field, &mut self.multigrid, most, &|_, last| {
-            last <= limit
+        let iterated = level.iterate(sheet, field, &mut self.multigrid, most, &|_, left| {
+            left <= limit
         });
         let reached = iterated.map_err(|Inverted| inverted())?;
-        if reached.last() > limit {
+        if reached.left() > limit {
             return Err(SolveFault::Stalled {
                 iterations: most,
-                residual: reached.last(),
+                residual: reached.left(),
                 tolerance: limit,
             });
         }
@@ -147,7 +152,7 @@ impl Climbed {
             force,
             change: None,
             discretisation_error,
-            last_correction: reached.last(),
+            iteration_error: reached.left(),
             work: vec![(nodes, reached.work)],
             corrections: reached.corrections,
         }

@@ -41,7 +41,7 @@ impl Climb<'_> {
         let mut work = Work::default();
         for _ in 0..2 {
             self.linearise_below(self.start, &field)?;
-            let enough = |first: f64, last: f64| last <= START_TOLERANCE * first;
+            let enough = |first: f64, left: f64| left <= START_TOLERANCE * first;
             work.add(self.solve(self.start, &mut field, &enough)?.work);
         }
         Ok((field, work))

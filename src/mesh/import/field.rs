@@ -1,8 +1,9 @@
 //! Displacement fields of other programs on their own meshes.
 
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use super::{Raw, frd, read_text, vtk};
+use super::{Raw, frd, gmsh, pvd, read_text, vtk};
 use crate::mesh::Mesh;
 use crate::units::{self, Dimension};
 
@@ -17,12 +18,38 @@ pub struct ImportedField {
     pub part: String,
 }
 
+/// The displacement fields of a file on its mesh.
+#[derive(Clone, Debug)]
+pub struct ImportedSeries {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// The fields in the order of the file.
+    pub steps: Vec<ImportedStep>,
+    /// What of the file they are.
+    pub part: String,
+}
+
+/// One field of a series.
+#[derive(Clone, Debug)]
+pub struct ImportedStep {
+    /// Its time, where the file says it.
+    pub time: Option<f64>,
+    /// ux, uy of node after node in mm; no number at nodes without a displacement.
+    pub displacement: Vec<f64>,
+    /// The first node without a displacement, and why.
+    pub hole: Option<String>,
+}
+
 /// The time of a step may differ by so much of it from the one that is wanted.
 const NEAR: f64 = 1e-4;
 
-/// Reads a field from VTK (`.vtu`, `.vtk`) or CalculiX (`.frd`); `unit` is the length of the file's unit in mm. Of
-/// VTK's arrays the one of the name `array` is taken; without a name the displacement, or the only vector. A unit at
-/// the end of an array's name is that of its values. Of CalculiX' steps the one with the time `time` is taken.
+/// Displacements by the file's own number of the node.
+pub type Displacements = HashMap<u64, [f64; 2]>;
+
+/// Reads a field from VTK (`.vtu`, `.vtk`, `.pvd`), CalculiX (`.frd`) or Gmsh (`.msh` with `$NodeData`); `unit` is
+/// the length of the file's unit in mm. Of VTK's and Gmsh's arrays the one of the name `array` is taken; without a
+/// name the displacement, or the only vector. A unit at the end of an array's name is that of its values. Of several
+/// steps the one with the time `time` is taken.
 ///
 /// # Errors
 /// Says what the file holds that cannot be read, or what is wrong with it.
@@ -32,6 +59,51 @@ pub fn import_field(
     array: Option<&str>,
     time: f64,
 ) -> Result<ImportedField, String> {
+    let ImportedSeries {
+        mesh,
+        mut steps,
+        part,
+    } = import_series(path, unit, array)?;
+    let near = |step: &ImportedStep| {
+        step.time
+            .is_some_and(|known| (known - time).abs() <= NEAR * time)
+    };
+    let timeless = |step: &ImportedStep| step.time.is_none();
+    let chosen = steps.iter().rposition(near).or_else(|| {
+        let only = steps.len() == 1;
+        steps.iter().position(|step| only && timeless(step))
+    });
+    let Some(chosen) = chosen else {
+        let known = steps.iter().filter_map(|step| step.time);
+        let known: Vec<_> = known.map(|time| time.to_string()).collect();
+        let known = known.join(", ");
+        return Err(format!(
+            "has no step at the time {time}; it has {known}: choose one with --time"
+        ));
+    };
+    let step = steps.swap_remove(chosen);
+    if let Some(reason) = step.hole {
+        return Err(reason);
+    }
+    Ok(ImportedField {
+        mesh,
+        displacement: step.displacement,
+        part: match step.time {
+            Some(time) => format!("the step at the time {time}"),
+            None => part,
+        },
+    })
+}
+
+/// Reads all steps of a file, see [`import_field`].
+///
+/// # Errors
+/// Says what the file holds that cannot be read, or what is wrong with it.
+pub fn import_series(
+    path: &Path,
+    unit: f64,
+    array: Option<&str>,
+) -> Result<ImportedSeries, String> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
@@ -40,62 +112,91 @@ pub fn import_field(
             let (raw, arrays) = vtk::read_with_arrays(path)?;
             let (name, values) = choose(arrays, array)?;
             let components = values.len() / raw.places.len().max(1);
-            let at = |node: u64| {
-                let start = components * node as usize;
-                Some([*values.get(start)?, *values.get(start + 1)?])
-            };
-            let own = unit_of(&name).unwrap_or(unit);
-            field(raw, unit, own, format!("the array `{name}`"), &at)
+            let pairs = values.chunks_exact(components.max(1)).zip(0..);
+            let displacements = pairs.map(|(u, node)| (node, [u[0], u[1]])).collect();
+            let steps = vec![(None, displacements)];
+            series(raw, unit, &steps, &name)
+        }
+        Some("msh") => {
+            let text = read_text(path)?;
+            let (name, views) = choose(gmsh::views(&text)?, array)?;
+            series(gmsh::read(&text)?, unit, &views, &name)
         }
         Some("frd") => {
             let results = frd::read(&read_text(path)?)?;
-            let times: Vec<f64> = results.steps.iter().map(|(time, _)| *time).collect();
-            let near = |known: &f64| (known - time).abs() <= NEAR * time;
-            let step = times.iter().rposition(near).ok_or_else(|| {
-                let known: Vec<_> = times.iter().map(ToString::to_string).collect();
-                let known = known.join(", ");
-                format!("has no step at the time {time}; it has {known}: choose one with --time")
-            })?;
-            let (time, displacements) = &results.steps[step];
-            let at = |node: u64| displacements.get(&node).copied();
-            field(
-                results.raw,
-                unit,
-                unit,
-                format!("the step at the time {time}"),
-                &at,
-            )
+            let steps = results.steps.into_iter();
+            let steps: Vec<_> = steps.map(|(time, field)| (Some(time), field)).collect();
+            series(results.raw, unit, &steps, "DISP")
         }
-        _ => Err("is no .vtu, .vtk, .frd or .csv file".into()),
+        Some("pvd") => collection(path, unit, array),
+        _ => Err("is no .vtu, .vtk, .pvd, .msh, .frd or .csv file".into()),
     }
 }
 
-fn field(
+/// The files of a collection as the steps of one series; they must have one mesh.
+fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, String> {
+    let mut whole: Option<ImportedSeries> = None;
+    for (time, file) in pvd::read(&read_text(path)?)? {
+        let name = file.clone();
+        let file = path.parent().unwrap_or(Path::new("")).join(file);
+        if file.extension().is_some_and(|ending| ending == "pvd") {
+            return Err(format!("names the collection {name} as one of its files"));
+        }
+        let mut part = import_series(&file, unit, array)
+            .map_err(|reason| format!("names {name}, which {reason}"))?;
+        for step in &mut part.steps {
+            step.time = Some(time);
+        }
+        match &mut whole {
+            None => whole = Some(part),
+            Some(whole) if whole.mesh.nodes == part.mesh.nodes => whole.steps.extend(part.steps),
+            Some(_) => {
+                return Err(format!(
+                    "names {name}, which has another mesh than the first file"
+                ));
+            }
+        }
+    }
+    whole.ok_or_else(|| "names no files".into())
+}
+
+fn series(
     raw: Raw,
     unit: f64,
-    unit_of_values: f64,
-    part: String,
-    at: &dyn Fn(u64) -> Option<[f64; 2]>,
-) -> Result<ImportedField, String> {
-    let mut displacement = Vec::new();
-    for node in raw.used() {
-        let values = at(node).ok_or_else(|| format!("has no displacement of the node {node}"))?;
-        if values.iter().any(|value| !value.is_finite()) {
-            return Err(format!(
-                "has a displacement of the node {node} that is no number"
-            ));
+    fields: &[(Option<f64>, Displacements)],
+    name: &str,
+) -> Result<ImportedSeries, String> {
+    let used: BTreeSet<u64> = raw.used();
+    let unit_of_values = unit_of(name).unwrap_or(unit);
+    let step = |(time, field): &(Option<f64>, Displacements)| {
+        let (mut displacement, mut hole) = (Vec::new(), None);
+        for node in &used {
+            let values = field.get(node).copied();
+            let whole = values.filter(|values| values.iter().all(|value| value.is_finite()));
+            if whole.is_none() {
+                hole.get_or_insert(match values {
+                    None => format!("has no displacement of the node {node}"),
+                    Some(_) => format!("has a displacement of the node {node} that is no number"),
+                });
+            }
+            displacement.extend(whole.map_or([f64::NAN; 2], |u| u.map(|u| unit_of_values * u)));
         }
-        displacement.extend(values.map(|value| unit_of_values * value));
-    }
-    Ok(ImportedField {
+        ImportedStep {
+            time: *time,
+            displacement,
+            hole,
+        }
+    };
+    let steps = fields.iter().map(step).collect();
+    Ok(ImportedSeries {
         mesh: raw.mesh(unit)?,
-        displacement,
-        part,
+        steps,
+        part: format!("the array `{name}`"),
     })
 }
 
 /// The array of a name; without one the displacement among arrays of vectors, or the only one.
-fn choose(mut arrays: vtk::Arrays, wanted: Option<&str>) -> Result<(String, Vec<f64>), String> {
+fn choose<T>(mut arrays: Vec<(String, T)>, wanted: Option<&str>) -> Result<(String, T), String> {
     let names: Vec<String> = arrays.iter().map(|(name, _)| name.clone()).collect();
     if names.is_empty() {
         return Err("holds no vectors at its points, and so no displacement".into());

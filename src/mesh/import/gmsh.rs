@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::str::{FromStr, SplitWhitespace};
 
+use super::field::Displacements;
 use super::{BINARY, Raw};
 use crate::mesh::CellShape;
 
@@ -22,6 +23,63 @@ pub fn read(text: &str) -> Result<Raw, String> {
         v if (4.1..5.0).contains(&v) => version_4(text, &names),
         other => Err(format!("has the format {other}; 2.2 and 4.1 can be read")),
     }
+}
+
+/// The views of vectors at the nodes (`$NodeData`) by their names, each with its steps: times and values by node.
+///
+/// # Errors
+/// Says what is wrong.
+pub fn views(text: &str) -> Result<Vec<(String, Vec<(Option<f64>, Displacements)>)>, String> {
+    let mut views: Vec<(String, Vec<_>)> = Vec::new();
+    for section in text.split("$NodeData").skip(1) {
+        let section = section.split("$EndNodeData").next().unwrap_or_default();
+        let mut lines = section
+            .lines()
+            .map(str::trim)
+            .filter(|line| !line.is_empty());
+        let texts = lines.next().and_then(|line| line.parse().ok());
+        let texts: usize = texts.ok_or("has a $NodeData without its number of names")?;
+        let names: Vec<&str> = lines.by_ref().take(texts).collect();
+        let name = names.first().map_or("", |name| name.trim_matches('"'));
+        let rest: Vec<&str> = lines.collect();
+        let rest = rest.join("\n");
+        let mut words = Words {
+            name: "NodeData",
+            words: rest.split_whitespace(),
+        };
+        let Some(step) = view_step(&mut words)? else {
+            continue;
+        };
+        match views.iter_mut().find(|(known, _)| known == name) {
+            Some((_, steps)) => steps.push(step),
+            None => views.push((name.to_owned(), vec![step])),
+        }
+    }
+    Ok(views)
+}
+
+/// One step of a view after its names; nothing where its values are no vectors.
+fn view_step(words: &mut Words) -> Result<Option<(Option<f64>, Displacements)>, String> {
+    let reals: Vec<f64> = (0..words.next::<usize>()?)
+        .map(|_| words.next())
+        .collect::<Result<_, _>>()?;
+    let count: usize = words.next()?;
+    let whole = words.list(count)?;
+    let [_, components, nodes, ..] = whole[..] else {
+        return Err("has a $NodeData without its number of components and nodes".into());
+    };
+    let mut values = Displacements::new();
+    for _ in 0..nodes {
+        let node = words.whole()?;
+        let vector: Vec<f64> = (0..components)
+            .map(|_| words.next())
+            .collect::<Result<_, _>>()?;
+        if let [x, y, ..] = vector[..] {
+            values.insert(node, [x, y]);
+        }
+    }
+    let is_vector = components == 2 || components == 3;
+    Ok(is_vector.then(|| (reals.first().copied(), values)))
 }
 
 /// Names of physical groups by dimension and number.

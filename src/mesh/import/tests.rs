@@ -110,3 +110,75 @@ fn quadratic_cells_given_clockwise_are_turned_with_their_middles() {
         turned
     );
 }
+
+/// Two steps of a view of vectors, in the format of both versions; the second lacks a node.
+const VIEW: &str = "$NodeData\n1\n\"displacement [cm]\"\n1\n0.5\n3\n0\n3\n4\n1 0 0 0\n2 0.1 0 0\n3 0.1 -0.05 0\n5 0 -0.05 0\n$EndNodeData\n\
+$NodeData\n1\n\"displacement [cm]\"\n1\n1.0\n3\n1\n3\n3\n1 0 0 0\n2 0.2 0 0\n3 0.2 NaN 0\n$EndNodeData\n\
+$NodeData\n1\n\"temperature\"\n1\n0.5\n3\n0\n1\n1\n1 300\n$EndNodeData\n";
+
+#[test]
+fn views_of_gmsh_are_fields_with_their_times() {
+    for mesh in [VERSION_2, VERSION_4] {
+        let (_folder, path) = with("a.msh", &format!("{mesh}{VIEW}"));
+        let series = import_series(&path, 1.0, None).unwrap();
+        assert_eq!(series.steps.len(), 2);
+        assert_eq!(series.steps[0].time, Some(0.5));
+        let first = &series.steps[0].displacement;
+        assert_eq!(first[..6], [0.0, 0.0, 1.0, 0.0, 1.0, -0.5]);
+        let second = &series.steps[1];
+        assert_eq!(second.displacement[2..4], [2.0, 0.0]);
+        assert!(second.displacement[4..].iter().all(|u| u.is_nan()));
+        let told = import_field(&path, 1.0, None, 1.0).unwrap_err();
+        assert!(told.contains("of the node 3 that is no number"), "{told}");
+        let chosen = import_field(&path, 1.0, None, 0.5).unwrap();
+        assert_eq!(chosen.displacement, *first);
+    }
+    let (_folder, path) = with("a.msh", VERSION_2);
+    let told = import_series(&path, 1.0, None).unwrap_err();
+    assert!(told.contains("no vectors"), "{told}");
+}
+
+#[test]
+fn collections_name_their_files_and_times() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("all.pvd");
+    let of = |text: &str| {
+        fs::write(&path, text).unwrap();
+        import_series(&path, 1.0, None)
+    };
+    let step = |time: f64, file: &str| {
+        format!("<DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>")
+    };
+    let list = |steps: &str| {
+        format!(
+            "<?xml version=\"1.0\"?><VTKFile type=\"Collection\"><Collection>{steps}</Collection></VTKFile>"
+        )
+    };
+    let view = VIEW.split("$NodeData").nth(1).unwrap();
+    fs::write(
+        folder.path().join("a&b.msh"),
+        format!("{VERSION_2}$NodeData{view}"),
+    )
+    .unwrap();
+    let found = of(&list(
+        &(step(1.0, "a&amp;b.msh") + &step(2.5, "a&amp;b.msh")),
+    ))
+    .unwrap();
+    let times: Vec<_> = found.steps.iter().map(|step| step.time).collect();
+    assert_eq!(times, [Some(1.0), Some(2.5)]);
+    for (text, reason) in [
+        (list(""), "names no files"),
+        (
+            list(&step(1.0, "none.vtu")),
+            "names none.vtu, which cannot be read",
+        ),
+        (
+            list("<DataSet file=\"x\"/>"),
+            "a DataSet without `timestep`",
+        ),
+        (list(&step(1.0, "all.pvd")), "as one of its files"),
+    ] {
+        let told = of(&text).unwrap_err();
+        assert!(told.contains(reason), "{told}");
+    }
+}

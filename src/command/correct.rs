@@ -1,0 +1,246 @@
+//! `gelbench correct`: a measured displacement field made to satisfy the physics.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{Outcome, print, progress_bar, warn};
+use crate::corrector::measured::{EdgeCondition, MeasuredForce, Physics, Robust};
+use crate::error::Error;
+use crate::measured_field::{Conditions, MeasuredField, MeshSource, Request, measured_force};
+use crate::measurement::Reading;
+use crate::mesh::CellShape;
+use crate::output;
+use crate::units::{self, Dimension};
+
+/// What the command line says about a correction.
+#[derive(Args)]
+pub struct Options {
+    /// The field: .csv with x, y, ux, uy; output of DICe or muDIC; two matrices of Ncorr; .vtu, .vtk, .pvd, .msh, .frd.
+    /// Several files are frames
+    #[arg(required = true, value_name = "FIELD")]
+    pub fields: Vec<PathBuf>,
+    /// The material: name or path of a card
+    #[arg(long, value_name = "CARD")]
+    pub material: String,
+    /// Thickness at rest, such as "2 mm"
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub thickness: f64,
+    /// What is known besides: a file with edges and noise
+    #[arg(long, value_name = "FILE")]
+    pub study: Option<PathBuf>,
+    /// Edges without traction
+    #[arg(long, value_name = "EDGE", value_delimiter = ',')]
+    pub free: Vec<String>,
+    /// Edges that moved as rigid bodies by unknown amounts
+    #[arg(long, value_name = "EDGE", value_delimiter = ',')]
+    pub rigid: Vec<String>,
+    /// A measured force, the grip's on the specimen: edge, axis, force and, else 1 % of it, its standard deviation, such as
+    /// "right x 1.2 N ± 0.02 N"
+    #[arg(long, value_name = "FORCE", value_parser = force)]
+    pub force: Vec<MeasuredForce>,
+    /// One or two parameters of the law that are found with the field; a force must be measured
+    #[arg(long, value_name = "PARAMETER", value_delimiter = ',')]
+    pub fit: Vec<String>,
+    /// The specimen's mesh: .msh, .vtu or .vtk
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// The unit of the mesh
+    #[arg(long, value_name = "UNIT", default_value = "mm", value_parser = unit)]
+    pub mesh_unit: f64,
+    /// The specimen's edge as a table: x [mm], y [mm], and line where there are holes
+    #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
+    pub outline: Option<PathBuf>,
+    /// The field's unit or the length of a pixel, such as mm or "0.05 mm", where the file does not say it
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    pub unit: Option<f64>,
+    /// The distance of the points of Ncorr's matrices, such as "0.5 mm"
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub grid: Option<f64>,
+    /// The array of a file of VTK or Gmsh
+    #[arg(long, value_name = "NAME")]
+    pub array: Option<String>,
+    /// Size of the cells of a mesh that is made [default: the markers' spacing, at least 12 cells across and at most
+    /// about 20,000]
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub cell_size: Option<f64>,
+    /// Kind of the cells of a mesh that is made
+    #[arg(long, value_enum, default_value = "triangle6")]
+    pub cells: Cells,
+    /// What gaps among the markers are, if a mesh is made
+    #[arg(long, value_enum, default_value = "found")]
+    pub holes: Holes,
+    /// Standard deviation of the displacement's components, such as "0.1 mm"; estimated where it is not given
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub noise: Option<f64>,
+    /// Weights of markers that are far off
+    #[arg(long, value_enum)]
+    pub robust: Option<Weights>,
+    /// How far the physics holds
+    #[arg(long, value_enum)]
+    pub physics: Option<Holds>,
+    /// Write into this folder
+    #[arg(long, value_name = "FOLDER", default_value = "output/correct")]
+    pub output: PathBuf,
+}
+
+/// Kinds of cells.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Cells {
+    /// Triangles of three nodes
+    Triangle3,
+    /// Triangles of six nodes
+    Triangle6,
+    /// Quadrilaterals of four nodes
+    Quadrilateral4,
+    /// Quadrilaterals of nine nodes
+    Quadrilateral9,
+}
+
+/// What gaps among markers are.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Holes {
+    /// Holes of the specimen, where they are much wider than the spacing
+    Found,
+    /// Markers that were lost
+    Closed,
+}
+
+/// Weights of markers that are far off.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Weights {
+    /// As all others
+    No,
+    /// Less the farther they are off
+    Huber,
+    /// Not at all from a distance on
+    Tukey,
+}
+
+/// How far the physics holds.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Holds {
+    /// Equilibrium holds exactly
+    Exact,
+    /// Up to smooth forces that are weighted against the data, for a law that is not exactly right
+    Weighted,
+}
+
+/// Corrects, prints, and writes.
+pub fn run(options: Options) -> Outcome {
+    let folder = options.output.clone();
+    let field = MeasuredField::prepare(request(options)?)?;
+    warn(&field.warnings);
+    output::prepare(&folder)?;
+    let bar = progress_bar(field.measurement.frames.len() as u64);
+    let estimates = field.estimate(&|frame| {
+        bar.set_message(format!("frame {}", frame.number));
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    let estimates = estimates.inspect_err(|_| output::abandon(&folder))?;
+    let files = output::measured::write(&field, &estimates, &folder)?;
+    print(&format!(
+        "{}{} files in {}\n",
+        output::measured::summary(&field, &estimates),
+        files.len(),
+        folder.display()
+    ))?;
+    Ok(0)
+}
+
+fn request(options: Options) -> Result<Request, Error> {
+    let mut conditions = match &options.study {
+        Some(path) => Conditions::of_file(path)?,
+        None => Conditions::default(),
+    };
+    for (names, condition) in [
+        (options.free, EdgeCondition::Free),
+        (options.rigid, EdgeCondition::Rigid),
+    ] {
+        conditions
+            .edges
+            .extend(names.into_iter().map(|name| (name, condition)));
+    }
+    let forces = options.force.into_iter().map(|force| (None, force));
+    conditions.forces.extend(forces);
+    conditions.fit.extend(options.fit);
+    conditions.noise = options.noise.or(conditions.noise);
+    if let Some(robust) = options.robust {
+        conditions.robust = match robust {
+            Weights::No => Robust::No,
+            Weights::Huber => Robust::Huber,
+            Weights::Tukey => Robust::Tukey,
+        };
+    }
+    if let Some(physics) = options.physics {
+        conditions.physics = match physics {
+            Holds::Exact => Physics::Exact,
+            Holds::Weighted => Physics::Weighted,
+        };
+    }
+    let mesh = match (options.mesh, options.outline) {
+        (Some(mesh), _) => MeshSource::File(mesh, options.mesh_unit),
+        (None, Some(outline)) => MeshSource::Outline(outline),
+        (None, None) => MeshSource::Data,
+    };
+    Ok(Request {
+        files: options.fields,
+        reading: Reading {
+            unit: options.unit,
+            array: options.array,
+            grid: options.grid,
+        },
+        material: options.material,
+        thickness: options.thickness,
+        mesh,
+        cell_size: options.cell_size,
+        shape: match options.cells {
+            Cells::Triangle3 => CellShape::Triangle3,
+            Cells::Triangle6 => CellShape::Triangle6,
+            Cells::Quadrilateral4 => CellShape::Quad4,
+            Cells::Quadrilateral9 => CellShape::Quad9,
+        },
+        holes: options.holes == Holes::Found,
+        conditions,
+    })
+}
+
+/// An edge, an axis, a force and its standard deviation.
+fn force(text: &str) -> Result<MeasuredForce, String> {
+    let wanted = "write edge, axis and force, as in \"right x 1.2 N ± 0.02 N\"";
+    let mut words = text.splitn(3, ' ');
+    let (Some(edge), Some(axis), Some(values)) = (words.next(), words.next(), words.next()) else {
+        return Err(wanted.into());
+    };
+    let axis = match axis {
+        "x" => 0,
+        "y" => 1,
+        _ => return Err(wanted.into()),
+    };
+    let newtons = |text: &str| {
+        units::parse(text, Dimension::Force).map_err(|fault| format!("it {fault}; {wanted}"))
+    };
+    let values = values.replace("+-", "±");
+    match values.split_once('±') {
+        None => Ok(measured_force(edge, axis, newtons(&values)?, None)),
+        Some((force, deviation)) => {
+            let deviation = newtons(deviation)?;
+            Ok(measured_force(edge, axis, newtons(force)?, Some(deviation)))
+        }
+    }
+}
+
+/// A length greater than zero in mm.
+fn length(text: &str) -> Result<f64, String> {
+    match units::parse(text, Dimension::Length) {
+        Ok(length) if length > 0.0 => Ok(length),
+        Ok(_) => Err("it must be greater than zero".into()),
+        Err(fault) => Err(format!("it {fault}; write it as in \"2 mm\"")),
+    }
+}
+
+/// The length in mm of a unit, or a length.
+fn unit(text: &str) -> Result<f64, String> {
+    super::compare::length(text).or_else(|reason| length(text).map_err(|_| reason))
+}

@@ -1,0 +1,162 @@
+//! Smooth forces on the sheet's interior that stand for what the physics lacks.
+//!
+//! ```text
+//! F(u) = f,   fᵢ = ∫ Nᵢ b dA,   b = Σ cₖ ψₖ                                     b in N/mm², ψ products of cubic B-splines
+//! ```
+
+use nalgebra::DMatrix;
+
+use super::edge_motion::Roughness;
+use super::spline::Spline;
+use crate::mesh::Mesh;
+use crate::solve::{Inadmissible, Local, Potential};
+
+/// Spans along the longer side of the specimen's box.
+const SPANS: f64 = 4.0;
+
+/// The forces of unit coefficients.
+#[derive(Clone, Debug)]
+pub struct BodyForce {
+    /// Forces in N/(N/mm²) on all unknowns, of one coefficient after the other: all along x, then all along y.
+    columns: Vec<Vec<f64>>,
+    /// √ of the area that belongs to a coefficient in mm.
+    scale: f64,
+}
+
+impl BodyForce {
+    /// Forces on the unknowns of a mesh that are not held.
+    pub fn new(mesh: &Mesh, held: &[bool]) -> Self {
+        let areas = nodal_areas(mesh);
+        let [low, high] = mesh.bounding_box();
+        let size = [0, 1].map(|axis| high[axis] - low[axis]);
+        let longer = size[0].max(size[1]);
+        let splines = size.map(|size| Spline {
+            spans: ((SPANS * size / longer).round() as usize).max(1),
+        });
+        let values = |node: [f64; 2]| {
+            [0, 1].map(|axis| splines[axis].derivatives((node[axis] - low[axis]) / size[axis], 0))
+        };
+        let count = splines[0].functions() * splines[1].functions();
+        let mut columns = vec![vec![0.0; held.len()]; 2 * count];
+        for (node, place) in mesh.nodes.iter().enumerate() {
+            let [along, across] = values(*place);
+            for (i, x) in &along {
+                for (j, y) in &across {
+                    let function = i * splines[1].functions() + j;
+                    for axis in [0, 1].into_iter().filter(|axis| !held[2 * node + axis]) {
+                        columns[axis * count + function][2 * node + axis] = areas[node] * x * y;
+                    }
+                }
+            }
+        }
+        let area: f64 = areas.iter().sum();
+        Self {
+            columns,
+            scale: (area / count as f64).sqrt(),
+        }
+    }
+
+    /// Forces in N/(N/mm²) of one coefficient after the other.
+    pub fn columns(&self) -> &[Vec<f64>] {
+        &self.columns
+    }
+
+    /// The forces of coefficients in N.
+    pub fn forces(&self, coefficients: &[f64], unknowns: usize) -> Vec<f64> {
+        let mut sum = vec![0.0; unknowns];
+        for (column, factor) in self.columns.iter().zip(coefficients) {
+            sum.iter_mut()
+                .zip(column)
+                .for_each(|(s, c)| *s += factor * c);
+        }
+        sum
+    }
+
+    /// Σ r² ≈ ∫ b² dA along one axis and the other, where the coefficients are the last of all `parameters`.
+    pub fn roughness(&self, parameters: &[f64]) -> Vec<Roughness> {
+        let count = self.columns.len() / 2;
+        let first = parameters.len() - self.columns.len();
+        let along = |axis: usize| {
+            let places = first + axis * count..first + (axis + 1) * count;
+            let mut slopes = DMatrix::zeros(count, parameters.len());
+            for (row, place) in places.clone().enumerate() {
+                slopes[(row, place)] = self.scale;
+            }
+            Roughness {
+                edge: "forces on the interior".into(),
+                axis,
+                values: parameters[places].iter().map(|c| self.scale * c).collect(),
+                slopes,
+                rank: count,
+            }
+        };
+        vec![along(0), along(1)]
+    }
+}
+
+/// ∫ Nᵢ dA of every node in mm².
+fn nodal_areas(mesh: &Mesh) -> Vec<f64> {
+    let mut areas = vec![0.0; mesh.nodes.len()];
+    for cell in 0..mesh.cell_count() {
+        let shape = mesh.shape(cell);
+        for (local, weight) in shape.quadrature() {
+            let (_, jacobian) = mesh.gradients(cell, local);
+            for (node, value) in mesh.cell(cell).iter().zip(shape.values(local)) {
+                areas[*node] += weight * jacobian * value;
+            }
+        }
+    }
+    areas
+}
+
+/// Π(u) − f·u; each force is an element of its own.
+pub struct Pushed<'a> {
+    energy: &'a dyn Potential,
+    forces: &'a [f64],
+    unknowns: Vec<usize>,
+}
+
+impl<'a> Pushed<'a> {
+    /// Pushes with forces in N on all unknowns.
+    pub fn new(energy: &'a dyn Potential, forces: &'a [f64]) -> Self {
+        Self {
+            energy,
+            forces,
+            unknowns: (0..forces.len()).collect(),
+        }
+    }
+}
+
+impl Potential for Pushed<'_> {
+    fn unknowns(&self) -> usize {
+        self.energy.unknowns()
+    }
+
+    fn elements(&self) -> usize {
+        self.energy.elements() + self.forces.len()
+    }
+
+    fn element_unknowns(&self, element: usize) -> &[usize] {
+        match element.checked_sub(self.energy.elements()) {
+            Some(unknown) => &self.unknowns[unknown..=unknown],
+            None => self.energy.element_unknowns(element),
+        }
+    }
+
+    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
+        self.energy.place(unknown)
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        let Some(unknown) = element.checked_sub(self.energy.elements()) else {
+            return self.energy.evaluate_element(element, u, local);
+        };
+        local.residual[0] = -self.forces[unknown];
+        Ok(-self.forces[unknown] * u[0])
+    }
+}

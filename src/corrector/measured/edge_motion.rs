@@ -1,0 +1,482 @@
+//! How the loaded edges of a specimen move, by as few numbers as their conditions allow.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::outline::Segment;
+use super::spline::Spline;
+use crate::mesh::Mesh;
+
+/// What is known of a part of the boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EdgeCondition {
+    /// No traction.
+    Free,
+    /// Displacements ux, uy in mm; along an axis without one the edge is free.
+    Known([Option<f64>; 2]),
+    /// A rigid body that moved and turned by unknown amounts.
+    Rigid,
+    /// Loaded in an unknown way: the displacement is a smooth function along the edge.
+    Unknown,
+}
+
+/// Most spans of a spline along one edge.
+const MOST_SPANS: usize = 12;
+
+/// Markers' spacings in a span.
+const SPACINGS: f64 = 1.5;
+
+/// A linear combination of parameters and a constant.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Combination {
+    value: f64,
+    slopes: Vec<(usize, f64)>,
+}
+
+impl Combination {
+    fn parameter(index: usize, values: &[f64]) -> Self {
+        Self {
+            value: values[index],
+            slopes: vec![(index, 1.0)],
+        }
+    }
+
+    fn add(&mut self, factor: f64, other: &Self) {
+        self.value += factor * other.value;
+        let slopes = other.slopes.iter();
+        self.slopes
+            .extend(slopes.map(|(index, slope)| (*index, factor * slope)));
+    }
+}
+
+/// A coefficient of a spline along one axis: a parameter, or an unknown of the field that another part moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Coefficient {
+    Parameter(usize),
+    Unknown(usize),
+}
+
+/// What moves an unknown of the field.
+type Moved = BTreeMap<usize, Coefficient>;
+
+#[derive(Clone, Debug)]
+enum Part {
+    Known {
+        nodes: Vec<usize>,
+        displacement: [Option<f64>; 2],
+    },
+    /// Translation in mm and angle in rad about the centre begin at parameter `first`.
+    Rigid {
+        nodes: Vec<usize>,
+        centre: [f64; 2],
+        first: usize,
+    },
+    Smooth {
+        name: String,
+        spline: Spline,
+        /// Along one axis and the other.
+        coefficients: [Vec<Coefficient>; 2],
+        /// Nodes that it moves, with their places on 0…1.
+        nodes: Vec<(usize, f64)>,
+    },
+}
+
+/// The displacements of all edges that are not free, as a function u_B(p) of parameters p in mm and rad.
+#[derive(Clone, Debug)]
+pub struct EdgeMotion {
+    places: Vec<[f64; 2]>,
+    parts: Vec<Part>,
+    parameters: usize,
+}
+
+/// u_B and its derivatives at some p.
+#[derive(Clone, Debug)]
+pub struct Imposed {
+    unknowns: BTreeMap<usize, Combination>,
+}
+
+/// The curvature of the displacement of one edge along one axis: Σ r² = ∫ (d²u/dt²)² dt with t = 0…1 along the edge.
+#[derive(Clone, Debug)]
+pub struct Roughness {
+    /// The edge.
+    pub edge: String,
+    /// The axis.
+    pub axis: usize,
+    /// The values r in mm.
+    pub values: Vec<f64>,
+    /// ∂r/∂p.
+    pub slopes: DMatrix<f64>,
+    /// Rank of the form.
+    pub rank: usize,
+}
+
+impl EdgeMotion {
+    /// The motion of segments under one condition each. Where segments meet, known displacements go before rigid ones and
+    /// these before unknown ones; `spacing` is the distance of the markers in mm.
+    pub fn new(mesh: &Mesh, segments: &[(&Segment, EdgeCondition)], spacing: f64) -> Self {
+        let mut motion = Self {
+            places: mesh.nodes.clone(),
+            parts: Vec::new(),
+            parameters: 0,
+        };
+        let mut moved = Moved::new();
+        for (segment, condition) in segments {
+            if let EdgeCondition::Known(displacement) = condition {
+                motion.known(segment, *displacement, &mut moved);
+            }
+        }
+        let rigid =
+            |(_, condition): &&(&Segment, EdgeCondition)| *condition == EdgeCondition::Rigid;
+        for (segment, _) in segments.iter().filter(rigid) {
+            motion.rigid(segment, &mut moved);
+        }
+        for (segment, condition) in segments {
+            if *condition == EdgeCondition::Unknown {
+                motion.smooth(segment, spacing, &mut moved);
+            }
+        }
+        motion
+    }
+
+    fn known(&mut self, segment: &Segment, displacement: [Option<f64>; 2], moved: &mut Moved) {
+        for axis in [0, 1]
+            .into_iter()
+            .filter(|axis| displacement[*axis].is_some())
+        {
+            hold(&segment.nodes, axis, moved);
+        }
+        self.parts.push(Part::Known {
+            nodes: segment.nodes.clone(),
+            displacement,
+        });
+    }
+
+    fn rigid(&mut self, segment: &Segment, moved: &mut Moved) {
+        let nodes = segment.nodes.clone();
+        [0, 1]
+            .into_iter()
+            .for_each(|axis| hold(&nodes, axis, moved));
+        let centre = [0, 1].map(|axis| {
+            let places = nodes.iter().map(|node| self.places[*node][axis]);
+            places.sum::<f64>() / nodes.len() as f64
+        });
+        let first = self.take(3);
+        self.parts.push(Part::Rigid {
+            nodes,
+            centre,
+            first,
+        });
+    }
+
+    fn smooth(&mut self, segment: &Segment, spacing: f64, moved: &mut Moved) {
+        let length = segment.length();
+        let edges = segment.nodes.len() - 1;
+        let spans = (length / (SPACINGS * spacing)).round() as usize;
+        let spline = Spline {
+            spans: spans.clamp(1, MOST_SPANS.min(edges)),
+        };
+        let coefficients = [0, 1].map(|axis| {
+            let [first, last] = segment.ends().map(|node| 2 * node + axis);
+            let mut end = |motion: &mut Self, unknown: usize| {
+                let own = || Coefficient::Parameter(motion.take(1));
+                *moved.entry(unknown).or_insert_with(own)
+            };
+            let mut coefficients = vec![end(self, first)];
+            for _ in 1..spline.functions() - 1 {
+                coefficients.push(Coefficient::Parameter(self.take(1)));
+            }
+            coefficients.push(end(self, last));
+            coefficients
+        });
+        let along = segment.nodes.iter().zip(&segment.places);
+        let nodes = along.map(|(node, place)| (*node, place / length));
+        self.parts.push(Part::Smooth {
+            name: segment.name.clone(),
+            spline,
+            coefficients,
+            nodes: nodes.collect(),
+        });
+    }
+
+    fn take(&mut self, count: usize) -> usize {
+        self.parameters += count;
+        self.parameters - count
+    }
+
+    /// Number of parameters.
+    pub fn parameters(&self) -> usize {
+        self.parameters
+    }
+
+    /// The displacements at parameters p.
+    pub fn at(&self, p: &[f64]) -> Imposed {
+        let mut unknowns: BTreeMap<usize, Combination> = BTreeMap::new();
+        for part in &self.parts {
+            match part {
+                Part::Known {
+                    nodes,
+                    displacement,
+                } => impose_known(&mut unknowns, nodes, *displacement),
+                Part::Rigid {
+                    nodes,
+                    centre,
+                    first,
+                } => self.impose_rigid(&mut unknowns, nodes, *centre, (*first, p)),
+                Part::Smooth {
+                    spline,
+                    coefficients,
+                    nodes,
+                    ..
+                } => {
+                    for axis in [0, 1] {
+                        let q = combinations(&unknowns, &coefficients[axis], p);
+                        for (node, place) in nodes {
+                            unknowns.entry(2 * node + axis).or_insert_with(|| {
+                                combine(&q, spline.derivatives(*place, 0).into_iter())
+                            });
+                        }
+                    }
+                }
+            }
+        }
+        Imposed { unknowns }
+    }
+
+    fn impose_rigid(
+        &self,
+        unknowns: &mut BTreeMap<usize, Combination>,
+        nodes: &[usize],
+        centre: [f64; 2],
+        (first, p): (usize, &[f64]),
+    ) {
+        let (sine, cosine) = p[first + 2].sin_cos();
+        for node in nodes {
+            let [x, y] = [0, 1].map(|axis| self.places[*node][axis] - centre[axis]);
+            let turned = [cosine * x - sine * y - x, sine * x + cosine * y - y];
+            let slope = [-sine * x - cosine * y, cosine * x - sine * y];
+            for axis in [0, 1] {
+                let moved = Combination {
+                    value: p[first + axis] + turned[axis],
+                    slopes: vec![(first + axis, 1.0), (first + 2, slope[axis])],
+                };
+                unknowns.entry(2 * node + axis).or_insert(moved);
+            }
+        }
+    }
+
+    /// The roughness of all smooth edges at parameters p, along one axis after the other.
+    pub fn roughness(&self, p: &[f64]) -> Vec<Roughness> {
+        let imposed = self.at(p);
+        let mut all = Vec::new();
+        for part in &self.parts {
+            let Part::Smooth {
+                name,
+                spline,
+                coefficients,
+                ..
+            } = part
+            else {
+                continue;
+            };
+            for axis in [0, 1] {
+                let q = combinations(&imposed.unknowns, &coefficients[axis], p);
+                let rows = spline.roughness();
+                let rows: Vec<_> = rows
+                    .into_iter()
+                    .map(|row| combine(&q, row.into_iter()))
+                    .collect();
+                let mut slopes = DMatrix::zeros(rows.len(), self.parameters);
+                for (row, combination) in rows.iter().enumerate() {
+                    for (index, slope) in &combination.slopes {
+                        slopes[(row, *index)] += slope;
+                    }
+                }
+                all.push(Roughness {
+                    edge: name.clone(),
+                    axis,
+                    values: rows.iter().map(|row| row.value).collect(),
+                    slopes,
+                    rank: spline.functions() - 2,
+                });
+            }
+        }
+        all
+    }
+}
+
+impl Imposed {
+    /// Writes u_B into a field.
+    pub fn write(&self, field: &mut [f64]) {
+        for (unknown, combination) in &self.unknowns {
+            field[*unknown] = combination.value;
+        }
+    }
+
+    /// ∂u_B/∂p, and how far u_B is from a field there.
+    pub fn toward(&self, field: &[f64], parameters: usize) -> (DMatrix<f64>, DVector<f64>) {
+        let count = self.unknowns.len();
+        let (mut rows, mut values) = (DMatrix::zeros(count, parameters), DVector::zeros(count));
+        for (row, (unknown, combination)) in self.unknowns.iter().enumerate() {
+            values[row] = field[*unknown] - combination.value;
+            for (index, slope) in &combination.slopes {
+                rows[(row, *index)] += slope;
+            }
+        }
+        (rows, values)
+    }
+
+    /// Marks the unknowns of u_B among `count`.
+    pub fn held(&self, count: usize) -> Vec<bool> {
+        let unknowns = 0..count;
+        unknowns
+            .map(|unknown| self.unknowns.contains_key(&unknown))
+            .collect()
+    }
+
+    /// ∂u_B/∂p of one parameter after the other, as fields of `count` unknowns.
+    pub fn motions(&self, parameters: usize, count: usize) -> Vec<Vec<f64>> {
+        let mut motions = vec![vec![0.0; count]; parameters];
+        for (unknown, combination) in &self.unknowns {
+            for (index, slope) in &combination.slopes {
+                motions[*index][*unknown] += slope;
+            }
+        }
+        motions
+    }
+}
+
+/// Notes that nodes are moved along an axis, by what came first.
+fn hold(nodes: &[usize], axis: usize, moved: &mut Moved) {
+    for unknown in nodes.iter().map(|node| 2 * node + axis) {
+        moved
+            .entry(unknown)
+            .or_insert(Coefficient::Unknown(unknown));
+    }
+}
+
+fn impose_known(
+    unknowns: &mut BTreeMap<usize, Combination>,
+    nodes: &[usize],
+    displacement: [Option<f64>; 2],
+) {
+    for (axis, value) in displacement.into_iter().enumerate() {
+        let Some(value) = value else { continue };
+        for node in nodes {
+            let slopes = Vec::new();
+            let known = Combination { value, slopes };
+            unknowns.entry(2 * node + axis).or_insert(known);
+        }
+    }
+}
+
+/// The coefficients of a spline along one axis.
+fn combinations(
+    unknowns: &BTreeMap<usize, Combination>,
+    coefficients: &[Coefficient],
+    p: &[f64],
+) -> Vec<Combination> {
+    let combination = |coefficient: &Coefficient| match coefficient {
+        Coefficient::Parameter(index) => Combination::parameter(*index, p),
+        Coefficient::Unknown(unknown) => unknowns[unknown].clone(),
+    };
+    coefficients.iter().map(combination).collect()
+}
+
+fn combine(q: &[Combination], terms: impl Iterator<Item = (usize, f64)>) -> Combination {
+    let mut sum = Combination::default();
+    terms.for_each(|(index, factor)| sum.add(factor, &q[index]));
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::outline::segments;
+    use super::*;
+    use crate::mesh::CellShape;
+
+    fn motion(conditions: [EdgeCondition; 4]) -> (Mesh, EdgeMotion) {
+        let mesh = Mesh::plate([6.0, 4.0], [6, 4], CellShape::Quad9);
+        let names = ["left", "bottom", "right", "top"];
+        let parts = segments(&mesh, &names).unwrap();
+        let pairs: Vec<_> = parts
+            .iter()
+            .map(|part| (part, conditions[part.condition.unwrap()]))
+            .collect();
+        let motion = EdgeMotion::new(&mesh, &pairs, 0.5);
+        (mesh, motion)
+    }
+
+    const ALL: [EdgeCondition; 4] = [
+        EdgeCondition::Rigid,
+        EdgeCondition::Unknown,
+        EdgeCondition::Known([Some(0.3), Some(-0.2)]),
+        EdgeCondition::Unknown,
+    ];
+
+    #[test]
+    fn slopes_are_those_of_the_displacements() {
+        let (mesh, motion) = motion(ALL);
+        let count = 2 * mesh.nodes.len();
+        let p: Vec<f64> = (0..motion.parameters())
+            .map(|i| 0.3 * (1.7 * i as f64).sin())
+            .collect();
+        let motions = motion.at(&p).motions(p.len(), count);
+        let rough = motion.roughness(&p);
+        for index in 0..p.len() {
+            let at = |step: f64| {
+                let mut moved = p.clone();
+                moved[index] += step;
+                let mut field = vec![0.0; count];
+                motion.at(&moved).write(&mut field);
+                (field, motion.roughness(&moved))
+            };
+            let ((up, rough_up), (down, rough_down)) = (at(1e-5), at(-1e-5));
+            for unknown in 0..count {
+                let slope = (up[unknown] - down[unknown]) / 2e-5;
+                assert!((slope - motions[index][unknown]).abs() < 1e-9);
+            }
+            for ((rough, up), down) in rough.iter().zip(rough_up).zip(rough_down) {
+                for row in 0..rough.values.len() {
+                    let slope = (up.values[row] - down.values[row]) / 2e-5;
+                    assert!((slope - rough.slopes[(row, index)]).abs() < 1e-6);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn neighbouring_edges_move_their_corner_together() {
+        let (mesh, motion) = motion([EdgeCondition::Unknown; 4]);
+        // Four edges of 8 spans, or 5, with ends in common.
+        let p = vec![0.7; motion.parameters()];
+        let mut field = vec![0.0; 2 * mesh.nodes.len()];
+        motion.at(&p).write(&mut field);
+        for edge in mesh.boundary() {
+            assert!(
+                edge.iter()
+                    .all(|node| (field[2 * node] - 0.7).abs() < 1e-12)
+            );
+        }
+        let (_, mixed) = self::motion(ALL);
+        assert_eq!(motion.parameters() % 2, 0);
+        assert!(mixed.parameters() < motion.parameters());
+    }
+
+    #[test]
+    fn a_rigid_edge_keeps_its_length() {
+        let (mesh, motion) = motion([
+            EdgeCondition::Rigid,
+            EdgeCondition::Free,
+            EdgeCondition::Free,
+            EdgeCondition::Free,
+        ]);
+        let mut field = vec![0.0; 2 * mesh.nodes.len()];
+        motion.at(&[1.0, 2.0, 1.3]).write(&mut field);
+        let nodes = &mesh.groups()["left"].nodes;
+        let place =
+            |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + field[2 * node + axis]);
+        let (a, b) = (place(nodes[0]), place(nodes[nodes.len() - 1]));
+        assert!(((a[0] - b[0]).hypot(a[1] - b[1]) - 4.0).abs() < 1e-12);
+    }
+}

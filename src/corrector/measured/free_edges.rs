@@ -1,0 +1,111 @@
+//! Which of the edges that nobody names are free: the data say it.
+
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use super::edge_motion::EdgeCondition;
+use super::result::EdgeForce;
+use super::search::{Found, MOST_STEPS, Search};
+use super::{Edge, Task};
+use crate::error::Error;
+
+/// Probability of the misfit under which a free edge is refused.
+const LEVEL: f64 = 0.01;
+
+/// Steps of a trial: a free edge that the data do not contradict takes few.
+const TRIAL_STEPS: usize = 20;
+
+/// Searches with the edges as they are, then with those to be tested free one after the other, the longest first.
+///
+/// # Errors
+/// As the search with the edges as they are.
+pub fn search<'a>(
+    task: &Task<'a>,
+    mut edges: Vec<Edge<'a>>,
+) -> Result<(Found<'a>, Vec<Edge<'a>>), Error> {
+    let mut found = Search::new(task, &edges)?.run(MOST_STEPS)?;
+    let mut open: Vec<usize> = (0..edges.len())
+        .filter(|edge| edges[*edge].tested)
+        .collect();
+    open.sort_by(|a, b| {
+        edges[*b]
+            .segment
+            .length()
+            .total_cmp(&edges[*a].segment.length())
+    });
+    for index in open {
+        let mut freed = edges.clone();
+        freed[index].condition = EdgeCondition::Free;
+        if freed
+            .iter()
+            .all(|edge| edge.condition == EdgeCondition::Free)
+        {
+            break;
+        }
+        let pulled = found.is_pulled(&edges, index)?;
+        if pulled {
+            edges[index].probability = Some(0.0);
+            continue;
+        }
+        // Where no equilibrium with the free edge is found, it is not free.
+        let trial = Search::new(task, &freed).and_then(|search| search.run(TRIAL_STEPS));
+        let probability = trial
+            .as_ref()
+            .map_or(0.0, |trial| probability(&found, trial));
+        edges[index].probability = Some(probability);
+        if let (Ok(trial), true) = (trial, probability >= LEVEL) {
+            edges[index].condition = EdgeCondition::Free;
+            found = trial;
+        }
+    }
+    Ok((found, edges))
+}
+
+/// How probable it is that the misfit grows so much by noise, when an edge that is free is taken as such.
+fn probability(loaded: &Found, free: &Found) -> f64 {
+    let count = loaded.fit.residual.len() as f64;
+    let more = (loaded.fit.effective - free.fit.effective).max(1.0);
+    let rest = (count - loaded.fit.effective).max(1.0);
+    let (before, after) = (loaded.misfit(loaded), free.misfit(loaded));
+    let ratio = (after - before).max(0.0) / more / (before / rest).max(f64::MIN_POSITIVE);
+    FisherSnedecor::new(more, rest).map_or(0.0, |law| law.sf(ratio))
+}
+
+impl Found<'_> {
+    /// Whether the force on an edge is so large, and so well known, that it needs no trial: more than a third of the largest
+    /// one, and more than ten times its standard error.
+    fn is_pulled(&self, edges: &[Edge], index: usize) -> Result<bool, Error> {
+        const LARGE: f64 = 1.0 / 3.0;
+        const SURE: f64 = 10.0;
+        let forces = self.forces(edges, 1.0)?;
+        let held = edges
+            .iter()
+            .filter(|edge| edge.condition != EdgeCondition::Free);
+        let own = held
+            .zip(&forces)
+            .find(|(edge, _)| edge.segment.nodes == edges[index].segment.nodes);
+        let size = |force: &EdgeForce| force.force[0].value.hypot(force.force[1].value);
+        let error = |force: &EdgeForce| {
+            force.force[0]
+                .standard_error
+                .hypot(force.force[1].standard_error)
+        };
+        let most = forces.iter().map(size).fold(0.0, f64::max);
+        Ok(own.is_some_and(|(_, own)| size(own) > LARGE * most && size(own) > SURE * error(own)))
+    }
+
+    /// Σ w ω r² with the trust ω of another search.
+    fn misfit(&self, other: &Found) -> f64 {
+        let residual = self.fit.residual.as_slice().chunks_exact(2);
+        let weights = self
+            .search
+            .task
+            .observations
+            .weights
+            .iter()
+            .zip(&other.trade.trust);
+        residual
+            .zip(weights)
+            .map(|(r, (weight, trust))| weight * trust * (r[0] * r[0] + r[1] * r[1]))
+            .sum()
+    }
+}

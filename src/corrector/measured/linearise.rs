@@ -1,0 +1,221 @@
+//! The equations, the measured forces and the law linearised about a field.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::MeasuredForce;
+use super::body_force::{BodyForce, Pushed};
+use super::search::{Place, Search, solve};
+use crate::error::{Error, SolveFault};
+use crate::material::HyperelasticLaw;
+use crate::solve::{Assembly, Inadmissible, Potential};
+
+/// A law with one parameter a little smaller and larger, and the width between.
+pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
+
+/// The equations and the observations linearised about a place.
+pub struct Linear {
+    /// −K⁻¹ F.
+    pub still: Vec<f64>,
+    /// ∂u/∂p of one parameter after the other.
+    pub sensitivities: Vec<Vec<f64>>,
+    /// H ∂u/∂p.
+    pub design: DMatrix<f64>,
+    /// The derivatives of the measured forces by p, and what is measured more than there, over the deviations.
+    pub facts: (DMatrix<f64>, DVector<f64>),
+}
+
+impl Search<'_> {
+    /// The values of the law's parameters among all.
+    pub fn law_values<'b>(&self, parameters: &'b [f64]) -> &'b [f64] {
+        let first = self.motion.parameters();
+        let regressed = self.task.knowledge.law.as_ref();
+        &parameters[first..first + regressed.map_or(0, |law| law.parameters().len())]
+    }
+
+    /// The energy with the forces on the interior.
+    pub(super) fn potential(&self) -> Box<dyn Potential + '_> {
+        match self.body {
+            Some(_) => Box::new(Pushed::new(&self.energy, &self.forces)),
+            None => Box::new(&self.energy),
+        }
+    }
+
+    /// Takes the law and the forces on the interior with the parameters.
+    pub(super) fn take(&mut self, parameters: &[f64]) {
+        if let Some(body) = &self.body {
+            let last = &parameters[parameters.len() - body.columns().len()..];
+            self.forces = body.forces(last, self.forces.len());
+        }
+        if let Some(regressed) = &self.task.knowledge.law {
+            self.law = regressed.at(self.law_values(parameters));
+            self.energy = self.energy.with_law(Arc::clone(&self.law));
+        }
+    }
+
+    /// The laws with each of the law's parameters a little smaller and larger, and twice the difference.
+    pub fn neighbours(&self, parameters: &[f64]) -> Vec<Neighbours> {
+        const STEP: f64 = 1e-5;
+        let Some(regressed) = &self.task.knowledge.law else {
+            return Vec::new();
+        };
+        let values = self.law_values(parameters);
+        let pair = |index: usize| {
+            let step = STEP * values[index].abs();
+            let moved = [-step, step].map(|step| {
+                let mut moved = values.to_vec();
+                moved[index] += step;
+                regressed.at(&moved)
+            });
+            (moved, 2.0 * step)
+        };
+        (0..values.len()).map(pair).collect()
+    }
+
+    /// ∂F/∂θ of each parameter θ of the law, at held unknowns too.
+    pub fn law_slopes(&self, parameters: &[f64], field: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
+        let mut slopes = Vec::new();
+        for (laws, width) in self.neighbours(parameters) {
+            let mut sides = laws.map(|law| (self.energy.with_law(law), vec![0.0; field.len()]));
+            for (energy, residual) in &mut sides {
+                Assembly::residual(energy, field, residual)
+                    .map_err(|fault| self.inverted(fault))?;
+            }
+            let [(_, low), (_, high)] = sides;
+            let slope = high
+                .iter()
+                .zip(&low)
+                .map(|(high, low)| (high - low) / width);
+            slopes.push(slope.collect());
+        }
+        Ok(slopes)
+    }
+
+    pub fn inverted(&self, fault: Inadmissible) -> Error {
+        solve(SolveFault::Inverted {
+            element: self.task.specimen.mesh.describe_cell(fault.element),
+        })
+    }
+
+    /// The equations and the observations about a place.
+    pub(super) fn linearise(&mut self, place: &Place) -> Result<Linear, Error> {
+        let (mesh, field) = (self.task.specimen.mesh, &place.field);
+        let describe = |cell: usize| mesh.describe_cell(cell);
+        let residual = match self.body {
+            Some(_) => {
+                let pushed = Pushed::new(&self.energy, &self.forces);
+                self.newton.tangent(&pushed, field, &describe)
+            }
+            None => self.newton.tangent(&self.energy, field, &describe),
+        };
+        let residual = residual.map_err(solve)?;
+        let motions = self.motion.at(&place.parameters);
+        let motions = motions.motions(self.motion.parameters(), field.len());
+        let slopes = self.law_slopes(&place.parameters, field)?;
+        let mut forces = vec![residual.clone()];
+        for motion in &motions {
+            let mut force = vec![0.0; field.len()];
+            let added = Assembly::add_product(&self.energy, field, motion, &mut force);
+            added.map_err(|fault| self.inverted(fault))?;
+            forces.push(force);
+        }
+        forces.extend(slopes.iter().cloned());
+        let body = self.body.iter().flat_map(BodyForce::columns);
+        forces.extend(body.map(|column| column.iter().map(|force| -force).collect()));
+        let mut changes = self.newton.changes(&forces).map_err(solve)?;
+        let mut sensitivities = changes.split_off(1);
+        for (sensitivity, motion) in sensitivities.iter_mut().zip(motions) {
+            sensitivity
+                .iter_mut()
+                .zip(motion)
+                .for_each(|(s, m)| *s += m);
+        }
+        let still = changes.remove(0);
+        let interpolation = &self.task.observations.interpolation;
+        let columns = sensitivities
+            .iter()
+            .flat_map(|column| interpolation.multiply(column));
+        let design = DMatrix::from_iterator(interpolation.len(), sensitivities.len(), columns);
+        let facts = self.facts(field, &residual, &still, &sensitivities, &slopes)?;
+        Ok(Linear {
+            still,
+            sensitivities,
+            design,
+            facts,
+        })
+    }
+
+    /// The measured forces, linearised.
+    fn facts(
+        &self,
+        field: &[f64],
+        residual: &[f64],
+        still: &[f64],
+        sensitivities: &[Vec<f64>],
+        slopes: &[Vec<f64>],
+    ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
+        let measured = &self.task.knowledge.forces;
+        let mut rows = DMatrix::zeros(measured.len(), sensitivities.len());
+        let mut values = DVector::zeros(measured.len());
+        for (row, measured) in measured.iter().enumerate() {
+            let MeasuredForce {
+                edge,
+                axis,
+                force,
+                standard_deviation,
+            } = measured;
+            let nodes = &self.task.specimen.mesh.groups()[edge].nodes;
+            let grip = self.grip(nodes, *axis, field)?;
+            let there = dot(&grip.marks, residual) + dot(&grip.pull, still);
+            values[row] = (force - there) / standard_deviation;
+            let slopes = grip.slopes(sensitivities, (self.motion.parameters(), slopes));
+            for (column, slope) in slopes.into_iter().enumerate() {
+                rows[(row, column)] = slope / standard_deviation;
+            }
+        }
+        Ok((rows, values))
+    }
+
+    /// The force on nodes along an axis as a function of the field.
+    pub fn grip(&self, nodes: &[usize], axis: usize, field: &[f64]) -> Result<Grip, Error> {
+        let mut marks = vec![0.0; field.len()];
+        nodes.iter().for_each(|node| marks[2 * node + axis] = 1.0);
+        self.newton
+            .free()
+            .iter()
+            .for_each(|unknown| marks[*unknown] = 0.0);
+        let mut pull = vec![0.0; field.len()];
+        let added = Assembly::add_product(&self.energy, field, &marks, &mut pull);
+        added.map_err(|fault| self.inverted(fault))?;
+        Ok(Grip { marks, pull })
+    }
+}
+
+/// The force g·∂Π/∂u of a grip.
+pub struct Grip {
+    /// g: one at the grip's held unknowns.
+    pub marks: Vec<f64>,
+    /// g·K.
+    pub pull: Vec<f64>,
+}
+
+impl Grip {
+    /// Its derivatives by p; those from `first` on change the law too, by ∂F/∂θ in `law`.
+    pub fn slopes(
+        &self,
+        sensitivities: &[Vec<f64>],
+        (first, law): (usize, &[Vec<f64>]),
+    ) -> Vec<f64> {
+        let columns = sensitivities.iter();
+        let mut slopes: Vec<f64> = columns.map(|column| dot(&self.pull, column)).collect();
+        for (slope, own) in slopes[first..].iter_mut().zip(law) {
+            *slope += dot(&self.marks, own);
+        }
+        slopes
+    }
+}
+
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

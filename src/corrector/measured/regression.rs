@@ -1,0 +1,223 @@
+//! Linear least squares with rough parts held down, each by as much as the data say.
+//!
+//! ```text
+//! data        r = A δ + noise,   variance v/wᵢ                                     n rows
+//! facts       g = G δ + noise,   variance 1                                        such as measured forces
+//! priors      ρⱼ + Bⱼ δ,         variance 1/λⱼ                                     rank qⱼ each
+//!
+//! M = AᵀWA/v + GᵀG + Σ λⱼ BⱼᵀBⱼ,   M δ = AᵀWr/v + Gᵀg − Σ λⱼ Bⱼᵀρⱼ,   Cov(δ) = M⁻¹
+//! λⱼ ← (qⱼ − λⱼ tr(M⁻¹BⱼᵀBⱼ)) / ‖ρⱼ + Bⱼδ‖²
+//! v  ← Σ w r²/(n − tr(M⁻¹AᵀWA)/v)
+//! ```
+//!
+//! The λⱼ are those of largest restricted likelihood, found by the fixed point of Fellner and Schall; one whose data know
+//! nothing of roughness grows without bound, and what it holds down becomes as smooth as it can be. M⁻¹ is the covariance given
+//! the data, the bias of the smoothing included, so that its intervals cover (Nychka).
+//!
+//! # References
+//! S. N. Wood, M. Fasiolo, Biometrics 73, 1071 (2017), doi:10.1111/biom.12666;
+//! D. Nychka, J. Am. Stat. Assoc. 83, 1134 (1988), doi:10.1080/01621459.1988.10478711
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use super::edge_motion::Roughness;
+use super::robust::Robust;
+
+/// What is fitted.
+pub struct Regression<'a> {
+    /// A, two rows a marker.
+    pub design: &'a DMatrix<f64>,
+    /// r in mm.
+    pub residual: &'a DVector<f64>,
+    /// Weights of the markers; 1/variance in 1/mm² where the noise is known.
+    pub weights: &'a [f64],
+    /// Whether the noise is known: v is 1.
+    pub known_noise: bool,
+    /// G and g.
+    pub facts: (&'a DMatrix<f64>, &'a DVector<f64>),
+    /// The priors.
+    pub priors: &'a [Roughness],
+    /// How markers that are far off are weighted.
+    pub robust: Robust,
+    /// Whether the trade stays as it is.
+    pub settled: bool,
+}
+
+/// What goes on from one linearisation to the next.
+#[derive(Clone, Debug)]
+pub struct Trade {
+    /// λ of each prior; nothing before the first fit.
+    pub smoothing: Vec<f64>,
+    /// Factor in 0…1 of each marker's weight.
+    pub trust: Vec<f64>,
+    /// v.
+    pub variance: f64,
+    /// Variance of the noise of sound markers at weight 1: v where all are trusted.
+    pub sound: f64,
+}
+
+/// A fit.
+pub struct Fit {
+    /// δ.
+    pub step: DVector<f64>,
+    /// M⁻¹.
+    pub covariance: DMatrix<f64>,
+    /// r − A δ in mm.
+    pub residual: DVector<f64>,
+    /// tr(M⁻¹AᵀWA)/v, the effective number of parameters.
+    pub effective: f64,
+    /// qⱼ − λⱼ tr(M⁻¹BⱼᵀBⱼ) of each prior: what is left of its freedom.
+    pub freedom: Vec<f64>,
+}
+
+/// A system without a unique solution: the data do not determine the parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Undetermined;
+
+const MOST_ITERATIONS: usize = 200;
+
+/// Change of the effective number of parameters, and relative change of the variance, at which the fixed point is reached.
+const CLOSE: f64 = 1e-4;
+
+/// λ beyond which a prior counts as exact, relative to what the data weigh.
+const STIFFEST: f64 = 1e10;
+
+impl Regression<'_> {
+    /// Fits, beginning at a trade.
+    ///
+    /// # Errors
+    /// [`Undetermined`].
+    pub fn fit(&self, trade: &mut Trade) -> Result<Fit, Undetermined> {
+        let mut normal = self.normal(&trade.trust);
+        let scales = self.scales(&normal.0, trade);
+        if trade.smoothing.is_empty() {
+            trade.smoothing.clone_from(&scales);
+        }
+        let mut last: Option<f64> = None;
+        for iteration in 0.. {
+            let fit = self.solve(&normal, trade)?;
+            if self.settled {
+                return Ok(fit);
+            }
+            let before = trade.variance;
+            let trusted = self.update(&fit, trade, &scales);
+            let settled = last.is_some_and(|last| (fit.effective - last).abs() < CLOSE)
+                && (trade.variance / before - 1.0).abs() < CLOSE
+                && trusted;
+            if settled || iteration == MOST_ITERATIONS {
+                return Ok(fit);
+            }
+            last = Some(fit.effective);
+            if !trusted {
+                normal = self.normal(&trade.trust);
+            }
+        }
+        unreachable!("the iterations end")
+    }
+
+    /// AᵀWA and AᵀWr.
+    fn normal(&self, trust: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+        let mut weighted = self.design.clone();
+        let weight = |row: usize| self.weights[row / 2] * trust[row / 2];
+        let weights = DVector::from_fn(weighted.nrows(), |row, _| weight(row));
+        for mut column in weighted.column_iter_mut() {
+            column.component_mul_assign(&weights);
+        }
+        let product = weighted.tr_mul(self.design);
+        (product, weighted.tr_mul(self.residual))
+    }
+
+    /// λ at which each prior weighs as much as the data.
+    fn scales(&self, normal: &DMatrix<f64>, trade: &Trade) -> Vec<f64> {
+        let data = normal.trace() / trade.variance;
+        let rough = |prior: &Roughness| prior.slopes.norm_squared().max(f64::MIN_POSITIVE);
+        let priors = self.priors.iter();
+        priors.map(|prior| data / rough(prior)).collect()
+    }
+
+    fn solve(
+        &self,
+        (normal, right): &(DMatrix<f64>, DVector<f64>),
+        trade: &Trade,
+    ) -> Result<Fit, Undetermined> {
+        let (facts, values) = self.facts;
+        let mut matrix = normal / trade.variance + facts.tr_mul(facts);
+        let mut target = right / trade.variance + facts.tr_mul(values);
+        for (prior, smoothing) in self.priors.iter().zip(&trade.smoothing) {
+            let values = DVector::from_column_slice(&prior.values);
+            matrix += prior.slopes.tr_mul(&prior.slopes) * *smoothing;
+            target -= prior.slopes.tr_mul(&values) * *smoothing;
+        }
+        let covariance = inverse(matrix)?;
+        let step = &covariance * target;
+        let left = |(prior, smoothing): (&Roughness, &f64)| {
+            let used = (&prior.slopes * &covariance).dot(&prior.slopes);
+            (prior.rank as f64 - smoothing * used).max(0.0)
+        };
+        let priors = self.priors.iter().zip(&trade.smoothing);
+        Ok(Fit {
+            residual: self.residual - self.design * &step,
+            effective: normal.dot(&covariance) / trade.variance,
+            freedom: priors.map(left).collect(),
+            covariance,
+            step,
+        })
+    }
+
+    /// New λ, v and trust; whether the trust stayed.
+    fn update(&self, fit: &Fit, trade: &mut Trade, scales: &[f64]) -> bool {
+        for (index, prior) in self.priors.iter().enumerate() {
+            let values = DVector::from_column_slice(&prior.values);
+            let rough = (values + &prior.slopes * &fit.step).norm_squared();
+            let most = STIFFEST * scales[index];
+            let next = fit.freedom[index] / rough.max(f64::MIN_POSITIVE);
+            trade.smoothing[index] = next.clamp(scales[index] / STIFFEST, most);
+        }
+        let distances = self.distances(fit);
+        let noise = self
+            .robust
+            .noise(&distances, fit.effective, self.known_noise);
+        (trade.variance, trade.sound) = (noise.variance, noise.sound);
+        let change = noise.trust.iter().zip(&trade.trust);
+        let changed = change.fold(0.0, |most: f64, (new, old)| most.max((new - old).abs()));
+        trade.trust = noise.trust;
+        changed < 1e-3
+    }
+
+    /// √(w (rx² + ry²)) of each marker.
+    fn distances(&self, fit: &Fit) -> Vec<f64> {
+        let residual = fit.residual.as_slice().chunks_exact(2);
+        let pairs = residual.zip(self.weights);
+        pairs
+            .map(|(r, weight)| (weight * (r[0] * r[0] + r[1] * r[1])).sqrt())
+            .collect()
+    }
+}
+
+/// The inverse of a positive definite matrix, scaled to a unit diagonal on the way.
+fn inverse(matrix: DMatrix<f64>) -> Result<DMatrix<f64>, Undetermined> {
+    const SINGULAR: f64 = 1e-13;
+    let scale = matrix.diagonal().map(|entry| 1.0 / entry.sqrt());
+    if scale.iter().any(|entry| !entry.is_finite()) {
+        return Err(Undetermined);
+    }
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        scale[i] * matrix[(i, j)] * scale[j]
+    });
+    let factor: Cholesky<f64, Dyn> = Cholesky::new(scaled).ok_or(Undetermined)?;
+    if factor
+        .l_dirty()
+        .diagonal()
+        .iter()
+        .any(|pivot| pivot * pivot < SINGULAR)
+    {
+        return Err(Undetermined);
+    }
+    let mut inverse = factor.inverse();
+    for i in 0..inverse.nrows() {
+        for j in 0..inverse.ncols() {
+            inverse[(i, j)] *= scale[i] * scale[j];
+        }
+    }
+    Ok(inverse)
+}

@@ -1,0 +1,357 @@
+//! The estimated field and its uncertainty.
+
+use nalgebra::{DMatrix, Matrix2, Vector2};
+use rayon::prelude::*;
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+
+use super::Edge;
+use super::edge_motion::EdgeCondition;
+use super::linearise::{Neighbours, dot};
+use super::observations::Observations;
+use super::robust::Robust;
+use super::search::{Found, Search};
+use crate::corrector::estimate::Estimate;
+use crate::error::{Error, SolveFault};
+use crate::material::parameters::Parameter;
+use crate::material::sheet::{Gradient, Kinematics, cofactor};
+
+/// The field nearest to the markers.
+///
+/// Standard errors come from the noise of the markers alone, to first order; they know nothing of a wrong material, a wrong
+/// thickness or a coarse mesh. `± reach · standard error` is the 95 % interval.
+#[derive(Clone, Debug)]
+pub struct FieldEstimate {
+    /// ux, uy of node after node in mm.
+    pub displacement: Vec<f64>,
+    /// Their standard errors in mm.
+    pub displacement_error: Vec<f64>,
+    /// Stress and thickness in the middle of each cell.
+    pub cells: Vec<StressEstimate>,
+    /// ∂Π/∂u in N of node after node: reactions at loaded edges, nothing elsewhere.
+    pub reactions: Vec<f64>,
+    /// The total force on each edge that is not free.
+    pub forces: Vec<EdgeForce>,
+    /// ζ of the equilibrium of node after node in mm²/N: the derivative of ½ ‖H u − d‖²_W by the forces, the weights
+    /// relative to their mean; nothing where the edges are not free.
+    pub multipliers: Vec<f64>,
+    /// What is left of each marker; nothing for markers that do not lie on the mesh.
+    pub markers: Vec<Option<MarkerEstimate>>,
+    /// Standard deviation of each component of a marker of mean weight in mm.
+    pub noise: f64,
+    /// Whether the noise was given; else it is estimated from what is left of the markers.
+    pub known_noise: bool,
+    /// How many parameters the data have determined: the trace of the matrix that makes the fitted displacements of the
+    /// measured ones.
+    pub effective_parameters: f64,
+    /// Twice the number of markers less the effective parameters.
+    pub degrees_of_freedom: f64,
+    /// Half the width of a 95 % interval over the standard error.
+    pub reach: f64,
+    /// Forces on the interior in N on node after node that stand for what the physics lacks; nothing where it is exact.
+    pub interior_forces: Vec<f64>,
+    /// The rule by which data, smoothness and physics were traded.
+    pub rule: &'static str,
+    /// How smooth the edges of unknown motion came out by the rule, and how large the forces on the interior.
+    pub smoothing: Vec<Smoothing>,
+    /// The condition of each part of the boundary.
+    pub edges: Vec<EdgeOutcome>,
+    /// The parameters of the law that were found: key, unit, estimate.
+    pub parameters: Vec<(&'static str, &'static str, Estimate)>,
+    /// Steps of the search.
+    pub steps: usize,
+}
+
+/// The rule by which data and smoothness are traded.
+pub const TRADE: &str = "equilibrium holds exactly; the roughness of each edge of unknown motion is weighted by restricted maximum likelihood";
+
+/// The rule where the physics is weighted.
+pub const TRADE_WEIGHTED: &str = "equilibrium holds up to smooth forces on the interior; these forces and the roughness of each edge of unknown motion are weighted by restricted maximum likelihood";
+
+/// The state in the middle of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StressEstimate {
+    /// First Piola–Kirchhoff stress P₁₁, P₁₂, P₂₁, P₂₂ in MPa, the transpose of the nominal stress.
+    pub first_piola_kirchhoff_stress: [f64; 4],
+    /// Their standard errors in MPa.
+    pub stress_error: [f64; 4],
+    /// Thickness of the deformed sheet in mm.
+    pub thickness: f64,
+    /// Its standard error in mm.
+    pub thickness_error: f64,
+}
+
+/// The force that an edge exerts on the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeForce {
+    /// The edge.
+    pub edge: String,
+    /// Along x and y in N.
+    pub force: [Estimate; 2],
+}
+
+/// The condition of a part of the boundary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeOutcome {
+    /// The edge.
+    pub edge: String,
+    /// Its length in mm.
+    pub length: f64,
+    /// Its condition.
+    pub condition: EdgeCondition,
+    /// Where the data have chosen between free and loaded: how probable the misfit is if the edge is free.
+    pub probability: Option<f64>,
+}
+
+/// What is left of a marker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarkerEstimate {
+    /// Measured less estimated displacement in mm.
+    pub residual: [f64; 2],
+    /// Length of the residual in units of its own standard deviation: √(rᵀ Cov(r)⁻¹ r).
+    pub standardised_residual: f64,
+    /// Factor of its weight in 0…1.
+    pub trust: f64,
+    /// Whether normal noise would leave so much of less than one marker in a thousand.
+    pub outlier: bool,
+}
+
+/// How smooth an edge came out along an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Smoothing {
+    /// The edge.
+    pub edge: String,
+    /// x or y: 0 or 1.
+    pub axis: usize,
+    /// λ in 1/mm²: the inverse of the variance of the curvature over the edge; of forces on the interior, that of b over the
+    /// area in mm²/N².
+    pub weight: f64,
+    /// Parameters beyond a straight line that the data determine.
+    pub freedom: f64,
+}
+
+/// Share of sound markers that are taken for outliers.
+const FALSE_ALARMS: f64 = 1e-3;
+
+impl Found<'_> {
+    /// The field with all that follows from it.
+    pub fn into_estimate(self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
+        let rows = self.linear.design.nrows() as f64;
+        let known_noise = self.observations().known_noise;
+        let robust = self.search.task.knowledge.robust != Robust::No;
+        let freedom = (rows - self.fit.effective).max(1.0);
+        let reach = match known_noise && !robust {
+            true => Normal::standard().inverse_cdf(0.975),
+            false => StudentsT::new(0.0, 1.0, freedom)
+                .map_err(|_| super::search::solve(SolveFault::Singular))?
+                .inverse_cdf(0.975),
+        };
+        let weights = &self.observations().weights;
+        let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+        let motion = self.search.priors(&self.parameters);
+        let smoothing = motion
+            .iter()
+            .zip(&self.trade.smoothing)
+            .zip(&self.fit.freedom);
+        let smoothing = smoothing.map(|((rough, weight), freedom)| Smoothing {
+            edge: rough.edge.clone(),
+            axis: rough.axis,
+            weight: *weight,
+            freedom: *freedom,
+        });
+        let outcome = |edge: &Edge| EdgeOutcome {
+            edge: edge.segment.name.clone(),
+            length: edge.segment.length(),
+            condition: edge.condition,
+            probability: edge.probability,
+        };
+        Ok(FieldEstimate {
+            displacement_error: self.displacement_error(),
+            cells: self.cells()?,
+            forces: self.forces(edges, reach)?,
+            parameters: self.law_parameters(reach),
+            markers: self.markers(),
+            noise: (self.trade.sound / mean).sqrt(),
+            known_noise,
+            effective_parameters: self.fit.effective,
+            degrees_of_freedom: freedom,
+            reach,
+            smoothing: smoothing.collect(),
+            rule: match self.search.body {
+                Some(_) => TRADE_WEIGHTED,
+                None => TRADE,
+            },
+            interior_forces: self.search.forces.clone(),
+            edges: edges.iter().map(outcome).collect(),
+            steps: self.steps,
+            reactions: self.reactions(),
+            multipliers: self.multipliers,
+            displacement: self.field,
+        })
+    }
+
+    fn observations(&self) -> &Observations {
+        self.search.task.observations
+    }
+
+    /// √(s C sᵀ) of a row s of sensitivities.
+    fn error(&self, row: &[f64]) -> f64 {
+        let covariance = &self.fit.covariance;
+        let product = |j: usize| -> f64 {
+            let column = covariance.column(j);
+            row[j] * column.iter().zip(row).map(|(c, s)| c * s).sum::<f64>()
+        };
+        (0..row.len()).map(product).sum::<f64>().max(0.0).sqrt()
+    }
+
+    fn displacement_error(&self) -> Vec<f64> {
+        let unknowns = (0..self.field.len()).into_par_iter();
+        let error = |unknown: usize| {
+            let row: Vec<f64> = self
+                .linear
+                .sensitivities
+                .iter()
+                .map(|column| column[unknown])
+                .collect();
+            self.error(&row)
+        };
+        unknowns.map(error).collect()
+    }
+
+    fn cells(&self) -> Result<Vec<StressEstimate>, Error> {
+        let cells = (0..self.search.task.specimen.mesh.cell_count()).into_par_iter();
+        let neighbours = self.search.neighbours(&self.parameters);
+        cells.map(|cell| self.cell(cell, &neighbours)).collect()
+    }
+
+    fn cell(&self, cell: usize, neighbours: &[Neighbours]) -> Result<StressEstimate, Error> {
+        let Search { task, law, .. } = &self.search;
+        let specimen = task.specimen;
+        let mesh = specimen.mesh;
+        let centre = mesh.shape(cell).centre();
+        let (gradients, _) = mesh.gradients(cell, centre);
+        let gradient = |field: &[f64]| {
+            let mut h = Gradient::zeros();
+            for (node, g) in mesh.cell(cell).iter().zip(&gradients) {
+                let [x, y] = [field[2 * node], field[2 * node + 1]];
+                h += Gradient::new(x * g[0], x * g[1], y * g[0], y * g[1]);
+            }
+            h
+        };
+        let kinematics = Kinematics::new(&gradient(&self.field)).map_err(|_| {
+            super::search::solve(SolveFault::Inverted {
+                element: mesh.describe_cell(cell),
+            })
+        })?;
+        let response = law.response(&kinematics);
+        let cofactor = cofactor(&kinematics.deformation_gradient);
+        let thickness = specimen.thickness / kinematics.area_ratio();
+        let mut rows: [Vec<f64>; 5] = Default::default();
+        for column in &self.linear.sensitivities {
+            let change = gradient(column);
+            let stress = response.tangent * change;
+            (0..4).for_each(|component| rows[component].push(stress[component]));
+            rows[4].push(thickness / kinematics.area_ratio() * cofactor.dot(&change));
+        }
+        for (index, (laws, width)) in neighbours.iter().enumerate() {
+            let [low, high] = laws.each_ref().map(|law| law.stress(&kinematics).1);
+            let slope = (high - low) / *width;
+            let place = self.search.motion.parameters() + index;
+            (0..4).for_each(|component| rows[component][place] += slope[component]);
+        }
+        Ok(StressEstimate {
+            first_piola_kirchhoff_stress: response.first_piola_kirchhoff_stress.into(),
+            stress_error: std::array::from_fn(|component| self.error(&rows[component])),
+            thickness,
+            thickness_error: self.error(&rows[4]),
+        })
+    }
+
+    /// Reactions where edges are held.
+    fn reactions(&self) -> Vec<f64> {
+        let mut reactions = self.residual.clone();
+        for unknown in self.search.newton.free() {
+            reactions[*unknown] = 0.0;
+        }
+        reactions
+    }
+
+    pub fn forces(&self, edges: &[Edge], reach: f64) -> Result<Vec<EdgeForce>, Error> {
+        let reactions = self.reactions();
+        let slopes = self.search.law_slopes(&self.parameters, &self.field)?;
+        let first = self.search.motion.parameters();
+        let along = |edge: &Edge, axis: usize| -> Result<Estimate, Error> {
+            let grip = self.search.grip(&edge.segment.nodes, axis, &self.field)?;
+            let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
+            let force = dot(&grip.marks, &reactions);
+            Ok(interval(force, self.error(&row), reach))
+        };
+        let held = edges
+            .iter()
+            .filter(|edge| edge.condition != EdgeCondition::Free);
+        let force = |edge: &Edge| {
+            Ok(EdgeForce {
+                edge: edge.segment.name.clone(),
+                force: [along(edge, 0)?, along(edge, 1)?],
+            })
+        };
+        held.map(force).collect()
+    }
+
+    fn law_parameters(&self, reach: f64) -> Vec<(&'static str, &'static str, Estimate)> {
+        let first = self.search.motion.parameters();
+        let regressed = self.search.task.knowledge.law.iter();
+        let parameters = regressed.flat_map(|law| law.parameters()).enumerate();
+        let estimate = |(index, parameter): (usize, &Parameter)| {
+            let place = first + index;
+            let error = self.fit.covariance[(place, place)].max(0.0).sqrt();
+            let value = interval(self.parameters[place], error, reach);
+            (parameter.key, parameter.unit(), value)
+        };
+        parameters.map(estimate).collect()
+    }
+
+    fn markers(&self) -> Vec<Option<MarkerEstimate>> {
+        let observations = self.observations();
+        let limit =
+            ChiSquared::new(2.0).map_or(f64::INFINITY, |law| law.inverse_cdf(1.0 - FALSE_ALARMS));
+        let mut all = vec![None; observations.markers];
+        for (row, index) in observations.chosen.iter().enumerate() {
+            all[*index] = Some(self.marker(row, limit));
+        }
+        all
+    }
+
+    /// Cov(r) = v/w + (1 − 2ω) A M⁻¹ Aᵀ: a marker that had a say has drawn the field to it, one that had none has not.
+    fn marker(&self, index: usize, limit: f64) -> MarkerEstimate {
+        let left = &self.fit.residual;
+        let residual = Vector2::new(left[2 * index], left[2 * index + 1]);
+        let rows = self.linear.design.rows(2 * index, 2);
+        let spread: DMatrix<f64> = rows * &self.fit.covariance * rows.transpose();
+        let trust = self.trade.trust[index];
+        let own = self.trade.sound / self.observations().weights[index];
+        let covariance = Matrix2::from_fn(|i, j| {
+            let diagonal = if i == j { own } else { 0.0 };
+            diagonal + (1.0 - 2.0 * trust) * spread[(i, j)]
+        });
+        let solved = covariance
+            .try_inverse()
+            .map_or(residual / own, |inverse| inverse * residual);
+        let square = residual.dot(&solved).max(0.0);
+        MarkerEstimate {
+            residual: residual.into(),
+            standardised_residual: square.sqrt(),
+            trust,
+            outlier: square > limit,
+        }
+    }
+}
+
+/// A value with its standard error.
+fn interval(value: f64, standard_error: f64, reach: f64) -> Estimate {
+    let half = reach * standard_error;
+    Estimate {
+        value,
+        standard_error,
+        interval: [value - half, value + half],
+    }
+}

@@ -1,0 +1,158 @@
+//! Weights of markers that are far off, and the level of the noise.
+//!
+//! ```text
+//! dₘ = √(wₘ (rx² + ry²))/s                     distance of marker m in units of the noise s
+//! Huber     ω = min(1, k/d),            k = 1.5
+//! Tukey     ω = (1 − (d/c)²)²  (d < c), c = 5.1227, else 0
+//! s² = median of d² s²/1.3863                  the median of χ² with two degrees of freedom
+//! ```
+//!
+//! With normal noise both have an efficiency of about 95 %. The noise's variance in the intervals is that of an M-estimate,
+//! ```text
+//! v = w̄ · Σ ψ²/(2 m − tr) / (mean of ψ′)²       ψ = ω r, w̄ the mean of ω, m markers
+//! ```
+//! which is Σ w r²/(2 m − tr) where all ω are 1.
+//!
+//! # References
+//! P. J. Huber, Robust Statistics (1981), section 7.6; P. J. Rousseeuw, A. M. Leroy, Robust Regression and Outlier
+//! Detection (1987)
+
+/// How markers that are far off are weighted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Robust {
+    /// As all others.
+    #[default]
+    No,
+    /// Less the farther they are off (Huber).
+    Huber,
+    /// Not at all from a distance on (Tukey's biweight).
+    Tukey,
+}
+
+/// Where Huber's weight begins to fall.
+const HUBER: f64 = 1.5;
+/// Where Tukey's weight is nothing.
+const TUKEY: f64 = 5.1227;
+/// The median of χ² with two degrees of freedom: 2 ln 2.
+const MEDIAN: f64 = 2.0 * std::f64::consts::LN_2;
+
+/// The level of the noise, and what follows from it.
+pub struct Noise {
+    /// v.
+    pub variance: f64,
+    /// s².
+    pub sound: f64,
+    /// ω of each marker.
+    pub trust: Vec<f64>,
+}
+
+impl Robust {
+    /// The names that conditions use.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("no", Self::No),
+        ("huber", Self::Huber),
+        ("tukey", Self::Tukey),
+    ];
+
+    /// ω and the mean of ψ′ over all directions at a distance.
+    fn weight(self, distance: f64) -> [f64; 2] {
+        match self {
+            Self::Huber if distance > HUBER => [HUBER / distance, 0.5 * HUBER / distance],
+            Self::No | Self::Huber => [1.0, 1.0],
+            Self::Tukey if distance >= TUKEY => [0.0, 0.0],
+            Self::Tukey => {
+                let share = (distance / TUKEY).powi(2);
+                let rest = 1.0 - share;
+                [rest * rest, rest * (1.0 - 3.0 * share)]
+            }
+        }
+    }
+
+    /// v and ω from s d of all markers, where `effective` parameters were fitted; with known noise s is 1.
+    pub fn noise(self, distances: &[f64], effective: f64, known: bool) -> Noise {
+        let count = distances.len() as f64;
+        let freedom = (2.0 * count - effective).max(1.0);
+        if self == Self::No {
+            let squares: f64 = distances.iter().map(|d| d * d).sum();
+            let variance = if known { 1.0 } else { squares / freedom };
+            let variance = variance.max(f64::MIN_POSITIVE);
+            return Noise {
+                variance,
+                sound: variance,
+                trust: vec![1.0; distances.len()],
+            };
+        }
+        let scale = match known {
+            true => 1.0,
+            false => spread(distances) * (2.0 * count / freedom).sqrt(),
+        };
+        let scale = scale.max(f64::MIN_POSITIVE);
+        let (mut trust, mut slope, mut squares) = (Vec::new(), 0.0, 0.0);
+        for distance in distances {
+            let [weight, derivative] = self.weight(distance / scale);
+            squares += (weight * distance).powi(2);
+            slope += derivative / count;
+            trust.push(weight);
+        }
+        let mean = trust.iter().sum::<f64>() / count;
+        let variance = mean * squares / freedom / (slope * slope);
+        Noise {
+            variance: variance.max(f64::MIN_POSITIVE),
+            sound: scale * scale,
+            trust,
+        }
+    }
+}
+
+/// The standard deviation of normal noise in two components with this median distance.
+pub fn spread(distances: &[f64]) -> f64 {
+    let mut squares: Vec<f64> = distances.iter().map(|d| d * d).collect();
+    squares.sort_by(f64::total_cmp);
+    let middle = squares.get(squares.len() / 2).copied().unwrap_or(0.0);
+    (middle / MEDIAN).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+
+    fn distances(count: usize, noise: f64) -> Vec<f64> {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        (0..count).map(|_| noise * draw().hypot(draw())).collect()
+    }
+
+    #[test]
+    fn normal_noise_has_its_variance_at_an_efficiency_of_95_percent() {
+        let normal = distances(40_000, 0.3);
+        assert!((spread(&normal) / 0.3 - 1.0).abs() < 0.01);
+        for (robust, efficiency) in [
+            (Robust::No, 1.0),
+            (Robust::Huber, 0.95),
+            (Robust::Tukey, 0.95),
+        ] {
+            let noise = robust.noise(&normal, 0.0, false);
+            let mean = noise.trust.iter().sum::<f64>() / normal.len() as f64;
+            let found = 0.09 / (noise.variance / mean);
+            assert!((found - efficiency).abs() < 0.012, "{robust:?} {found}");
+        }
+    }
+
+    #[test]
+    fn gross_errors_hardly_move_the_level() {
+        let mut mixed = distances(2000, 0.3);
+        mixed[..100].iter_mut().for_each(|d| *d = 20.0);
+        let level = |robust: Robust| robust.noise(&mixed, 0.0, false).variance.sqrt();
+        assert!(level(Robust::No) > 3.0);
+        assert!(level(Robust::Huber) < 0.4 && level(Robust::Tukey) < 0.35);
+        assert!(
+            Robust::Tukey.noise(&mixed, 0.0, false).trust[..100]
+                .iter()
+                .all(|w| *w == 0.0)
+        );
+    }
+}

@@ -1,0 +1,132 @@
+//! Matrices of displacements on a regular grid of points, as Ncorr keeps them.
+//!
+//! Ncorr writes no table of points: its results are the matrices `plot_u_ref_formatted` and `plot_v_ref_formatted`
+//! of `data_dic_save.displacements` in MATLAB, one row of the image after the other, in the unit that was chosen
+//! there. Saved by `writematrix(u, 'frame_1_u.csv')` and the same for v, two files are one frame. The distance of
+//! the points is (`dispinfo.spacing` + 1) · `dispinfo.pixtounits`. Points outside of the region of interest are zero
+//! in both; rows count downwards, so that y and v are turned up.
+//!
+//! # References
+//! J. Blaber, B. Adair, A. Antoniou, Experimental Mechanics 55 (2015) 1105, doi:10.1007/s11340-015-0009-1
+
+use std::path::{Path, PathBuf};
+
+use super::read::{Reading, Row, Rows};
+use super::table::plain_text;
+use crate::calibration::Table;
+use crate::error::{Diagnostic, Error};
+
+/// Files in the groups that make a frame: two whose names differ by `u` and `v` at their ends, else each alone.
+pub fn pairs(files: &[PathBuf]) -> Vec<Vec<&Path>> {
+    let stem = |file: &Path| {
+        let name = file.file_stem()?.to_string_lossy().into_owned();
+        Some((file.parent()?.to_owned(), name))
+    };
+    let mut groups: Vec<Vec<&Path>> = Vec::new();
+    let mut taken = vec![false; files.len()];
+    for (index, file) in files.iter().enumerate() {
+        if taken[index] {
+            continue;
+        }
+        let other = stem(file).and_then(|(folder, name)| {
+            let other = format!("{}v", name.strip_suffix('u')?);
+            series(&name)?;
+            let of_name = |file: &PathBuf| stem(file) == Some((folder.clone(), other.clone()));
+            files.iter().position(of_name)
+        });
+        groups.push(match other {
+            Some(other) => {
+                taken[other] = true;
+                vec![file, &files[other]]
+            }
+            None => vec![file.as_path()],
+        });
+    }
+    // A matrix of v that stands before its u was taken as a file of its own.
+    let paired: Vec<&Path> = groups
+        .iter()
+        .filter(|group| group.len() == 2)
+        .map(|group| group[1])
+        .collect();
+    groups.retain(|group| group.len() == 2 || !paired.contains(&group[0]));
+    groups
+}
+
+/// The name of a frame without the component at its end: `frame_1` of `frame_1_u`.
+pub fn series(stem: &str) -> Option<&str> {
+    let series = stem.strip_suffix('u')?;
+    let plain = series.strip_suffix(['_', '-', '.'])?;
+    Some(plain)
+}
+
+/// Reads the two matrices of a frame.
+///
+/// # Errors
+/// [`Error::Input`] with the file, what is wrong and what to do.
+pub fn read(u: &Path, v: &Path, reading: &Reading) -> Result<Rows, Error> {
+    let Some(step) = reading.grid else {
+        return Err(Error::input(
+            format!(
+                "{} is a matrix, which does not say how far its points are apart",
+                u.display()
+            ),
+            "give --grid \"0.5 mm\": Ncorr's (spacing + 1) times its length of a pixel",
+        ));
+    };
+    let Some(unit) = reading.unit else {
+        return Err(Error::input(
+            format!("{} does not say its unit", u.display()),
+            "give --unit mm, or the length of a pixel where Ncorr's units are pixels",
+        ));
+    };
+    let [u, v] = [matrix(u)?, matrix(v)?];
+    let size = |matrix: &Table| [matrix.rows.len(), matrix.columns.len()];
+    if size(&u) != size(&v) {
+        let [[a, b], [c, d]] = [size(&u), size(&v)];
+        return Err(Error::input(
+            format!(
+                "{} has {a} × {b} fields, {} has {c} × {d}",
+                u.source.name, v.source.name
+            ),
+            "save u and v of the same frame",
+        ));
+    }
+    let mut rows = Vec::new();
+    for (i, (us, vs)) in u.rows.iter().zip(&v.rows).enumerate() {
+        for (j, (u, v)) in us.0.iter().zip(&vs.0).enumerate() {
+            // Outside of the region of interest there is no specimen.
+            if *u != 0.0 || *v != 0.0 {
+                rows.push(Row {
+                    frame: None,
+                    time: None,
+                    name: None,
+                    place: [step * j as f64, -step * i as f64],
+                    displacement: [unit * u, -unit * v],
+                    standard_deviation: None,
+                });
+            }
+        }
+    }
+    Ok(Rows {
+        rows,
+        mesh: None,
+        layout: "Ncorr",
+    })
+}
+
+fn matrix(path: &Path) -> Result<Table, Error> {
+    let table = Table::parse(&path.display().to_string(), &plain_text(path)?)?;
+    let fault = (0..table.columns.len()).find_map(|column| table.nonsense(column));
+    if let Some((reason, place)) = fault {
+        let fault = Diagnostic::error("", reason).hint("a matrix holds numbers, or NaN");
+        return Err(Error::Input(vec![fault.at(&table.source, place)]));
+    }
+    if table.columns.iter().any(|column| !column.name.is_empty()) {
+        let fault = Diagnostic::error("", "a matrix has no names of columns")
+            .hint("give markers as one table, or matrices of numbers alone");
+        return Err(Error::Input(vec![
+            fault.at(&table.source, table.columns_place.clone()),
+        ]));
+    }
+    Ok(table)
+}

@@ -1,0 +1,39 @@
+//! Fields on meshes: the nodes are the markers.
+
+use std::path::Path;
+
+use super::read::{Reading, Row, Rows};
+use crate::error::Error;
+use crate::mesh::import_series;
+
+/// Reads a field on a mesh, with all its steps as frames.
+///
+/// # Errors
+/// [`Error::Input`] with the file and what is wrong.
+pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
+    let unit = reading.unit.unwrap_or(1.0);
+    let series = import_series(path, unit, reading.array.as_deref()).map_err(|reason| {
+        let hint = "a field stands in .csv (x, y, ux, uy), .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with \
+                    $NodeData, or CalculiX' .frd (ASCII)";
+        Error::input(format!("{} {reason}", path.display()), hint)
+    })?;
+    let several = series.steps.len() > 1;
+    let steps = series.steps.iter().zip(1..);
+    let rows = steps.flat_map(|(step, number)| {
+        let nodes = series.mesh.nodes.iter().zip(0..);
+        let pairs = nodes.zip(step.displacement.chunks_exact(2));
+        pairs.map(move |((place, node), u)| Row {
+            frame: several.then_some(number),
+            time: step.time,
+            name: Some(node),
+            place: *place,
+            displacement: [u[0], u[1]],
+            standard_deviation: None,
+        })
+    });
+    Ok(Rows {
+        rows: rows.collect(),
+        mesh: Some(series.mesh),
+        layout: "field on a mesh",
+    })
+}

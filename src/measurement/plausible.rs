@@ -1,0 +1,141 @@
+//! Whether lengths fit each other: places and displacements, markers and a mesh.
+
+use super::{Frame, Marker, Measurement};
+use crate::error::{Diagnostic, Error};
+use crate::mesh::Mesh;
+
+/// Displacements of more than so many sizes of the specimen are in another unit.
+const LARGEST: f64 = 20.0;
+
+/// A largest displacement below this share of the specimen's size is told.
+const SMALLEST: f64 = 1e-5;
+
+/// Markers up to so many sizes of a cell outside of the mesh belong to its boundary.
+const NEAR_CELLS: f64 = 0.25;
+
+/// No marker farther outside of the box around the mesh than this share of its size is looked for.
+const MARGIN: f64 = 0.5;
+
+/// Ratios of the units of length that are in use.
+const RATIOS: [f64; 6] = [10.0, 25.4, 100.0, 254.0, 1e3, 1e6];
+
+/// Whether the data hold a displacement that fits the places.
+///
+/// # Errors
+/// [`Error::Input`] when there is no displacement, or one in another unit.
+pub fn check(measurement: &Measurement, warnings: &mut Vec<Diagnostic>) -> Result<(), Error> {
+    if measurement.frames.is_empty() {
+        return Err(Error::input(
+            "no point of the field has a displacement that is a number",
+            "look at the columns or the array that hold it",
+        ));
+    }
+    let markers = || measurement.frames.iter().flat_map(|frame| &frame.markers);
+    let extent = extent(markers().map(|marker| marker.place));
+    let size = extent[0].max(extent[1]);
+    let largest = markers()
+        .map(|marker| marker.displacement[0].hypot(marker.displacement[1]))
+        .fold(0.0, f64::max);
+    if largest == 0.0 {
+        return Err(Error::input(
+            "the displacement is zero everywhere",
+            "give a field of a specimen that is deformed",
+        ));
+    }
+    // One point alone has no size.
+    if size > 0.0 && largest > LARGEST * size {
+        return Err(Error::input(
+            format!(
+                "the displacement reaches {largest:.4} mm where the points span {size:.4} mm: they are in different units"
+            ),
+            "write the unit of every column in its head, as in x [mm], ux [um]",
+        ));
+    }
+    if largest < SMALLEST * size {
+        let message = format!(
+            "the displacement reaches only {largest:.3e} mm where the points span {size:.4} mm"
+        );
+        let hint = "look whether places and displacements are in the same unit";
+        warnings.push(Diagnostic::warning("", message).hint(hint));
+    }
+    Ok(())
+}
+
+/// A measurement on a mesh, without the markers outside.
+#[derive(Debug)]
+pub struct Placed {
+    /// The markers on the mesh.
+    pub measurement: Measurement,
+    /// How many are left out, over all frames.
+    pub outside: usize,
+}
+
+/// Leaves out the markers that lie outside of a mesh by more than a quarter of a cell.
+///
+/// # Errors
+/// [`Error::Input`] when most do, with what is likely: another unit, or another origin.
+pub fn place_on(mesh: &Mesh, measurement: &Measurement) -> Result<Placed, Error> {
+    let [low, high] = mesh.bounding_box();
+    let near = |place: [f64; 2]| {
+        let margin = [0, 1].map(|axis| MARGIN * (high[axis] - low[axis]));
+        (0..2).all(|axis| {
+            (low[axis] - margin[axis]..=high[axis] + margin[axis]).contains(&place[axis])
+        })
+    };
+    let within = |marker: &&Marker| near(marker.place) && mesh.outside(marker.place) <= NEAR_CELLS;
+    let frame = |frame: &Frame| Frame {
+        markers: frame.markers.iter().filter(within).copied().collect(),
+        ..frame.clone()
+    };
+    let kept = Measurement {
+        frames: measurement.frames.iter().map(frame).collect(),
+    };
+    let count = |measurement: &Measurement| -> usize {
+        let frames = measurement.frames.iter();
+        frames.map(|frame| frame.markers.len()).sum()
+    };
+    let (all, inside) = (count(measurement), count(&kept));
+    let places = || measurement.frames.iter().flat_map(|frame| &frame.markers);
+    let spanned = extent(places().map(|marker| marker.place));
+    let measures = extent(mesh.nodes.iter().copied());
+    let ratio = measures[0].hypot(measures[1]) / spanned[0].hypot(spanned[1]);
+    let unit = RATIOS.iter().copied().find(|unit| {
+        let ratio = ratio.max(1.0 / ratio);
+        (0.8..1.3).contains(&(ratio / unit))
+    });
+    if 2 * inside >= all && (ratio < 8.0 || unit.is_none()) {
+        return Ok(Placed {
+            measurement: kept,
+            outside: all - inside,
+        });
+    }
+    let sizes = format!(
+        "the mesh measures {:.4} × {:.4} mm and the points span {:.4} × {:.4} mm",
+        measures[0], measures[1], spanned[0], spanned[1]
+    );
+    Err(match unit {
+        Some(unit) => Error::input(
+            format!("{sizes}: about a factor of {unit}, as between two units of length"),
+            "say the unit of the field with --unit, and that of the mesh with --mesh-unit",
+        ),
+        None => Error::input(
+            format!(
+                "{sizes}, but {} of {all} points lie outside of the mesh",
+                all - inside
+            ),
+            "give both in the same axes, at rest",
+        ),
+    })
+}
+
+/// Length and width of the box around places.
+fn extent(places: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let (low, high) = places.fold(start, |(low, high), place| {
+        (
+            [0, 1].map(|axis| low[axis].min(place[axis])),
+            [0, 1].map(|axis| high[axis].max(place[axis])),
+        )
+    });
+    [high[0] - low[0], high[1] - low[1]]
+}

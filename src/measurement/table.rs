@@ -1,0 +1,330 @@
+//! Scattered markers from tables: columns with names, and what DICe and muDIC write.
+//!
+//! | layout | known by | place at rest | y axis |
+//! |---|---|---|---|
+//! | columns | `x`, `y`, `ux`, `uy` (or `u`, `v`) | x, y | as it is |
+//! | DICe | `COORDINATE_X`, `DISPLACEMENT_X` | x, y in pixels | downwards, turned up |
+//! | DICe, stereo | `MODEL_COORDINATES_X`, `MODEL_DISPLACEMENT_X` | x, y in the calibration's unit | as it is |
+//! | muDIC | `x`, `y`, `ux`, `uy`, `true_strain_xx` | (x − ux, y − uy) in pixels | downwards, turned up |
+//!
+//! Optional columns: `standard_deviation` (of each component; DICe's `SIGMA`), `frame`, `time`, `id`. A displacement
+//! that is empty or NaN was not found. DICe marks points that it did not find by `SIGMA` = −1 (`MATCH` ≠ 0 in early
+//! versions) and writes lines that begin with `***` first.
+//!
+//! # References
+//! DICe: `DICe_solution_*.txt` among the regression tests of github.com/dicengine/dice, and its maintainers on
+//! SIGMA (issues 123 and 133: in pixels, one number for both directions, −1 where the correlation failed).
+//! muDIC: `exportCSV` in `muDIC/IO/readWriteUtils.py` of github.com/PolymerGuy/muDIC; its `x`, `y` are the places
+//! *in the frame*, so that the displacement is subtracted from them.
+
+use std::path::Path;
+
+use super::read::{Reading, Row, Rows};
+use crate::calibration::Table;
+use crate::error::{Diagnostic, Error, suggestion};
+use crate::units::{self, Dimension};
+
+/// Names that a column may have.
+type Names = &'static [&'static str];
+
+/// Where a layout keeps what.
+struct Layout {
+    name: &'static str,
+    places: [Names; 2],
+    displacements: [Names; 2],
+    deviation: Names,
+    /// Whether the y axis points downwards, as in an image.
+    downwards: bool,
+    /// Whether places are those of the frame, not at rest.
+    deformed: bool,
+    /// Whether lengths are pixels where the head says nothing.
+    pixels: bool,
+}
+
+const COLUMNS: Layout = Layout {
+    name: "columns",
+    places: [&["x"], &["y"]],
+    displacements: [&["ux", "u", "u_x"], &["uy", "v", "u_y"]],
+    deviation: &["standard_deviation", "sigma"],
+    downwards: false,
+    deformed: false,
+    pixels: false,
+};
+
+const DICE: Layout = Layout {
+    name: "DICe",
+    places: [&["coordinate_x"], &["coordinate_y"]],
+    displacements: [&["displacement_x"], &["displacement_y"]],
+    deviation: &["sigma"],
+    downwards: true,
+    deformed: false,
+    pixels: true,
+};
+
+const DICE_STEREO: Layout = Layout {
+    name: "DICe, stereo",
+    places: [&["model_coordinates_x"], &["model_coordinates_y"]],
+    displacements: [&["model_displacement_x"], &["model_displacement_y"]],
+    // SIGMA is in pixels, not in the calibration's unit.
+    deviation: &[],
+    downwards: false,
+    deformed: false,
+    pixels: false,
+};
+
+const MUDIC: Layout = Layout {
+    name: "muDIC",
+    deviation: &[],
+    downwards: true,
+    deformed: true,
+    pixels: true,
+    ..COLUMNS
+};
+
+/// Reads the markers of one table.
+///
+/// # Errors
+/// [`Error::Input`] with file, line and reason.
+pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
+    let table = Table::parse(&path.display().to_string(), &plain_text(path)?)?;
+    let layout = layout(&table);
+    let columns = Columns::find(&table, layout, reading.unit)?;
+    let rows = (0..table.rows.len()).map(|row| columns.row(&table, layout, row));
+    Ok(Rows {
+        rows: rows.collect::<Result<_, _>>()?,
+        mesh: None,
+        layout: layout.name,
+    })
+}
+
+/// Reads closed lines: places in the columns `x`, `y`; several lines have their numbers in a column `line`. `unit` is
+/// the length of the file's unit in mm, where it does not say it.
+///
+/// # Errors
+/// [`Error::Input`] with file, line and reason.
+pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, Error> {
+    let table = Table::parse(&path.display().to_string(), &plain_text(path)?)?;
+    let [x, y] = [
+        length(&table, &["x"], &COLUMNS, unit)?,
+        length(&table, &["y"], &COLUMNS, unit)?,
+    ];
+    let number = table
+        .columns
+        .iter()
+        .position(|column| column.name == "line");
+    let read = [x.0, y.0].into_iter().chain(number);
+    if let Some((reason, place)) = read.into_iter().find_map(|column| table.fault(column)) {
+        let fault = Diagnostic::error("", reason).hint("an outline has numbers x, y alone");
+        return Err(Error::Input(vec![fault.at(&table.source, place)]));
+    }
+    let mut lines: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
+    for (row, _) in &table.rows {
+        let (place, number) = (
+            [row[x.0] * x.1, row[y.0] * y.1],
+            number.map_or(0.0, |n| row[n]),
+        );
+        match lines.iter_mut().find(|(known, _)| *known == number) {
+            Some((_, line)) => line.push(place),
+            None => lines.push((number, vec![place])),
+        }
+    }
+    Ok(lines.into_iter().map(|(_, line)| line).collect())
+}
+
+/// A file's text; the lines before DICe's columns become remarks.
+pub(super) fn plain_text(path: &Path) -> Result<String, Error> {
+    let name = path.display();
+    let refuse = |message: String| {
+        let hint = "markers are a table in UTF-8 with the columns x [mm], y [mm], ux [mm], uy [mm]";
+        Error::input(message, hint)
+    };
+    let bytes = std::fs::read(path);
+    let bytes = bytes.map_err(|cause| refuse(format!("cannot read {name}: {cause}")))?;
+    let text = String::from_utf8(bytes);
+    let text = text.map_err(|_| refuse(format!("{name} is not UTF-8 text")))?;
+    if !text.starts_with("***") {
+        return Ok(text);
+    }
+    let remark = |line: &str| match line.strip_prefix('*') {
+        Some(rest) => format!("#{rest}"),
+        None => line.to_owned(),
+    };
+    Ok(text.split_inclusive('\n').map(remark).collect())
+}
+
+fn layout(table: &Table) -> &'static Layout {
+    let has = |name: &str| table.columns.iter().any(|column| column.name == name);
+    match () {
+        () if has("model_displacement_x") => &DICE_STEREO,
+        () if has("displacement_x") && has("coordinate_x") => &DICE,
+        () if has("true_strain_xx") && has("ux") => &MUDIC,
+        () => &COLUMNS,
+    }
+}
+
+/// A column of lengths and its unit in mm.
+type Length = (usize, f64);
+
+/// The columns that are read.
+struct Columns {
+    places: [Length; 2],
+    displacements: [Length; 2],
+    deviation: Option<Length>,
+    frame: Option<usize>,
+    time: Option<usize>,
+    name: Option<usize>,
+    mismatch: Option<usize>,
+}
+
+impl Columns {
+    fn find(table: &Table, layout: &Layout, unit: Option<f64>) -> Result<Self, Error> {
+        let length = |names: Names| length(table, names, layout, unit);
+        let plain = |names: Names| {
+            let of_name = |name: &&str| table.columns.iter().position(|c| c.name == **name);
+            names.iter().find_map(of_name)
+        };
+        let has_deviation = column(table, layout.deviation).is_some();
+        let columns = Self {
+            places: [length(layout.places[0])?, length(layout.places[1])?],
+            displacements: [
+                length(layout.displacements[0])?,
+                length(layout.displacements[1])?,
+            ],
+            deviation: has_deviation
+                .then(|| length(layout.deviation))
+                .transpose()?,
+            frame: plain(&["frame", "frame_number", "image"]),
+            time: plain(&["time", "t"]),
+            name: plain(&["id", "subset_id", "marker", "point", "node"]),
+            mismatch: plain(&["match"]),
+        };
+        let fault = columns.read().find_map(|column| table.nonsense(column));
+        match fault {
+            None => Ok(columns),
+            Some((reason, place)) => {
+                let hint = "a field of this column is a number, or empty where nothing was found";
+                let fault = Diagnostic::error("", reason).hint(hint);
+                Err(Error::Input(vec![fault.at(&table.source, place)]))
+            }
+        }
+    }
+
+    /// The columns whose fields are numbers.
+    fn read(&self) -> impl Iterator<Item = usize> {
+        let lengths = self.places.into_iter().chain(self.displacements);
+        let lengths = lengths.chain(self.deviation).map(|(column, _)| column);
+        lengths.chain(self.frame).chain(self.time)
+    }
+
+    fn row(&self, table: &Table, layout: &Layout, row: usize) -> Result<Row, Error> {
+        let (values, line) = &table.rows[row];
+        let refuse = |message: &str, hint: &str| {
+            let fault = Diagnostic::error("", message).hint(hint);
+            Error::Input(vec![fault.at(&table.source, line.clone())])
+        };
+        let up = if layout.downwards { -1.0 } else { 1.0 };
+        let pair = |[x, y]: [Length; 2]| [values[x.0] * x.1, up * values[y.0] * y.1];
+        let (mut place, mut displacement) = (pair(self.places), pair(self.displacements));
+        if layout.deformed && displacement.iter().all(|u| u.is_finite()) {
+            place = [place[0] - displacement[0], place[1] - displacement[1]];
+        }
+        let deviation = self.deviation.map(|(column, unit)| values[column] * unit);
+        let negative = deviation.is_some_and(|deviation| deviation < 0.0);
+        if negative && layout.name != DICE.name {
+            let hint = "leave it empty where it is not known";
+            return Err(refuse("a standard deviation is negative", hint));
+        }
+        if negative || self.mismatch.is_some_and(|column| values[column] != 0.0) {
+            displacement = [f64::NAN; 2];
+        }
+        if place.iter().any(|x| !x.is_finite()) {
+            let hint = "give x and y, or leave out the line";
+            return Err(refuse("a marker has no place", hint));
+        }
+        let whole = |column: Option<usize>| {
+            let value = values[column?];
+            (value >= 0.0 && value.fract() == 0.0).then_some(value)
+        };
+        if self.frame.is_some() && whole(self.frame).is_none() {
+            let hint = "number the frames 1, 2, 3 …";
+            return Err(refuse("a frame has no whole number", hint));
+        }
+        let time = self.time.map(|column| values[column]);
+        Ok(Row {
+            frame: whole(self.frame).map(|frame| frame as usize),
+            time: time.filter(|time| time.is_finite()),
+            name: whole(self.name).map(|name| name as u64),
+            place,
+            displacement,
+            standard_deviation: deviation.filter(|deviation| *deviation > 0.0),
+        })
+    }
+}
+
+/// The first column of one of the names, and its unit: in brackets, or at the end of the name as in `ux_mm`.
+fn column(table: &Table, names: Names) -> Option<(usize, Option<String>)> {
+    names.iter().find_map(|name| {
+        let mut columns = table.columns.iter().enumerate();
+        columns.find_map(|(index, column)| match column.name.strip_prefix(name)? {
+            "" => Some((index, column.unit.clone())),
+            rest => {
+                let unit = rest.strip_prefix('_')?;
+                (column.unit.is_none() && millimetres(unit).is_some())
+                    .then(|| (index, Some(unit.to_owned())))
+            }
+        })
+    })
+}
+
+/// The length of a unit in mm.
+fn millimetres(unit: &str) -> Option<f64> {
+    units::parse(&format!("1 {unit}"), Dimension::Length).ok()
+}
+
+/// A column of lengths and its unit: that of its head, else the one that was given.
+fn length(
+    table: &Table,
+    names: Names,
+    layout: &Layout,
+    given: Option<f64>,
+) -> Result<Length, Error> {
+    let refuse = |message: String, hint: &str| {
+        let fault = Diagnostic::error("", message).hint(hint);
+        Error::Input(vec![fault.at(&table.source, table.columns_place.clone())])
+    };
+    let Some((index, unit)) = column(table, names) else {
+        let found: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
+        let found = match found.iter().all(|name| name.is_empty()) {
+            true => "the columns have no names".to_owned(),
+            false => format!("the file has {}", found.join(", ")),
+        };
+        let message = format!("there is no column `{}`: {found}", names[0]);
+        let hint =
+            "name the columns x [mm], y [mm], ux [mm] and uy [mm], with the unit of your own";
+        return Err(refuse(message, hint));
+    };
+    let pixels = match unit.as_deref() {
+        Some(unit) => ["px", "pixel", "pixels"].contains(&unit),
+        None => layout.pixels,
+    };
+    let known = unit.as_deref().filter(|_| !pixels);
+    match (known, given) {
+        (Some(unit), _) => millimetres(unit).map(|unit| (index, unit)).ok_or_else(|| {
+            let known: Vec<_> = Dimension::Length.units().collect();
+            let hint = suggestion(unit, &known, "known units:");
+            refuse(format!("`{unit}` is no unit of length"), &hint)
+        }),
+        (None, Some(unit)) => Ok((index, unit)),
+        (None, None) if pixels => Err(refuse(
+            format!("the column `{}` is in pixels", names[0]),
+            "say how long a pixel is, such as --unit \"0.05 mm\"",
+        )),
+        (None, None) => Err(refuse(
+            format!("the column `{}` has no unit", names[0]),
+            "write it in brackets, as in x [mm], or give --unit mm",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests;

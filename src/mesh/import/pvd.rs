@@ -1,0 +1,42 @@
+//! ParaView's collections of files.
+
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::{Reader, XmlVersion};
+
+/// The times and the files that the text of a collection names, in its order.
+///
+/// # Errors
+/// Says what is wrong.
+pub fn read(text: &str) -> Result<Vec<(f64, String)>, String> {
+    let mut reader = Reader::from_str(text);
+    let mut files = Vec::new();
+    loop {
+        match reader.read_event() {
+            Ok(Event::Empty(tag) | Event::Start(tag)) if tag.name().as_ref() == "DataSet" => {
+                files.push(data_set(&tag)?);
+            }
+            Ok(Event::Eof) => return Ok(files),
+            Ok(_) => {}
+            Err(cause) => return Err(format!("is no XML: {cause}")),
+        }
+    }
+}
+
+fn data_set(tag: &BytesStart) -> Result<(f64, String), String> {
+    let value = |name: &str| {
+        let attribute = tag.try_get_attribute(name).ok().flatten();
+        let text = attribute.and_then(|attribute| {
+            Some(
+                attribute
+                    .normalized_value(XmlVersion::Explicit1_0)
+                    .ok()?
+                    .into_owned(),
+            )
+        });
+        text.ok_or_else(|| format!("has a DataSet without `{name}`"))
+    };
+    let time = value("timestep")?;
+    let number = time.parse().ok().filter(|time: &f64| time.is_finite());
+    let number = number.ok_or_else(|| format!("has the time `{time}`, which is no number"))?;
+    Ok((number, value("file")?))
+}

@@ -1,0 +1,367 @@
+//! Closed lines around a specimen, from the places of its markers, and meshes inside them.
+//!
+//! The outline of scattered points is the boundary of those Delaunay triangles whose circumscribed circle has a
+//! radius below 1.9 s, where the spacing s is the median length of all Delaunay edges (an α-shape). Gaps of up to
+//! two by two points of a grid are closed so; a wider one inside is a hole. The lines are then straightened where
+//! this moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge.
+//!
+//! Meshes have nodes in a triangular lattice inside and evenly along the lines; where an angle would be below 25°,
+//! nodes are added (Ruppert's refinement).
+//!
+//! # References
+//! H. Edelsbrunner, D. Kirkpatrick, R. Seidel, IEEE Trans. Inf. Theory 29 (1983) 551
+//! J. Ruppert, J. Algorithms 18 (1995) 548
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::triangulate::{delaunay, fill};
+use super::{CellShape, Mesh};
+
+mod lattice;
+mod polygon;
+
+use polygon::{Polygon, area};
+
+/// Circles of triangles up to so many spacings are inside.
+const RADIUS: f64 = 1.9;
+
+/// Lines are moved by less than so many spacings when they are straightened.
+const STRAIGHT: f64 = 0.55;
+
+/// A part with a smaller share of the area is a stray group of points.
+const STRAY: f64 = 0.02;
+
+/// Closed lines around a specimen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// The outer line, with the specimen to its left.
+    pub outer: Vec<[f64; 2]>,
+    /// The lines around its holes, with the specimen to their left.
+    pub holes: Vec<Vec<[f64; 2]>>,
+}
+
+/// An outline found around points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The lines.
+    pub outline: Outline,
+    /// The spacing of the points in mm.
+    pub spacing: f64,
+}
+
+impl Outline {
+    /// The lines around points.
+    ///
+    /// # Errors
+    /// Says why the points have no outline, or that they lie in several parts.
+    pub fn of_points(points: &[[f64; 2]]) -> Result<Found, String> {
+        let mut points = points.to_vec();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        points.dedup();
+        if points.len() < 6 {
+            return Err(format!("{} points have no outline", points.len()));
+        }
+        let triangles = delaunay(&points);
+        if triangles.is_empty() {
+            return Err("the points lie on one line".into());
+        }
+        let spacing = median_edge(&points, &triangles);
+        let small = |triangle: &[usize; 3]| radius(&points, triangle) < RADIUS * spacing;
+        let mut inside: Vec<bool> = triangles.iter().map(small).collect();
+        mend_touching(&triangles, &mut inside);
+        largest_part(&points, &triangles, &mut inside)?;
+        let mut lines = boundary_lines(&triangles, &inside)
+            .into_iter()
+            .map(|line| line.iter().map(|point| points[*point]).collect())
+            .map(|line: Vec<_>| polygon::straightened(&line, STRAIGHT * spacing))
+            .filter(|line| line.len() >= 3);
+        let mut outline = Self {
+            outer: Vec::new(),
+            holes: Vec::new(),
+        };
+        for line in &mut lines {
+            if area(&line) > 0.0 {
+                outline.outer = line;
+            } else {
+                outline.holes.push(line);
+            }
+        }
+        if outline.outer.is_empty() {
+            return Err("the points are too far apart to have an outline".into());
+        }
+        outline.check()?;
+        Ok(Found { outline, spacing })
+    }
+
+    /// Lines in any direction and order: the one around the largest area is the outer one.
+    ///
+    /// # Errors
+    /// Says what is wrong with the lines.
+    pub fn of_lines(mut lines: Vec<Vec<[f64; 2]>>) -> Result<Self, String> {
+        for line in &mut lines {
+            line.dedup();
+            if line.len() > 1 && line.first() == line.last() {
+                line.pop();
+            }
+            if line.len() < 3 || polygon::is_straight(line) {
+                return Err("a line of the outline encloses no area".into());
+            }
+        }
+        lines.sort_by(|a, b| area(b).abs().total_cmp(&area(a).abs()));
+        for (index, line) in lines.iter_mut().enumerate() {
+            if (area(line) > 0.0) != (index == 0) {
+                line.reverse();
+            }
+        }
+        let mut lines = lines.into_iter();
+        let outer = lines.next().ok_or("the outline has no line")?;
+        let outline = Self {
+            outer,
+            holes: lines.collect(),
+        };
+        outline.check()?;
+        Ok(outline)
+    }
+
+    fn lines(&self) -> impl Iterator<Item = &Vec<[f64; 2]>> {
+        std::iter::once(&self.outer).chain(&self.holes)
+    }
+
+    /// Whether no line crosses itself or another one, and all holes lie inside.
+    fn check(&self) -> Result<(), String> {
+        let lines: Vec<Polygon> = self.lines().map(|line| Polygon(line)).collect();
+        if let Some([x, y]) = polygon::crossing(&lines) {
+            return Err(format!(
+                "the outline crosses itself near ({x:.4}, {y:.4}) mm"
+            ));
+        }
+        match self.holes.iter().find(|hole| !lines[0].contains(hole[0])) {
+            Some(hole) => Err(format!(
+                "the outline has two separated parts, one of them near ({:.4}, {:.4}) mm",
+                hole[0][0], hole[0][1]
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// The area inside in mm².
+    pub fn area(&self) -> f64 {
+        self.lines().map(|line| area(line)).sum()
+    }
+
+    /// A mesh of cells of about the size `size` in mm (the length of their edges); `shape` is their kind, of three,
+    /// six, four or nine nodes.
+    ///
+    /// The outer edges are the groups `left`, `right`, `bottom` and `top`, from corner to corner (a turn of more than
+    /// 40°) by the direction that they face; the edges of holes `hole-1`, `hole-2` …, and all of them `boundary`.
+    pub fn mesh(&self, size: f64, shape: CellShape) -> Mesh {
+        // A triangle becomes three quadrilaterals of about half its size.
+        let size = if shape.is_triangle() {
+            size
+        } else {
+            2.0 * size
+        };
+        let (mut points, mut edges) = (Vec::new(), Vec::new());
+        for line in self.lines() {
+            let start = points.len();
+            points.extend(polygon::divided(line, size));
+            let count = points.len() - start;
+            edges.extend((0..count).map(|i| [start + i, start + (i + 1) % count]));
+        }
+        let lines: Vec<Polygon> = self.lines().map(|line| Polygon(line)).collect();
+        points.extend(lattice::inside(&lines, &points, size));
+        let (nodes, triangles) = fill(&points, &edges);
+        let linear = match shape.is_triangle() {
+            true => {
+                let cells = triangles
+                    .iter()
+                    .map(|nodes| (CellShape::Triangle3, nodes.to_vec()));
+                Mesh::new(nodes, cells)
+            }
+            false => quadrilaterals(nodes, &triangles),
+        };
+        let mut mesh = match shape.degree() {
+            1 => linear,
+            _ => linear.quadratic(),
+        };
+        self.name_sides(&mut mesh);
+        mesh
+    }
+
+    fn name_sides(&self, mesh: &mut Mesh) {
+        let mut sides: Vec<(String, [[f64; 2]; 2])> = Vec::new();
+        sides.extend(
+            polygon::sides(&self.outer)
+                .into_iter()
+                .map(|(side, edge)| (side.to_owned(), edge)),
+        );
+        for (hole, number) in self.holes.iter().zip(1..) {
+            let edges = Polygon(hole).edges();
+            sides.extend(edges.map(|edge| (format!("hole-{number}"), edge)));
+        }
+        let mut groups: BTreeMap<&str, Vec<Vec<usize>>> = BTreeMap::new();
+        for edge in mesh.boundary() {
+            let [a, b] = [mesh.nodes[edge[0]], mesh.nodes[edge[1]]];
+            let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
+            let far = |(_, edge): &&(String, _)| polygon::distance(*edge, middle);
+            let nearest = sides.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+            if let Some((side, _)) = nearest {
+                groups.entry(side).or_default().push(edge.clone());
+            }
+        }
+        for (name, edges) in groups {
+            mesh.name_edges(name, edges);
+        }
+        mesh.name_boundary("boundary", |_| true);
+    }
+}
+
+fn median_edge(points: &[[f64; 2]], triangles: &[[usize; 3]]) -> f64 {
+    let edges = triangles
+        .iter()
+        .flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+    // An edge between two triangles is counted once.
+    let edges = edges.filter(|[a, b]| a < b);
+    let mut lengths: Vec<f64> = edges
+        .map(|[a, b]| polygon::length(points[*a], points[*b]))
+        .collect();
+    let middle = lengths.len() / 2;
+    *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// The radius of the circle through the corners of a triangle.
+fn radius(points: &[[f64; 2]], triangle: &[usize; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|point| points[point]);
+    let twice = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    let sides = [(a, b), (b, c), (c, a)].map(|(a, b)| polygon::length(a, b));
+    sides.iter().product::<f64>() / (2.0 * twice.abs())
+}
+
+/// The edges of triangles inside without one at their other side, by their first point, inside to the left.
+fn boundary_edges(triangles: &[[usize; 3]], inside: &[bool]) -> Vec<[usize; 2]> {
+    let kept = || triangles.iter().zip(inside).filter(|(_, inside)| **inside);
+    let edges = || kept().flat_map(|([a, b, c], _)| [[*a, *b], [*b, *c], [*c, *a]]);
+    let all: std::collections::HashSet<[usize; 2]> = edges().collect();
+    edges().filter(|[a, b]| !all.contains(&[*b, *a])).collect()
+}
+
+/// Where two lines of the boundary touch in a point, all triangles around it become inside.
+fn mend_touching(triangles: &[[usize; 3]], inside: &mut [bool]) {
+    loop {
+        let mut leaving: HashMap<usize, usize> = HashMap::new();
+        for [from, _] in boundary_edges(triangles, inside) {
+            *leaving.entry(from).or_default() += 1;
+        }
+        let mut changed = false;
+        for (triangle, inside) in triangles.iter().zip(&mut *inside) {
+            let touching = triangle
+                .iter()
+                .any(|point| leaving.get(point).is_some_and(|n| *n > 1));
+            if touching && !*inside {
+                (*inside, changed) = (true, true);
+            }
+        }
+        if !changed {
+            return;
+        }
+    }
+}
+
+/// Leaves the largest connected part inside; others must be small.
+fn largest_part(
+    points: &[[f64; 2]],
+    triangles: &[[usize; 3]],
+    inside: &mut [bool],
+) -> Result<(), String> {
+    let mut by_edge: HashMap<[usize; 2], usize> = HashMap::new();
+    for (index, [a, b, c]) in triangles.iter().enumerate() {
+        by_edge.extend([[*a, *b], [*b, *c], [*c, *a]].map(|edge| (edge, index)));
+    }
+    let mut part = vec![usize::MAX; triangles.len()];
+    let mut areas = Vec::new();
+    for start in 0..triangles.len() {
+        if !inside[start] || part[start] != usize::MAX {
+            continue;
+        }
+        let (number, mut sum, mut open) = (areas.len(), 0.0, vec![start]);
+        part[start] = number;
+        while let Some(triangle) = open.pop() {
+            let [a, b, c] = triangles[triangle];
+            sum += area(&[points[a], points[b], points[c]]);
+            for edge in [[b, a], [c, b], [a, c]] {
+                if let Some(next) = by_edge.get(&edge)
+                    && inside[*next]
+                    && part[*next] == usize::MAX
+                {
+                    part[*next] = number;
+                    open.push(*next);
+                }
+            }
+        }
+        areas.push(sum);
+    }
+    let largest = (0..areas.len()).max_by(|a, b| areas[*a].total_cmp(&areas[*b]));
+    let Some(largest) = largest else {
+        return Err("the points are too far apart to have an outline".into());
+    };
+    let whole: f64 = areas.iter().sum();
+    let second = (0..areas.len()).find(|part| *part != largest && areas[*part] > STRAY * whole);
+    if let Some(second) = second {
+        let triangle = part
+            .iter()
+            .position(|part| *part == second)
+            .unwrap_or_default();
+        let [x, y] = points[triangles[triangle][0]];
+        return Err(format!(
+            "the points lie in two separated parts, one of them near ({x:.4}, {y:.4}) mm"
+        ));
+    }
+    for (inside, part) in inside.iter_mut().zip(&part) {
+        *inside = *part == largest;
+    }
+    Ok(())
+}
+
+/// The closed lines of the boundary, in the order of their first points.
+fn boundary_lines(triangles: &[[usize; 3]], inside: &[bool]) -> Vec<Vec<usize>> {
+    let edges = boundary_edges(triangles, inside);
+    let mut next: BTreeMap<usize, usize> = edges.into_iter().map(|[a, b]| (a, b)).collect();
+    let mut lines = Vec::new();
+    while let Some((start, mut point)) = next.pop_first() {
+        let mut line = vec![start];
+        while point != start {
+            line.push(point);
+            let Some(following) = next.remove(&point) else {
+                break;
+            };
+            point = following;
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+/// Three quadrilaterals for each triangle, about its centre.
+fn quadrilaterals(mut nodes: Vec<[f64; 2]>, triangles: &[[usize; 3]]) -> Mesh {
+    let mut middles: HashMap<[usize; 2], usize> = HashMap::new();
+    let mut cells = Vec::new();
+    for corners in triangles {
+        let middle = [0, 1, 2].map(|i| {
+            let (a, b) = (corners[i], corners[(i + 1) % 3]);
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                nodes.push([0, 1].map(|axis| (nodes[a][axis] + nodes[b][axis]) / 2.0));
+                nodes.len() - 1
+            })
+        });
+        nodes.push([0, 1].map(|axis| corners.iter().map(|n| nodes[*n][axis]).sum::<f64>() / 3.0));
+        let centre = nodes.len() - 1;
+        for i in 0..3 {
+            let cell = vec![corners[i], middle[i], centre, middle[(i + 2) % 3]];
+            cells.push((CellShape::Quad4, cell));
+        }
+    }
+    Mesh::new(nodes, cells)
+}
+
+#[cfg(test)]
+mod tests;

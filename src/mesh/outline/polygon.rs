@@ -1,0 +1,190 @@
+//! Closed lines of straight edges.
+
+/// A turn of more than this is a corner: 40°.
+const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
+
+/// A closed line of straight edges.
+#[derive(Clone, Copy)]
+pub struct Polygon<'a>(pub &'a [[f64; 2]]);
+
+impl<'a> Polygon<'a> {
+    /// The edges, the last one back to the first point.
+    pub fn edges(self) -> impl Iterator<Item = [[f64; 2]; 2]> + use<'a> {
+        let next = self.0.iter().cycle().skip(1);
+        self.0.iter().zip(next).map(|(a, b)| [*a, *b])
+    }
+
+    /// Places along x where the line crosses a height, ascending.
+    pub fn crossings(self, y: f64) -> Vec<f64> {
+        let across = self.edges().filter(|[a, b]| (a[1] > y) != (b[1] > y));
+        let at = across.map(|[a, b]| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+        let mut at: Vec<f64> = at.collect();
+        at.sort_by(f64::total_cmp);
+        at
+    }
+
+    /// Whether a point lies inside.
+    pub fn contains(self, [x, y]: [f64; 2]) -> bool {
+        let left = self.crossings(y).into_iter().filter(|at| *at < x);
+        left.count() % 2 == 1
+    }
+}
+
+/// The area inside, positive where the line runs counter-clockwise.
+pub fn area(line: &[[f64; 2]]) -> f64 {
+    let twice = Polygon(line)
+        .edges()
+        .map(|[a, b]| a[0] * b[1] - b[0] * a[1]);
+    twice.sum::<f64>() / 2.0
+}
+
+/// Whether all points lie on one straight line.
+pub fn is_straight(line: &[[f64; 2]]) -> bool {
+    let mut corners = line
+        .windows(2)
+        .map(|pair| area(&[line[0], pair[0], pair[1]]));
+    corners.all(|area| area == 0.0)
+}
+
+/// The distance of two points.
+pub fn length(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+/// The distance of a point from an edge.
+pub fn distance([a, b]: [[f64; 2]; 2], point: [f64; 2]) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let square = along[0] * along[0] + along[1] * along[1];
+    let share = (point[0] - a[0]) * along[0] + (point[1] - a[1]) * along[1];
+    let share = if square > 0.0 {
+        (share / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    length([a[0] + share * along[0], a[1] + share * along[1]], point)
+}
+
+/// A closed line with fewer points, none of its points further than `near` from it (Douglas and Peucker).
+pub fn straightened(line: &[[f64; 2]], near: f64) -> Vec<[f64; 2]> {
+    let centre = [0, 1].map(|axis| line.iter().map(|p| p[axis]).sum::<f64>() / line.len() as f64);
+    let farthest = |from: [f64; 2]| {
+        let points = 0..line.len();
+        points.max_by(|a, b| length(from, line[*a]).total_cmp(&length(from, line[*b])))
+    };
+    let first = farthest(centre).unwrap_or_default();
+    let second = farthest(line[first]).unwrap_or_default();
+    let count = line.len();
+    let turned: Vec<[f64; 2]> = (0..=count).map(|i| line[(first + i) % count]).collect();
+    let half = (second + count - first) % count;
+    let mut kept = vec![turned[0]];
+    keep(&turned[..=half], near, &mut kept);
+    keep(&turned[half..], near, &mut kept);
+    kept.pop();
+    kept
+}
+
+/// Adds the points that a line needs after its first one.
+fn keep(line: &[[f64; 2]], near: f64, kept: &mut Vec<[f64; 2]>) {
+    let (first, last) = (line[0], line[line.len() - 1]);
+    let inner = 1..line.len().saturating_sub(1);
+    let far = |point: usize| distance([first, last], line[point]);
+    let most = inner.max_by(|a, b| far(*a).total_cmp(&far(*b)));
+    match most.filter(|most| far(*most) > near) {
+        Some(most) => {
+            keep(&line[..=most], near, kept);
+            keep(&line[most..], near, kept);
+        }
+        None => kept.push(last),
+    }
+}
+
+/// The points of a line with more between them, so that no edge is longer than `size`.
+pub fn divided(line: &[[f64; 2]], size: f64) -> Vec<[f64; 2]> {
+    let edges = Polygon(line).edges();
+    let pieces = edges.flat_map(|[a, b]| {
+        let count = (length(a, b) / size - 1e-6).ceil().max(1.0) as usize;
+        (0..count).map(move |i| {
+            let share = i as f64 / count as f64;
+            [0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis]))
+        })
+    });
+    pieces.collect()
+}
+
+/// A place where edges of lines cross or touch that do not follow each other.
+pub fn crossing(lines: &[Polygon]) -> Option<[f64; 2]> {
+    let edges: Vec<(usize, [[f64; 2]; 2])> = lines
+        .iter()
+        .enumerate()
+        .flat_map(|(line, polygon)| polygon.edges().map(move |edge| (line, edge)))
+        .collect();
+    for (i, (line, [a, b])) in edges.iter().enumerate() {
+        for (other, [c, d]) in &edges[i + 1..] {
+            // Neighbours have a point in common; they cross where one runs back on the other.
+            if line == other && b == c {
+                if a != d && distance([*a, *b], *d) == 0.0 {
+                    return Some(*d);
+                }
+                continue;
+            }
+            if line == other && d == a {
+                continue;
+            }
+            let side = |[a, b]: [[f64; 2]; 2], p: [f64; 2]| {
+                (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+            };
+            let [s, t] = [side([*a, *b], *c), side([*a, *b], *d)];
+            let [u, v] = [side([*c, *d], *a), side([*c, *d], *b)];
+            let apart = |p: f64, q: f64| p * q > 0.0;
+            let aligned = s == 0.0 && t == 0.0;
+            let touching = |[p, q]: [[f64; 2]; 2], point| distance([p, q], point) == 0.0;
+            let overlap =
+                touching([*a, *b], *c) || touching([*a, *b], *d) || touching([*c, *d], *a);
+            if !apart(s, t) && !apart(u, v) && (!aligned || overlap) {
+                let share = if s == t { 0.0 } else { s / (s - t) };
+                return Some([0, 1].map(|axis| c[axis] + share * (d[axis] - c[axis])));
+            }
+        }
+    }
+    None
+}
+
+/// The edges of an outer line, each with the side that it belongs to: from corner to corner by the direction that the
+/// edges between them face together.
+pub fn sides(line: &[[f64; 2]]) -> Vec<(&'static str, [[f64; 2]; 2])> {
+    let edges: Vec<[[f64; 2]; 2]> = Polygon(line).edges().collect();
+    let direction = |[a, b]: &[[f64; 2]; 2]| (b[1] - a[1]).atan2(b[0] - a[0]);
+    let count = edges.len();
+    let turns = |i: usize| {
+        let turn = direction(&edges[i]) - direction(&edges[(i + count - 1) % count]);
+        turn.sin().atan2(turn.cos()).abs() > CORNER
+    };
+    let first = (0..count).find(|i| turns(*i)).unwrap_or_default();
+    let mut chains: Vec<Vec<[[f64; 2]; 2]>> = Vec::new();
+    for i in (0..count).map(|i| (first + i) % count) {
+        if chains.is_empty() || turns(i) {
+            chains.push(Vec::new());
+        }
+        chains.last_mut().expect("a chain").push(edges[i]);
+    }
+    // A round line without corners faces all sides: each of its edges for itself.
+    if chains.len() < 2 {
+        chains = edges.iter().map(|edge| vec![*edge]).collect();
+    }
+    let named = chains.into_iter().flat_map(|chain| {
+        let (from, to) = (chain[0][0], chain[chain.len() - 1][1]);
+        let normal = [to[1] - from[1], from[0] - to[0]];
+        let side = match (
+            normal[0].abs() > normal[1].abs(),
+            normal[0] > 0.0,
+            normal[1] > 0.0,
+        ) {
+            (true, false, _) => "left",
+            (true, true, _) => "right",
+            (false, _, false) => "bottom",
+            (false, _, true) => "top",
+        };
+        chain.into_iter().map(move |edge| (side, edge))
+    });
+    named.collect()
+}

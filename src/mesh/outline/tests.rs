@@ -1,0 +1,165 @@
+use std::f64::consts::{PI, TAU};
+
+use super::*;
+
+/// A grid of points over 150 × 50 with the spacing 5, where `keep` holds.
+fn grid(keep: impl Fn([f64; 2]) -> bool) -> Vec<[f64; 2]> {
+    let all =
+        (0..=30).flat_map(|i| (0..=10).map(move |j| [5.0 * f64::from(i), 5.0 * f64::from(j)]));
+    all.filter(|point| keep(*point)).collect()
+}
+
+fn in_hole([x, y]: [f64; 2]) -> bool {
+    (x - 75.0).hypot(y - 25.0) < 12.0
+}
+
+fn smallest_angle(mesh: &Mesh) -> f64 {
+    let angle = |cell: usize, corner: usize| {
+        let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+        let count = corners.len();
+        let [a, b, c] = [0, 1, count - 1].map(|i| mesh.nodes[corners[(corner + i) % count]]);
+        let (p, q) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]) * 180.0 / PI
+    };
+    let cells = (0..mesh.cell_count())
+        .flat_map(|cell| (0..mesh.shape(cell).corners()).map(move |corner| (cell, corner)));
+    cells
+        .map(|(cell, corner)| angle(cell, corner))
+        .fold(180.0, f64::min)
+}
+
+fn mesh_area(mesh: &Mesh) -> f64 {
+    let points = |cell| {
+        mesh.shape(cell)
+            .quadrature()
+            .into_iter()
+            .map(move |point| (cell, point))
+    };
+    let all = (0..mesh.cell_count()).flat_map(points);
+    all.map(|(cell, (place, weight))| weight * mesh.gradients(cell, place).1)
+        .sum()
+}
+
+#[test]
+fn a_grid_of_points_has_the_outline_of_the_plate() {
+    let found = Outline::of_points(&grid(|_| true)).unwrap();
+    assert_eq!(found.spacing, 5.0);
+    assert_eq!(found.outline.outer.len(), 4);
+    assert!((found.outline.area() - 7500.0).abs() < 1e-9);
+    assert!(found.outline.holes.is_empty());
+    for shape in [
+        CellShape::Triangle3,
+        CellShape::Triangle6,
+        CellShape::Quad4,
+        CellShape::Quad9,
+    ] {
+        let mesh = found.outline.mesh(5.0, shape);
+        assert!((mesh_area(&mesh) - 7500.0).abs() < 1e-6, "{shape:?}");
+        assert_eq!(mesh.shape(0), shape);
+        let least = smallest_angle(&mesh);
+        assert!(least > 24.9, "{shape:?} {least}");
+        let left = &mesh.groups()["left"];
+        assert!(left.nodes.iter().all(|node| mesh.nodes[*node][0] < 1e-9) && left.nodes.len() > 10);
+        let named: usize = ["left", "right", "bottom", "top"]
+            .map(|name| mesh.groups()[name].edges.len())
+            .iter()
+            .sum();
+        assert_eq!(named, mesh.boundary().len());
+    }
+}
+
+#[test]
+fn gaps_are_closed_and_holes_are_found() {
+    let lost = |[x, y]: [f64; 2]| [40.0, 45.0].contains(&x) && [20.0, 25.0].contains(&y);
+    let gap = Outline::of_points(&grid(|point| !lost(point))).unwrap();
+    assert!(gap.outline.holes.is_empty());
+    let hole = Outline::of_points(&grid(|point| !in_hole(point)))
+        .unwrap()
+        .outline;
+    assert_eq!(hole.holes.len(), 1);
+    let inside = -area(&hole.holes[0]);
+    // Between the circle and the points around it.
+    assert!(inside > 144.0 * PI && inside < 17.0 * 17.0 * PI, "{inside}");
+    let mesh = hole.mesh(4.0, CellShape::Triangle6);
+    assert!((mesh_area(&mesh) - hole.area()).abs() < 1e-6);
+    assert!(mesh.groups()["hole-1"].edges.len() >= 12);
+    assert!(smallest_angle(&mesh) > 24.9);
+    assert_eq!(hole.mesh(4.0, CellShape::Triangle6), mesh);
+}
+
+#[test]
+fn scattered_points_and_round_specimens_have_outlines() {
+    // A quasi-random set in a disc of radius 10.
+    let points: Vec<[f64; 2]> = (0..500)
+        .map(|i| {
+            let (radius, angle) = (
+                10.0 * (f64::from(i) / 500.0).sqrt(),
+                f64::from(i) * 2.399_963,
+            );
+            [radius * angle.cos(), radius * angle.sin()]
+        })
+        .collect();
+    let found = Outline::of_points(&points).unwrap();
+    assert!(
+        (found.outline.area() / (100.0 * PI) - 1.0).abs() < 0.08,
+        "{}",
+        found.outline.area()
+    );
+    assert!(found.outline.holes.is_empty());
+    let mesh = found.outline.mesh(1.0, CellShape::Triangle3);
+    assert!(smallest_angle(&mesh) > 20.0);
+    assert!(mesh.groups().contains_key("left") && mesh.groups().contains_key("top"));
+}
+
+#[test]
+fn lines_of_any_direction_make_an_outline() {
+    let square = |size: f64| {
+        vec![
+            [-size, -size],
+            [size, -size],
+            [size, size],
+            [-size, size],
+            [-size, -size],
+        ]
+    };
+    let mut reversed = square(10.0);
+    reversed.reverse();
+    let circle = (0..40)
+        .map(|i| TAU * f64::from(i) / 40.0)
+        .map(|a| [3.0 * a.cos(), 3.0 * a.sin()]);
+    let outline = Outline::of_lines(vec![circle.collect(), reversed]).unwrap();
+    assert!(
+        (outline.area() - (400.0 - 28.16)).abs() < 0.05,
+        "{}",
+        outline.area()
+    );
+    let mesh = outline.mesh(1.0, CellShape::Quad9);
+    assert!((mesh_area(&mesh) - outline.area()).abs() < 1e-6);
+}
+
+#[test]
+fn bad_outlines_are_refused_in_words() {
+    let bow = vec![[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 3.0]];
+    let square = |x: f64| vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]];
+    for (lines, reason) in [
+        (vec![bow], "crosses itself near"),
+        (vec![square(0.0), square(0.5)], "crosses itself near"),
+        (vec![square(0.0), square(5.0)], "two separated parts"),
+        (
+            vec![vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]],
+            "encloses no area",
+        ),
+    ] {
+        let told = Outline::of_lines(lines).unwrap_err();
+        assert!(told.contains(reason), "{told}");
+    }
+    let apart = grid(|[x, _]| !(60.0..90.0).contains(&x));
+    let told = Outline::of_points(&apart).unwrap_err();
+    assert!(told.contains("two separated parts"), "{told}");
+    let line: Vec<_> = (0..20).map(|i| [f64::from(i), 2.0]).collect();
+    assert!(
+        Outline::of_points(&line)
+            .unwrap_err()
+            .contains("on one line")
+    );
+}
