@@ -64,6 +64,8 @@ pub struct Fit {
     pub covariance: DMatrix<f64>,
     /// r − A δ in mm.
     pub residual: DVector<f64>,
+    /// √(δᵀ M δ): the length of the step in standard errors.
+    pub length: f64,
     /// tr(M⁻¹AᵀWA)/v, the effective number of parameters.
     pub effective: f64,
     /// qⱼ − λⱼ tr(M⁻¹BⱼᵀBⱼ) of each prior: what is left of its freedom.
@@ -80,7 +82,7 @@ const MOST_ITERATIONS: usize = 200;
 const CLOSE: f64 = 1e-4;
 
 /// λ beyond which a prior counts as exact, relative to what the data weigh.
-const STIFFEST: f64 = 1e10;
+const STIFFEST: f64 = 1e7;
 
 impl Regression<'_> {
     /// Fits, beginning at a trade.
@@ -88,6 +90,7 @@ impl Regression<'_> {
     /// # Errors
     /// [`Undetermined`].
     pub fn fit(&self, trade: &mut Trade) -> Result<Fit, Undetermined> {
+        let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
         let mut normal = self.normal(&trade.trust);
         let scales = self.scales(&normal.0, trade);
         if trade.smoothing.is_empty() {
@@ -95,7 +98,7 @@ impl Regression<'_> {
         }
         let mut last: Option<f64> = None;
         for iteration in 0.. {
-            let fit = self.solve(&normal, trade)?;
+            let fit = self.solve(&normal, &forms, trade)?;
             if self.settled {
                 return Ok(fit);
             }
@@ -123,8 +126,8 @@ impl Regression<'_> {
         for mut column in weighted.column_iter_mut() {
             column.component_mul_assign(&weights);
         }
-        let product = weighted.tr_mul(self.design);
-        (product, weighted.tr_mul(self.residual))
+        let weighted = weighted.transpose();
+        (&weighted * self.design, weighted * self.residual)
     }
 
     /// λ at which each prior weighs as much as the data.
@@ -138,27 +141,27 @@ impl Regression<'_> {
     fn solve(
         &self,
         (normal, right): &(DMatrix<f64>, DVector<f64>),
+        forms: &[Form],
         trade: &Trade,
     ) -> Result<Fit, Undetermined> {
         let (facts, values) = self.facts;
         let mut matrix = normal / trade.variance + facts.tr_mul(facts);
         let mut target = right / trade.variance + facts.tr_mul(values);
-        for (prior, smoothing) in self.priors.iter().zip(&trade.smoothing) {
-            let values = DVector::from_column_slice(&prior.values);
-            matrix += prior.slopes.tr_mul(&prior.slopes) * *smoothing;
-            target -= prior.slopes.tr_mul(&values) * *smoothing;
+        for (form, smoothing) in forms.iter().zip(&trade.smoothing) {
+            matrix += &form.square * *smoothing;
+            target -= &form.slope * *smoothing;
         }
         let covariance = inverse(matrix)?;
-        let step = &covariance * target;
-        let left = |(prior, smoothing): (&Roughness, &f64)| {
-            let used = (&prior.slopes * &covariance).dot(&prior.slopes);
-            (prior.rank as f64 - smoothing * used).max(0.0)
+        let step = &covariance * &target;
+        let left = |(form, smoothing): (&Form, &f64)| {
+            (form.rank - smoothing * form.square.dot(&covariance)).max(0.0)
         };
-        let priors = self.priors.iter().zip(&trade.smoothing);
+        let priors = forms.iter().zip(&trade.smoothing);
         Ok(Fit {
             residual: self.residual - self.design * &step,
             effective: normal.dot(&covariance) / trade.variance,
             freedom: priors.map(left).collect(),
+            length: step.dot(&target).max(0.0).sqrt(),
             covariance,
             step,
         })
@@ -191,6 +194,26 @@ impl Regression<'_> {
         pairs
             .map(|(r, weight)| (weight * (r[0] * r[0] + r[1] * r[1])).sqrt())
             .collect()
+    }
+}
+
+/// ‖ρ + Bδ‖² of a prior.
+struct Form {
+    /// BᵀB.
+    square: DMatrix<f64>,
+    /// Bᵀρ.
+    slope: DVector<f64>,
+    rank: f64,
+}
+
+impl Form {
+    fn new(prior: &Roughness) -> Self {
+        let transposed = prior.slopes.transpose();
+        Self {
+            square: &transposed * &prior.slopes,
+            slope: transposed * DVector::from_column_slice(&prior.values),
+            rank: prior.rank as f64,
+        }
     }
 }
 

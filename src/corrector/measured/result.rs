@@ -31,7 +31,7 @@ pub struct FieldEstimate {
     pub reactions: Vec<f64>,
     /// The total force on each edge that is not free.
     pub forces: Vec<EdgeForce>,
-    /// ζ of the equilibrium of node after node in mm²/N: the derivative of ½ ‖H u − d‖²_W by the forces, the weights
+    /// ζ of the equilibrium of node after node in mm²/N: less the derivative of ½ ‖H u − d‖²_W by a force there, the weights
     /// relative to their mean; nothing where the edges are not free.
     pub multipliers: Vec<f64>,
     /// What is left of each marker; nothing for markers that do not lie on the mesh.

@@ -34,6 +34,12 @@ pub const MOST_STEPS: usize = 40;
 /// Steps after which the trade stays as it is: two of equal likelihood could take turns.
 const TRADING: usize = 6;
 
+/// Length of a step in standard errors that does not matter, where a trade that stays lets it become no shorter soon.
+const NEAR: f64 = 0.03;
+
+/// The shortest share of a step.
+const SHORTEST: f64 = 1.0 / 64.0;
+
 /// Part of the noise by which a last step may still move the field.
 const MOVEMENT: f64 = 1e-3;
 
@@ -132,16 +138,22 @@ impl<'a> Search<'a> {
             variance: self.first_variance(&place.field),
             sound: 1.0,
         };
-        let mut moved = f64::NAN;
+        let (mut moved, mut last, mut share) = (f64::NAN, f64::INFINITY, 1.0);
         for steps in 1..=most {
             let linear = self.linearise(&place)?;
             let fit = self.regress((&place, steps), &linear, &mut trade)?;
             let change = combined(&linear.still, &linear.sensitivities, fit.step.as_slice());
             let close = self.close(&trade, &place.field);
-            let rest = largest(&change);
-            moved = rest / largest(&place.field);
-            let cut = self.advance(&mut place, &change, fit.step.as_slice())?;
-            if rest <= close && !cut {
+            moved = largest(&change) / largest(&place.field);
+            // Steps that do not become shorter swing about the nearest field.
+            if steps > TRADING && fit.length > 0.5 * last && share > SHORTEST {
+                share *= 0.5;
+            }
+            last = fit.length;
+            let near = fit.length <= NEAR && largest(&linear.still) <= close;
+            let done = largest(&change) <= close || (steps > TRADING && near);
+            let cut = self.advance(&mut place, &change, fit.step.as_slice(), share)?;
+            if done && !cut {
                 let multipliers = self.multipliers(&fit, &trade)?;
                 let residual = self.settle(&mut place, AT_THE_END)?;
                 return Ok(Found {
@@ -335,15 +347,21 @@ impl<'a> Search<'a> {
     }
 
     /// Takes the step, or as much of it as leaves all cells admissible and the law's parameters near; equilibrium is restored
-    /// where it is lost. Whether the step was cut.
-    fn advance(&mut self, place: &mut Place, change: &[f64], step: &[f64]) -> Result<bool, Error> {
-        const SHORTEST: f64 = 1.0 / 64.0;
-        const NEAR: f64 = 0.5;
+    /// where it is lost. At most the share `most` of it is taken; whether it was cut beyond that.
+    fn advance(
+        &mut self,
+        place: &mut Place,
+        change: &[f64],
+        step: &[f64],
+        most: f64,
+    ) -> Result<bool, Error> {
+        const WITHIN: f64 = 0.5;
         let values = self.law_values(&place.parameters).iter();
         let share = values
             .zip(self.law_values(step))
             .map(|(value, step)| (step / value).abs());
-        let mut length = 1.0 / share.fold(1.0, |most: f64, share| most.max(share / NEAR));
+        let whole = 1.0 / share.fold(1.0, |most: f64, share| most.max(share / WITHIN));
+        let mut length = whole.min(most);
         loop {
             let mut next = place.clone();
             let parameters = next.parameters.iter_mut().zip(step);
@@ -353,7 +371,7 @@ impl<'a> Search<'a> {
             match self.balance(&mut next) {
                 Ok(()) => {
                     *place = next;
-                    return Ok(length < 1.0);
+                    return Ok(length < most);
                 }
                 Err(fault) if length <= SHORTEST => return Err(fault),
                 Err(_) => length *= 0.5,
