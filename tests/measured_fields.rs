@@ -163,7 +163,7 @@ fn a_homogeneous_field_keeps_its_stress_and_force() {
         .iter()
         .find(|force| force["edge"] == "right")
         .unwrap();
-    let force = number(right, &["x", "value_N"]);
+    let force = number(right, &["x_N", "value"]);
     assert!(
         (force / (40.0 * stress) - 1.0).abs() < 1e-3,
         "{force} {}",

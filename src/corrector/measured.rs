@@ -30,6 +30,7 @@ use crate::material::HyperelasticLaw;
 use crate::measurement::Marker;
 use crate::mesh::Mesh;
 
+mod approach;
 mod body_force;
 mod edge_motion;
 mod free_edges;

@@ -14,22 +14,17 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::triangulate::{delaunay, fill};
+use super::triangulate::fill;
 use super::{CellShape, Mesh};
 
+mod alpha_shape;
 mod lattice;
 mod polygon;
 
 use polygon::{Polygon, area};
 
-/// Circles of triangles up to so many spacings are inside.
-const RADIUS: f64 = 1.9;
-
 /// Lines are moved by less than so many spacings when they are straightened.
 const STRAIGHT: f64 = 0.55;
-
-/// A part with a smaller share of the area is a stray group of points.
-const STRAY: f64 = 0.02;
 
 /// Closed lines around a specimen.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,25 +56,16 @@ impl Outline {
         if points.len() < 6 {
             return Err(format!("{} points have no outline", points.len()));
         }
-        let triangles = delaunay(&points);
-        if triangles.is_empty() {
-            return Err("the points lie on one line".into());
-        }
-        let spacing = median_edge(&points, &triangles);
-        let small = |triangle: &[usize; 3]| radius(&points, triangle) < RADIUS * spacing;
-        let mut inside: Vec<bool> = triangles.iter().map(small).collect();
-        mend_touching(&triangles, &mut inside);
-        largest_part(&points, &triangles, &mut inside)?;
-        let mut lines = boundary_lines(&triangles, &inside)
-            .into_iter()
-            .map(|line| line.iter().map(|point| points[*point]).collect())
-            .map(|line: Vec<_>| polygon::straightened(&line, STRAIGHT * spacing))
-            .filter(|line| line.len() >= 3);
+        let (lines, spacing) = alpha_shape::lines(&points)?;
+        let straightened = lines
+            .iter()
+            .map(|line| polygon::straightened(line, STRAIGHT * spacing));
+        let lines = straightened.filter(|line| line.len() >= 3);
         let mut outline = Self {
             outer: Vec::new(),
             holes: Vec::new(),
         };
-        for line in &mut lines {
+        for line in lines {
             if area(&line) > 0.0 {
                 outline.outer = line;
             } else {
@@ -214,131 +200,6 @@ impl Outline {
         }
         mesh.name_boundary("boundary", |_| true);
     }
-}
-
-fn median_edge(points: &[[f64; 2]], triangles: &[[usize; 3]]) -> f64 {
-    let edges = triangles
-        .iter()
-        .flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
-    // An edge between two triangles is counted once.
-    let edges = edges.filter(|[a, b]| a < b);
-    let mut lengths: Vec<f64> = edges
-        .map(|[a, b]| polygon::length(points[*a], points[*b]))
-        .collect();
-    let middle = lengths.len() / 2;
-    *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-/// The radius of the circle through the corners of a triangle.
-fn radius(points: &[[f64; 2]], triangle: &[usize; 3]) -> f64 {
-    let [a, b, c] = triangle.map(|point| points[point]);
-    let twice = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-    let sides = [(a, b), (b, c), (c, a)].map(|(a, b)| polygon::length(a, b));
-    sides.iter().product::<f64>() / (2.0 * twice.abs())
-}
-
-/// The edges of triangles inside without one at their other side, by their first point, inside to the left.
-fn boundary_edges(triangles: &[[usize; 3]], inside: &[bool]) -> Vec<[usize; 2]> {
-    let kept = || triangles.iter().zip(inside).filter(|(_, inside)| **inside);
-    let edges = || kept().flat_map(|([a, b, c], _)| [[*a, *b], [*b, *c], [*c, *a]]);
-    let all: std::collections::HashSet<[usize; 2]> = edges().collect();
-    edges().filter(|[a, b]| !all.contains(&[*b, *a])).collect()
-}
-
-/// Where two lines of the boundary touch in a point, all triangles around it become inside.
-fn mend_touching(triangles: &[[usize; 3]], inside: &mut [bool]) {
-    loop {
-        let mut leaving: HashMap<usize, usize> = HashMap::new();
-        for [from, _] in boundary_edges(triangles, inside) {
-            *leaving.entry(from).or_default() += 1;
-        }
-        let mut changed = false;
-        for (triangle, inside) in triangles.iter().zip(&mut *inside) {
-            let touching = triangle
-                .iter()
-                .any(|point| leaving.get(point).is_some_and(|n| *n > 1));
-            if touching && !*inside {
-                (*inside, changed) = (true, true);
-            }
-        }
-        if !changed {
-            return;
-        }
-    }
-}
-
-/// Leaves the largest connected part inside; others must be small.
-fn largest_part(
-    points: &[[f64; 2]],
-    triangles: &[[usize; 3]],
-    inside: &mut [bool],
-) -> Result<(), String> {
-    let mut by_edge: HashMap<[usize; 2], usize> = HashMap::new();
-    for (index, [a, b, c]) in triangles.iter().enumerate() {
-        by_edge.extend([[*a, *b], [*b, *c], [*c, *a]].map(|edge| (edge, index)));
-    }
-    let mut part = vec![usize::MAX; triangles.len()];
-    let mut areas = Vec::new();
-    for start in 0..triangles.len() {
-        if !inside[start] || part[start] != usize::MAX {
-            continue;
-        }
-        let (number, mut sum, mut open) = (areas.len(), 0.0, vec![start]);
-        part[start] = number;
-        while let Some(triangle) = open.pop() {
-            let [a, b, c] = triangles[triangle];
-            sum += area(&[points[a], points[b], points[c]]);
-            for edge in [[b, a], [c, b], [a, c]] {
-                if let Some(next) = by_edge.get(&edge)
-                    && inside[*next]
-                    && part[*next] == usize::MAX
-                {
-                    part[*next] = number;
-                    open.push(*next);
-                }
-            }
-        }
-        areas.push(sum);
-    }
-    let largest = (0..areas.len()).max_by(|a, b| areas[*a].total_cmp(&areas[*b]));
-    let Some(largest) = largest else {
-        return Err("the points are too far apart to have an outline".into());
-    };
-    let whole: f64 = areas.iter().sum();
-    let second = (0..areas.len()).find(|part| *part != largest && areas[*part] > STRAY * whole);
-    if let Some(second) = second {
-        let triangle = part
-            .iter()
-            .position(|part| *part == second)
-            .unwrap_or_default();
-        let [x, y] = points[triangles[triangle][0]];
-        return Err(format!(
-            "the points lie in two separated parts, one of them near ({x:.4}, {y:.4}) mm"
-        ));
-    }
-    for (inside, part) in inside.iter_mut().zip(&part) {
-        *inside = *part == largest;
-    }
-    Ok(())
-}
-
-/// The closed lines of the boundary, in the order of their first points.
-fn boundary_lines(triangles: &[[usize; 3]], inside: &[bool]) -> Vec<Vec<usize>> {
-    let edges = boundary_edges(triangles, inside);
-    let mut next: BTreeMap<usize, usize> = edges.into_iter().map(|[a, b]| (a, b)).collect();
-    let mut lines = Vec::new();
-    while let Some((start, mut point)) = next.pop_first() {
-        let mut line = vec![start];
-        while point != start {
-            line.push(point);
-            let Some(following) = next.remove(&point) else {
-                break;
-            };
-            point = following;
-        }
-        lines.push(line);
-    }
-    lines
 }
 
 /// Three quadrilaterals for each triangle, about its centre.

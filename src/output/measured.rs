@@ -20,6 +20,7 @@ use crate::measured_field::MeasuredField;
 use crate::measurement::Frame;
 
 mod figures;
+mod json;
 mod report;
 mod tables;
 
@@ -73,7 +74,7 @@ pub fn write(
         "forces.csv".into(),
         tables::forces(field, estimates).as_bytes(),
     )?;
-    let json = report::json(field, estimates);
+    let json = json::json(field, estimates);
     put("report.json".into(), format!("{json:#}\n").as_bytes())?;
     let figures = frames()
         .next_back()

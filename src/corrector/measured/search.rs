@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::approach::approach;
 use super::body_force::{BodyForce, Pushed};
 use super::edge_motion::{EdgeMotion, Roughness};
 use super::linearise::Linear;
@@ -262,10 +263,13 @@ impl<'a> Search<'a> {
     /// Brings the inner nodes into equilibrium while the edges stay; the residual.
     fn settle(&mut self, place: &mut Place, settings: NewtonSettings) -> Result<Vec<f64>, Error> {
         self.take(&place.parameters);
-        self.motion.at(&place.parameters).write(&mut place.field);
+        let mut wanted = place.field.clone();
+        self.motion.at(&place.parameters).write(&mut wanted);
         let mut residual = vec![0.0; place.field.len()];
         let mesh = self.task.specimen.mesh;
         let describe = |cell: usize| mesh.describe_cell(cell);
+        let (newton, energy) = (&mut self.newton, &self.energy);
+        approach(newton, energy, &mut place.field, &wanted, &describe).map_err(solve)?;
         let field = &mut place.field;
         let solved = match self.body {
             Some(_) => {

@@ -10,6 +10,7 @@
 
 use std::sync::Arc;
 
+use super::approach::approach;
 use super::outline::{Segment, segments};
 use super::search::solve;
 use super::{
@@ -192,10 +193,13 @@ fn equilibrium(
         let mut residual = vec![0.0; field.len()];
         let mut before = parts[0];
         let solved = parts.iter().try_for_each(|part| {
-            for (u, imposed) in field.iter_mut().zip(imposed) {
-                *u = imposed.map_or(*u * part / before, |value| part * value);
-            }
+            field.iter_mut().for_each(|u| *u *= part / before);
+            let wanted = field.iter().zip(imposed);
+            let wanted: Vec<f64> = wanted
+                .map(|(u, imposed)| imposed.map_or(*u, |value| part * value))
+                .collect();
             before = *part;
+            approach(newton, energy, &mut field, &wanted, &describe)?;
             newton
                 .solve(energy, &mut field, &mut residual, NEWTON, &describe)
                 .map(|_| ())

@@ -46,6 +46,9 @@ const NEAR: f64 = 1e-4;
 /// Displacements by the file's own number of the node.
 pub type Displacements = HashMap<u64, [f64; 2]>;
 
+/// A step of a field: its time, where the file says it, and its displacements.
+pub type Step = (Option<f64>, Displacements);
+
 /// Reads a field from VTK (`.vtu`, `.vtk`, `.pvd`), CalculiX (`.frd`) or Gmsh (`.msh` with `$NodeData`); `unit` is
 /// the length of the file's unit in mm. Of VTK's and Gmsh's arrays the one of the name `array` is taken; without a
 /// name the displacement, or the only vector. A unit at the end of an array's name is that of its values. Of several
@@ -160,15 +163,10 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
     whole.ok_or_else(|| "names no files".into())
 }
 
-fn series(
-    raw: Raw,
-    unit: f64,
-    fields: &[(Option<f64>, Displacements)],
-    name: &str,
-) -> Result<ImportedSeries, String> {
+fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSeries, String> {
     let used: BTreeSet<u64> = raw.used();
     let unit_of_values = unit_of(name).unwrap_or(unit);
-    let step = |(time, field): &(Option<f64>, Displacements)| {
+    let step = |(time, field): &Step| {
         let (mut displacement, mut hole) = (Vec::new(), None);
         for node in &used {
             let values = field.get(node).copied();

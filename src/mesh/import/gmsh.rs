@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::str::{FromStr, SplitWhitespace};
 
-use super::field::Displacements;
+use super::field::{Displacements, Step};
 use super::{BINARY, Raw};
 use crate::mesh::CellShape;
 
@@ -29,7 +29,7 @@ pub fn read(text: &str) -> Result<Raw, String> {
 ///
 /// # Errors
 /// Says what is wrong.
-pub fn views(text: &str) -> Result<Vec<(String, Vec<(Option<f64>, Displacements)>)>, String> {
+pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, String> {
     let mut views: Vec<(String, Vec<_>)> = Vec::new();
     for section in text.split("$NodeData").skip(1) {
         let section = section.split("$EndNodeData").next().unwrap_or_default();
@@ -59,7 +59,7 @@ pub fn views(text: &str) -> Result<Vec<(String, Vec<(Option<f64>, Displacements)
 }
 
 /// One step of a view after its names; nothing where its values are no vectors.
-fn view_step(words: &mut Words) -> Result<Option<(Option<f64>, Displacements)>, String> {
+fn view_step(words: &mut Words) -> Result<Option<Step>, String> {
     let reals: Vec<f64> = (0..words.next::<usize>()?)
         .map(|_| words.next())
         .collect::<Result<_, _>>()?;

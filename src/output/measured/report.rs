@@ -1,7 +1,5 @@
 //! The report of a correction.
 
-use serde_json::{Value, json};
-
 use super::title;
 use crate::corrector::Estimate;
 use crate::corrector::measured::{EdgeCondition, EdgeOutcome, FieldEstimate};
@@ -77,17 +75,17 @@ fn newtons(force: &Estimate) -> String {
 }
 
 /// How many markers lie on the mesh.
-fn used(estimate: &FieldEstimate) -> usize {
+pub(super) fn used(estimate: &FieldEstimate) -> usize {
     estimate.markers.iter().flatten().count()
 }
 
-fn outliers(estimate: &FieldEstimate) -> usize {
+pub(super) fn outliers(estimate: &FieldEstimate) -> usize {
     let markers = estimate.markers.iter().flatten();
     markers.filter(|marker| marker.outlier).count()
 }
 
 /// Root mean square of the components of what is left of the markers.
-fn left(estimate: &FieldEstimate) -> f64 {
+pub(super) fn left(estimate: &FieldEstimate) -> f64 {
     let residuals = estimate
         .markers
         .iter()
@@ -98,13 +96,13 @@ fn left(estimate: &FieldEstimate) -> f64 {
 }
 
 /// The largest distance of the given field from the corrected one at its nodes.
-fn largest_correction(estimate: &FieldEstimate) -> f64 {
+pub(super) fn largest_correction(estimate: &FieldEstimate) -> f64 {
     let markers = estimate.markers.iter().flatten();
     let lengths = markers.map(|marker| marker.residual[0].hypot(marker.residual[1]));
     lengths.fold(0.0, f64::max)
 }
 
-fn largest_error(estimate: &FieldEstimate) -> f64 {
+pub(super) fn largest_error(estimate: &FieldEstimate) -> f64 {
     let pairs = estimate.displacement_error.chunks_exact(2);
     pairs.map(|pair| pair[0].hypot(pair[1])).fold(0.0, f64::max)
 }
@@ -332,61 +330,4 @@ fn edges(field: &MeasuredField, last: &FieldEstimate) -> Vec<Block> {
         blocks.push(Block::table(&head, smooth));
     }
     blocks
-}
-
-/// The report for programs.
-pub fn json(field: &MeasuredField, estimates: &[FieldEstimate]) -> Value {
-    let of_force = |force: &Estimate| {
-        json!({
-            "value_N": force.value,
-            "standard_error_N": force.standard_error,
-            "interval_N": force.interval,
-        })
-    };
-    let frames = field.measurement.frames.iter().zip(estimates);
-    let frames = frames.map(|(frame, estimate)| {
-        let forces = estimate.forces.iter().map(|force| {
-            json!({
-                "edge": force.edge,
-                "x": of_force(&force.force[0]),
-                "y": of_force(&force.force[1]),
-            })
-        });
-        json!({
-            "frame": frame.number,
-            "time": frame.time,
-            "markers": used(estimate),
-            "outliers": outliers(estimate),
-            "noise_mm": estimate.noise,
-            "noise_is_given": estimate.known_noise,
-            "left_mm": left(estimate),
-            "effective_parameters": estimate.effective_parameters,
-            "largest_standard_error_mm": largest_error(estimate),
-            "steps": estimate.steps,
-            "forces": forces.collect::<Vec<_>>(),
-            "parameters": estimate.parameters.iter().map(|(key, unit, found)| json!({
-                "key": key,
-                "unit": unit,
-                "value": found.value,
-                "standard_error": found.standard_error,
-                "interval": found.interval,
-            })).collect::<Vec<_>>(),
-            "free_edges": estimate.edges.iter()
-                .filter(|outcome| outcome.condition == EdgeCondition::Free)
-                .map(|outcome| outcome.edge.as_str())
-                .collect::<Vec<_>>(),
-        })
-    });
-    json!({
-        "title": title(field),
-        "layout": field.layout,
-        "material": field.card.name,
-        "thickness_mm": field.thickness,
-        "mesh": { "origin": field.mesh_origin, "nodes": field.mesh.nodes.len(), "cells": field.mesh.cell_count() },
-        "trade": estimates.first().map(|estimate| estimate.rule),
-        "brought_onto_another_mesh": field.coarse.is_some(),
-        "frames": frames.collect::<Vec<_>>(),
-        "warnings": field.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "gelbench": env!("CARGO_PKG_VERSION"),
-    })
 }
