@@ -7,8 +7,8 @@
 //!
 //! Both signals are data of one motion. It is a spline of degree 5 over time, with as many parts as generalised
 //! cross-validation asks for in either signal, and its derivatives are exact. No noisy signal is ever differentiated
-//! or put into a regressor, so that noise makes no bias: a regression of f̃ on derivatives of x̃ underestimates
-//! K and D. What is left of either signal's own spline gives its noise s_x, s_f.
+//! or put into a regressor, so that noise makes no bias of first order: a regression of f̃ on derivatives of x̃
+//! underestimates K and D. What is left of either signal's own spline gives its noise s_x, s_f.
 //!
 //! K(·) and D(·) are constants, polynomials, or cubic B-splines with a penalty on the squares of third differences
 //! of their coefficients. Its weights are a tenth of those of least generalised cross-validation, so that intervals hold;

@@ -379,6 +379,9 @@ impl Lattice {
         let count = corners.len();
         let next = |i: usize| (i + 1) % count;
         let before = |i: usize| (i + count - 1) % count;
+        if self.area_stiffness == 0.0 {
+            return (deformed_area(corners, u) > 0.0).then_some(0.0);
+        }
         // Places relative to the first corner, so that no digit is lost far from the origin.
         let place = |i: usize| {
             let at = |axis: usize| corners[i][axis] - corners[0][axis] + u[2 * i + axis] - u[axis];
@@ -389,9 +392,6 @@ impl Lattice {
         let current = polygon_area(&places);
         if current.is_nan() || current <= 0.0 {
             return None;
-        }
-        if self.area_stiffness == 0.0 {
-            return Some(0.0);
         }
         let change = current / rest - 1.0;
         let slope: Vec<f64> = (0..count)
@@ -419,6 +419,19 @@ impl Lattice {
         }
         Some(0.5 * self.area_stiffness * rest * change * change)
     }
+}
+
+/// Area of a cell with the displacements `u` of its corners, relative to the first of them.
+fn deformed_area(corners: &[[f64; 2]], u: &[f64]) -> f64 {
+    let side = |i: usize| {
+        let along = |axis: usize| corners[i][axis] - corners[0][axis] + u[2 * i + axis] - u[axis];
+        [along(0), along(1)]
+    };
+    let triangles = (2..corners.len()).map(|i| {
+        let ([ax, ay], [bx, by]) = (side(i - 1), side(i));
+        0.5 * (ax * by - bx * ay)
+    });
+    triangles.sum()
 }
 
 /// Area of a polygon with its corners counter-clockwise.

@@ -22,7 +22,8 @@ pub mod vtk;
 pub mod wrinkling;
 
 pub use figures::{
-    Figure, cell_figure, comparison_chart, field_figure, material_chart, mesh_picture,
+    Field, Figure, cell_figure, comparison_chart, field_animation, field_figure, material_chart,
+    mesh_picture,
 };
 pub use fit::{fit_json, fit_picture};
 pub use identification::{identification_json, identification_picture};

@@ -16,7 +16,7 @@ fn motion(rest: &str) -> String {
     )
 }
 
-const TIME: &str = "[time]\nduration = \"20 ms\"\ninterval = \"2 ms\"\n";
+const TIME: &str = "[time]\nduration = \"20 ms\"\ninterval = \"2 ms\"\nstep = \"0.05 ms\"\n";
 
 #[test]
 fn a_released_plate_is_written_with_tables_and_series() {
@@ -25,8 +25,8 @@ fn a_released_plate_is_written_with_tables_and_series() {
     let table = fs::read_to_string(folder.path().join("out/motion_mass_spring.csv")).unwrap();
     let lines: Vec<&str> = table.lines().collect();
     assert_eq!(lines.len(), 12);
-    assert!(lines[0].starts_with("time_s,kinetic_mJ"));
-    assert!(lines[0].ends_with("end_ux_mm,end_uy_mm,end_vx_mm_per_s,end_vy_mm_per_s"));
+    assert!(lines[0].starts_with("time [s],kinetic energy [mJ]"));
+    assert!(lines[0].ends_with(",end displacement y [mm],end velocity y [mm/s]"));
     let numbers =
         |line: &str| -> Vec<f64> { line.split(',').map(|word| word.parse().unwrap()).collect() };
     let (first, second) = (numbers(lines[1]), numbers(lines[2]));

@@ -16,6 +16,7 @@ use super::frequency;
 use super::march::Stepper;
 use super::motion::{Motion, Moving};
 use super::tangents::Tangents;
+use super::viscosity::inverted;
 use crate::error::SolveFault;
 use crate::solve::{Assembly, Cholesky};
 
@@ -55,8 +56,9 @@ pub(super) struct Implicit {
 /// Iterations of a step.
 const ITERATIONS: usize = 25;
 
-/// A factor is renewed when an iteration leaves more than this part of the residual.
-const SLOW: f64 = 0.2;
+/// A factor is renewed when an iteration leaves more than this part of the residual: a new one costs as much as five
+/// iterations.
+const SLOW: f64 = 0.5;
 
 /// Relative residual at which an iteration that stagnates has converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-9;
@@ -74,6 +76,12 @@ impl Implicit {
             factorisations: 0,
             longest: None,
         }
+    }
+
+    /// Whether there is a factor for a step of this length, rounding of times apart.
+    fn has_factor(&self, step: f64) -> bool {
+        self.factorised
+            .is_some_and(|own| (own / step - 1.0).abs() < 1e-6)
     }
 
     /// Factorises K + γ/(β h) C + (1 − αₘ)/((1 − α_f) β h²) M at a state.
@@ -148,6 +156,46 @@ impl Implicit {
         (defect, relative)
     }
 
+    /// The state a step later by the tangent before it: the answer to the motion of the supports and to the imbalance.
+    fn predict(
+        &mut self,
+        motion: &Motion,
+        before: &Moving,
+        step: f64,
+        held: &[bool],
+    ) -> Result<Moving, SolveFault> {
+        let beta = self.constants.beta;
+        let mut after = before.moved(motion, step);
+        let target = std::mem::replace(&mut after.displacement, before.displacement.clone());
+        for i in (0..held.len()).filter(|i| !held[*i]) {
+            let flown = before.velocity[i] + step * (0.5 - beta) * before.acceleration[i];
+            after.acceleration[i] = -flown / (beta * step);
+        }
+        self.follow(before, &mut after, step);
+        motion.evaluate(&mut after, step)?;
+        let mut support = vec![0.0; held.len()];
+        for i in (0..held.len()).filter(|i| held[*i]) {
+            support[i] = target[i] - before.displacement[i];
+        }
+        let mut forces = vec![0.0; held.len()];
+        Assembly::add_product(motion.energy, &after.displacement, &support, &mut forces)
+            .map_err(inverted(&*motion.describe))?;
+        self.factorise(motion, &after, step)?;
+        let (mut change, _) = self.defect(motion, before, &after);
+        let (assembly, cholesky) = self.system.as_mut().expect("prepared");
+        for (change, i) in change.iter_mut().zip(assembly.free()) {
+            *change -= forces[*i];
+        }
+        cholesky.substitute(&mut change);
+        for (i, change) in assembly.free().iter().zip(change) {
+            after.acceleration[*i] += change / (beta * step * step);
+        }
+        for i in (0..held.len()).filter(|i| held[*i]) {
+            after.displacement[i] = target[i];
+        }
+        Ok(after)
+    }
+
     /// Newton's method from a first guess.
     fn iterate(
         &mut self,
@@ -169,7 +217,7 @@ impl Implicit {
             if relative.is_nan() || (stagnant && relative > 2.0 * last && iteration > 2) {
                 break;
             }
-            fresh = self.factorised != Some(step) || relative > SLOW * last;
+            fresh = !self.has_factor(step) || relative > SLOW * last;
             if fresh {
                 self.factorise(motion, &after, step)?;
             }
@@ -232,22 +280,15 @@ impl Stepper for Implicit {
         step: f64,
         held: &[bool],
     ) -> Result<Moving, SolveFault> {
-        let guess = before.moved(motion, step);
-        let beta = self.constants.beta;
-        let resting = |i: usize| {
-            let flown = before.velocity[i] + step * (0.5 - beta) * before.acceleration[i];
-            -flown / (beta * step)
-        };
-        let outcome = self.iterate(motion, before, guess, step);
-        // Free nodes that fly on may turn a cell inside out where nodes that rest do not.
-        if let Err(SolveFault::Inverted { .. }) = outcome {
-            let mut rest = before.moved(motion, step);
-            for i in (0..held.len()).filter(|i| !held[*i]) {
-                rest.acceleration[i] = resting(i);
+        let flying = before.moved(motion, step);
+        match self.iterate(motion, before, flying, step) {
+            // Supports that move far, or nodes that fly far, turn cells inside out where the tangent's answer does not.
+            Err(SolveFault::Inverted { .. } | SolveFault::Explodes { .. }) => {
+                let predicted = self.predict(motion, before, step, held)?;
+                self.iterate(motion, before, predicted, step)
             }
-            return self.iterate(motion, before, rest, step);
+            other => other,
         }
-        outcome
     }
 
     fn conserves(&self) -> bool {

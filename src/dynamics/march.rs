@@ -144,6 +144,7 @@ fn march(
         current: f64::INFINITY,
         runs: 0,
         patience: PATIENCE,
+        grown: false,
         total: moving.energy.total(),
     };
     for (end, is_instant) in stops(motion, settings) {
@@ -193,8 +194,10 @@ struct Pace {
     current: f64,
     /// Runs since it was last changed.
     runs: usize,
-    /// Runs after which it may grow: twice as many after each halving.
+    /// Runs after which it may grow: twice as many after each growth that was too much.
     patience: usize,
+    /// Whether it has grown since it was last halved.
+    grown: bool,
     /// The sum of the energies that gains are counted from, in mJ.
     total: f64,
 }
@@ -229,7 +232,9 @@ impl Pace {
                     history.halved += run;
                     self.current = 0.5 * step;
                     self.runs = 0;
-                    self.patience *= 2;
+                    if std::mem::take(&mut self.grown) {
+                        self.patience *= 2;
+                    }
                     self.total = moving.energy.total();
                     let shortest = SHORTEST * self.wanted.min(rest);
                     if self.current < shortest {
@@ -258,7 +263,7 @@ impl Pace {
             self.current = limit;
         } else if self.runs >= self.patience && 2.0 * self.current <= limit {
             self.current *= 2.0;
-            self.runs = 0;
+            (self.runs, self.grown) = (0, true);
         }
         Ok(self.current)
     }

@@ -8,98 +8,130 @@ use crate::document::quoted;
 /// Points of a table.
 const POINTS: usize = 25;
 
-/// The tables `[springs.stiffness]` and `[springs.damping]` in TOML.
+/// The tables `[mass_spring.stiffness]` and `[mass_spring.damping]` of a study of the kind `motion`.
 ///
 /// ```text
 /// f = [K(·) x + D(·) ẋ] = a [E(·) (λ − 1) + η(·) λ̇],   E = K x₀/a in MPa,   η = D x₀/a in MPa·s
 /// ```
 ///
-/// Where the recording has the length x₀ and the cross-section a at rest, E and η are written, which make springs of all
-/// lengths one material; otherwise K in N/mm and D in N·s/mm. The argument is the strain λ − 1 or its rate where x₀ is
-/// known, else the extension in mm or its rate. A function is a `polynomial` of its argument, one coefficient for a
-/// constant, or a `table`, between whose points cubics keep the shape.
+/// Where the recording has the length x₀ and the cross-section a at rest, E and η are written over the strain λ − 1 or
+/// its rate: they make springs of all lengths one material. Otherwise K in N/mm and D in N·s/mm are written over the
+/// extension in mm or its rate, which no study takes. A function is `constant`, a `polynomial`, or a `table`, between
+/// whose points cubics keep the shape.
 pub fn law_text(found: &Identification, recording: &Recording, file: &str) -> String {
     let head = "# f = m ẍ + D(·) ẋ + K(·) x, identified by `gelbench identify` from";
     let mut text = format!("{head} {file}.\n");
-    let material = recording
-        .length
-        .zip(recording.area)
-        .map(|(length, area)| length / area);
-    let units = match material {
-        Some(_) => ["MPa", "MPa·s"],
-        None => ["N/mm", "N·s/mm"],
+    let specimen = recording.length.zip(recording.area);
+    if specimen.is_none() {
+        text += "# Studies take E = K x₀/a in MPa and η = D x₀/a in MPa·s: state length and area at rest.\n";
+    }
+    let (factor, scale, units) = match specimen {
+        Some((length, area)) => (length / area, length, ["MPa", "MPa·s"]),
+        None => (1.0, 1.0, ["N/mm", "N·s/mm"]),
     };
-    let [stiffness, damping] = [&found.stiffness, &found.damping].map(|function| Written {
+    let written = |function, unit| Written {
         function,
-        factor: material.unwrap_or(1.0),
-        length: recording.length,
-    });
-    let _ = write!(text, "\n[springs.stiffness]\nunit = {}\n", quoted(units[0]));
-    text += &stiffness.text(Argument::Extension);
-    let _ = write!(text, "\n[springs.damping]\nunit = {}\n", quoted(units[1]));
-    text + &damping.text(found.settings.argument)
+        factor,
+        scale,
+        unit,
+    };
+    let of = if specimen.is_some() {
+        "λ − 1"
+    } else {
+        "extension in mm"
+    };
+    let _ = write!(text, "\n[mass_spring.stiffness] # over {of}\n");
+    text += &written(&found.stiffness, units[0]).text();
+    let (key, of) = match (found.settings.argument, specimen) {
+        (Argument::Extension, _) => ("stretch", of),
+        (Argument::Rate, Some(_)) => ("stretch rate", "its rate in 1/s"),
+        (Argument::Rate, None) => ("stretch rate", "its rate in mm/s"),
+    };
+    let _ = write!(
+        text,
+        "\n[mass_spring.damping] # over {of}\nof = {}\n",
+        quoted(key)
+    );
+    text + &written(&found.damping, units[1]).text()
 }
 
 /// A function on its way to a file.
 struct Written<'a> {
     function: &'a Function,
+    /// Of its values.
     factor: f64,
-    length: Option<f64>,
+    /// Of its argument.
+    scale: f64,
+    unit: &'static str,
 }
 
 impl Written<'_> {
-    fn text(&self, argument: Argument) -> String {
-        let of = match (argument, self.length) {
-            (Argument::Extension, Some(_)) => "strain",
-            (Argument::Extension, None) => "extension_mm",
-            (Argument::Rate, Some(_)) => "strain_rate",
-            (Argument::Rate, None) => "extension_rate_mm_per_s",
-        };
+    fn text(&self) -> String {
         match self.function.basis.form {
-            Form::Constant | Form::Polynomial(_) => self.polynomial(of),
-            Form::Spline(_) => self.table(of),
+            Form::Constant | Form::Polynomial(_) => self.polynomial(),
+            Form::Spline(_) => self.table(),
         }
     }
 
-    fn polynomial(&self, of: &str) -> String {
-        let scale = self.length.unwrap_or(1.0);
+    fn polynomial(&self) -> String {
         let powers = self.function.powers().into_iter().zip(0..);
         let (values, errors): (Vec<f64>, Vec<f64>) = powers
             .map(|(estimate, power)| {
-                let factor = self.factor * scale.powi(power);
+                let factor = self.factor * self.scale.powi(power);
                 (estimate.value * factor, estimate.standard_error * factor)
             })
             .unzip();
-        let (values, errors) = (list(&values), list(&errors));
+        let errors = self.quantities(&errors);
+        match values[..] {
+            [value] => format!(
+                "kind = \"constant\"\nvalue = {} # standard error {errors}\n",
+                self.quantity(value)
+            ),
+            _ => format!(
+                "kind = \"polynomial\"\ncoefficients = {}\n# standard errors: {errors}\n",
+                self.quantities(&values)
+            ),
+        }
+    }
+
+    /// Values below zero are written as zero: studies refuse springs that push and dashpots that drive.
+    fn table(&self) -> String {
+        let places = self.function.places(POINTS);
+        let estimates: Vec<_> = places.iter().map(|x| self.function.at(*x)).collect();
+        let arguments: Vec<String> = places.iter().map(|x| plain(x / self.scale)).collect();
+        let values: Vec<f64> = estimates
+            .iter()
+            .map(|one| self.factor * one.value.max(0.0))
+            .collect();
+        let errors: Vec<f64> = estimates
+            .iter()
+            .map(|one| self.factor * one.standard_error)
+            .collect();
+        let zero = match estimates.iter().any(|one| one.value < 0.0) {
+            true => "# Values below zero are written as zero.\n",
+            false => "",
+        };
         format!(
-            "kind = \"polynomial\"\nof = \"{of}\"\ncoefficients = {values}\nstandard_errors = {errors}\n"
+            "kind = \"table\"\nat = [{}]\nvalues = {}\n{zero}# standard errors: {}\n",
+            arguments.join(", "),
+            self.quantities(&values),
+            self.quantities(&errors)
         )
     }
 
-    fn table(&self, of: &str) -> String {
-        let scale = self.length.unwrap_or(1.0);
-        let places = self.function.places(POINTS);
-        let estimates: Vec<_> = places.iter().map(|x| self.function.at(*x)).collect();
-        let column =
-            |value: &dyn Fn(usize) -> f64| list(&(0..POINTS).map(value).collect::<Vec<_>>());
-        let arguments = column(&|i| places[i] / scale);
-        let values = column(&|i| self.factor * estimates[i].value);
-        let errors = column(&|i| self.factor * estimates[i].standard_error);
-        format!(
-            "kind = \"table\"\nof = \"{of}\"\nat = {arguments}\nvalues = {values}\nstandard_errors = {errors}\n"
-        )
+    fn quantity(&self, value: f64) -> String {
+        quoted(&format!("{} {}", plain(value), self.unit))
+    }
+
+    fn quantities(&self, values: &[f64]) -> String {
+        let texts: Vec<String> = values.iter().map(|value| self.quantity(*value)).collect();
+        format!("[{}]", texts.join(", "))
     }
 }
 
-/// Numbers with six significant digits, without trailing zeros.
-fn list(numbers: &[f64]) -> String {
-    let plain = |value: &f64| -> String {
-        let digits: f64 = format!("{value:.5e}").parse().unwrap_or(*value);
-        // TOML tells whole numbers from others.
-        format!("{digits:?}")
-    };
-    format!(
-        "[{}]",
-        numbers.iter().map(plain).collect::<Vec<_>>().join(", ")
-    )
+/// A number with six significant digits, without trailing zeros.
+fn plain(value: f64) -> String {
+    let digits: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    // TOML tells whole numbers from others.
+    format!("{digits:?}")
 }

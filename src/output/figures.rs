@@ -1,5 +1,6 @@
 //! The pictures of a run.
 
+use super::picture::animation::{Animation, Frame};
 use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel, outlines};
 use super::picture::lines::{Axis, Line, LineChart, Stroke};
 use super::picture::{PALETTE, Scale};
@@ -258,18 +259,39 @@ fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
     }
 }
 
-/// Fields on deformed meshes below each other on one colour scale: label, mesh, displacement and a value for
-/// each node.
-pub fn field_figure(
-    title: &str,
-    quantity: &str,
-    scale: Scale,
-    fields: &[(&str, &Mesh, &[f64], Vec<f64>)],
-) -> Vec<u8> {
-    let panel = |(label, mesh, displacement, values): &(&str, &Mesh, &[f64], Vec<f64>)| Panel {
+/// A field on a deformed mesh: label, mesh, displacement and a value for each node.
+pub type Field<'a> = (&'a str, &'a Mesh, &'a [f64], Vec<f64>);
+
+fn panel((label, mesh, displacement, values): &Field) -> Panel {
+    Panel {
         label: (*label).to_owned(),
         cells: cells(mesh, displacement, &|node| values[node]),
+    }
+}
+
+/// Fields on deformed meshes that move, as an animated PNG of some milliseconds a frame: time in s and fields of each.
+pub fn field_animation(
+    title: &str,
+    quantity: &str,
+    frames: &[(f64, Vec<Field>)],
+    milliseconds: u16,
+) -> Vec<u8> {
+    let frame = |(time, fields): &(f64, Vec<Field>)| Frame {
+        time: *time,
+        panels: fields.iter().map(panel).collect(),
     };
+    let animation = Animation {
+        title: title.to_owned(),
+        quantity: quantity.to_owned(),
+        colours: Colours::Sequential,
+        frames: frames.iter().map(frame).collect(),
+        milliseconds,
+    };
+    animation.png()
+}
+
+/// Fields on deformed meshes below each other on one colour scale.
+pub fn field_figure(title: &str, quantity: &str, scale: Scale, fields: &[Field]) -> Vec<u8> {
     let figure = FieldFigure {
         title: title.to_owned(),
         quantity: quantity.to_owned(),

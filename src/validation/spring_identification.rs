@@ -7,7 +7,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
+use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, limit, number};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::identification::{Function, Identification, IdentificationSettings, Sample, identify};
@@ -176,7 +176,7 @@ fn claim(settings: &Settings, good: usize) -> Claim {
         reproduced: format!(
             "splines from force and motion with {} % noise each: both functions within their 95 % band everywhere in \
              {good} of {} trials",
-            number(100.0 * settings.sample.noise),
+            limit(100.0 * settings.sample.noise),
             settings.trials
         ),
     }
@@ -188,7 +188,7 @@ fn explanation(settings: &Settings) -> Block {
          for both functions at all places together, an interval at one place. At the ends of the range the motion turns: \
          its velocity vanishes there, the recording does not determine D(·), and single \
          trials stray far there, which the means of the table show. The error that is checked is therefore the median.",
-        number(100.0 * settings.sample.noise),
+        limit(100.0 * settings.sample.noise),
         settings.sample.seed,
         settings.sample.seed + settings.trials as u64 - 1
     ))

@@ -1,13 +1,12 @@
 //! Pictures, VTK files and tables of a motion.
 
-use std::fmt::Write;
-
 use super::Moved;
 use super::outcome::expected;
 use super::read::{MovingPlate, Probe};
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::output::picture::{PALETTE, Scale};
+use crate::output::series::{self, Series};
 use crate::output::{self, Figure, vtk};
 
 /// How a model's lines are drawn.
@@ -183,16 +182,38 @@ fn force(models: &[Moved; 2], axis: &str, x: fn(&Moved, &Instant) -> f64) -> Lin
     )
 }
 
+/// The plates of all models at an instant, with the size of their velocity.
+fn speeds(models: &[Moved; 2], instant: usize) -> Vec<output::Field<'_>> {
+    let field = |model| {
+        let Moved {
+            name,
+            mesh,
+            history,
+            ..
+        }: &Moved = model;
+        let now = &history.instants[instant];
+        let speeds = now.velocity.chunks_exact(2).map(|v| v[0].hypot(v[1]));
+        (*name, mesh, &now.displacement[..], speeds.collect())
+    };
+    models.iter().map(field).collect()
+}
+
+/// The plates in motion: a picture that plays in every browser.
+pub fn animation(models: &[Moved; 2]) -> (String, Vec<u8>) {
+    const FRAMES: usize = 60;
+    const MILLISECONDS: u16 = 80;
+    let instants = &models[0].history.instants;
+    let every = instants.len().div_ceil(FRAMES).max(1);
+    let frames = (0..instants.len()).step_by(every);
+    let frames: Vec<_> = frames
+        .map(|instant| (instants[instant].time, speeds(models, instant)))
+        .collect();
+    let png = output::field_animation("Plates in motion", "speed [mm/s]", &frames, MILLISECONDS);
+    ("motion.png".into(), png)
+}
+
 fn plates(models: &[Moved; 2]) -> Vec<u8> {
-    let fields = models.each_ref().map(|model| {
-        let last = &model.history.instants[model.history.instants.len() - 1];
-        let speeds: Vec<f64> = last
-            .velocity
-            .chunks_exact(2)
-            .map(|v| v[0].hypot(v[1]))
-            .collect();
-        (model.name, &model.mesh, &last.displacement[..], speeds)
-    });
+    let fields = speeds(models, models[0].history.instants.len() - 1);
     output::field_figure(
         "Plates at the last instant",
         "speed [mm/s]",
@@ -208,16 +229,14 @@ pub fn vtk_files(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<(String, Vec<u
     let sheet = vtk::Sheet::from(&plate.problem);
     let mut files = Vec::new();
     for model in models {
-        let mut named = Vec::new();
-        for (index, now) in model.history.instants.iter().enumerate() {
-            let name = format!("{}_{:05}.vtu", model.file, index + 1);
-            let reference = (model.file == springs.file).then(|| &expected[index][..]);
+        let file = |instant: usize| {
+            let now = &model.history.instants[instant];
+            let reference = (model.file == springs.file).then(|| &expected[instant][..]);
             let title = format!("{} at {} s", model.name, now.time);
-            let file = vtk::field_file(&title, &sheet, &model.mesh, &now.displacement, reference);
-            files.push((name.clone(), file));
-            named.push((now.time, name));
-        }
-        files.push((format!("{}.pvd", model.file), vtk::collection(&named)));
+            let motion = [&now.displacement[..], &now.velocity];
+            vtk::moving_file(&title, &sheet, &model.mesh, motion, reference)
+        };
+        files.extend(series::vtk_files(model.file, &model.history.times(), file));
     }
     files
 }
@@ -225,29 +244,28 @@ pub fn vtk_files(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<(String, Vec<u
 /// Probes, energies and the grip's force over time, one table for each model.
 pub fn tables(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<(String, Vec<u8>)> {
     let table = |model: &Moved| {
-        let mut text = String::from(
-            "time_s,kinetic_mJ,stored_mJ,dissipated_mJ,external_work_mJ,grip_force_x_N,grip_force_y_N",
-        );
+        let column = |name: &str, unit: &str, value: &dyn Fn(&Instant) -> f64| {
+            let values = model.history.instants.iter().map(value);
+            Series::new(name, unit, values.collect())
+        };
+        let mut columns = vec![
+            column("kinetic energy", "mJ", &|now| now.energy.kinetic),
+            column("stored energy", "mJ", &|now| now.energy.stored),
+            column("dissipated energy", "mJ", &|now| now.energy.dissipated),
+            column("external work", "mJ", &|now| now.energy.external_work),
+            column("grip force x", "N", &|now| now.support_forces[1][0]),
+            column("grip force y", "N", &|now| now.support_forces[1][1]),
+        ];
         for probe in &plate.probes {
-            let name = probe.name.replace([',', '"', ' '], "_");
-            for column in ["ux_mm", "uy_mm", "vx_mm_per_s", "vy_mm_per_s"] {
-                let _ = write!(text, ",{name}_{column}");
+            for (axis, direction) in ["x", "y"].into_iter().enumerate() {
+                let place = |now: &Instant| model.at(&now.displacement, probe)[axis];
+                let speed = |now: &Instant| model.at(&now.velocity, probe)[axis];
+                let head = |what: &str| format!("{} {what} {direction}", probe.name);
+                columns.push(column(&head("displacement"), "mm", &place));
+                columns.push(column(&head("velocity"), "mm/s", &speed));
             }
         }
-        text.push('\n');
-        for now in &model.history.instants {
-            let energy = &now.energy;
-            let [fx, fy] = now.support_forces[1];
-            let mut values = vec![now.time, energy.kinetic, energy.stored, energy.dissipated];
-            values.extend([energy.external_work, fx, fy]);
-            for probe in &plate.probes {
-                values.extend(model.at(&now.displacement, probe));
-                values.extend(model.at(&now.velocity, probe));
-            }
-            let values: Vec<String> = values.iter().map(f64::to_string).collect();
-            text += &values.join(",");
-            text.push('\n');
-        }
+        let text = series::csv(&model.history.times(), &columns);
         (format!("motion_{}.csv", model.file), text.into_bytes())
     };
     models.iter().map(table).collect()

@@ -1,7 +1,7 @@
 //! What is told about a motion: energies, frequencies, deviations in time.
 
 use super::Moved;
-use super::files::{figures, tables, vtk_files};
+use super::files::{animation, figures, tables, vtk_files};
 use super::read::MovingPlate;
 use crate::dynamics::lumped_mass;
 use crate::mesh::Mesh;
@@ -71,7 +71,10 @@ pub fn outcome(plate: &MovingPlate, models: &[Moved; 2]) -> Outcome {
         ],
         figures: figures(plate, models),
         vtk: vtk_files(plate, models),
-        files: tables(plate, models),
+        files: tables(plate, models)
+            .into_iter()
+            .chain([animation(models)])
+            .collect(),
         times: times.collect(),
         ..Outcome::default()
     }

@@ -16,7 +16,7 @@ use crate::mass_spring::DashpotLaw;
 use crate::output::Block;
 use crate::units::Dimension;
 use crate::validation::plate::Plate;
-use crate::validation::{Check, Outcome, Progress, Wanted, number};
+use crate::validation::{Check, Outcome, Progress, Wanted, limit, number};
 
 /// What is recorded.
 pub struct Recording {
@@ -129,7 +129,7 @@ pub fn compute(
                 number(percent(&guess, &exact)),
             ],
             vec![
-                format!("with {} % noise", number(100.0 * recording.noise)),
+                format!("with {} % noise", limit(100.0 * recording.noise)),
                 number(before),
             ],
             vec!["corrected, start unknown".into(), number(after)],
