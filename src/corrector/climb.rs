@@ -44,7 +44,7 @@ pub struct ClimbSettings {
 impl Default for ClimbSettings {
     fn default() -> Self {
         Self {
-            tolerance: 0.1,
+            tolerance: 0.08,
             max_iterations: 20,
         }
     }

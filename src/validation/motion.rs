@@ -1,4 +1,4 @@
-//! A plate in motion: springs with dashpots beside finite elements, from one study.
+//! A plate in motion: springs with dashpots, corrected in time, beside finite elements, from one study.
 
 use std::path::Path;
 use std::time::Instant as Clock;
@@ -17,6 +17,7 @@ use crate::problem::Model;
 use crate::validation::plate::NEWTON;
 use crate::validation::{Outcome, Prepared, Progress};
 
+mod corrected;
 mod files;
 mod outcome;
 mod read;
@@ -64,7 +65,13 @@ fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error> {
     let sheet = (!plate.viscosity.is_none()).then_some(&sheet as &dyn Viscosity);
     let model = elements.model();
     let elements_moved = plate.moved(["finite elements", "finite_element"], &model, sheet)?;
-    Ok(outcome::outcome(plate, &[springs_moved, elements_moved]))
+    progress("corrector");
+    let corrected = plate.corrected(&springs_moved)?;
+    Ok(outcome::outcome(
+        plate,
+        &[springs_moved, elements_moved],
+        &corrected,
+    ))
 }
 
 impl MovingPlate {

@@ -12,13 +12,15 @@ use super::robust::Robust;
 use super::search::{Found, Search};
 use crate::corrector::estimate::Estimate;
 use crate::error::{Error, SolveFault};
+use crate::finite_element::recovery::{RecoveredGradient, Recovery};
 use crate::material::parameters::Parameter;
 use crate::material::sheet::{Gradient, Kinematics, cofactor};
 
 /// The field nearest to the markers.
 ///
-/// Standard errors come from the noise of the markers alone, to first order; they know nothing of a wrong material, a wrong
-/// thickness or a coarse mesh. `± reach · standard error` is the 95 % interval.
+/// Standard errors come from the noise of the markers, to first order; those of stress and thickness hold the mesh's own
+/// error too, as far as the recovered gradient tells it. They know nothing of a wrong material or a wrong thickness.
+/// `± reach · standard error` is the 95 % interval.
 #[derive(Clone, Debug)]
 pub struct FieldEstimate {
     /// ux, uy of node after node in mm.
@@ -72,7 +74,8 @@ pub const TRADE_WEIGHTED: &str = "equilibrium holds up to smooth forces on the i
 pub struct StressEstimate {
     /// First Piola–Kirchhoff stress P₁₁, P₁₂, P₂₁, P₂₂ in MPa, the transpose of the nominal stress.
     pub first_piola_kirchhoff_stress: [f64; 4],
-    /// Their standard errors in MPa.
+    /// Their standard errors in MPa: √(s² + e²) with s of the noise and e = |P(G*) − P(∇u)|, where G* is the recovered
+    /// gradient of the mesh's field u.
     pub stress_error: [f64; 4],
     /// Thickness of the deformed sheet in mm.
     pub thickness: f64,
@@ -220,10 +223,18 @@ impl Found<'_> {
     fn cells(&self) -> Result<Vec<StressEstimate>, Error> {
         let cells = (0..self.search.task.specimen.mesh.cell_count()).into_par_iter();
         let neighbours = self.search.neighbours(&self.parameters);
-        cells.map(|cell| self.cell(cell, &neighbours)).collect()
+        let recovered = Recovery::new(self.search.task.specimen.mesh).gradient(&self.field);
+        cells
+            .map(|cell| self.cell(cell, &neighbours, &recovered))
+            .collect()
     }
 
-    fn cell(&self, cell: usize, neighbours: &[Neighbours]) -> Result<StressEstimate, Error> {
+    fn cell(
+        &self,
+        cell: usize,
+        neighbours: &[Neighbours],
+        recovered: &RecoveredGradient,
+    ) -> Result<StressEstimate, Error> {
         let Search { task, law, .. } = &self.search;
         let specimen = task.specimen;
         let mesh = specimen.mesh;
@@ -258,11 +269,21 @@ impl Found<'_> {
             let place = self.search.motion.parameters() + index;
             (0..4).for_each(|component| rows[component][place] += slope[component]);
         }
+        let stress = response.first_piola_kirchhoff_stress;
+        let better = Gradient::from(recovered.at(mesh, cell, centre));
+        // Where the recovered gradient turns the cell inside out, all of the stress is in doubt.
+        let (stress_off, thickness_off) =
+            Kinematics::new(&better).map_or((stress, thickness), |better| {
+                let thinner = specimen.thickness / better.area_ratio() - thickness;
+                (law.stress(&better).1 - stress, thinner)
+            });
+        let stress_error =
+            |component: usize| self.error(&rows[component]).hypot(stress_off[component]);
         Ok(StressEstimate {
-            first_piola_kirchhoff_stress: response.first_piola_kirchhoff_stress.into(),
-            stress_error: std::array::from_fn(|component| self.error(&rows[component])),
+            first_piola_kirchhoff_stress: stress.into(),
+            stress_error: std::array::from_fn(stress_error),
             thickness,
-            thickness_error: self.error(&rows[4]),
+            thickness_error: self.error(&rows[4]).hypot(thickness_off),
         })
     }
 

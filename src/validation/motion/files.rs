@@ -1,9 +1,11 @@
 //! Pictures, VTK files and tables of a motion.
 
 use super::Moved;
+use super::corrected::Corrected;
 use super::outcome::expected;
 use super::read::{MovingPlate, Probe};
 use crate::dynamics::{EnergyBalance, Instant};
+use crate::mesh::Mesh;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::output::picture::{PALETTE, Scale};
 use crate::output::series::{self, Series};
@@ -51,12 +53,12 @@ impl Moved {
 }
 
 /// Displacement of the probes, phase of the first, energies, force of the grip, and the plates at the end.
-pub fn figures(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<Figure> {
+pub fn figures(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> Vec<Figure> {
     let mut figures = vec![
         figure(
             "motion_probes.png",
-            "Displacement of the probes along the plate in both models.",
-            probes(plate, models).png(),
+            "Displacement of the probes along the plate.",
+            probes(plate, models, corrected).png(),
         ),
         figure(
             "motion_energy.png",
@@ -69,7 +71,7 @@ pub fn figures(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<Figure> {
         figure(
             "motion_plates.png",
             "The plates at the last instant, with the size of their velocity.",
-            plates(models),
+            plates(models, corrected),
         ),
     ];
     if plate.release != Some(0.0) {
@@ -112,9 +114,21 @@ pub fn figures(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<Figure> {
     figures
 }
 
-fn probes(plate: &MovingPlate, models: &[Moved; 2]) -> LineChart {
+fn probes(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> LineChart {
     let mut lines = Vec::new();
+    let [springs, _] = models;
     for (colour, probe) in plate.probes.iter().enumerate() {
+        let times = springs.history.times();
+        let fields = corrected.displacement.iter();
+        let points = times
+            .iter()
+            .zip(fields)
+            .map(|(time, field)| [*time, springs.at(field, probe)[0]]);
+        let points: Vec<_> = points.collect();
+        if !points.is_empty() {
+            let label = format!("{}, corrected", probe.name);
+            lines.push(line(label, points, colour, Stroke::Marked));
+        }
         for (model, stroke) in models.iter().zip(STROKES) {
             let points = model.points(|now| [now.time, model.at(&now.displacement, probe)[0]]);
             lines.push(line(
@@ -182,67 +196,106 @@ fn force(models: &[Moved; 2], axis: &str, x: fn(&Moved, &Instant) -> f64) -> Lin
     )
 }
 
-/// The plates of all models at an instant, with the size of their velocity.
-fn speeds(models: &[Moved; 2], instant: usize) -> Vec<output::Field<'_>> {
-    let field = |model| {
-        let Moved {
-            name,
-            mesh,
-            history,
-            ..
-        }: &Moved = model;
-        let now = &history.instants[instant];
-        let speeds = now.velocity.chunks_exact(2).map(|v| v[0].hypot(v[1]));
-        (*name, mesh, &now.displacement[..], speeds.collect())
+/// A plate whose motion is shown.
+struct Shown<'a> {
+    name: &'static str,
+    file: &'static str,
+    mesh: &'a Mesh,
+    /// Displacement and velocity at the first instants.
+    motion: Vec<[&'a [f64]; 2]>,
+}
+
+/// All plates; the corrected one between the models, where there is one.
+fn shown<'a>(models: &'a [Moved; 2], corrected: &'a Corrected) -> Vec<Shown<'a>> {
+    let model = |model: &'a Moved| {
+        let instants = model.history.instants.iter();
+        Shown {
+            name: model.name,
+            file: model.file,
+            mesh: &model.mesh,
+            motion: instants
+                .map(|now| [&now.displacement[..], &now.velocity])
+                .collect(),
+        }
     };
-    models.iter().map(field).collect()
+    let [springs, elements] = models;
+    let fields = corrected.displacement.iter().zip(&corrected.velocity);
+    let between = Shown {
+        name: "corrected",
+        file: "corrected",
+        mesh: &springs.mesh,
+        motion: fields.map(|(u, v)| [&u[..], &v[..]]).collect(),
+    };
+    let mut all = vec![model(springs), between, model(elements)];
+    all.retain(|plate| !plate.motion.is_empty());
+    all
+}
+
+/// The plates at an instant, with the size of their velocity.
+fn speeds<'a>(plates: &[Shown<'a>], instant: usize) -> Vec<output::Field<'a>> {
+    let field = |plate: &Shown<'a>| {
+        let [displacement, velocity] = *plate.motion.get(instant)?;
+        let speeds = velocity.chunks_exact(2).map(|v| v[0].hypot(v[1]));
+        Some((plate.name, plate.mesh, displacement, speeds.collect()))
+    };
+    plates.iter().filter_map(field).collect()
 }
 
 /// The plates in motion: a picture that plays in every browser.
-pub fn animation(models: &[Moved; 2]) -> (String, Vec<u8>) {
+pub fn animation(models: &[Moved; 2], corrected: &Corrected) -> (String, Vec<u8>) {
     const FRAMES: usize = 60;
     const MILLISECONDS: u16 = 80;
-    let instants = &models[0].history.instants;
-    let every = instants.len().div_ceil(FRAMES).max(1);
-    let frames = (0..instants.len()).step_by(every);
-    let frames: Vec<_> = frames
-        .map(|instant| (instants[instant].time, speeds(models, instant)))
+    let times = models[0].history.times();
+    let every = times.len().div_ceil(FRAMES).max(1);
+    let plates = shown(models, corrected);
+    let count = plates.iter().map(|plate| plate.motion.len()).min();
+    let frames: Vec<_> = (0..count.unwrap_or(0))
+        .step_by(every)
+        .map(|instant| (times[instant], speeds(&plates, instant)))
         .collect();
     let png = output::field_animation("Plates in motion", "speed [mm/s]", &frames, MILLISECONDS);
     ("motion.png".into(), png)
 }
 
-fn plates(models: &[Moved; 2]) -> Vec<u8> {
-    let fields = speeds(models, models[0].history.instants.len() - 1);
+fn plates(models: &[Moved; 2], corrected: &Corrected) -> Vec<u8> {
+    let last = models[0].history.instants.len() - 1;
     output::field_figure(
         "Plates at the last instant",
         "speed [mm/s]",
         Scale::Linear,
-        &fields,
+        &speeds(&shown(models, corrected), last),
     )
 }
 
-/// A series of VTK files for each model.
-pub fn vtk_files(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<(String, Vec<u8>)> {
+/// A series of VTK files for each model and the corrected motion.
+pub fn vtk_files(
+    plate: &MovingPlate,
+    models: &[Moved; 2],
+    corrected: &Corrected,
+) -> Vec<(String, Vec<u8>)> {
     let [springs, elements] = models;
     let expected = expected(&springs.mesh, elements);
     let sheet = vtk::Sheet::from(&plate.problem);
-    let mut files = Vec::new();
-    for model in models {
-        let file = |instant: usize| {
-            let now = &model.history.instants[instant];
-            let reference = (model.file == springs.file).then(|| &expected[instant][..]);
-            let title = format!("{} at {} s", model.name, now.time);
-            let motion = [&now.displacement[..], &now.velocity];
-            vtk::moving_file(&title, &sheet, &model.mesh, motion, reference)
+    let times = springs.history.times();
+    let plates = shown(models, corrected);
+    let series = plates.iter().flat_map(|plate| {
+        let (sheet, expected, times) = (&sheet, &expected, &times);
+        let file = move |instant: usize| {
+            let reference = (plate.file != elements.file).then(|| &expected[instant][..]);
+            let title = format!("{} at {} s", plate.name, times[instant]);
+            vtk::moving_file(&title, sheet, plate.mesh, plate.motion[instant], reference)
         };
-        files.extend(series::vtk_files(model.file, &model.history.times(), file));
-    }
-    files
+        series::vtk_files(plate.file, &times[..plate.motion.len()], file)
+    });
+    series.collect()
 }
 
 /// Probes, energies and the grip's force over time, one table for each model.
-pub fn tables(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<(String, Vec<u8>)> {
+pub fn tables(
+    plate: &MovingPlate,
+    models: &[Moved; 2],
+    corrected: &Corrected,
+) -> Vec<(String, Vec<u8>)> {
     let table = |model: &Moved| {
         let column = |name: &str, unit: &str, value: &dyn Fn(&Instant) -> f64| {
             let values = model.history.instants.iter().map(value);
@@ -268,5 +321,33 @@ pub fn tables(plate: &MovingPlate, models: &[Moved; 2]) -> Vec<(String, Vec<u8>)
         let text = series::csv(&model.history.times(), &columns);
         (format!("motion_{}.csv", model.file), text.into_bytes())
     };
-    models.iter().map(table).collect()
+    let own =
+        (!corrected.displacement.is_empty()).then(|| corrected_table(plate, models, corrected));
+    models.iter().map(table).chain(own).collect()
+}
+
+/// The probes of the corrected motion over time.
+fn corrected_table(
+    plate: &MovingPlate,
+    [springs, _]: &[Moved; 2],
+    corrected: &Corrected,
+) -> (String, Vec<u8>) {
+    let mut columns = Vec::new();
+    for probe in &plate.probes {
+        for (axis, direction) in ["x", "y"].into_iter().enumerate() {
+            for (what, unit, fields) in [
+                ("displacement", "mm", &corrected.displacement),
+                ("velocity", "mm/s", &corrected.velocity),
+            ] {
+                let values = fields.iter().map(|field| springs.at(field, probe)[axis]);
+                let head = format!("{} {what} {direction}", probe.name);
+                columns.push(Series::new(&head, unit, values.collect()));
+            }
+        }
+    }
+    let times = &springs.history.times()[..corrected.displacement.len()];
+    (
+        "motion_corrected.csv".into(),
+        series::csv(times, &columns).into_bytes(),
+    )
 }

@@ -1,6 +1,7 @@
 //! What is told about a motion: energies, frequencies, deviations in time.
 
 use super::Moved;
+use super::corrected::Corrected;
 use super::files::{animation, figures, tables, vtk_files};
 use super::read::MovingPlate;
 use crate::dynamics::lumped_mass;
@@ -11,7 +12,7 @@ use crate::validation::{Check, Outcome, Wanted, number};
 /// Instants in the table of deviations.
 const ROWS: usize = 12;
 
-/// How far springs are from finite elements.
+/// How far a motion on the lattice is from the finite elements'.
 pub struct Deviations {
     /// Of the displacement at each instant, in relative L2 over the largest of all instants, in %.
     pub displacement: Vec<f64>,
@@ -20,15 +21,18 @@ pub struct Deviations {
 }
 
 impl Deviations {
-    fn new(plate: &MovingPlate, [springs, elements]: &[Moved; 2]) -> Self {
-        let lattice = &springs.mesh;
-        let weights = lumped_mass(lattice, 1.0, plate.problem.thickness);
+    /// Of fields on the lattice, at the first instants, from the `expected` ones.
+    fn new<'a>(
+        lattice: &Mesh,
+        fields: impl Iterator<Item = &'a Vec<f64>>,
+        expected: &[Vec<f64>],
+    ) -> Self {
+        let weights = lumped_mass(lattice, 1.0, 1.0);
         let square = |u: &[f64]| u.iter().zip(&weights).map(|(u, w)| w * u * u).sum::<f64>();
-        let expected = expected(lattice, elements);
-        let pairs = springs.history.instants.iter().zip(&expected);
-        let errors: Vec<f64> = pairs
+        let errors: Vec<f64> = fields
+            .zip(expected)
             .map(|(now, expected)| {
-                let both = now.displacement.iter().zip(expected);
+                let both = now.iter().zip(expected);
                 square(&both.map(|(u, v)| u - v).collect::<Vec<_>>())
             })
             .collect();
@@ -51,9 +55,17 @@ pub fn expected(lattice: &Mesh, elements: &Moved) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The outcome of both models.
-pub fn outcome(plate: &MovingPlate, models: &[Moved; 2]) -> Outcome {
-    let deviations = Deviations::new(plate, models);
+/// The outcome of both models and the corrected motion.
+pub fn outcome(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> Outcome {
+    let [springs, elements] = models;
+    let expected = expected(&springs.mesh, elements);
+    let of_springs = springs.history.instants.iter();
+    let of_springs = of_springs.map(|now| &now.displacement);
+    let of_corrected = corrected.displacement.iter();
+    let deviations = [
+        Deviations::new(&springs.mesh, of_springs, &expected),
+        Deviations::new(&springs.mesh, of_corrected, &expected),
+    ];
     let times = models
         .iter()
         .map(|model| (model.name.to_owned(), model.seconds));
@@ -62,18 +74,19 @@ pub fn outcome(plate: &MovingPlate, models: &[Moved; 2]) -> Outcome {
         blocks: vec![
             Block::Paragraph(introduction(plate)),
             summary(models),
+            Block::Paragraph(corrected.note.clone()),
             Block::Paragraph(
-                "Deviation of the springs at some instants, over the largest displacement field of the finite \
-                 elements, and the force of the right grip:"
+                "Deviation at some instants, over the largest displacement field of the finite elements, and the force \
+                 of the right grip:"
                     .into(),
             ),
             in_time(models, &deviations),
         ],
-        figures: figures(plate, models),
-        vtk: vtk_files(plate, models),
-        files: tables(plate, models)
+        figures: figures(plate, models, corrected),
+        vtk: vtk_files(plate, models, corrected),
+        files: tables(plate, models, corrected)
             .into_iter()
-            .chain([animation(models)])
+            .chain([animation(models, corrected)])
             .collect(),
         times: times.collect(),
         ..Outcome::default()
@@ -129,20 +142,26 @@ fn summary(models: &[Moved; 2]) -> Block {
     Block::table(&head, models.iter().map(row))
 }
 
-fn in_time([springs, elements]: &[Moved; 2], deviations: &Deviations) -> Block {
+fn in_time([springs, elements]: &[Moved; 2], deviations: &[Deviations; 2]) -> Block {
     let head = [
         "time [s]",
         "mass-spring: displacement [%]",
+        "corrected: displacement [%]",
         "mass-spring: force [N]",
         "finite elements: force [N]",
     ];
-    let count = deviations.displacement.len();
+    let count = deviations[0].displacement.len();
     let every = count.div_ceil(ROWS).max(1);
+    let percent = |own: &Deviations, instant: usize| {
+        let value = own.displacement.get(instant);
+        value.map_or("–".into(), |value| format!("{value:.3}"))
+    };
     let row = |instant: usize| {
         let force = |model: &Moved| model.history.instants[instant].support_forces[1][0];
         vec![
             number(springs.history.instants[instant].time),
-            format!("{:.3}", deviations.displacement[instant]),
+            percent(&deviations[0], instant),
+            percent(&deviations[1], instant),
             number(force(springs)),
             number(force(elements)),
         ]
@@ -150,7 +169,7 @@ fn in_time([springs, elements]: &[Moved; 2], deviations: &Deviations) -> Block {
     Block::table(&head, (0..count).step_by(every).map(row))
 }
 
-fn checks(plate: &MovingPlate, models: &[Moved; 2], deviations: &Deviations) -> Vec<Check> {
+fn checks(plate: &MovingPlate, models: &[Moved; 2], deviations: &[Deviations; 2]) -> Vec<Check> {
     let limits = plate.tolerances;
     let check = |quantity: String, limit, value| {
         Check::new(
@@ -168,10 +187,15 @@ fn checks(plate: &MovingPlate, models: &[Moved; 2], deviations: &Deviations) -> 
             100.0 * model.history.energy_error(),
         )
     };
+    let [springs, corrected] = deviations;
+    let (name, last) = match corrected.displacement.is_empty() {
+        true => ("mass-spring", springs),
+        false => ("corrected", corrected),
+    };
     let deviation = check(
-        "mass-spring: displacement over all instants".into(),
+        format!("{name}: displacement over all instants"),
         limits.deviation_percent,
-        deviations.whole,
+        last.whole,
     );
     models.iter().map(energy).chain([deviation]).collect()
 }
