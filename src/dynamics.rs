@@ -132,6 +132,8 @@ fn finite(values: &[f64], what: &str) -> Result<(), SolveFault> {
 }
 
 #[cfg(test)]
+pub(crate) mod spring;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod viscous_tests;

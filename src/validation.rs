@@ -8,7 +8,7 @@ use std::time::Instant;
 use crate::document::{Document, Faults, Section};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::mesh::Mesh;
-use crate::output::picture::lines::LineChart;
+use crate::output::picture::lines::{Line, LineChart, Stroke};
 use crate::output::{Figure, mesh_picture};
 
 mod correction_matrix;
@@ -370,20 +370,30 @@ fn percent(values: &[f64], reference: &[f64]) -> f64 {
 
 /// A chart as a figure of a case.
 fn figure(name: &str, caption: &str, chart: &LineChart) -> Figure {
-    Figure {
-        name: name.to_owned(),
-        caption: caption.to_owned(),
-        png: chart.png(),
+    Figure::new(name, caption, chart.png())
+}
+
+/// The `which`th number of all points over their first one, as a marked line.
+fn marked_line<const N: usize>(
+    points: &[[f64; N]],
+    which: usize,
+    label: &str,
+    colour: [u8; 3],
+) -> Line {
+    Line {
+        label: label.to_owned(),
+        points: points
+            .iter()
+            .map(|point| [point[0], point[which]])
+            .collect(),
+        colour,
+        stroke: Stroke::Marked,
     }
 }
 
 /// A mesh as a figure of a case.
 fn mesh_figure(name: &str, caption: &str, title: &str, mesh: &Mesh) -> Figure {
-    Figure {
-        name: name.to_owned(),
-        caption: caption.to_owned(),
-        png: mesh_picture(title, mesh),
-    }
+    Figure::new(name, caption, mesh_picture(title, mesh))
 }
 
 #[cfg(test)]

@@ -24,13 +24,24 @@ pub struct Figure {
     pub png: Vec<u8>,
 }
 
+impl Figure {
+    /// A picture with its file name and caption.
+    pub fn new(name: &str, caption: &str, png: Vec<u8>) -> Self {
+        Self {
+            name: name.to_owned(),
+            caption: caption.to_owned(),
+            png,
+        }
+    }
+}
+
 const CORRECTED: [u8; 3] = PALETTE[0];
 const MASS_SPRING: [u8; 3] = PALETTE[1];
 const FINITE_ELEMENT: [u8; 3] = [30, 30, 30];
 
 /// All pictures of a run, in the order of the report.
 pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
-    let mut all = vec![figure(
+    let mut all = vec![Figure::new(
         "material.png",
         "The material: nominal stress over stretch.",
         material_chart(&study.card).png(),
@@ -39,50 +50,42 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
         let at = Problem::describe_step(*stretch);
         let plates = plates(results, step, &at).png();
         let name = format!("plates_{:03}.png", step + 1);
-        all.push(figure(
+        all.push(Figure::new(
             &name,
             &format!("The plate at {at} in all three models, on one colour scale."),
             plates,
         ));
         let error = error_map(results, step, &at).png();
         let name = format!("error_{:03}.png", step + 1);
-        all.push(figure(
+        all.push(Figure::new(
             &name,
             &format!("Distance to the finite elements at {at}, before and after the correction."),
             error,
         ));
     }
     all.extend([
-        figure(
+        Figure::new(
             "errors.png",
             "Deviation from the finite elements over stretch.",
             errors(results).png(),
         ),
-        figure(
+        Figure::new(
             "force.png",
             "Grip force over stretch.",
             force(results).png(),
         ),
-        figure(
+        Figure::new(
             "residuals.png",
             "Residual over iteration, at the largest stretch.",
             residuals(results).png(),
         ),
-        figure(
+        Figure::new(
             "estimated_error.png",
             "Estimated error of every finite element at the largest stretch, in % of the solution's energy norm.",
             estimated_error(study, results),
         ),
     ]);
     all
-}
-
-fn figure(name: &str, caption: &str, png: Vec<u8>) -> Figure {
-    Figure {
-        name: name.to_owned(),
-        caption: caption.to_owned(),
-        png,
-    }
 }
 
 /// The curves of a card in the three usual tests.

@@ -1,9 +1,7 @@
-//! Quantities over time: tables, charts, and the files of a motion.
+//! Quantities over time: tables and the files of a motion.
 
 use std::fmt::Write;
 
-use super::picture::PALETTE;
-use super::picture::lines::{Axis, Line, LineChart, Stroke};
 use super::vtk;
 
 /// A quantity at all instants.
@@ -53,59 +51,6 @@ pub fn csv(times: &[f64], series: &[Series]) -> String {
         text.push('\n');
     }
     text
-}
-
-fn lines(series: &[Series], points: impl Fn(&Series) -> Vec<[f64; 2]>) -> Vec<Line> {
-    let line = |(index, one): (usize, &Series)| Line {
-        label: one.name.clone(),
-        points: points(one),
-        colour: PALETTE[index % PALETTE.len()],
-        stroke: if index % 2 == 0 {
-            Stroke::Solid
-        } else {
-            Stroke::Dashed
-        },
-    };
-    series.iter().enumerate().map(line).collect()
-}
-
-/// Quantities of one unit over time: displacements, forces, energies.
-pub fn chart(title: &str, quantity: &str, times: &[f64], series: &[Series]) -> LineChart {
-    let unit = series.first().map_or("", |one| &one.unit);
-    LineChart {
-        title: title.to_owned(),
-        x: Axis::linear("time [s]"),
-        y: Axis::linear(&format!("{quantity} [{unit}]")),
-        lines: lines(series, |one| {
-            times
-                .iter()
-                .zip(&one.values)
-                .map(|(t, y)| [*t, *y])
-                .collect()
-        }),
-        band: None,
-    }
-}
-
-/// Quantities over others at the same instants: velocity over displacement, or the loop of force over displacement.
-pub fn phase(title: &str, axes: [&str; 2], pairs: &[(Series, Series)]) -> LineChart {
-    let over: Vec<Series> = pairs.iter().map(|(_, y)| y.clone()).collect();
-    let mut all = lines(&over, |_| Vec::new());
-    for (line, (x, y)) in all.iter_mut().zip(pairs) {
-        line.points = x
-            .values
-            .iter()
-            .zip(&y.values)
-            .map(|(x, y)| [*x, *y])
-            .collect();
-    }
-    LineChart {
-        title: title.to_owned(),
-        x: Axis::linear(axes[0]),
-        y: Axis::linear(axes[1]),
-        lines: all,
-        band: None,
-    }
 }
 
 /// The files of a model that moves: `MODEL_00001.vtu` and so on, and `MODEL.pvd`, which plays them with their times in s.
@@ -162,15 +107,5 @@ mod tests {
             collection.contains("timestep=\"0.25\" part=\"0\" file=\"corrected_00002.vtu\""),
             "{collection}"
         );
-    }
-
-    #[test]
-    fn a_loop_keeps_the_order_of_its_instants() {
-        let pair = (
-            Series::new("u", "mm", vec![0.0, 1.0, 0.5]),
-            Series::new("f", "N", vec![0.0, 2.0, 0.1]),
-        );
-        let chart = phase("Loop", ["u [mm]", "f [N]"], &[pair]);
-        assert_eq!(chart.lines[0].points, [[0.0, 0.0], [1.0, 2.0], [0.5, 0.1]]);
     }
 }

@@ -12,7 +12,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use super::plate::Plate;
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
+use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, marked_line, number};
 use crate::corrector::measured::{
     EdgeCondition, Knowledge, MeasuredForce, RegressedLaw, Robust, Specimen, Unnamed, estimate,
 };
@@ -20,7 +20,7 @@ use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, Grid, Mesh, Shape};
 use crate::output::Block;
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::output::picture::lines::{Axis, LineChart};
 use crate::study;
 use crate::units::Dimension;
 use trial::Trial;
@@ -458,15 +458,7 @@ fn large(settings: &Settings) -> Result<(String, f64), Error> {
 }
 
 fn chart(points: &[[f64; 3]]) -> LineChart {
-    let line = |label: &str, which: usize, colour: [u8; 3]| Line {
-        label: label.to_owned(),
-        points: points
-            .iter()
-            .map(|point| [point[0], point[which]])
-            .collect(),
-        colour,
-        stroke: Stroke::Marked,
-    };
+    let line = |label, which, colour| marked_line(points, which, label, colour);
     LineChart {
         title: "Noisy markers with unknown grips".into(),
         x: Axis::linear("noise of each component [mm]"),

@@ -10,7 +10,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use super::plate::{CORRECTOR, Plate};
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
+use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, marked_line, number};
 use crate::compare::{departure_percent, displacement_percent};
 use crate::corrector::plate::KnownConditions;
 use crate::corrector::{Corrector, CorrectorSettings, Linear, PlateCorrector};
@@ -20,7 +20,7 @@ use crate::finite_element::Element;
 use crate::mass_spring::MassSpring;
 use crate::mesh::{Mesh, Side};
 use crate::output::Block;
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::output::picture::lines::{Axis, LineChart};
 use crate::units::Dimension;
 
 struct Settings {
@@ -327,15 +327,7 @@ fn rigid_grips(mesh: &Mesh) -> Linear {
 }
 
 fn chart(points: &[[f64; 4]]) -> LineChart {
-    let line = |label: &str, which: usize, colour: [u8; 3]| Line {
-        label: label.to_owned(),
-        points: points
-            .iter()
-            .map(|point| [point[0], point[which]])
-            .collect(),
-        colour,
-        stroke: Stroke::Marked,
-    };
+    let line = |label, which, colour| marked_line(points, which, label, colour);
     LineChart {
         title: "Noisy fields smoothed".into(),
         x: Axis::linear("noise at every node [mm]"),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::*;
 use crate::corrector::{DifferenceScheme, Solver};
+use crate::dynamics::spring::Spring;
 use crate::dynamics::{
     Integrator, MovingSupport, Start, Step, TimeSettings, Viscosity, follow, lumped_mass,
 };
@@ -11,51 +12,6 @@ use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Side};
 use crate::problem::Problem;
 use crate::sheet_energy::SheetEnergy;
-
-/// One unknown of 1 tonne with the energy ½ k u² + ¼ q u⁴ in mJ and a dashpot of constant c in N·s/mm.
-struct Spring {
-    k: f64,
-    q: f64,
-    c: f64,
-}
-
-impl Potential for Spring {
-    fn unknowns(&self) -> usize {
-        1
-    }
-
-    fn elements(&self) -> usize {
-        1
-    }
-
-    fn element_unknowns(&self, _: usize) -> &[usize] {
-        &[0]
-    }
-
-    fn evaluate_element(&self, _: usize, u: &[f64], local: Local<'_>) -> Result<f64, Inadmissible> {
-        let u = u[0];
-        local.residual[0] = self.k * u + self.q * u.powi(3);
-        if let Some(stiffness) = local.stiffness {
-            stiffness[0] = self.k + 3.0 * self.q * u * u;
-        }
-        Ok(0.5 * self.k * u * u + 0.25 * self.q * u.powi(4))
-    }
-}
-
-impl Viscosity for Spring {
-    fn add_element(
-        &self,
-        _: usize,
-        passing: Passing<'_>,
-        local: ViscousLocal<'_>,
-    ) -> Result<(), Inadmissible> {
-        local.force[0] += self.c * passing.velocity[0];
-        if let Some([_, damping]) = local.tangents {
-            damping[0] += self.c;
-        }
-        Ok(())
-    }
-}
 
 fn motion<'a>(
     energy: &'a dyn Potential,

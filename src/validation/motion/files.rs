@@ -2,7 +2,6 @@
 
 use super::Moved;
 use super::corrected::Corrected;
-use super::outcome::expected;
 use super::read::{MovingPlate, Probe};
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::Mesh;
@@ -33,14 +32,6 @@ fn chart(title: &str, x: &str, y: &str, lines: Vec<Line>) -> LineChart {
     }
 }
 
-fn figure(name: &str, caption: &str, png: Vec<u8>) -> Figure {
-    Figure {
-        name: name.to_owned(),
-        caption: caption.to_owned(),
-        png,
-    }
-}
-
 impl Moved {
     /// Pairs of figures of all instants.
     fn points(&self, pair: impl Fn(&Instant) -> [f64; 2]) -> Vec<[f64; 2]> {
@@ -55,12 +46,12 @@ impl Moved {
 /// Displacement of the probes, phase of the first, energies, force of the grip, and the plates at the end.
 pub fn figures(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> Vec<Figure> {
     let mut figures = vec![
-        figure(
+        Figure::new(
             "motion_probes.png",
             "Displacement of the probes along the plate.",
             probes(plate, models, corrected).png(),
         ),
-        figure(
+        Figure::new(
             "motion_energy.png",
             "Where the energy is: springs above, finite elements below.",
             output::picture::lines::stacked(&[
@@ -68,14 +59,14 @@ pub fn figures(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) 
                 (energy(&models[1]), 380),
             ]),
         ),
-        figure(
+        Figure::new(
             "motion_plates.png",
             "The plates at the last instant, with the size of their velocity.",
             plates(models, corrected),
         ),
     ];
     if plate.release != Some(0.0) {
-        figures.push(figure(
+        figures.push(Figure::new(
             "motion_force.png",
             "Force of the right grip along the plate over its displacement and over time.",
             output::picture::lines::stacked(&[
@@ -109,7 +100,7 @@ pub fn figures(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) 
             phase.collect(),
         );
         let caption = "Velocity over displacement of the first probe along the plate.";
-        figures.push(figure("motion_phase.png", caption, chart.png()));
+        figures.push(Figure::new("motion_phase.png", caption, chart.png()));
     }
     figures
 }
@@ -267,19 +258,20 @@ fn plates(models: &[Moved; 2], corrected: &Corrected) -> Vec<u8> {
     )
 }
 
-/// A series of VTK files for each model and the corrected motion.
+/// A series of VTK files for each model and the corrected motion; those on the lattice hold the difference to the
+/// `expected` displacements.
 pub fn vtk_files(
     plate: &MovingPlate,
     models: &[Moved; 2],
     corrected: &Corrected,
+    expected: &[Vec<f64>],
 ) -> Vec<(String, Vec<u8>)> {
     let [springs, elements] = models;
-    let expected = expected(&springs.mesh, elements);
     let sheet = vtk::Sheet::from(&plate.problem);
     let times = springs.history.times();
     let plates = shown(models, corrected);
     let series = plates.iter().flat_map(|plate| {
-        let (sheet, expected, times) = (&sheet, &expected, &times);
+        let (sheet, times) = (&sheet, &times);
         let file = move |instant: usize| {
             let reference = (plate.file != elements.file).then(|| &expected[instant][..]);
             let title = format!("{} at {} s", plate.name, times[instant]);

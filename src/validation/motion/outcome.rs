@@ -48,7 +48,7 @@ impl Deviations {
 }
 
 /// The finite elements' displacements at the nodes of the lattice at all instants.
-pub fn expected(lattice: &Mesh, elements: &Moved) -> Vec<Vec<f64>> {
+fn expected(lattice: &Mesh, elements: &Moved) -> Vec<Vec<f64>> {
     let instants = elements.history.instants.iter();
     instants
         .map(|now| elements.mesh.displacement_on(&now.displacement, lattice))
@@ -83,7 +83,7 @@ pub fn outcome(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) 
             in_time(models, &deviations),
         ],
         figures: figures(plate, models, corrected),
-        vtk: vtk_files(plate, models, corrected),
+        vtk: vtk_files(plate, models, corrected, &expected),
         files: tables(plate, models, corrected)
             .into_iter()
             .chain([animation(models, corrected)])
