@@ -132,6 +132,8 @@ fn finite(values: &[f64], what: &str) -> Result<(), SolveFault> {
 }
 
 #[cfg(test)]
+mod forced_tests;
+#[cfg(test)]
 pub(crate) mod spring;
 #[cfg(test)]
 mod tests;

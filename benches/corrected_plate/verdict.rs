@@ -203,10 +203,12 @@ impl Verdicts {
         self.put(frames.worst <= 0.016, text);
     }
 
-    pub fn print(&self) {
+    /// Prints all lines; the number of those that fail.
+    pub fn print(&self) -> usize {
         println!();
         for (pass, text) in &self.lines {
             println!("{} {text}", if *pass { "pass" } else { "FAIL" });
         }
+        self.lines.iter().filter(|(pass, _)| !pass).count()
     }
 }

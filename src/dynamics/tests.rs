@@ -26,7 +26,7 @@ fn motion(spring: &Spring, start: f64) -> Motion<'_> {
 
 const VERLET: Integrator = Integrator::VelocityVerlet;
 
-pub fn alpha(spectral_radius: f64) -> Integrator {
+pub const fn alpha(spectral_radius: f64) -> Integrator {
     Integrator::GeneralisedAlpha {
         spectral_radius,
         tolerance: 1e-12,

@@ -119,4 +119,22 @@ mod tests {
             bent.area_percent
         );
     }
+
+    /// A thousandth of the largest stress is where compression begins to count.
+    #[test]
+    fn compression_counts_from_a_thousandth_of_the_largest_stress_on() {
+        let (along, c10) = (1.2_f64, 0.05);
+        for (share, counted) in [(0.5e-3, 0.0), (2e-3, 100.0)] {
+            // σ₂ = −s σ₁ with σᵢ = 2 C₁₀ (λᵢ² − λ₃²), λ₁ λ₂ λ₃ = 1, is quadratic in λ₂².
+            let [two, four] = [2, 4].map(|power| along.powi(power));
+            let root = (share * share * four * four + 4.0 * two * (1.0 + share)).sqrt();
+            let across = ((root - share * four) / (2.0 * two)).sqrt();
+            let through = 1.0 / (along * across);
+            let stress = |stretch: f64| 2.0 * c10 * (stretch * stretch - through * through);
+            assert!((stress(across) + share * stress(along)).abs() < 1e-15);
+            let found = of(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y]);
+            assert!((found.area_percent - counted).abs() < 1e-9, "{share}");
+            assert!((found.smallest[3] - stress(across)).abs() < 1e-14);
+        }
+    }
 }

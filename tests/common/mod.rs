@@ -9,6 +9,8 @@ use assert_cmd::assert::Assert;
 use serde_json::Value;
 use tempfile::TempDir;
 
+pub mod handed_over;
+
 pub fn gelbench(folder: &Path, arguments: &[&str]) -> Assert {
     let mut command = Command::cargo_bin("gelbench").unwrap();
     command.current_dir(folder).args(arguments).assert()
