@@ -24,6 +24,7 @@ use crate::mesh::Mesh;
 use crate::problem::{Problem, Solution};
 
 pub mod imported;
+pub mod judgement;
 
 /// Deviation of one field from the reference at one stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,158 @@
+//! Whether a deviation is within its limit, and whether the reference is good enough to say so.
+//!
+//! A reference has an error of its own. Let d be the measured deviation from it, e the reference's own error of the same
+//! quantity, and l the limit, all in percent of the same size:
+//!
+//! ```text
+//! d ≤ ρ and e ≤ ρ     exact: both are rounding, ρ = 10⁻⁶ %
+//! e ≤ d/10            judged: pass where d ≤ l, else FAIL
+//! else                cannot be judged: the reference is too coarse for what it has to judge
+//! ```
+
+/// Deviations below this, in percent, are what solvers and rounding leave.
+pub const ROUNDING_PERCENT: f64 = 1e-6;
+
+/// The largest part of a deviation that may be the reference's own error.
+pub const OWN_SHARE: f64 = 0.1;
+
+/// What a requirement comes to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Judgement {
+    /// Within the limit.
+    Pass,
+    /// Within the limit without anything to measure, and why.
+    Exact(&'static str),
+    /// Beyond the limit, or not a number.
+    Fail,
+    /// What it is measured with says nothing about it.
+    CannotBeJudged {
+        /// Why.
+        reason: String,
+        /// What to do about it.
+        remedy: String,
+    },
+}
+
+impl Judgement {
+    /// `pass`, `FAIL` or `cannot be judged`.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Pass | Self::Exact(_) => "pass",
+            Self::Fail => "FAIL",
+            Self::CannotBeJudged { .. } => "cannot be judged",
+        }
+    }
+
+    /// Whether the requirement is met.
+    pub fn passed(&self) -> bool {
+        matches!(self, Self::Pass | Self::Exact(_))
+    }
+
+    /// What the word alone does not say: the reason and the remedy of what cannot be judged, or why there is nothing
+    /// to measure.
+    pub fn remark(&self) -> Option<String> {
+        match self {
+            Self::Pass | Self::Fail => None,
+            Self::Exact(why) => Some((*why).to_owned()),
+            Self::CannotBeJudged { reason, remedy } => Some(format!("{reason}; {remedy}")),
+        }
+    }
+}
+
+/// Judges a deviation from a reference with an error of its own, both without their signs and in percent of the same
+/// size. `remedy` says how the reference becomes better.
+pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgement {
+    if deviation.is_nan() {
+        return Judgement::Fail;
+    }
+    if deviation <= ROUNDING_PERCENT && own_error <= ROUNDING_PERCENT {
+        return Judgement::Exact("exact but for rounding");
+    }
+    if own_error <= OWN_SHARE * deviation {
+        return match deviation <= limit {
+            true => Judgement::Pass,
+            false => Judgement::Fail,
+        };
+    }
+    let reason = match own_error.is_finite() {
+        true => format!(
+            "the reference is too coarse: its own error, {own_error:.2e} %, is more than a tenth of the deviation, \
+             {deviation:.2e} %"
+        ),
+        false => "the reference's own error is not known".to_owned(),
+    };
+    Judgement::CannotBeJudged {
+        reason,
+        remedy: remedy.to_owned(),
+    }
+}
+
+/// Judges how much of an uncorrected deviation a correction leaves, 100 d/d₀: at most `limit` %. Where d₀ is no more than
+/// rounding, there is nothing to correct.
+pub fn judge_correction(
+    [before, after]: [f64; 2],
+    own_error: f64,
+    limit: f64,
+    remedy: &str,
+) -> Judgement {
+    if before <= ROUNDING_PERCENT && own_error <= ROUNDING_PERCENT {
+        return Judgement::Exact(
+            "nothing to correct: exact but for rounding before the correction",
+        );
+    }
+    // The rounding level is that of the deviations, not of their ratio.
+    match judge(after, own_error, f64::INFINITY, remedy) {
+        Judgement::Pass if 100.0 * after / before > limit => Judgement::Fail,
+        judged => judged,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_open(judged: &Judgement) -> bool {
+        matches!(judged, Judgement::CannotBeJudged { .. })
+    }
+
+    #[test]
+    fn a_deviation_is_judged_only_by_a_reference_ten_times_as_good() {
+        let judged = |d, e| judge(d, e, 0.1, "refine");
+        assert_eq!(judged(0.05, 0.004), Judgement::Pass);
+        assert_eq!(judged(0.2, 0.01), Judgement::Fail);
+        // Too coarse: neither failed nor passed, however small or large the deviation is.
+        for d in [0.0, 1e-9, 0.05, 0.2] {
+            let open = judged(d, 0.021);
+            assert!(is_open(&open) && open.word() == "cannot be judged", "{d}");
+            assert!(open.remark().unwrap().ends_with("; refine"));
+        }
+    }
+
+    #[test]
+    fn roundings_pass_and_what_is_no_number_does_not() {
+        assert_eq!(judge(1e-12, 1e-11, 0.1, "").word(), "pass");
+        assert_eq!(judge(0.0, 0.0, 0.1, "").word(), "pass");
+        assert_eq!(judge(f64::NAN, 0.0, 0.1, ""), Judgement::Fail);
+        assert!(is_open(&judge(0.05, f64::NAN, 0.1, "")));
+        assert!(is_open(&judge(0.0, f64::NAN, 0.1, "")));
+        assert!(is_open(&judge(0.05, f64::INFINITY, 0.1, "")));
+    }
+
+    #[test]
+    fn a_ratio_of_two_roundings_is_no_failed_correction() {
+        let judged = |pair, e| judge_correction(pair, e, 5.0, "");
+        assert!(
+            judged([1e-12, 1e-12], 1e-13)
+                .remark()
+                .unwrap()
+                .contains("nothing to correct")
+        );
+        assert_eq!(judged([20.0, 0.2], 0.01), Judgement::Pass);
+        assert_eq!(judged([20.0, 2.0], 0.01), Judgement::Fail);
+        assert!(judged([20.0, 1e-9], 1e-9).passed());
+        // The correction of something by something that cannot be told from the reference's own error.
+        assert!(is_open(&judged([20.0, 0.0], 0.01)));
+        assert!(is_open(&judged([1e-12, 1e-12], 0.01)));
+        assert_eq!(judged([f64::NAN, f64::NAN], 0.01), Judgement::Fail);
+    }
+}
