@@ -9,14 +9,24 @@ use crate::material::HyperelasticLaw;
 use crate::mesh::{Group, Mesh};
 use crate::sheet_energy::SheetEnergy;
 use crate::solve::{
-    Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
+    Assembly, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
 };
+use crate::units::Linear;
 
+mod balance;
+mod contradictions;
 mod loads;
+mod pressure;
+mod rigid;
 mod supports;
 mod ties;
 
+pub use balance::{Balance, Resultant};
+
+use balance::Body;
+use contradictions::contradictions;
 use loads::Loaded;
+use rigid::free_motions;
 use supports::{Motion, Supported};
 use ties::Tied;
 
@@ -26,6 +36,16 @@ pub enum Support {
     /// Displacements ux, uy in mm; one that is not given is free. Both zero: a clamp; one zero: a roller or
     /// an axis of symmetry.
     Displacement([Option<f64>; 2]),
+    /// Displacements ux, uy in mm that are linear in the place at rest; one that is not given is free.
+    LinearDisplacement([Option<Linear>; 2]),
+    /// A displacement in mm along the line from a point in mm through the place at rest, away from the point; none
+    /// across it.
+    Radial {
+        /// The point.
+        centre: [f64; 2],
+        /// The displacement away from it.
+        displacement: f64,
+    },
     /// Free to slide along the straight line on which the group lies, parallel to an axis: a roller, or an axis of
     /// symmetry.
     Roller,
@@ -55,7 +75,11 @@ pub enum Load {
     /// A traction in MPa on the reference area of the group's edges, of constant direction (dead).
     Traction([f64; 2]),
     /// A pressure in MPa on the group's edges that follows them: p t times the deformed length, t the thickness
-    /// at rest, against the outward normal.
+    /// at rest, against the outward normal. The forces are p t ∫ Nₐ n ds over the deformed edges at every node. Edges may
+    /// end anywhere.
+    ///
+    /// A fluid presses on the deformed thickness λ₃ t: its pressure q is p = λ₃ q here, less than q where
+    /// the edge is stretched.
     Pressure(f64),
     /// A force in N, shared equally by the group's nodes.
     Force([f64; 2]),
@@ -68,7 +92,7 @@ pub struct BoundaryProblem {
     pub thickness: f64,
     /// The material.
     pub law: Arc<dyn HyperelasticLaw>,
-    /// Supports by group; later ones replace earlier ones on the nodes that they share.
+    /// Supports by group; those that share nodes must agree there.
     pub supports: Vec<(String, Support)>,
     /// Loads by group.
     pub loads: Vec<(String, Load)>,
@@ -80,6 +104,8 @@ pub struct Discretised<'a> {
     energy: &'a dyn Potential,
     supported: Supported,
     loaded: Loaded,
+    /// E t in N/mm.
+    stiffness: f64,
     names: Box<dyn Fn(usize) -> String + 'a>,
 }
 
@@ -89,14 +115,41 @@ impl BoundaryProblem {
         SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
     }
 
-    /// The unknowns of a mesh that are held, each with the number of the support that holds it: the last one of
-    /// several.
+    /// Everything that keeps the problem from being solved on a mesh: supports and loads on groups that it does not have or
+    /// that cannot carry them, supports that contradict each other, parts that can move without strain.
     ///
     /// # Errors
-    /// A [`Diagnostic`] when a support names no group of the mesh.
+    /// All faults, each with its place and a remedy.
+    pub fn check(&self, mesh: &Mesh) -> Result<(), Vec<Diagnostic>> {
+        let supports = (0..self.supports.len()).map(|n| self.supported(mesh, n..n + 1).err());
+        let unknowns = 2 * mesh.nodes.len();
+        let loads = self.loads.iter().map(|(name, load)| {
+            let mut loaded = Loaded::new(unknowns);
+            self.load(mesh, name, load, &mut loaded).err()
+        });
+        let mut faults: Vec<Diagnostic> = supports.chain(loads).flatten().collect();
+        if faults.is_empty() {
+            faults = contradictions(self, mesh).unwrap_or_else(|fault| vec![fault]);
+        }
+        if faults.is_empty() {
+            let supported = self.supported(mesh, 0..self.supports.len());
+            faults = supported.map_or_else(|fault| vec![fault], |all| free_motions(mesh, &all));
+        }
+        match faults.is_empty() {
+            true => Ok(()),
+            false => Err(faults),
+        }
+    }
+
+    /// The unknowns of a mesh that are held, each with the number of the support that holds it: the first one of
+    /// several, which agree.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support names no group of the mesh, or when supports contradict each other.
     pub fn held_by(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+        self.all_supported(mesh)?;
         let mut by = BTreeMap::new();
-        for number in 0..self.supports.len() {
+        for number in (0..self.supports.len()).rev() {
             let own = self.supported(mesh, number..number + 1)?;
             by.extend(own.held.into_keys().map(|unknown| (unknown, number)));
         }
@@ -106,17 +159,39 @@ impl BoundaryProblem {
     /// The unknowns of a mesh that follow others, each with the one that it follows: those of grips with a given force.
     ///
     /// # Errors
-    /// A [`Diagnostic`] when a support names no group of the mesh, or when a group cannot be held so.
+    /// A [`Diagnostic`] when a support names no group of the mesh, when a group cannot be held so, or when supports contradict
+    /// each other.
     pub fn ties(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
-        Ok(self.supported(mesh, 0..self.supports.len())?.ties)
+        Ok(self.all_supported(mesh)?.ties)
+    }
+
+    /// What all supports do to the unknowns of a mesh, once they agree.
+    fn all_supported(&self, mesh: &Mesh) -> Result<Supported, Diagnostic> {
+        match contradictions(self, mesh)?.into_iter().next() {
+            Some(fault) => Err(fault),
+            None => self.supported(mesh, 0..self.supports.len()),
+        }
+    }
+
+    /// Adds a load on a group of a mesh.
+    fn load(
+        &self,
+        mesh: &Mesh,
+        name: &str,
+        load: &Load,
+        loaded: &mut Loaded,
+    ) -> Result<(), Diagnostic> {
+        let group = group("load", mesh, name)?;
+        let added = loaded.add(mesh, group, load, self.thickness);
+        added.map_err(|reason| refused("load", name, &reason))
     }
 
     /// What some of the supports do to the unknowns of a mesh.
     fn supported(&self, mesh: &Mesh, which: Range<usize>) -> Result<Supported, Diagnostic> {
         let mut supported = Supported::default();
         for (name, support) in &self.supports[which] {
-            let added = supported.add(mesh, group(mesh, name)?, support);
-            added.map_err(|reason| refused(name, &reason))?;
+            let added = supported.add(mesh, group("support", mesh, name)?, support);
+            added.map_err(|reason| refused("support", name, &reason))?;
         }
         Ok(supported)
     }
@@ -128,13 +203,13 @@ impl BoundaryProblem {
     pub fn dead_forces(&self, mesh: &Mesh) -> Result<Vec<f64>, Diagnostic> {
         let mut sum = vec![0.0; 2 * mesh.nodes.len()];
         for (name, load) in &self.loads {
-            let forces = loads::dead_forces(mesh, group(mesh, name)?, load, self.thickness)
-                .map_err(|reason| refused(name, &reason))?;
+            let forces = loads::dead_forces(mesh, group("load", mesh, name)?, load, self.thickness)
+                .map_err(|reason| refused("load", name, &reason))?;
             for (sum, force) in sum.iter_mut().zip(forces) {
                 *sum += force;
             }
         }
-        let supported = self.supported(mesh, 0..self.supports.len())?;
+        let supported = self.all_supported(mesh)?;
         for (unknown, force) in supported.forces {
             sum[unknown] += force;
         }
@@ -150,37 +225,33 @@ impl BoundaryProblem {
         mesh: &'a Mesh,
         energy: &'a dyn Potential,
     ) -> Result<Discretised<'a>, Diagnostic> {
-        let supported = self.supported(mesh, 0..self.supports.len())?;
-        let held = &supported.held;
+        let supported = self.all_supported(mesh)?;
         let mut loaded = Loaded::new(2 * mesh.nodes.len());
         for (name, load) in &self.loads {
-            let is_held = |node: usize| [0, 1].map(|axis| held.contains_key(&(2 * node + axis)));
-            let group = group(mesh, name)?;
-            loaded
-                .add(mesh, group, load, self.thickness, &is_held)
-                .map_err(|reason| refused(name, &reason))?;
+            self.load(mesh, name, load, &mut loaded)?;
         }
-        loaded.pull(&supported);
+        loaded.close(&supported);
         Ok(Discretised {
             mesh,
             energy,
             supported,
             loaded,
+            stiffness: self.law.youngs_modulus() * self.thickness,
             names: Box::new(|cell| mesh.describe_cell(cell)),
         })
     }
 }
 
 /// A support or a load that does not suit a group.
-fn refused(group: &str, reason: &str) -> Diagnostic {
-    Diagnostic::error("", format!("the group `{group}` {reason}"))
+fn refused(what: &str, group: &str, reason: &str) -> Diagnostic {
+    Diagnostic::error(what, format!("the group `{group}` {reason}"))
 }
 
-fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
+fn group<'a>(what: &str, mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
     let groups = mesh.groups();
     groups.get(name).ok_or_else(|| {
         let known: Vec<_> = groups.keys().map(String::as_str).collect();
-        let fault = Diagnostic::error("", format!("the mesh has no group `{name}`"));
+        let fault = Diagnostic::error(what, format!("the mesh has no group `{name}`"));
         fault.hint(format!("its groups are {}", known.join(", ")))
     })
 }
@@ -206,6 +277,7 @@ impl<'a> Discretised<'a> {
                 self.supported.held.insert(2 * node + axis, motion);
             }
         }
+        self.loaded.close(&self.supported);
     }
 
     /// Adds forces in N at load factor 1, one for each unknown: a body force, for instance.
@@ -223,7 +295,22 @@ impl<'a> Discretised<'a> {
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<State>, PathEnd> {
+        if let (Some(free), Some(factor)) =
+            (self.free_motions().into_iter().next(), factors.first())
+        {
+            return Err(PathEnd {
+                factor: *factor,
+                fault: SolveFault::FreeMotion(free.message),
+                states: Vec::new(),
+                last: None,
+            });
+        }
         follow(self, factors, settings, progress)
+    }
+
+    /// The parts that can move without strain, each with its motion.
+    pub fn free_motions(&self) -> Vec<Diagnostic> {
+        free_motions(self.mesh, &self.supported)
     }
 
     /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
@@ -283,17 +370,50 @@ impl<'a> Discretised<'a> {
         })
     }
 
-    /// The force of the supports on a group in N, from a state.
+    /// The force of the supports on a group in N, from a state: the internal forces of its nodes less the loads on them,
+    /// along the axes along which supports hold or pull them.
     ///
     /// # Panics
     /// When the mesh has no such group.
     pub fn reaction(&self, state: &State, name: &str) -> [f64; 2] {
+        let forces = self.support_forces(state);
         let nodes = &self.mesh.groups()[name].nodes;
-        [0, 1].map(|axis| {
-            let unknowns = nodes.iter().map(|node| 2 * node + axis);
-            let held = unknowns.filter(|unknown| self.supported.held.contains_key(unknown));
-            held.map(|unknown| state.residual[unknown]).sum()
-        })
+        [0, 1].map(|axis| nodes.iter().map(|node| forces[2 * node + axis]).sum())
+    }
+
+    /// The forces of the supports in N at each unknown, from a state: those of grips that are pulled too. Not a number where
+    /// the state is inverted.
+    pub fn support_forces(&self, state: &State) -> Vec<f64> {
+        let Supported { held, ties, forces } = &self.supported;
+        let mut internal = vec![0.0; state.displacement.len()];
+        let loads = self.loaded.without_pulls();
+        let loaded = loads.at(self.energy, state.factor);
+        let known = Assembly::residual(&loaded, &state.displacement, &mut internal);
+        let masters = forces.iter().map(|(master, _)| master);
+        let mut supports = vec![0.0; internal.len()];
+        for unknown in held.keys().chain(ties.keys()).chain(masters) {
+            supports[*unknown] = if known.is_ok() {
+                internal[*unknown]
+            } else {
+                f64::NAN
+            };
+        }
+        supports
+    }
+
+    /// The balance of all forces of supports and loads, and of their moments, on the deformed body.
+    pub fn balance(&self, state: &State) -> Balance {
+        /// Rounding of a body that moves without strain, relative to E t times its largest displacement.
+        const NEGLIGIBLE: f64 = 1e-4;
+        let u = &state.displacement;
+        let moved = self.mesh.nodes.iter().zip(u.chunks_exact(2));
+        let places: Vec<[f64; 2]> = moved.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]).collect();
+        let body = Body::new(&places);
+        let supports = Resultant::of_nodes(&places, &self.support_forces(state), body.centre);
+        let about = (body.centre, self.mesh.middle());
+        let loads = self.loaded.resultant(state.factor, (&places, u), about);
+        let largest = u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        body.balance(supports, loads, NEGLIGIBLE * self.stiffness * largest)
     }
 }
 
@@ -346,3 +466,6 @@ impl Loading for Discretised<'_> {
         self.mesh.describe_unknown(unknown)
     }
 }
+
+#[cfg(test)]
+mod tests;

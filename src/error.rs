@@ -137,6 +137,9 @@ pub enum SolveFault {
         /// The unknown that moves most, named with its place.
         place: String,
     },
+    /// A motion without strain that no support prevents.
+    #[error("{0}")]
+    FreeMotion(String),
     /// The tangent cannot be factorised at all.
     #[error(
         "the system of equations is singular: the supports leave a free motion, or conditions depend on each other"
@@ -202,6 +205,7 @@ impl SolveFault {
                 "end the path before it: beyond, the sheet leaves its plane, folds, or strains in one place only"
             }
             Self::Dependent { .. } => "leave out one of the conditions named",
+            Self::FreeMotion(_) => "add a support",
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
                 "add smaller stretches or load factors before this one, or raise the iteration limit"

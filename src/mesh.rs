@@ -181,6 +181,12 @@ impl Mesh {
         ]
     }
 
+    /// Middle of the box around all nodes, in mm.
+    pub fn middle(&self) -> [f64; 2] {
+        let [low, high] = self.bounding_box();
+        [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]))
+    }
+
     /// The reference coordinates of a point in a cell, by Newton's method; nothing where it finds none.
     fn local_coordinates(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
         let shape = self.shape(cell);

@@ -12,6 +12,6 @@ pub mod sparse;
 
 pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{Loading, PathEnd, State, compliance, follow, influence};
-pub use potential::{Assembly, Inadmissible, Local, Potential};
+pub use potential::{Assembly, Inadmissible, Local, Potential, SkewCoupling};
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu, SymmetricPattern};

@@ -5,6 +5,10 @@
 
 use std::fmt;
 
+mod linear;
+
+pub use linear::{Linear, LinearFault, parse_linear_length};
+
 /// The kind of a physical quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {

@@ -2,27 +2,27 @@
 //!
 //! ```text
 //! dead forces        Π = −s Σ fᵢ uᵢ                                                   [mJ]
-//! pressure p         Π = s p t A,   A = ½ ∫ (x dy − y dx) over the loaded edges         [mJ]
 //! ```
 //!
-//! The edges have the specimen to their left, so that A is the specimen's area as far as they bound it. A
-//! pressure has a potential where they are closed, where their ends are held, or where an end slides along an
-//! axis of symmetry that passes through the point about which A is measured.
+//! Pressures have a module of their own.
 
 use super::Load;
+use super::balance::Resultant;
+use super::pressure::{Edge, End, Pressures};
 use super::supports::Supported;
 use crate::mesh::{Group, Mesh};
-use crate::solve::{Inadmissible, Local, Potential};
+use crate::solve::{Inadmissible, Local, Potential, SkewCoupling};
 
 /// All loads of a problem at load factor 1.
 #[derive(Clone, Debug, Default)]
 pub struct Loaded {
-    /// Dead force in N on each unknown.
+    /// Dead force in N on each unknown, without those of grips.
     forces: Vec<f64>,
-    /// Edges under pressure: their nodes' unknowns, and p t in N/mm.
-    edges: Vec<(Vec<usize>, f64)>,
-    /// The unknowns that have dead forces.
+    /// Forces of grips: unknown, force in N.
+    pulls: Vec<(usize, f64)>,
+    /// The unknowns that have dead forces or pulls.
     pushed: Vec<usize>,
+    pressures: Pressures,
 }
 
 impl Loaded {
@@ -36,7 +36,7 @@ impl Loaded {
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.edges.is_empty() && self.pushed.is_empty()
+        self.pressures.edges.is_empty() && self.pushed.is_empty()
     }
 
     /// Adds dead forces in N.
@@ -44,13 +44,22 @@ impl Loaded {
         for (sum, force) in self.forces.iter_mut().zip(forces) {
             *sum += force;
         }
-        let unknowns = 0..self.forces.len();
-        self.pushed = unknowns
-            .filter(|unknown| self.forces[*unknown] != 0.0)
-            .collect();
+        self.find_pushed();
     }
 
-    /// Adds a load on a group; `is_held` says along which axes a node is held.
+    fn find_pushed(&mut self) {
+        let unknowns = 0..self.forces.len();
+        let pushed = unknowns.filter(|unknown| self.force(*unknown) != 0.0);
+        self.pushed = pushed.collect();
+    }
+
+    /// The dead force on an unknown and the pull of a grip there, in N.
+    fn force(&self, unknown: usize) -> f64 {
+        let own = self.pulls.iter().filter(|(pulled, _)| *pulled == unknown);
+        self.forces[unknown] + own.map(|(_, force)| force).sum::<f64>()
+    }
+
+    /// Adds a load on a group.
     ///
     /// # Errors
     /// Says why the group cannot carry it.
@@ -60,45 +69,45 @@ impl Loaded {
         group: &Group,
         load: &Load,
         thickness: f64,
-        is_held: &dyn Fn(usize) -> [bool; 2],
     ) -> Result<(), String> {
         let forces = dead_forces(mesh, group, load, thickness)?;
         if let Load::Pressure(pressure) = load {
-            need_edges(group, "a pressure")?;
-            let centre = centre(mesh, group, is_held)?;
-            for edge in &group.edges {
-                let unknowns = edge.iter().flat_map(|node| [2 * node, 2 * node + 1]);
-                self.edges.push((unknowns.collect(), pressure * thickness));
-            }
-            self.reference(mesh, group, centre, *pressure * thickness);
+            self.pressures.add(mesh, group, pressure * thickness);
         }
         self.add_forces(&forces);
         Ok(())
     }
 
-    /// Adds the forces on rigid grips.
-    pub fn pull(&mut self, supported: &Supported) {
-        let mut forces = vec![0.0; self.forces.len()];
-        for (unknown, force) in &supported.forces {
-            forces[*unknown] += force;
-        }
-        self.add_forces(&forces);
+    /// Adds the forces on rigid grips, and finds where pressures end; all loads must be known.
+    pub fn close(&mut self, supported: &Supported) {
+        self.pulls.clone_from(&supported.forces);
+        self.find_pushed();
+        let is_held = |unknown| supported.held.contains_key(&unknown);
+        self.pressures.close(&is_held);
     }
 
-    /// Edges know displacements only: the area's part that is linear in them acts as a dead force.
-    fn reference(&mut self, mesh: &Mesh, group: &Group, centre: [f64; 2], line_load: f64) {
-        let mut forces = vec![0.0; self.forces.len()];
-        for edge in &group.edges {
-            let place = |node: &usize| [0, 1].map(|axis| mesh.nodes[*node][axis] - centre[axis]);
-            let place: Vec<f64> = edge.iter().flat_map(place).collect();
-            let mut slope = vec![0.0; place.len()];
-            enclosed(&place, Some(&mut slope));
-            for (node, slope) in edge.iter().zip(slope.chunks_exact(2)) {
-                forces[2 * node] -= line_load * slope[0];
-                forces[2 * node + 1] -= line_load * slope[1];
-            }
-        }
-        self.add_forces(&forces);
+    /// The same loads without the forces on grips.
+    pub fn without_pulls(&self) -> Self {
+        let mut loads = Self {
+            pulls: Vec::new(),
+            ..self.clone()
+        };
+        loads.find_pushed();
+        loads
+    }
+
+    /// The resultant of all loads but the pulls of grips about a point, at a load factor; `places` are the deformed
+    /// ones of the nodes, `middle` the point to which the mesh's own coordinates are relative.
+    pub fn resultant(
+        &self,
+        factor: f64,
+        (places, u): (&[[f64; 2]], &[f64]),
+        (centre, middle): ([f64; 2], [f64; 2]),
+    ) -> Resultant {
+        let forces: Vec<f64> = self.forces.iter().map(|force| factor * force).collect();
+        let dead = Resultant::of_nodes(places, &forces, centre);
+        let about = [0, 1].map(|axis| centre[axis] - middle[axis]);
+        dead.plus(self.pressures.resultant(factor, u, about))
     }
 
     /// The potential of an energy with these loads at a load factor.
@@ -139,38 +148,9 @@ pub fn dead_forces(
                 }
             }
         }
-        Load::Pressure(_) => {}
+        Load::Pressure(_) => need_edges(group, "a pressure")?,
     }
     Ok(forces)
-}
-
-/// A point that lies on the axes along which the ends of loaded edges slide.
-fn centre(
-    mesh: &Mesh,
-    group: &Group,
-    is_held: &dyn Fn(usize) -> [bool; 2],
-) -> Result<[f64; 2], String> {
-    let mut centre = [None; 2];
-    for node in open_end(group) {
-        let place = mesh.nodes[node];
-        let held = is_held(node);
-        let slides = match held {
-            [true, true] => continue,
-            [true, false] => 0,
-            [false, true] => 1,
-            [false, false] => 2,
-        };
-        // An end that slides along Y keeps its X, and the other way round.
-        let fits = slides < 2 && centre[slides].is_none_or(|known: f64| known == place[slides]);
-        if !fits {
-            let [x, y] = place;
-            return Err(format!(
-                "is under pressure and ends freely at ({x}, {y}) mm; its ends must be held or slide along axes of symmetry, or it must be closed"
-            ));
-        }
-        centre[slides] = Some(place[slides]);
-    }
-    Ok(centre.map(|x| x.unwrap_or(0.0)))
 }
 
 fn need_edges(group: &Group, what: &str) -> Result<(), String> {
@@ -178,19 +158,6 @@ fn need_edges(group: &Group, what: &str) -> Result<(), String> {
         return Err(format!("has no edges of the boundary, which {what} needs"));
     }
     Ok(())
-}
-
-/// The nodes at which a chain of edges begins or ends.
-fn open_end(group: &Group) -> Vec<usize> {
-    let mut ends = std::collections::BTreeMap::new();
-    for edge in &group.edges {
-        *ends.entry(edge[0]).or_insert(0) += 1;
-        *ends.entry(edge[1]).or_insert(0) -= 1;
-    }
-    ends.into_iter()
-        .filter(|(_, sum)| *sum != 0)
-        .map(|(node, _)| node)
-        .collect()
 }
 
 /// The share of an edge's length that belongs to each of its nodes, in mm.
@@ -228,46 +195,38 @@ fn edge_functions(nodes: usize, x: f64) -> (Vec<f64>, Vec<f64>) {
     )
 }
 
-/// ½ ∫ (x dy − y dx) along an edge with the coordinates x, y of node after node; its derivatives into `slope`.
-///
-/// ```text
-/// two nodes     ½ (a × b)
-/// three nodes   ½ (⅔ (2 a × m + 2 m × b) − ⅓ a × b),   m the middle
-/// ```
-fn enclosed(place: &[f64], slope: Option<&mut [f64]>) -> f64 {
-    let mut area = 0.0;
-    let mut add = |i: usize, j: usize, factor: f64, slope: &mut [f64]| {
-        let (a, b) = (
-            [place[2 * i], place[2 * i + 1]],
-            [place[2 * j], place[2 * j + 1]],
-        );
-        area += factor * (a[0] * b[1] - a[1] * b[0]);
-        slope[2 * i] += factor * b[1];
-        slope[2 * i + 1] -= factor * b[0];
-        slope[2 * j] -= factor * a[1];
-        slope[2 * j + 1] += factor * a[0];
-    };
-    let mut unwanted = vec![0.0; place.len()];
-    let slope = slope.unwrap_or(&mut unwanted);
-    for (i, j, factor) in pairs(place.len() / 2) {
-        add(*i, *j, *factor, slope);
-    }
-    area
-}
-
-/// The pairs of nodes whose cross products make up the area beside an edge, with their factors.
-fn pairs(nodes: usize) -> &'static [(usize, usize, f64)] {
-    const LINEAR: [(usize, usize, f64); 1] = [(0, 1, 0.5)];
-    const QUADRATIC: [(usize, usize, f64); 3] =
-        [(0, 2, 2.0 / 3.0), (2, 1, 2.0 / 3.0), (0, 1, -1.0 / 6.0)];
-    if nodes == 2 { &LINEAR } else { &QUADRATIC }
-}
-
 /// An energy with loads at one load factor.
 pub struct LoadedPotential<'a> {
     energy: &'a dyn Potential,
     loads: &'a Loaded,
     factor: f64,
+}
+
+/// A term of the sum.
+enum Term<'a> {
+    Energy,
+    Edge(&'a Edge),
+    End(&'a End),
+    Force(&'a [usize]),
+}
+
+impl LoadedPotential<'_> {
+    fn find(&self, element: usize) -> Term<'_> {
+        let Pressures { edges, ends } = &self.loads.pressures;
+        let Some(own) = element.checked_sub(self.energy.elements()) else {
+            return Term::Energy;
+        };
+        if let Some(edge) = edges.get(own) {
+            return Term::Edge(edge);
+        }
+        match ends.get(own - edges.len()) {
+            Some(end) => Term::End(end),
+            None => {
+                let pushed = own - edges.len() - ends.len();
+                Term::Force(&self.loads.pushed[pushed..=pushed])
+            }
+        }
+    }
 }
 
 impl Potential for LoadedPotential<'_> {
@@ -276,26 +235,29 @@ impl Potential for LoadedPotential<'_> {
     }
 
     fn elements(&self) -> usize {
-        self.energy.elements() + self.loads.edges.len() + self.loads.pushed.len()
+        let Loaded {
+            pressures, pushed, ..
+        } = self.loads;
+        self.energy.elements() + pressures.edges.len() + pressures.ends.len() + pushed.len()
     }
 
     fn element_unknowns(&self, element: usize) -> &[usize] {
-        let own = self.energy.elements();
-        if element < own {
-            return self.energy.element_unknowns(element);
-        }
-        let edges = &self.loads.edges;
-        match edges.get(element - own) {
-            Some((unknowns, _)) => unknowns,
-            None => {
-                let pushed = element - own - edges.len();
-                &self.loads.pushed[pushed..=pushed]
-            }
+        match self.find(element) {
+            Term::Energy => self.energy.element_unknowns(element),
+            Term::Edge(edge) => &edge.unknowns,
+            Term::End(end) => &end.unknowns,
+            Term::Force(unknown) => unknown,
         }
     }
 
     fn place(&self, unknown: usize) -> Option<[f64; 2]> {
         self.energy.place(unknown)
+    }
+
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        let mut all = self.energy.skew_couplings();
+        all.extend(self.loads.pressures.skew(self.factor));
+        all
     }
 
     fn evaluate_element(
@@ -304,31 +266,16 @@ impl Potential for LoadedPotential<'_> {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        let own = self.energy.elements();
-        if element < own {
-            return self.energy.evaluate_element(element, u, local);
-        }
-        let edges = &self.loads.edges;
-        let Some((_, line_load)) = edges.get(element - own) else {
-            let unknown = self.loads.pushed[element - own - edges.len()];
-            let force = self.factor * self.loads.forces[unknown];
-            local.residual[0] = -force;
-            return Ok(-force * u[0]);
-        };
-        let factor = self.factor * line_load;
-        let energy = factor * enclosed(u, Some(local.residual));
-        local.residual.iter_mut().for_each(|r| *r *= factor);
-        if let Some(stiffness) = local.stiffness {
-            let size = u.len();
-            for (i, j, share) in pairs(size / 2) {
-                let value = factor * share;
-                for (row, column, sign) in [(2 * i, 2 * j + 1, 1.0), (2 * i + 1, 2 * j, -1.0)] {
-                    stiffness[row * size + column] += sign * value;
-                    stiffness[column * size + row] += sign * value;
-                }
+        match self.find(element) {
+            Term::Energy => self.energy.evaluate_element(element, u, local),
+            Term::Edge(edge) => Ok(edge.evaluate(self.factor, u, local)),
+            Term::End(end) => Ok(end.energy(self.factor, u)),
+            Term::Force(unknown) => {
+                let force = self.factor * self.loads.force(unknown[0]);
+                local.residual[0] = -force;
+                Ok(-force * u[0])
             }
         }
-        Ok(energy)
     }
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {

@@ -53,11 +53,16 @@ pub struct Supported {
 }
 
 impl Supported {
-    /// Adds a support of a group; it replaces earlier ones on the nodes that they share.
+    /// Adds a support of a group; on nodes that it shares with earlier ones they must agree.
     ///
     /// # Errors
     /// Says why the group cannot be held so.
     pub fn add(&mut self, mesh: &Mesh, group: &Group, support: &Support) -> Result<(), String> {
+        if let Support::Radial { centre, .. } = support
+            && group.nodes.iter().any(|node| mesh.nodes[*node] == *centre)
+        {
+            return Err("has a node at the centre of its radial displacement, where no direction leads away from it; move the centre, or leave the node out".into());
+        }
         for axis in [0, 1] {
             if let Support::Grip(drives) = support
                 && let Drive::Force(force) = drives[axis]
@@ -72,38 +77,16 @@ impl Supported {
                 }
             }
         }
-        self.check_ties(mesh)
+        Ok(())
     }
 
     /// Ties the nodes of a group along an axis to the first of them, which takes the force.
     fn tie(&mut self, group: &Group, axis: usize, force: f64) -> Result<(), String> {
         let mut unknowns = group.nodes.iter().map(|node| 2 * node + axis);
         let first = unknowns.next().ok_or("has no nodes")?;
-        let known = self.ties.clone();
-        let masters: Vec<usize> = self.forces.iter().map(|(unknown, _)| *unknown).collect();
-        for unknown in unknowns.clone().chain([first]) {
-            if known.contains_key(&unknown) || masters.contains(&unknown) {
-                return Err(
-                    "shares nodes with another grip; leave them out of one of the groups".into(),
-                );
-            }
-        }
         self.ties.extend(unknowns.map(|unknown| (unknown, first)));
         self.forces.push((first, force));
         Ok(())
-    }
-
-    /// A grip that is pulled must not be held by other supports as well.
-    fn check_ties(&self, mesh: &Mesh) -> Result<(), String> {
-        let masters = self.forces.iter().map(|(unknown, _)| unknown);
-        let mut tied = self.ties.keys().chain(masters);
-        match tied.find(|unknown| self.held.contains_key(unknown)) {
-            None => Ok(()),
-            Some(unknown) => Err(format!(
-                "shares {} between a grip with a force and another support; leave the node out of one of the groups, or give the grip a displacement there",
-                mesh.describe_unknown(*unknown)
-            )),
-        }
     }
 }
 
@@ -111,6 +94,17 @@ impl Supported {
 fn motion(support: &Support, node: [f64; 2], axis: usize) -> Option<Motion> {
     match *support {
         Support::Displacement(displacement) => displacement[axis].map(Motion::Straight),
+        Support::LinearDisplacement(field) => {
+            field[axis].map(|along| Motion::Straight(along.at(node)))
+        }
+        Support::Radial {
+            centre,
+            displacement,
+        } => {
+            let arm = [node[0] - centre[0], node[1] - centre[1]];
+            let along = arm[axis] / arm[0].hypot(arm[1]);
+            Some(Motion::Straight(displacement * along))
+        }
         Support::Roller => Some(Motion::Straight(0.0)),
         Support::Rotation { centre, angle } => {
             let place = [node[0] - centre[0], node[1] - centre[1]];

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::solve::{Inadmissible, Local, Potential};
+use crate::solve::{Inadmissible, Local, Potential, SkewCoupling};
 
 /// Π(u) with uᵢ = uₖ for every tie (i, k): elements depend on the k alone, and no equation is left for an i.
 ///
@@ -12,6 +12,7 @@ use crate::solve::{Inadmissible, Local, Potential};
 pub struct Tied<'a> {
     potential: Box<dyn Potential + 'a>,
     elements: BTreeMap<usize, TiedElement>,
+    ties: BTreeMap<usize, usize>,
 }
 
 /// An element with tied unknowns.
@@ -45,6 +46,7 @@ impl<'a> Tied<'a> {
         Self {
             potential,
             elements,
+            ties: ties.clone(),
         }
     }
 }
@@ -73,6 +75,17 @@ impl Potential for Tied<'_> {
 
     fn place(&self, unknown: usize) -> Option<[f64; 2]> {
         self.potential.place(unknown)
+    }
+
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        let master = |unknown: usize| *self.ties.get(&unknown).unwrap_or(&unknown);
+        let own = self.potential.skew_couplings().into_iter();
+        own.map(|coupling| SkewCoupling {
+            row: master(coupling.row),
+            column: master(coupling.column),
+            ..coupling
+        })
+        .collect()
     }
 
     fn evaluate_element(

@@ -153,7 +153,8 @@ struct Held {
 }
 
 impl Held {
-    /// The displacement in mm at load factor 1 where it is the same for all nodes and grows with the factor.
+    /// The displacement in mm at load factor 1 where it is the same for all nodes and grows with the factor; the others
+    /// go out node by node.
     fn uniform(&self) -> Option<f64> {
         match self.support {
             Support::Displacement(displacement) => displacement[self.axis],
@@ -162,7 +163,9 @@ impl Held {
                 Drive::Displacement(displacement) => Some(displacement),
                 Drive::Force(_) => None,
             },
-            Support::Rotation { .. } => None,
+            Support::LinearDisplacement(_) | Support::Radial { .. } | Support::Rotation { .. } => {
+                None
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! Newton's method for the minimum of a potential, with a line search that keeps every element admissible.
 
-use super::potential::{Assembly, Inadmissible, Potential};
+use super::potential::{Assembly, Inadmissible, Potential, SkewCoupling};
 use super::sparse::{Cholesky, NotPositiveDefinite, largest, norm};
 use crate::error::SolveFault;
 
@@ -37,6 +37,8 @@ impl Convergence {
 pub struct Newton {
     assembly: Assembly,
     cholesky: Cholesky,
+    /// The part of the tangent factorised last that is not symmetric, over the free unknowns.
+    skew: Vec<SkewCoupling>,
     indefinite: Option<Vec<f64>>,
 }
 
@@ -66,6 +68,7 @@ impl Newton {
         Ok(Self {
             assembly,
             cholesky,
+            skew: Vec::new(),
             indefinite: None,
         })
     }
@@ -96,9 +99,7 @@ impl Newton {
         settings: NewtonSettings,
         describe: &dyn Fn(usize) -> String,
     ) -> Result<Convergence, SolveFault> {
-        let inverted = |fault: Inadmissible| SolveFault::Inverted {
-            element: describe(fault.element),
-        };
+        let inverted = |fault: Inadmissible| inverted(&fault, describe);
         let mut log = Convergence::default();
         let mut stiffness = Vec::new();
         self.indefinite = None;
@@ -138,6 +139,7 @@ impl Newton {
                 });
             }
             log.shifted_steps += usize::from(shifted);
+            self.take_skew(potential, 1.0);
             let step = self.step(residual)?;
             let (length, energy) = self
                 .search(potential, u, residual, energy, &step)
@@ -155,7 +157,7 @@ impl Newton {
     }
 
     /// The change of the free unknowns by the tangent at `u` when the held ones move by `motion` and the
-    /// potential is the one given; nothing at held unknowns.
+    /// potential is the one given; nothing at held unknowns. A guess: the tangent is shifted where it is not positive definite.
     ///
     /// # Errors
     /// A [`SolveFault`] when `u` is not admissible or the tangent cannot be factorised.
@@ -166,18 +168,37 @@ impl Newton {
         motion: &[f64],
         describe: &dyn Fn(usize) -> String,
     ) -> Result<Vec<f64>, SolveFault> {
-        let mut residual = self.tangent(potential, u, describe)?;
-        let inverted = |fault: Inadmissible| SolveFault::Inverted {
-            element: describe(fault.element),
-        };
-        Assembly::add_product(potential, u, motion, &mut residual).map_err(inverted)?;
+        let (mut residual, _) = self.factorise_at(potential, u, describe)?;
+        self.take_skew(potential, 1.0);
+        add_product((potential, 1.0), u, motion, &mut residual, describe)?;
         self.change(&residual)
     }
 
-    /// The change of the free unknowns by the tangent at `u` under small forces on them; nothing at held unknowns.
+    /// The field that is at rest at free unknowns under the transposed tangent at `u` while held ones move by `motion`: the
+    /// influence of forces on free unknowns on the work of the reactions in that motion; `motion` itself at held unknowns.
     ///
     /// # Errors
-    /// A [`SolveFault`] when `u` is not admissible or the tangent cannot be factorised.
+    /// A [`SolveFault`] when `u` is not admissible or the tangent there is not positive definite.
+    pub fn influence(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        motion: &[f64],
+        describe: &dyn Fn(usize) -> String,
+    ) -> Result<Vec<f64>, SolveFault> {
+        self.tangent(potential, u, describe)?;
+        self.take_skew(potential, -1.0);
+        let mut forces = vec![0.0; u.len()];
+        add_product((potential, -1.0), u, motion, &mut forces, describe)?;
+        let change = self.change(&forces)?;
+        Ok(motion.iter().zip(change).map(|(m, c)| m + c).collect())
+    }
+
+    /// The change of the free unknowns by the transposed tangent at `u` under small forces on them; nothing at held
+    /// unknowns. The tangent of a potential is its own transpose.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when `u` is not admissible or the tangent there is not positive definite.
     pub fn respond(
         &mut self,
         potential: &dyn Potential,
@@ -186,6 +207,7 @@ impl Newton {
         describe: &dyn Fn(usize) -> String,
     ) -> Result<Vec<f64>, SolveFault> {
         self.tangent(potential, u, describe)?;
+        self.take_skew(potential, -1.0);
         let opposed: Vec<f64> = forces.iter().map(|force| -force).collect();
         self.change(&opposed)
     }
@@ -193,21 +215,49 @@ impl Newton {
     /// Factorises the tangent at `u` for [`Self::changes`]; the residual there, at held unknowns too.
     ///
     /// # Errors
-    /// A [`SolveFault`] when `u` is not admissible or the tangent cannot be factorised.
+    /// A [`SolveFault`] when `u` is not admissible or the tangent there is not positive definite: what followed from a shifted
+    /// one would be the derivative of another body.
     pub fn tangent(
         &mut self,
         potential: &dyn Potential,
         u: &[f64],
         describe: &dyn Fn(usize) -> String,
     ) -> Result<Vec<f64>, SolveFault> {
+        let (residual, shifted) = self.factorise_at(potential, u, describe)?;
+        self.take_skew(potential, 1.0);
+        match shifted {
+            true => Err(SolveFault::NotPositiveDefinite),
+            false => Ok(residual),
+        }
+    }
+
+    /// Factorises the tangent at `u`; the residual there, and whether the tangent had to be shifted.
+    fn factorise_at(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        describe: &dyn Fn(usize) -> String,
+    ) -> Result<(Vec<f64>, bool), SolveFault> {
         let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
         self.assembly
             .linearise(potential, u, &mut residual, &mut stiffness)
-            .map_err(|fault| SolveFault::Inverted {
-                element: describe(fault.element),
-            })?;
-        self.factorise(&mut stiffness)?;
-        Ok(residual)
+            .map_err(|fault| inverted(&fault, describe))?;
+        let shifted = self.factorise(&mut stiffness)?;
+        Ok((residual, shifted))
+    }
+
+    /// Takes the skew part of a potential's tangent between free unknowns with a sign: −1 for the transposed tangent.
+    fn take_skew(&mut self, potential: &dyn Potential, sign: f64) {
+        let free = |unknown| self.assembly.free_index(unknown);
+        let all = potential.skew_couplings().into_iter();
+        let couplings = all.filter_map(|coupling| {
+            Some(SkewCoupling {
+                row: free(coupling.row)?,
+                column: free(coupling.column)?,
+                stiffness: sign * coupling.stiffness,
+            })
+        });
+        self.skew = couplings.collect();
     }
 
     /// −K⁻¹ r at the free unknowns, by the tangent factorised last, of many residuals one after the other; nothing at held
@@ -318,11 +368,39 @@ impl Newton {
         Ok(shift > 0.0)
     }
 
+    /// −K⁻¹ r by the symmetric factor; a skew part, small beside it, is added by iteration: K_s dᵢ₊₁ = −r − S dᵢ.
     fn step(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
+        const ITERATIONS: usize = 60;
         let negative: Vec<f64> = self.assembly.free().iter().map(|i| -residual[*i]).collect();
-        self.cholesky
-            .solve(&negative)
-            .map_err(|_| SolveFault::Singular)
+        let mut solve = |right: &[f64]| {
+            let solved = self.cholesky.solve(right);
+            solved.map_err(|_| SolveFault::Singular)
+        };
+        let mut step = solve(&negative)?;
+        let mut last = f64::INFINITY;
+        for _ in 0..if self.skew.is_empty() { 0 } else { ITERATIONS } {
+            let mut right = negative.clone();
+            for SkewCoupling {
+                row,
+                column,
+                stiffness,
+            } in &self.skew
+            {
+                right[*row] -= stiffness * step[*column];
+                right[*column] += stiffness * step[*row];
+            }
+            let next = solve(&right)?;
+            let moved: Vec<f64> = next.iter().zip(&step).map(|(a, b)| a - b).collect();
+            let change = largest(&moved);
+            if change.is_nan() || change >= last {
+                break;
+            }
+            (step, last) = (next, change);
+            if change <= 1e-14 * largest(&step) {
+                break;
+            }
+        }
+        Ok(step)
     }
 
     /// Goes along `step` as far as the energy falls (Armijo) and all elements stay admissible.
@@ -368,6 +446,34 @@ impl Newton {
             length *= 0.5;
         }
     }
+}
+
+fn inverted(fault: &Inadmissible, describe: &dyn Fn(usize) -> String) -> SolveFault {
+    SolveFault::Inverted {
+        element: describe(fault.element),
+    }
+}
+
+/// Adds the forces K m of a small motion m of some unknowns, at all unknowns; Kᵀ m where the sign of the skew part is −1.
+fn add_product(
+    (potential, sign): (&dyn Potential, f64),
+    u: &[f64],
+    motion: &[f64],
+    forces: &mut [f64],
+    describe: &dyn Fn(usize) -> String,
+) -> Result<(), SolveFault> {
+    Assembly::add_product(potential, u, motion, forces)
+        .map_err(|fault| inverted(&fault, describe))?;
+    for SkewCoupling {
+        row,
+        column,
+        stiffness,
+    } in potential.skew_couplings()
+    {
+        forces[row] += sign * stiffness * motion[column];
+        forces[column] -= sign * stiffness * motion[row];
+    }
+    Ok(())
 }
 
 /// Entries of the free unknowns among all, the others nothing.

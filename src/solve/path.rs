@@ -128,12 +128,12 @@ pub fn follow(
     Ok(states)
 }
 
-/// The change of an equilibrium by its tangent while held unknowns move as `motion` says and the others follow:
-/// the sensitivity of the field to a support's motion, and, as the tangent is symmetric, the influence of a
-/// disturbance of the field on the support's reaction.
+/// The change of an equilibrium by its transposed tangent while held unknowns move as `motion` says and the others
+/// follow: the influence of a disturbance of the field on the support's reaction, and, where the tangent is symmetric, the
+/// sensitivity of the field to the support's motion.
 ///
 /// # Errors
-/// A [`SolveFault`] when the tangent cannot be factorised.
+/// A [`SolveFault`] when the tangent is not positive definite.
 pub fn influence(
     loading: &dyn Loading,
     state: (f64, &[f64]),
@@ -143,15 +143,15 @@ pub fn influence(
     let potential = loading.potential(factor);
     let mut newton = Newton::new(&*potential, &loading.held())?;
     let describe = |element| loading.describe(element);
-    let change = newton.predict(&*potential, displacement, motion, &describe)?;
-    Ok(motion.iter().zip(change).map(|(m, c)| m + c).collect())
+    newton.influence(&*potential, displacement, motion, &describe)
 }
 
-/// The change of an equilibrium by its tangent under small forces on free unknowns, while held ones rest; by symmetry,
-/// the influence of a disturbance of the field on the forces' displacement.
+/// The change of an equilibrium by its transposed tangent under small forces on free unknowns, while held ones rest: the
+/// influence of a disturbance of the field on the forces' displacement, and, where the tangent is symmetric, the sensitivity
+/// of the field to the forces.
 ///
 /// # Errors
-/// A [`SolveFault`] when the tangent cannot be factorised.
+/// A [`SolveFault`] when the tangent is not positive definite.
 pub fn compliance(
     loading: &dyn Loading,
     state: (f64, &[f64]),

@@ -20,6 +20,17 @@ pub struct Local<'a> {
     pub stiffness: Option<&'a mut [f64]>,
 }
 
+/// A part of the tangent that is not symmetric: K_rc += k, K_cr −= k.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkewCoupling {
+    /// The unknown r.
+    pub row: usize,
+    /// The unknown c.
+    pub column: usize,
+    /// k in N/mm.
+    pub stiffness: f64,
+}
+
 /// A potential energy Π(u) = Σ Πₑ(u), one term an element.
 ///
 /// Mass-spring lattices, finite elements and the corrector's difference scheme are all of this kind,
@@ -37,6 +48,12 @@ pub trait Potential: Sync {
     /// Where an unknown is in the body, if that is known: large systems are eliminated in an order by places.
     fn place(&self, _unknown: usize) -> Option<[f64; 2]> {
         None
+    }
+
+    /// What the derivatives of the residual have beside the symmetric stiffness of the elements: forces without a
+    /// potential, such as a pressure that follows an edge up to its free end. None for a true potential.
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        Vec::new()
     }
 
     /// Πₑ, and its derivatives into `local`, at the element's own unknowns `u`.
@@ -72,6 +89,10 @@ impl<P: Potential + ?Sized> Potential for &P {
 
     fn place(&self, unknown: usize) -> Option<[f64; 2]> {
         (**self).place(unknown)
+    }
+
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        (**self).skew_couplings()
     }
 
     fn evaluate_element(

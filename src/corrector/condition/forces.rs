@@ -2,7 +2,7 @@
 
 use super::{Condition, Linearised};
 use crate::solve::sparse::{largest, moved};
-use crate::solve::{Assembly, Inadmissible, Potential, SparseRows};
+use crate::solve::{Assembly, Inadmissible, Potential, SkewCoupling, SparseRows};
 
 /// Balance of forces ∂Π/∂uᵢ − fᵢ = 0 at the chosen unknowns, in N.
 ///
@@ -173,7 +173,19 @@ fn internal_forces(
 ) -> Result<(Vec<f64>, Rows), Inadmissible> {
     let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
     assembly.linearise(potential, u, &mut residual, &mut stiffness)?;
-    Ok((residual, assembly.pattern().full_rows(&stiffness)))
+    let mut rows = assembly.pattern().full_rows(&stiffness);
+    for SkewCoupling {
+        row,
+        column,
+        stiffness,
+    } in potential.skew_couplings()
+    {
+        for (row, column, value) in [(row, column, stiffness), (column, row, -stiffness)] {
+            let own = rows[row].iter_mut().find(|(own, _)| *own == column);
+            own.expect("two unknowns of one node").1 += value;
+        }
+    }
+    Ok((residual, rows))
 }
 
 /// ∂K/∂u · d by central differences: the curvature of the residual, weighted by d, which is given as

@@ -1,7 +1,9 @@
-//! A ring under pressure inside, at small strain: Lamé's solution, and turned pressure at large strain.
+//! A ring under pressure inside. At small strain: Lamé's solution; at large strain: a round ring, and the displacements
+//! and the supports' forces of a solution in one dimension.
 //!
 //! ```text
 //! u(a) = (p a/E) ((b² + a²)/(b² − a²) + ν),   ν = ½                                      [mm]
+//! R = p t r(a)      force of the supports on either line of symmetry of a quarter          [N]
 //! ```
 //!
 //! # References
@@ -17,6 +19,10 @@ use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::solve::State;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
+
+mod one_dimension;
+
+use one_dimension::Ring;
 
 const INNER: f64 = 10.0;
 const OUTER: f64 = 20.0;
@@ -62,6 +68,9 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
         "symmetry of a pressure that follows the surface",
         round,
     ));
+    for stretch in [1.5, 2.0] {
+        outcome.checks.extend(beside_one_dimension(&mesh, stretch)?);
+    }
     outcome.figures.push(mesh_figure(
         "ring.png",
         "A quarter of the ring; the pressure acts inside.",
@@ -69,6 +78,53 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
         &quarter(6, CellShape::Quad9),
     ));
     Ok(outcome)
+}
+
+/// The bore, the outside and the supports' forces under the pressure that stretches the bore so far in one dimension.
+fn beside_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> {
+    let ring = Ring {
+        radii: [INNER, OUTER],
+        slope: &|_| sheet().law.shear_modulus() / 2.0,
+    };
+    let [pressure, outside] = ring.pressure(stretch);
+    let solved = pressed(mesh, pressure, 6)?;
+    let mean = |group: &str| {
+        let radii = deformed_radii(mesh, group, &solved.state);
+        radii.iter().sum::<f64>() / radii.len() as f64
+    };
+    let source = "one-dimensional solution by Runge and Kutta";
+    let check = |what: &str, unit: &'static str, expected: f64, found: f64| {
+        let quantity = format!("bore to {stretch} of its radius: {what}");
+        Check::new(quantity, unit, Wanted::Equal(expected, 0.01), source, found)
+    };
+    let force = pressure * sheet().thickness * INNER * stretch;
+    let mut checks = vec![
+        check("radius of the bore", "mm", INNER * stretch, mean("inside")),
+        check(
+            "radius of the outside",
+            "mm",
+            OUTER + outside,
+            mean("outside"),
+        ),
+        check(
+            "force on the vertical line of symmetry",
+            "N",
+            force,
+            -solved.forces[0],
+        ),
+        check(
+            "force on the horizontal line of symmetry",
+            "N",
+            force,
+            -solved.forces[1],
+        ),
+    ];
+    let quantity =
+        format!("bore to {stretch} of its radius: unbalanced forces and moments, relative");
+    let wanted = Wanted::AtMost(1e-9);
+    let source = "equilibrium of the whole";
+    checks.push(Check::new(quantity, "–", wanted, source, solved.unbalanced));
+    Ok(checks)
 }
 
 fn quarter(cells: usize, shape: CellShape) -> Mesh {
@@ -87,11 +143,20 @@ fn quarter(cells: usize, shape: CellShape) -> Mesh {
 /// A quarter of the ring, and its state at the large pressure.
 pub fn blown_up(cells: usize, shape: CellShape) -> Result<(Mesh, State), Error> {
     let mesh = quarter(cells, shape);
-    let state = pressed(&mesh, LARGE_PRESSURE * sheet().law.youngs_modulus(), 6)?;
-    Ok((mesh, state))
+    let solved = pressed(&mesh, LARGE_PRESSURE * sheet().law.youngs_modulus(), 6)?;
+    Ok((mesh, solved.state))
 }
 
-fn pressed(mesh: &Mesh, pressure: f64, steps: usize) -> Result<State, Error> {
+/// A quarter under pressure.
+struct Pressed {
+    state: State,
+    /// Of the supports across the vertical and the horizontal line of symmetry, in N.
+    forces: [f64; 2],
+    /// What is left of all forces and moments, relative.
+    unbalanced: f64,
+}
+
+fn pressed(mesh: &Mesh, pressure: f64, steps: usize) -> Result<Pressed, Error> {
     let mut problem = held(&[
         ("symmetry_x", [Some(0.0), None]),
         ("symmetry_y", [None, Some(0.0)]),
@@ -101,21 +166,49 @@ fn pressed(mesh: &Mesh, pressure: f64, steps: usize) -> Result<State, Error> {
         .push(("inside".into(), Load::Pressure(pressure)));
     let energy = problem.finite_elements(mesh);
     let model = problem.on(mesh, &energy).map_err(misfit)?;
-    solve(&model, "ring", steps)
+    let state = solve(&model, "ring", steps)?;
+    Ok(Pressed {
+        forces: [
+            model.reaction(&state, "symmetry_x")[0],
+            model.reaction(&state, "symmetry_y")[1],
+        ],
+        unbalanced: model.balance(&state).relative(),
+        state,
+    })
+}
+
+/// The deformed distances of a group's nodes from the centre in mm.
+fn deformed_radii(mesh: &Mesh, group: &str, state: &State) -> Vec<f64> {
+    let radius = |node: &usize| {
+        let place =
+            [0, 1].map(|axis| mesh.nodes[*node][axis] + state.displacement[2 * node + axis]);
+        place[0].hypot(place[1])
+    };
+    mesh.groups()[group].nodes.iter().map(radius).collect()
 }
 
 /// The mean radial displacement of the inner edge in mm, and how far it is from round, relative.
 fn inflate(mesh: &Mesh, pressure: f64, steps: usize) -> Result<[f64; 2], Error> {
-    let state = pressed(mesh, pressure, steps)?;
-    let radii = mesh.groups()["inside"].nodes.iter().map(|node| {
-        let place =
-            [0, 1].map(|axis| mesh.nodes[*node][axis] + state.displacement[2 * node + axis]);
-        place[0].hypot(place[1])
-    });
-    let radii: Vec<f64> = radii.collect();
+    let radii = deformed_radii(mesh, "inside", &pressed(mesh, pressure, steps)?.state);
     let mean = radii.iter().sum::<f64>() / radii.len() as f64;
     let out = radii
         .iter()
         .fold(0.0, |most: f64, radius| most.max((radius - mean).abs()));
     Ok([mean - INNER, out / mean])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pressure or a thickness that is a hundredth off misses this.
+    #[test]
+    fn a_bore_stretched_to_twice_its_radius_is_that_of_the_one_dimensional_solution() {
+        let mesh = quarter(6, CellShape::Quad9);
+        for stretch in [1.5, 2.0] {
+            for check in beside_one_dimension(&mesh, stretch).unwrap() {
+                assert!(check.passed(), "{check:?}");
+            }
+        }
+    }
 }

@@ -1,0 +1,128 @@
+//! The balance of all forces on a body, and of their moments.
+
+/// Forces and their moment about a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Resultant {
+    /// Sum of the forces in N.
+    pub force: [f64; 2],
+    /// Sum of their moments in N·mm, counter-clockwise.
+    pub moment: f64,
+    /// Sum of the sizes of all single forces in N.
+    pub size: f64,
+}
+
+impl Resultant {
+    /// Of nodal forces in N, one for each unknown, at places in mm about a centre.
+    pub fn of_nodes(places: &[[f64; 2]], forces: &[f64], centre: [f64; 2]) -> Self {
+        let mut sum = Self::default();
+        for (place, force) in places.iter().zip(forces.chunks_exact(2)) {
+            let arm = [place[0] - centre[0], place[1] - centre[1]];
+            sum.force[0] += force[0];
+            sum.force[1] += force[1];
+            sum.moment += arm[0] * force[1] - arm[1] * force[0];
+            sum.size += force[0].hypot(force[1]);
+        }
+        sum
+    }
+
+    /// The sum of two resultants about the same point.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            force: [0, 1].map(|axis| self.force[axis] + other.force[axis]),
+            moment: self.moment + other.moment,
+            size: self.size + other.size,
+        }
+    }
+}
+
+/// What is left of supports and loads together; nothing in equilibrium.
+///
+/// ```text
+/// F = Σ R + Σ f,   M = Σ (x − c) × (R + f)
+/// ```
+///
+/// R are the forces of the supports, grips that are pulled among them, and f the loads, on the deformed places x; c is the
+/// centre of the body. As the forces within a body have no resultant whatever its field is, F measures the
+/// equilibrium of the free nodes, and M the objectivity of the energy too. Forces of a pressure are counted by their
+/// resultant on the deformed edges and not by their nodal forces: wrong ones are seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance {
+    /// Sum of all forces in N.
+    pub force: [f64; 2],
+    /// Sum of their moments about the centre of the body in N·mm.
+    pub moment: f64,
+    /// The sum of the sizes of all forces of the supports in N, or of all loads where that is larger.
+    pub largest_force: f64,
+    /// The same times half the diagonal of the body, in N·mm.
+    pub largest_moment: f64,
+}
+
+impl Balance {
+    /// The balance of a body with its nodes at deformed places, in mm, under the forces of its supports, one for each
+    /// unknown in N, alone.
+    pub fn of_supports(places: &[[f64; 2]], supports: &[f64]) -> Self {
+        let body = Body::new(places);
+        let supports = Resultant::of_nodes(places, supports, body.centre);
+        body.balance(supports, Resultant::default(), 0.0)
+    }
+
+    /// The largest unbalanced force or moment over the largest of all.
+    pub fn relative(&self) -> f64 {
+        let ratio = |rest: f64, largest: f64| if rest == 0.0 { 0.0 } else { rest / largest };
+        let force = self.force[0].hypot(self.force[1]);
+        let moment = self.moment.abs();
+        ratio(force, self.largest_force).max(ratio(moment, self.largest_moment))
+    }
+}
+
+/// The box around the deformed nodes of a body.
+pub struct Body {
+    /// Its centre.
+    pub centre: [f64; 2],
+    half_diagonal: f64,
+}
+
+impl Body {
+    /// Around some places.
+    pub fn new(places: &[[f64; 2]]) -> Self {
+        let limit = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
+            places.iter().map(|place| place[axis]).fold(start, pick)
+        };
+        let low = [0, 1].map(|axis| limit(axis, f64::min, f64::INFINITY));
+        let high = [0, 1].map(|axis| limit(axis, f64::max, f64::NEG_INFINITY));
+        Self {
+            centre: [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])),
+            half_diagonal: 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]),
+        }
+    }
+
+    /// The balance of supports and loads about the centre; forces below `negligible` in N are rounding.
+    pub fn balance(&self, supports: Resultant, loads: Resultant, negligible: f64) -> Balance {
+        let sum = supports.plus(loads);
+        let largest_force = supports.size.max(loads.size).max(negligible);
+        Balance {
+            force: sum.force,
+            moment: sum.moment,
+            largest_force,
+            largest_moment: largest_force * self.half_diagonal,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_couple_has_a_moment_and_no_force() {
+        let places = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]];
+        let balance = Balance::of_supports(&places, &[0.0, -2.0, 0.0, 2.0, 0.0, 0.0]);
+        assert_eq!(balance.force, [0.0; 2]);
+        assert_eq!(balance.moment, 8.0);
+        assert_eq!(balance.largest_force, 4.0);
+        assert_eq!(balance.largest_moment, 10.0);
+        assert_eq!(balance.relative(), 0.8);
+        assert_eq!(Balance::of_supports(&places, &[0.0; 6]).relative(), 0.0);
+    }
+}

@@ -1,0 +1,372 @@
+use std::sync::Arc;
+
+use super::{Balance, BoundaryProblem, Drive, Load, Support};
+use crate::material::NeoHooke;
+use crate::mesh::{CellShape, Mesh, Shape};
+use crate::solve::potential::derivative_errors;
+use crate::solve::sparse::{largest, norm};
+use crate::solve::{Assembly, Loading, NewtonSettings, Potential, State};
+
+const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-13,
+    max_iterations: 40,
+};
+
+const CLAMP: Support = Support::Displacement([Some(0.0); 2]);
+
+fn strip(shape: CellShape) -> Mesh {
+    Shape::Strip { size: [30.0, 10.0] }.mesh(4, shape)
+}
+
+fn problem(supports: &[(&str, Support)], loads: &[(&str, Load)]) -> BoundaryProblem {
+    let owned = |group: &str| group.to_owned();
+    BoundaryProblem {
+        thickness: 2.0,
+        law: Arc::new(NeoHooke { c10: 0.05 }),
+        supports: supports
+            .iter()
+            .map(|(group, support)| (owned(group), *support))
+            .collect(),
+        loads: loads
+            .iter()
+            .map(|(group, load)| (owned(group), *load))
+            .collect(),
+    }
+}
+
+/// What a solution is asked for.
+struct Found {
+    state: State,
+    balance: Balance,
+    reactions: Vec<[f64; 2]>,
+}
+
+/// The state at load factor 1 with the reactions of some groups.
+fn solved(problem: &BoundaryProblem, mesh: &Mesh, groups: &[&str]) -> Found {
+    let energy = problem.finite_elements(mesh);
+    let model = problem.on(mesh, &energy).unwrap();
+    let state = model.solve(&[0.5, 1.0], NEWTON, &|_| ()).unwrap().remove(1);
+    let reactions = groups.iter().map(|group| model.reaction(&state, group));
+    Found {
+        balance: model.balance(&state),
+        reactions: reactions.collect(),
+        state,
+    }
+}
+
+/// The mesh turned by an angle in rad about the origin and then moved.
+fn moved(mut mesh: Mesh, angle: f64, by: [f64; 2]) -> Mesh {
+    for node in &mut mesh.nodes {
+        let [x, y] = turned(*node, angle);
+        *node = [x + by[0], y + by[1]];
+    }
+    mesh
+}
+
+fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+    let (sine, cosine) = angle.sin_cos();
+    [cosine * x - sine * y, sine * x + cosine * y]
+}
+
+#[test]
+fn supports_and_loads_balance_in_every_kind_of_problem() {
+    let right = |x, y| ("right", Support::Displacement([x, y]));
+    let grip = |x, y| ("right", Support::Grip([x, y]));
+    let pressure = ("top", Load::Pressure(0.01));
+    let symmetric = [("left", Support::Roller), ("bottom", Support::Roller)];
+    let cases: Vec<(Vec<(&str, Support)>, Vec<(&str, Load)>)> = vec![
+        (vec![("left", CLAMP), right(Some(6.0), Some(3.0))], vec![]),
+        (
+            vec![("left", CLAMP), right(Some(6.0), Some(0.0))],
+            vec![pressure],
+        ),
+        (vec![("left", CLAMP)], vec![("top", Load::Pressure(0.0005))]),
+        (
+            symmetric.into(),
+            vec![pressure, ("right", Load::Pressure(-0.02))],
+        ),
+        (
+            symmetric.into(),
+            vec![
+                ("top", Load::Pressure(-0.02)),
+                ("right", Load::Traction([0.03, 0.0])),
+            ],
+        ),
+        (
+            vec![("left", CLAMP)],
+            vec![("right", Load::Traction([0.02, 0.001]))],
+        ),
+        (
+            vec![("left", CLAMP), right(Some(3.0), None)],
+            vec![("top", Load::Force([0.0, 0.05]))],
+        ),
+        (
+            vec![("left", CLAMP), grip(Drive::Force(0.6), Drive::Force(0.01))],
+            vec![pressure],
+        ),
+        (
+            vec![
+                ("left", CLAMP),
+                grip(Drive::Force(0.6), Drive::Displacement(2.0)),
+            ],
+            vec![pressure],
+        ),
+        (
+            vec![
+                ("left", CLAMP),
+                (
+                    "right",
+                    Support::Rotation {
+                        centre: [15.0, 0.0],
+                        angle: 0.4,
+                    },
+                ),
+            ],
+            vec![pressure],
+        ),
+    ];
+    for (number, (supports, loads)) in cases.iter().enumerate() {
+        for (_, shape) in CellShape::NAMES {
+            let by = [[0.0, 0.0], [700.0, -1000.0]][number % 2];
+            let mut problem = problem(supports, loads);
+            for (_, support) in &mut problem.supports {
+                if let Support::Rotation { centre, .. } = support {
+                    *centre = [centre[0] + by[0], centre[1] + by[1]];
+                }
+            }
+            let found = solved(&problem, &moved(strip(shape), 0.0, by), &["left", "right"]);
+            let balance = found.balance;
+            assert!(balance.largest_force > 1e-3, "case {number}");
+            assert!(
+                balance.relative() < 1e-9,
+                "case {number}, {shape:?}: {balance:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_force_beside_a_pressure_does_not_depend_on_the_place_of_the_specimen() {
+    let (angle, pull) = (0.7, [6.0, 1.0]);
+    let of = |angle: f64, by: [f64; 2], shape: CellShape| {
+        let right = Support::Displacement(turned(pull, angle).map(Some));
+        let problem = problem(
+            &[("left", CLAMP), ("right", right)],
+            &[("top", Load::Pressure(0.01))],
+        );
+        solved(
+            &problem,
+            &moved(strip(shape), angle, by),
+            &["left", "right"],
+        )
+    };
+    for (_, shape) in CellShape::NAMES {
+        let here = of(0.0, [0.0; 2], shape);
+        let size = here
+            .reactions
+            .iter()
+            .flatten()
+            .fold(0.0, |most: f64, force| most.max(force.abs()));
+        for (angle, by) in [
+            (0.0, [0.0, 1000.0]),
+            (angle, [0.0; 2]),
+            (-2.5, [-300.0, 5000.0]),
+        ] {
+            let there = of(angle, by, shape);
+            for (here, there) in here.reactions.iter().zip(&there.reactions) {
+                let expected = turned(*here, angle);
+                let miss = (there[0] - expected[0]).hypot(there[1] - expected[1]);
+                assert!(
+                    miss < 1e-9 * size,
+                    "{shape:?} {angle} {by:?}: {miss:.1e} N of {size}"
+                );
+            }
+        }
+    }
+}
+
+/// Rollers hold along axes only: the quarter ring is turned by right angles. Each of its symmetry lines carries half of
+/// the pressure on the deformed bore.
+#[test]
+fn a_ring_s_supports_carry_the_pressure_on_its_bore() {
+    let quarter = Shape::RingSector {
+        radii: [10.0, 20.0],
+        angle: std::f64::consts::FRAC_PI_2,
+    };
+    for shape in [CellShape::Quad4, CellShape::Triangle6, CellShape::Quad9] {
+        let mesh = quarter.mesh(4, shape);
+        for turns in 0..4 {
+            let angle = f64::from(turns) * std::f64::consts::FRAC_PI_2;
+            let mut mesh = moved(mesh.clone(), angle, [0.0; 2]);
+            for node in &mut mesh.nodes {
+                *node = node.map(|x| if x.abs() < 1e-12 { 0.0 } else { x } + 500.0);
+            }
+            let pressure = 0.03;
+            let ends = [("start", Support::Roller), ("end", Support::Roller)];
+            let problem = problem(&ends, &[("inside", Load::Pressure(pressure))]);
+            let found = solved(&problem, &mesh, &["start", "end"]);
+            assert!(found.balance.relative() < 1e-9, "{:?}", found.balance);
+            let at = |node: usize, axis: usize| {
+                mesh.nodes[node][axis] + found.state.displacement[2 * node + axis] - 500.0
+            };
+            let bore = mesh.groups()["inside"]
+                .nodes
+                .iter()
+                .map(|node| at(*node, 0).hypot(at(*node, 1)));
+            let corners = ["start", "end"].map(|group| {
+                let nodes = mesh.groups()[group].nodes.iter();
+                nodes
+                    .map(|node| at(*node, 0).hypot(at(*node, 1)))
+                    .fold(f64::INFINITY, f64::min)
+            });
+            let bore = bore.fold(0.0, f64::max);
+            assert!(bore > 11.0, "{bore}");
+            // Each line carries the pressure on the projection of the bore along it.
+            let forces = found.reactions.iter().map(|force| force[0].hypot(force[1]));
+            for (force, radius) in forces.zip(corners) {
+                let exact = pressure * 2.0 * radius;
+                assert!((force / exact - 1.0).abs() < 1e-10, "{force} {exact}");
+            }
+        }
+    }
+}
+
+/// A smooth field of a tenth of the strip's size.
+fn bent(mesh: &Mesh) -> Vec<f64> {
+    let field = |[x, y]: &[f64; 2]| {
+        [
+            0.15 * x + 0.02 * x * y,
+            0.01 * x * x - 0.1 * y + 0.03 * y * y,
+        ]
+    };
+    mesh.nodes.iter().flat_map(field).collect()
+}
+
+/// Without the strain energy, so that nothing hides the pressure.
+struct Nothing(usize);
+
+impl Potential for Nothing {
+    fn unknowns(&self) -> usize {
+        self.0
+    }
+
+    fn elements(&self) -> usize {
+        0
+    }
+
+    fn element_unknowns(&self, _: usize) -> &[usize] {
+        &[]
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        _: &[f64],
+        _: crate::solve::Local<'_>,
+    ) -> Result<f64, crate::solve::Inadmissible> {
+        Err(crate::solve::Inadmissible { element })
+    }
+}
+
+/// Around the whole boundary a pressure has a potential: the pressure times the area.
+#[test]
+fn a_pressure_s_energy_force_and_stiffness_are_derivatives_at_finite_strain() {
+    for (_, shape) in CellShape::NAMES {
+        let mut mesh = strip(shape);
+        mesh.name_boundary("boundary", |_| true);
+        let problem = problem(&[], &[("boundary", Load::Pressure(0.04))]);
+        let none = Nothing(2 * mesh.nodes.len());
+        let model = problem.on(&mesh, &none).unwrap();
+        let u = bent(&mesh);
+        let direction: Vec<f64> = (0..u.len()).map(|i| (1.0 + 3.7 * i as f64).sin()).collect();
+        let errors = derivative_errors(&*model.potential(0.8), &u, &direction);
+        assert!(
+            errors[0] < 1e-9 && errors[1] < 1e-9,
+            "{shape:?}: {errors:?}"
+        );
+    }
+}
+
+/// On a part of the boundary the tangent is not symmetric at its ends; with the skew part it is the derivative.
+#[test]
+fn the_tangent_of_a_pressure_that_ends_freely_is_complete() {
+    for (_, shape) in CellShape::NAMES {
+        let mesh = strip(shape);
+        let problem = problem(
+            &[],
+            &[
+                ("top", Load::Pressure(0.04)),
+                ("right", Load::Pressure(0.01)),
+            ],
+        );
+        let none = Nothing(2 * mesh.nodes.len());
+        let model = problem.on(&mesh, &none).unwrap();
+        let potential = model.potential(1.0);
+        let u = bent(&mesh);
+        let size = u.len();
+        let assembly = Assembly::new(&*potential, &vec![false; size]);
+        let (mut residual, mut stiffness) = (vec![0.0; size], Vec::new());
+        assembly
+            .linearise(&*potential, &u, &mut residual, &mut stiffness)
+            .unwrap();
+        let direction: Vec<f64> = (0..size).map(|i| (1.0 + 3.7 * i as f64).sin()).collect();
+        let mut product = assembly.pattern().multiply(&stiffness, &direction);
+        let couplings = potential.skew_couplings();
+        assert_eq!(
+            couplings.len(),
+            3,
+            "the ends of both, and where the pressure changes"
+        );
+        for coupling in couplings {
+            product[coupling.row] += coupling.stiffness * direction[coupling.column];
+            product[coupling.column] -= coupling.stiffness * direction[coupling.row];
+        }
+        // Forces are quadratic in the places: one long step is exact.
+        let at = |sign: f64| {
+            let mut residual = vec![0.0; size];
+            let moved: Vec<f64> = u
+                .iter()
+                .zip(&direction)
+                .map(|(u, d)| u + sign * d)
+                .collect();
+            Assembly::residual(&*potential, &moved, &mut residual).unwrap();
+            residual
+        };
+        let misses = at(1.0)
+            .into_iter()
+            .zip(at(-1.0))
+            .zip(&product)
+            .map(|((up, down), p)| 0.5 * (up - down) - p);
+        let misses: Vec<f64> = misses.collect();
+        assert!(
+            norm(&misses) < 1e-13 * norm(&product),
+            "{shape:?}: {:.1e}",
+            norm(&misses)
+        );
+        assert!(largest(&product) > 0.0);
+    }
+}
+
+/// A slender cantilever under a pressure on one side up to its free end: w = 3/2 p L⁴/(E h³) for a plane-stress beam of
+/// height h with a little shear, and the tip turns towards it.
+#[test]
+fn a_pressure_may_end_at_a_free_corner() {
+    let mesh = Shape::Strip { size: [100.0, 5.0] }.mesh(2, CellShape::Quad9);
+    let modulus = 0.3;
+    let deflection = |pressure: f64| {
+        let problem = problem(&[("left", CLAMP)], &[("top", Load::Pressure(pressure))]);
+        let found = solved(&problem, &mesh, &[]);
+        assert!(found.balance.relative() < 1e-9, "{:?}", found.balance);
+        let log = &found.state.convergence;
+        assert!(log.iterations() <= 15, "{:?}", log.residuals);
+        mesh.displacement_at(&found.state.displacement, [100.0, 0.0])
+    };
+    let beam = |pressure: f64| -1.5 * pressure * 100.0_f64.powi(4) / (modulus * 5.0_f64.powi(3));
+    let small = 1e-8;
+    let [_, y] = deflection(small);
+    assert!((y / beam(small) - 1.0).abs() < 0.02, "{y} {}", beam(small));
+    // At large turns a following pressure bends on where a dead one would tire.
+    let large = 1.5e-5;
+    let [x, y] = deflection(large);
+    assert!(x < -20.0 && y < -50.0, "{x} {y}");
+}
