@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::corrector::measured::{FieldEstimate, RegressedLaw, Specimen, estimate, transfer};
-use crate::error::{Diagnostic, Error};
+use crate::error::{Diagnostic, Error, Severity};
 use crate::material::{Card, HyperelasticLaw};
 use crate::measurement::{Frame, Measurement, Read, Reading, place_on, read, read_lines};
-use crate::mesh::{CellShape, Mesh, Outline, import};
+use crate::mesh::{Allowed, CellShape, Mesh, MeshReading, Outline, import};
 
 mod conditions;
 
@@ -33,8 +33,8 @@ const LEAST_ACROSS: f64 = 12.0;
 pub enum MeshSource {
     /// The mesh of the field, or one inside the outline of the markers.
     Data,
-    /// A file with a mesh, and the length of its unit in mm.
-    File(PathBuf, f64),
+    /// A file with a mesh, and how it is read.
+    File(PathBuf, MeshReading),
     /// A table with closed lines.
     Outline(PathBuf),
 }
@@ -205,13 +205,9 @@ fn whole(mesh: &Mesh, measurement: &Measurement) -> Result<(), Error> {
 /// The mesh that a request wants, where it comes from, and what deserves attention.
 fn mesh(request: &Request, field: &Read) -> Result<(Mesh, String, Vec<Diagnostic>), Error> {
     match (&request.mesh, &field.mesh) {
-        (MeshSource::File(path, unit), _) => {
-            let mesh = import(path, *unit).map_err(|reason| {
-                let hint =
-                    "a mesh stands in Gmsh's .msh (ASCII, 2.2 or 4.1), .vtu or .vtk, and is flat";
-                Error::input(format!("{} {reason}", path.display()), hint)
-            })?;
-            Ok((mesh, format!("from {}", path.display()), Vec::new()))
+        (MeshSource::File(path, reading), _) => {
+            let (mesh, warnings) = import(path, *reading).map_err(Error::Input)?;
+            Ok((mesh, format!("from {}", path.display()), warnings))
         }
         (MeshSource::Outline(path), _) => {
             let lines = read_lines(path, request.reading.unit)?;
@@ -229,7 +225,14 @@ fn mesh(request: &Request, field: &Read) -> Result<(Mesh, String, Vec<Diagnostic
             ))
         }
         (MeshSource::Data, Some(mesh)) => {
-            Ok((mesh.clone(), "that of the field".into(), Vec::new()))
+            let told = mesh.faults(Allowed::default());
+            let warnings = told.into_iter().map(|fault| Diagnostic {
+                severity: Severity::Warning,
+                message: format!("the field's own mesh: {}", fault.message),
+                hint: Some("correct it on a sound mesh: --mesh or --outline".into()),
+                ..fault
+            });
+            Ok((mesh.clone(), "that of the field".into(), warnings.collect()))
         }
         (MeshSource::Data, None) => {
             let found = Outline::of_points(&field.measurement.places()).map_err(|reason| {

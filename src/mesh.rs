@@ -6,22 +6,26 @@ use std::sync::OnceLock;
 mod bisect;
 mod blocks;
 mod cell_shape;
+mod faults;
 mod grid;
 mod import;
 mod locate;
 mod outline;
 mod refine;
+mod rounding;
 mod shapes;
 mod triangulate;
 
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, GAUSS_3, GAUSS_5, QuadraturePoint};
+pub use faults::Allowed;
 pub use grid::{Grid, Side};
 pub use import::{
-    ImportedField, ImportedSeries, ImportedStep, import, import_field, import_series,
+    ImportedField, ImportedSeries, ImportedStep, MeshReading, import, import_field, import_series,
 };
 use locate::Buckets;
 pub use outline::{Found, Outline};
+pub use rounding::Polygon;
 pub use shapes::Shape;
 
 /// A named part of the boundary, or a set of nodes.
@@ -84,6 +88,20 @@ impl Mesh {
     /// The kind of a cell.
     pub fn shape(&self, cell: usize) -> CellShape {
         self.shapes[cell]
+    }
+
+    /// The names of the finite elements that the cells are: `Q2`, or `T2 and Q2`.
+    pub fn element_names(&self) -> String {
+        let kinds = CellShape::NAMES.iter();
+        let used = kinds.filter(|(_, kind)| self.shapes.contains(kind));
+        let names: Vec<_> = used.map(|(name, _)| *name).collect();
+        names.join(" and ")
+    }
+
+    /// The degree of its cells, the higher one where there are several.
+    pub fn degree(&self) -> usize {
+        let degrees = self.shapes.iter().map(|shape| shape.degree());
+        degrees.max().unwrap_or(1)
     }
 
     /// The nodes of a cell, in the order of [`CellShape::reference_nodes`].
@@ -214,6 +232,18 @@ impl Mesh {
             }
         }
         None
+    }
+
+    /// The area of all cells in mm².
+    pub fn area(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let points = self.shape(cell).product_quadrature(&GAUSS_3);
+            let parts = points
+                .into_iter()
+                .map(|(point, weight)| weight * self.gradients(cell, point).1);
+            parts.sum::<f64>()
+        };
+        (0..self.cell_count()).map(of_cell).sum()
     }
 
     /// The place in mm of a reference point of a cell.

@@ -9,7 +9,7 @@ use crate::corrector::measured::{EdgeCondition, MeasuredForce, Physics, Robust};
 use crate::error::Error;
 use crate::measured_field::{Conditions, MeasuredField, MeshSource, Request, measured_force};
 use crate::measurement::Reading;
-use crate::mesh::CellShape;
+use crate::mesh::{Allowed, CellShape, MeshReading};
 use crate::output;
 use crate::units::{self, Dimension};
 
@@ -48,6 +48,12 @@ pub struct Options {
     /// The unit of the mesh
     #[arg(long, value_name = "UNIT", default_value = "mm", value_parser = unit)]
     pub mesh_unit: f64,
+    /// Nodes of the mesh that are not farther from each other become one, such as "1e-6 mm"
+    #[arg(long, value_name = "LENGTH", requires = "mesh", value_parser = length)]
+    pub merge_nodes: Option<f64>,
+    /// What looks like a fault of the mesh but is meant
+    #[arg(long, value_name = "FAULT", requires = "mesh", value_delimiter = ',', value_parser = Allowed::NAMES)]
+    pub allow: Vec<String>,
     /// The specimen's edge as a table: x [mm], y [mm], and line where there are holes
     #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
     pub outline: Option<PathBuf>,
@@ -180,7 +186,15 @@ fn request(options: Options) -> Result<Request, Error> {
         };
     }
     let mesh = match (options.mesh, options.outline) {
-        (Some(mesh), _) => MeshSource::File(mesh, options.mesh_unit),
+        (Some(mesh), _) => {
+            let names = options.allow.iter().map(String::as_str);
+            let reading = MeshReading {
+                unit: options.mesh_unit,
+                merge_nodes: options.merge_nodes,
+                allowed: Allowed::of_names(names).unwrap_or_default(),
+            };
+            MeshSource::File(mesh, reading)
+        }
         (None, Some(outline)) => MeshSource::Outline(outline),
         (None, None) => MeshSource::Data,
     };

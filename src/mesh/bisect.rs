@@ -9,59 +9,72 @@
 
 use std::collections::HashSet;
 
-use super::refine::Middles;
+use super::refine::{Point, Subdivision, key};
 use super::{CellShape, Mesh};
 
 /// An edge by its ends, the smaller first.
 type Edge = [usize; 2];
 
-fn edge(a: usize, b: usize) -> Edge {
-    [a.min(b), a.max(b)]
-}
-
 impl Mesh {
-    /// A mesh of linear cells with its quadrilaterals halved along their shorter diagonals.
+    /// A mesh with its quadrilaterals halved along their shorter diagonals, which are lines of their maps.
     #[must_use]
     pub fn triangulated(&self) -> Self {
-        let cells = (0..self.cell_count()).flat_map(|cell| {
-            let corners = self.cell(cell);
-            let [&a, &b, &c] = [&corners[0], &corners[1], &corners[2]];
-            let Some(&d) = corners.get(3) else {
-                return vec![vec![a, b, c]];
+        let mut halved = Subdivision::new(self);
+        for cell in 0..self.cell_count() {
+            let shape = self.shape(cell);
+            let [a, b, c, d] = match halved.corners(cell)[..] {
+                [a, b, c, d] => [a, b, c, d],
+                _ => {
+                    halved.keep(cell);
+                    continue;
+                }
             };
-            match self.squared_length([a, c]) <= self.squared_length([b, d]) {
-                true => vec![vec![a, b, c], vec![a, c, d]],
-                false => vec![vec![a, b, d], vec![b, c, d]],
+            let half = match shape.degree() {
+                1 => CellShape::Triangle3,
+                _ => CellShape::Triangle6,
+            };
+            let first = self.squared_length([a.node, c.node]);
+            let (pieces, diagonal) = match first <= self.squared_length([b.node, d.node]) {
+                true => ([[a, b, c], [a, c, d]], [a, c]),
+                false => ([[a, b, d], [b, c, d]], [b, d]),
+            };
+            if let Some(centre) = self.cell(cell).get(8) {
+                halved.put_between(diagonal.map(|point| point.node), *centre);
             }
-        });
-        let cells = cells.map(|nodes| (CellShape::Triangle3, nodes)).collect();
-        Middles::new(self.nodes.clone()).finish(self, cells, |_, edge| vec![edge.to_vec()])
+            for piece in &pieces {
+                halved.add(cell, half, piece);
+            }
+        }
+        halved.finish(|_, edge| vec![edge.to_vec()])
     }
 
-    /// A mesh of three-node triangles in which the marked ones are cut into four, and their neighbours so that cells
-    /// meet edge to edge. Groups are kept.
+    /// A mesh of triangles in which the marked ones are cut into four, and their neighbours so that cells meet edge to
+    /// edge. Groups are kept.
     ///
     /// # Panics
-    /// When a cell is no three-node triangle.
+    /// When a cell is no triangle.
     #[must_use]
     pub fn refined_where(&self, marked: &[bool]) -> Self {
         let halved = self.edges_to_halve(marked);
-        let mut middles = Middles::new(self.nodes.clone());
-        let mut cells = Vec::with_capacity(self.cell_count());
+        let mut finer = Subdivision::new(self);
         for cell in 0..self.cell_count() {
-            let corners = self.longest_first(cell);
-            if halved.contains(&edge(corners[0], corners[1])) {
-                cut(corners, &halved, &mut middles, &mut cells);
+            let [a, b, ..] = self.longest_first(cell);
+            if halved.contains(&key(a, b)) {
+                let mut points = finer.corners(cell);
+                let first = points.iter().position(|point| point.node == a);
+                points.rotate_left(first.unwrap_or(0));
+                let points = [points[0], points[1], points[2]];
+                cut(&mut finer, cell, self.shape(cell), points, &halved);
             } else {
-                cells.push((self.shape(cell), self.cell(cell).to_vec()));
+                finer.keep(cell);
             }
         }
-        middles.finish(self, cells, |middles, [from, to]| {
-            match middles.made(from, to) {
-                Some(middle) => vec![vec![from, middle], vec![middle, to]],
-                None => vec![vec![from, to]],
-            }
-        })
+        finer.finish(
+            |finer, edge| match halved.contains(&key(edge[0], edge[1])) {
+                true => finer.halves(edge),
+                false => vec![edge.to_vec()],
+            },
+        )
     }
 
     fn squared_length(&self, [a, b]: Edge) -> f64 {
@@ -71,8 +84,9 @@ impl Mesh {
 
     /// The corners of a triangle, turned so that its longest edge is the first.
     fn longest_first(&self, cell: usize) -> [usize; 3] {
-        let [a, b, c]: [usize; 3] = self.cell(cell).try_into().expect("three-node triangles");
-        let length = |corners: &[usize; 3]| self.squared_length(edge(corners[0], corners[1]));
+        let corners = &self.cell(cell)[..self.shape(cell).corners()];
+        let [a, b, c]: [usize; 3] = corners.try_into().expect("triangles");
+        let length = |corners: &[usize; 3]| self.squared_length(key(corners[0], corners[1]));
         let turns = [[a, b, c], [b, c, a], [c, a, b]].into_iter();
         let longest = turns.max_by(|one, other| length(one).total_cmp(&length(other)));
         longest.expect("three edges")
@@ -80,7 +94,7 @@ impl Mesh {
 
     /// All edges of the marked cells, and the longest one of every cell that has one of them.
     fn edges_to_halve(&self, marked: &[bool]) -> HashSet<Edge> {
-        let edges = |[a, b, c]: [usize; 3]| [edge(a, b), edge(b, c), edge(c, a)];
+        let edges = |[a, b, c]: [usize; 3]| [key(a, b), key(b, c), key(c, a)];
         let cells: Vec<[Edge; 3]> = (0..self.cell_count())
             .map(|cell| edges(self.longest_first(cell)))
             .collect();
@@ -103,20 +117,20 @@ impl Mesh {
 
 /// Cuts a triangle through the middle of its first edge, and its halves where their other edge is halved too.
 fn cut(
-    [a, b, c]: [usize; 3],
+    finer: &mut Subdivision,
+    cell: usize,
+    shape: CellShape,
+    [a, b, c]: [Point; 3],
     halved: &HashSet<Edge>,
-    middles: &mut Middles,
-    cells: &mut Vec<(CellShape, Vec<usize>)>,
 ) {
-    let mut put = |nodes: [usize; 3]| cells.push((CellShape::Triangle3, nodes.to_vec()));
-    let middle = middles.of(a, b);
+    let middle = finer.middle(cell, a, b);
     for [from, to] in [[b, c], [c, a]] {
-        if halved.contains(&edge(from, to)) {
-            let other = middles.of(from, to);
-            put([middle, from, other]);
-            put([middle, other, to]);
+        if halved.contains(&key(from.node, to.node)) {
+            let other = finer.middle(cell, from, to);
+            finer.add(cell, shape, &[middle, from, other]);
+            finer.add(cell, shape, &[middle, other, to]);
         } else {
-            put([middle, from, to]);
+            finer.add(cell, shape, &[middle, from, to]);
         }
     }
 }

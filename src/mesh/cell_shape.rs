@@ -232,11 +232,16 @@ impl CellShape {
     }
 
     /// How far a reference point lies outside of the cell; zero inside.
-    pub fn outside(self, [x, y]: [f64; 2]) -> f64 {
+    pub fn outside(self, local: [f64; 2]) -> f64 {
+        (-self.depth(local)).max(0.0)
+    }
+
+    /// How far a reference point lies inside of the cell; negative outside.
+    pub fn depth(self, [x, y]: [f64; 2]) -> f64 {
         if self.is_triangle() {
-            (-x).max(-y).max(x + y - 1.0).max(0.0)
+            x.min(y).min(1.0 - x - y)
         } else {
-            (x.abs() - 1.0).max(y.abs() - 1.0).max(0.0)
+            (1.0 - x.abs()).min(1.0 - y.abs())
         }
     }
 }

@@ -6,7 +6,8 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
-use super::{CellShape, Mesh};
+use super::{Allowed, CellShape, Mesh};
+use crate::error::{Diagnostic, Severity};
 
 mod field;
 mod frd;
@@ -28,20 +29,94 @@ struct Raw {
     points: BTreeMap<String, Vec<u64>>,
 }
 
-/// Reads a mesh; `unit` is the length of the file's unit in mm.
+/// How a mesh is read from a file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshReading {
+    /// The length of the file's unit in mm.
+    pub unit: f64,
+    /// Nodes that are not farther from each other become one, in mm.
+    pub merge_nodes: Option<f64>,
+    /// What looks like a fault but is meant.
+    pub allowed: Allowed,
+}
+
+impl MeshReading {
+    /// The file as it is, every fault told.
+    pub fn in_unit(unit: f64) -> Self {
+        Self {
+            unit,
+            merge_nodes: None,
+            allowed: Allowed::default(),
+        }
+    }
+}
+
+/// Reads a mesh, with what deserves attention. Cells with nodes in the middle of their sides keep them; linear cells in a
+/// mesh with such ones become quadratic.
 ///
 /// # Errors
-/// Says what the file holds that cannot be read, or what is wrong with it.
-pub fn import(path: &Path, unit: f64) -> Result<Mesh, String> {
+/// What the file holds that cannot be read, or every kind of fault of its mesh, see [`Mesh::faults`].
+pub fn import(
+    path: &Path,
+    reading: MeshReading,
+) -> Result<(Mesh, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let unreadable = |reason: String| {
+        let hint = "a mesh stands in Gmsh's .msh (ASCII, 2.2 or 4.1), .vtu or .vtk, and is flat";
+        let message = format!("{} {reason}", path.display());
+        vec![Diagnostic::error("", message).hint(hint)]
+    };
+    let mut raw = read(path).map_err(unreadable)?;
+    if let Some(tolerance) = reading.merge_nodes {
+        raw.merge_nodes(tolerance / reading.unit);
+    }
+    let lost = raw.lines.clone();
+    let mesh = raw.mesh(reading.unit).map_err(unreadable)?;
+    let mut told = mesh.faults(reading.allowed);
+    let wrong = told.iter().any(|fault| fault.severity == Severity::Error);
+    if !wrong {
+        told.extend(lost_groups(&lost, &mesh));
+        told.extend(mesh.polygons().iter().map(|polygon| polygon.warning(&mesh)));
+    }
+    for fault in &mut told {
+        fault.message = format!("{}: {}", path.display(), fault.message);
+    }
+    if wrong {
+        return Err(told);
+    }
+    let mixed = (0..mesh.cell_count()).any(|cell| mesh.shape(cell).degree() < mesh.degree());
+    Ok((if mixed { mesh.quadratic() } else { mesh }, told))
+}
+
+fn read(path: &Path) -> Result<Raw, String> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
-    let raw = match ending.as_deref() {
-        Some("msh") => gmsh::read(&read_text(path)?)?,
-        Some("vtu" | "vtk") => vtk::read(path)?,
-        _ => return Err("is no .msh, .vtu or .vtk file".into()),
+    match ending.as_deref() {
+        Some("msh") => gmsh::read(&read_text(path)?),
+        Some("vtu" | "vtk") => vtk::read(path),
+        _ => Err("is no .msh, .vtu or .vtk file".into()),
+    }
+}
+
+/// Warnings of lines in groups that are no edges of the boundary.
+fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Diagnostic> {
+    let told = |(name, lines): (&String, &Vec<[u64; 2]>)| {
+        let lines: BTreeSet<[u64; 2]> = lines.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
+        let kept = mesh.groups().get(name).map_or(0, |group| group.edges.len());
+        let message = match lines.len().saturating_sub(kept) {
+            0 => return None,
+            _ if kept == 0 => format!(
+                "no line of the group `{name}` is an edge of the boundary; the group is left out"
+            ),
+            lost => format!(
+                "{lost} of {} lines of the group `{name}` are no edges of the boundary and left out",
+                lines.len()
+            ),
+        };
+        let hint = "a group's lines must be sides of one cell alone, with its nodes";
+        Some(Diagnostic::warning("", message).hint(hint))
     };
-    raw.mesh(unit)
+    groups.iter().filter_map(told).collect()
 }
 
 /// The text of a file.
@@ -57,6 +132,36 @@ impl Raw {
     fn used(&self) -> BTreeSet<u64> {
         let nodes = self.cells.iter().flat_map(|(_, nodes)| nodes);
         nodes.copied().collect()
+    }
+
+    /// Makes nodes that are not farther from each other than a tolerance, in the file's unit, one.
+    fn merge_nodes(&mut self, tolerance: f64) {
+        let mut squares: HashMap<[i64; 2], Vec<u64>> = HashMap::new();
+        let mut merged: HashMap<u64, u64> = HashMap::new();
+        for name in self.used() {
+            let Some([x, y, _]) = self.places.get(&name) else {
+                continue;
+            };
+            let [i, j] = [x, y].map(|x| (x / tolerance).floor() as i64);
+            let around = (-1..=1).flat_map(|di| (-1..=1).map(move |dj| [i + di, j + dj]));
+            let others = around.filter_map(|square| squares.get(&square)).flatten();
+            let near = |other: &&u64| {
+                let [a, b, _] = self.places[*other];
+                (a - x).hypot(b - y) <= tolerance
+            };
+            match others.filter(near).min() {
+                Some(first) => {
+                    merged.insert(name, *first);
+                }
+                None => squares.entry([i, j]).or_default().push(name),
+            }
+        }
+        let cells = self.cells.iter_mut().flat_map(|(_, nodes)| nodes);
+        let lines = self.lines.values_mut().flatten().flatten();
+        let points = self.points.values_mut().flatten();
+        for node in cells.chain(lines).chain(points) {
+            *node = merged.get(node).copied().unwrap_or(*node);
+        }
     }
 
     fn mesh(self, unit: f64) -> Result<Mesh, String> {
@@ -93,21 +198,13 @@ impl Raw {
             })
             .collect();
         let mut mesh = Mesh::new(nodes, cells);
-        for cell in 0..mesh.cell_count() {
-            for (point, _) in mesh.shape(cell).quadrature() {
-                let jacobian = mesh.gradients(cell, point).1;
-                if jacobian.is_nan() || jacobian <= 0.0 {
-                    return Err(format!("has a folded cell: {}", mesh.describe_cell(cell)));
-                }
-            }
-        }
         name_sides(&mut mesh);
         for (name, ends) in &self.points {
-            let nodes = ends
-                .iter()
-                .filter_map(|node| names.get(node).copied())
-                .collect();
-            mesh.put_group(name, nodes, Vec::new());
+            let nodes = ends.iter().filter_map(|node| names.get(node).copied());
+            let nodes: Vec<usize> = nodes.collect();
+            if !nodes.is_empty() {
+                mesh.put_group(name, nodes, Vec::new());
+            }
         }
         let edges: HashMap<[usize; 2], Vec<usize>> = mesh
             .boundary()
@@ -118,9 +215,12 @@ impl Raw {
             let ends = lines
                 .iter()
                 .filter_map(|[a, b]| Some([*names.get(a)?, *names.get(b)?]));
-            let ends = ends.map(|[a, b]| [a.min(b), a.max(b)]);
-            let own = ends.filter_map(|ends| edges.get(&ends).cloned()).collect();
-            mesh.name_edges(name, own);
+            let ends: BTreeSet<[usize; 2]> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+            let own = ends.iter().filter_map(|ends| edges.get(ends).cloned());
+            let own: Vec<Vec<usize>> = own.collect();
+            if !own.is_empty() {
+                mesh.name_edges(name, own);
+            }
         }
         Ok(mesh)
     }

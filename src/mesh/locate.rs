@@ -26,15 +26,7 @@ impl Buckets {
             cells: vec![Vec::new(); counts[0] * counts[1]],
         };
         for cell in 0..mesh.cell_count() {
-            let nodes = mesh.cell(cell).iter().map(|node| mesh.nodes[*node]);
-            let (mut from, mut to) = ([usize::MAX; 2], [0; 2]);
-            for node in nodes {
-                let place = buckets.place(node);
-                for axis in 0..2 {
-                    from[axis] = from[axis].min(place[axis]);
-                    to[axis] = to[axis].max(place[axis]);
-                }
-            }
+            let [from, to] = mesh.cell_box(cell).map(|corner| buckets.place(corner));
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
                     buckets.cells[i * counts[1] + j].push(cell);
@@ -80,6 +72,12 @@ impl Buckets {
         }
     }
 
+    /// The cells whose boxes touch the square of a point.
+    fn around(&self, point: [f64; 2]) -> &[usize] {
+        let [i, j] = self.place(point);
+        &self.cells[i * self.counts[1] + j]
+    }
+
     /// The cells of all squares at a distance of `reach` squares.
     fn ring(&self, [i, j]: [usize; 2], reach: usize) -> Vec<usize> {
         let range = |middle: usize, count: usize| {
@@ -96,6 +94,51 @@ impl Buckets {
         found.sort_unstable();
         found.dedup();
         found
+    }
+}
+
+impl Mesh {
+    /// Whether a point lies inside of a cell, farther from its sides than `margin` in reference coordinates; cells are
+    /// left out where `own` holds.
+    pub(super) fn holds_inside(
+        &self,
+        point: [f64; 2],
+        margin: f64,
+        own: impl Fn(usize) -> bool,
+    ) -> bool {
+        let buckets = self.buckets.get_or_init(|| Buckets::new(self));
+        let around = buckets.around(point).iter();
+        let mut others = around.filter(|cell| !own(**cell) && self.is_in_box(**cell, point));
+        others.any(|cell| {
+            let local = self.local_coordinates(*cell, point);
+            local.is_some_and(|local| self.shape(*cell).depth(local) > margin)
+        })
+    }
+
+    fn is_in_box(&self, cell: usize, point: [f64; 2]) -> bool {
+        let [low, high] = self.cell_box(cell);
+        (0..2).all(|axis| (low[axis]..=high[axis]).contains(&point[axis]))
+    }
+
+    /// Lower left and upper right corner of a box around a cell, in mm. A curved edge lies within the triangle of its
+    /// ends a, b and the point 2 m − ½ (a + b) beyond its middle m.
+    pub(super) fn cell_box(&self, cell: usize) -> [[f64; 2]; 2] {
+        let own = self.cell(cell);
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let mut take = |place: [f64; 2]| {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(place[axis]);
+                high[axis] = high[axis].max(place[axis]);
+            }
+        };
+        own.iter().for_each(|node| take(self.nodes[*node]));
+        for edge in self.shape(cell).edges() {
+            if let [a, b, m] = edge[..] {
+                let [a, b, m] = [a, b, m].map(|node| self.nodes[own[node]]);
+                take([0, 1].map(|axis| 2.0 * m[axis] - 0.5 * (a[axis] + b[axis])));
+            }
+        }
+        [low, high]
     }
 }
 

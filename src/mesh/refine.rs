@@ -1,4 +1,7 @@
-//! Finer meshes and meshes of higher degree with the same outline.
+//! Finer meshes and meshes of another degree with the same outline.
+//!
+//! Every node of a finer mesh lies where the map of a cell of the first mesh has it: on the curved sides of six-,
+//! eight- and nine-node cells, not on their chords.
 
 use std::collections::HashMap;
 
@@ -39,125 +42,203 @@ impl Mesh {
         mesh
     }
 
-    /// Every cell of a mesh of linear cells cut into four through the middles of its edges.
+    /// Every cell cut into four of its kind through the middles of its edges.
     #[must_use]
     pub fn refined(&self) -> Self {
-        let mut middles = Middles::new(self.nodes.clone());
-        let mut cells = Vec::with_capacity(4 * self.cell_count());
+        self.quartered().finish(Subdivision::halves)
+    }
+
+    /// The cells of [`Self::refined`], before they are a mesh.
+    pub(super) fn quartered(&self) -> Subdivision<'_> {
+        let mut finer = Subdivision::new(self);
         for cell in 0..self.cell_count() {
-            let (shape, corners) = (self.shape(cell), self.cell(cell));
-            let count = shape.corners();
-            let middle: Vec<usize> = (0..count)
-                .map(|i| middles.of(corners[i], corners[(i + 1) % count]))
+            let shape = self.shape(cell);
+            let corners = finer.corners(cell);
+            let count = corners.len();
+            let middle: Vec<Point> = (0..count)
+                .map(|i| finer.middle(cell, corners[i], corners[(i + 1) % count]))
                 .collect();
             if shape.is_triangle() {
                 for i in 0..3 {
-                    cells.push((shape, vec![corners[i], middle[i], middle[(i + 2) % 3]]));
+                    finer.add(cell, shape, &[corners[i], middle[i], middle[(i + 2) % 3]]);
                 }
-                cells.push((shape, middle));
+                finer.add(cell, shape, &middle);
             } else {
-                let centre = middles.centre(corners);
+                let centre = finer.centre(cell, &corners);
                 for i in 0..4 {
-                    cells.push((
-                        shape,
-                        vec![corners[i], middle[i], centre, middle[(i + 3) % 4]],
-                    ));
+                    let piece = [corners[i], middle[i], centre, middle[(i + 3) % 4]];
+                    finer.add(cell, shape, &piece);
                 }
             }
         }
-        middles.finish(self, cells, |middles, [from, to]| {
-            let middle = middles.of(from, to);
-            vec![vec![from, middle], vec![middle, to]]
-        })
+        finer
     }
 
-    /// A mesh of linear cells with nodes in the middle of its straight edges: six-node triangles and nine-node
-    /// quadrilaterals.
+    /// The mesh with linear cells made into six-node triangles and nine-node quadrilaterals, their new nodes in the
+    /// middle of straight edges; quadratic cells stay as they are.
     #[must_use]
     pub fn quadratic(&self) -> Self {
-        let mut middles = Middles::new(self.nodes.clone());
-        let cells = (0..self.cell_count()).map(|cell| {
-            let corners = self.cell(cell);
-            let count = corners.len();
-            let mut nodes = corners.to_vec();
-            nodes.extend((0..count).map(|i| middles.of(corners[i], corners[(i + 1) % count])));
-            if count == 3 {
-                return (CellShape::Triangle6, nodes);
+        let mut higher = Subdivision::new(self);
+        for cell in 0..self.cell_count() {
+            match self.shape(cell) {
+                CellShape::Triangle3 => {
+                    higher.add(cell, CellShape::Triangle6, &higher.corners(cell));
+                }
+                CellShape::Quad4 => higher.add(cell, CellShape::Quad9, &higher.corners(cell)),
+                _ => higher.keep(cell),
             }
-            nodes.push(middles.centre(corners));
-            (CellShape::Quad9, nodes)
-        });
-        let cells: Vec<_> = cells.collect();
-        middles.finish(self, cells, |middles, [from, to]| {
-            vec![vec![from, to, middles.of(from, to)]]
-        })
+        }
+        higher.finish(|higher, edge| vec![higher.with_middle(edge[0], edge[1])])
     }
 }
 
-/// Nodes in the middle of edges, each made once.
-pub(super) struct Middles {
-    nodes: Vec<[f64; 2]>,
+/// A point of a cell that is a node: its number, and its reference coordinates in the cell.
+#[derive(Clone, Copy)]
+pub(super) struct Point {
+    pub node: usize,
+    local: [f64; 2],
+}
+
+/// The cells that those of a mesh are cut into, with the nodes that this takes, each made once.
+pub(super) struct Subdivision<'a> {
+    mesh: &'a Mesh,
+    pub nodes: Vec<[f64; 2]>,
+    cells: Vec<(CellShape, Vec<usize>)>,
+    /// The nodes half way between two others along a line of a cell.
     made: HashMap<[usize; 2], usize>,
 }
 
-impl Middles {
-    pub(super) fn new(nodes: Vec<[f64; 2]>) -> Self {
-        Self {
-            nodes,
-            made: HashMap::new(),
-        }
-    }
-
-    /// The node in the middle of an edge.
-    pub(super) fn of(&mut self, a: usize, b: usize) -> usize {
-        let nodes = &mut self.nodes;
-        *self.made.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            nodes.push([0, 1].map(|axis| 0.5 * (nodes[a][axis] + nodes[b][axis])));
-            nodes.len() - 1
-        })
-    }
-
-    /// The node in the middle of an edge, if it was made.
-    pub(super) fn made(&self, a: usize, b: usize) -> Option<usize> {
-        self.made.get(&[a.min(b), a.max(b)]).copied()
-    }
-
-    /// The mesh of some cells with the groups of the one that they were made from; `edges` makes an edge into those
-    /// of the new mesh.
-    pub(super) fn finish(
-        mut self,
-        from: &Mesh,
-        cells: Vec<(CellShape, Vec<usize>)>,
-        edges: impl Fn(&mut Self, [usize; 2]) -> Vec<Vec<usize>>,
-    ) -> Mesh {
-        let mut groups = Vec::new();
-        for (name, group) in from.groups() {
-            let (mut nodes, mut own) = (group.nodes.clone(), Vec::new());
-            for edge in &group.edges {
-                own.extend(edges(&mut self, [edge[0], edge[1]]));
+impl<'a> Subdivision<'a> {
+    /// No cells yet; the mesh's own nodes in the middle of edges are those that cuts go through.
+    pub fn new(mesh: &'a Mesh) -> Self {
+        let mut made = HashMap::new();
+        for cell in 0..mesh.cell_count() {
+            let nodes = mesh.cell(cell);
+            for edge in mesh.shape(cell).edges() {
+                if let [a, b, middle] = edge[..] {
+                    made.insert(key(nodes[a], nodes[b]), nodes[middle]);
+                }
             }
-            nodes.extend(own.iter().flatten());
-            groups.push((name, nodes, own));
         }
-        let mut mesh = Mesh::new(self.nodes, cells);
+        Self {
+            mesh,
+            nodes: mesh.nodes.clone(),
+            cells: Vec::new(),
+            made,
+        }
+    }
+
+    /// The corners of a cell.
+    pub fn corners(&self, cell: usize) -> Vec<Point> {
+        let shape = self.mesh.shape(cell);
+        let nodes = self.mesh.cell(cell)[..shape.corners()].iter();
+        let places = nodes.zip(shape.reference_nodes());
+        places
+            .map(|(node, local)| Point {
+                node: *node,
+                local: *local,
+            })
+            .collect()
+    }
+
+    /// The point of a cell half way between two of its points.
+    pub fn middle(&mut self, cell: usize, a: Point, b: Point) -> Point {
+        let local = [0, 1].map(|axis| 0.5 * (a.local[axis] + b.local[axis]));
+        let (nodes, mesh) = (&mut self.nodes, self.mesh);
+        let node = *self.made.entry(key(a.node, b.node)).or_insert_with(|| {
+            nodes.push(mesh.place(cell, local));
+            nodes.len() - 1
+        });
+        Point { node, local }
+    }
+
+    /// The point of a cell in the middle of four of its points.
+    pub fn centre(&mut self, cell: usize, corners: &[Point]) -> Point {
+        let mean = |axis: usize| corners.iter().map(|point| point.local[axis]).sum::<f64>() / 4.0;
+        let local = [mean(0), mean(1)];
+        let own = self.mesh.cell(cell).get(8);
+        let node = match own.filter(|_| local == [0.0; 2]) {
+            Some(node) => *node,
+            None => {
+                self.nodes.push(self.mesh.place(cell, local));
+                self.nodes.len() - 1
+            }
+        };
+        Point { node, local }
+    }
+
+    /// The node half way between two nodes, if there is one.
+    pub fn between(&self, a: usize, b: usize) -> Option<usize> {
+        self.made.get(&key(a, b)).copied()
+    }
+
+    /// Says which node is half way between two nodes.
+    pub fn put_between(&mut self, [a, b]: [usize; 2], middle: usize) {
+        self.made.insert(key(a, b), middle);
+    }
+
+    /// Adds a piece of a cell by its corners, with the other nodes of its kind.
+    pub fn add(&mut self, cell: usize, shape: CellShape, corners: &[Point]) {
+        let mut nodes: Vec<usize> = corners.iter().map(|point| point.node).collect();
+        let count = corners.len();
+        if shape.degree() == 2 {
+            for i in 0..count {
+                let middle = self.middle(cell, corners[i], corners[(i + 1) % count]);
+                nodes.push(middle.node);
+            }
+        }
+        if shape == CellShape::Quad9 {
+            nodes.push(self.centre(cell, corners).node);
+        }
+        self.cells.push((shape, nodes));
+    }
+
+    /// Adds a cell as it is.
+    pub fn keep(&mut self, cell: usize) {
+        let nodes = self.mesh.cell(cell).to_vec();
+        self.cells.push((self.mesh.shape(cell), nodes));
+    }
+
+    /// An edge with its middle.
+    fn with_middle(&self, a: usize, b: usize) -> Vec<usize> {
+        [a, b].into_iter().chain(self.between(a, b)).collect()
+    }
+
+    /// Both halves of an edge that was cut.
+    pub fn halves(&self, edge: &[usize]) -> Vec<Vec<usize>> {
+        let (a, b) = (edge[0], edge[1]);
+        let middle = self
+            .between(a, b)
+            .expect("the middle of an edge that was cut");
+        match edge.len() {
+            2 => vec![vec![a, middle], vec![middle, b]],
+            _ => vec![self.with_middle(a, middle), self.with_middle(middle, b)],
+        }
+    }
+
+    /// The mesh, with the groups of the one that was cut; `edges` makes an edge into those of the new mesh.
+    pub fn finish(self, edges: impl Fn(&Self, &[usize]) -> Vec<Vec<usize>>) -> Mesh {
+        let mut groups = Vec::new();
+        for (name, group) in self.mesh.groups() {
+            let own: Vec<_> = group
+                .edges
+                .iter()
+                .flat_map(|edge| edges(&self, edge))
+                .collect();
+            let nodes = group.nodes.iter().chain(own.iter().flatten());
+            groups.push((name, nodes.copied().collect(), own));
+        }
+        let mut mesh = Mesh::new(self.nodes, self.cells);
         for (name, nodes, edges) in groups {
             mesh.put_group(name, nodes, edges);
         }
         mesh
     }
+}
 
-    fn centre(&mut self, corners: &[usize]) -> usize {
-        let mean = |axis: usize| {
-            corners
-                .iter()
-                .map(|node| self.nodes[*node][axis])
-                .sum::<f64>()
-                / corners.len() as f64
-        };
-        let centre = [mean(0), mean(1)];
-        self.nodes.push(centre);
-        self.nodes.len() - 1
-    }
+/// An edge by its ends, the smaller first.
+pub(super) fn key(a: usize, b: usize) -> [usize; 2] {
+    [a.min(b), a.max(b)]
 }
 
 #[cfg(test)]
@@ -195,5 +276,69 @@ mod tests {
                 assert!(high.gradients(cell, high.shape(cell).centre()).1 > 0.0);
             }
         }
+    }
+
+    /// Half a ring, whose curved cells are cut along the lines of their own maps.
+    #[test]
+    fn curved_cells_keep_their_area_and_their_sides() {
+        let shape = Shape::RingSector {
+            radii: [10.0, 20.0],
+            angle: 3.0,
+        };
+        for kind in [CellShape::Triangle6, CellShape::Quad8, CellShape::Quad9] {
+            let mesh = shape.mesh(2, kind);
+            let area = mesh.area();
+            let fine = mesh.refined();
+            let triangles = mesh.triangulated();
+            let marked: Vec<bool> = (0..triangles.cell_count())
+                .map(|cell| cell % 3 == 0)
+                .collect();
+            for other in [
+                &fine,
+                &fine.refined(),
+                &triangles,
+                &triangles.refined_where(&marked),
+            ] {
+                let error = (other.area() / area - 1.0).abs();
+                assert!(error < 1e-12, "{kind:?}: {error}");
+                assert_eq!(
+                    other.element_names().contains("T2"),
+                    other.shape(0).is_triangle()
+                );
+                assert_eq!(other.degree(), 2);
+                assert!(other.faults(crate::mesh::Allowed::default()).is_empty());
+            }
+            // Where the map of an edge has it, a quarter along: ⅜, ¾ and −⅛ of its nodes' places.
+            let edge = &mesh.groups()["inside"].edges[0];
+            let [a, b, m] = [edge[0], edge[1], edge[2]].map(|node| mesh.nodes[node]);
+            let quarter = [0, 1].map(|axis| 0.375 * a[axis] + 0.75 * m[axis] - 0.125 * b[axis]);
+            let near = |node: &usize| {
+                let place = fine.nodes[*node];
+                (place[0] - quarter[0]).hypot(place[1] - quarter[1]) < 1e-12
+            };
+            assert!(fine.groups()["inside"].nodes.iter().any(near), "{kind:?}");
+            let inside = &fine.groups()["inside"].edges;
+            assert!(inside.iter().all(|edge| fine.boundary().contains(edge)));
+        }
+    }
+
+    #[test]
+    fn linear_cells_beside_quadratic_ones_share_their_middles() {
+        let nodes = vec![
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [0.0, 2.0],
+            [1.0, 0.0],
+            [1.1, 1.1],
+            [0.0, 1.0],
+            [2.0, 2.0],
+        ];
+        let cells = [
+            (CellShape::Triangle6, (0..6).collect()),
+            (CellShape::Triangle3, vec![1, 6, 2]),
+        ];
+        let mesh = Mesh::new(nodes, cells).quadratic();
+        assert_eq!(mesh.cell(1)[..3], [1, 6, 2]);
+        assert_eq!((mesh.cell(1)[5], mesh.nodes.len()), (4, 9));
     }
 }

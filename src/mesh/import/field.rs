@@ -186,8 +186,12 @@ fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSe
         }
     };
     let steps = fields.iter().map(step).collect();
+    let mesh = raw.mesh(unit)?;
+    if let Some(fault) = mesh.cells_without_sense().first() {
+        return Err(format!("is faulty: {}", fault.message));
+    }
     Ok(ImportedSeries {
-        mesh: raw.mesh(unit)?,
+        mesh,
         steps,
         part: format!("the array `{name}`"),
     })

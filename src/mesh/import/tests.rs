@@ -14,7 +14,10 @@ fn with(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {
 
 fn read(name: &str, text: &str) -> Result<Mesh, String> {
     let (_folder, path) = with(name, text);
-    import(&path, 10.0)
+    match import(&path, MeshReading::in_unit(10.0)) {
+        Ok((mesh, _)) => Ok(mesh),
+        Err(told) => Err(told.iter().map(ToString::to_string).collect()),
+    }
 }
 
 /// A square of 1 × 1: a triangle below the diagonal, given clockwise, and one above; the lower side is a group.
@@ -67,7 +70,7 @@ fn what_cannot_be_read_is_refused_by_name() {
         ),
         (
             VERSION_2.replace("3 1 1 0\n", "3 0.5 0 0\n"),
-            "has a folded cell",
+            "cell has no area, near (5, 0) mm",
         ),
         (
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".into(),

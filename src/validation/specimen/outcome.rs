@@ -121,7 +121,7 @@ fn introduction(specimen: &Specimen, models: &Models) -> String {
     format!(
         "Deviations from the finite elements ({} on {}, {}) at {} nodes of the lattice ({}). \
          Displacements in relative L2, weighted by area; the {} is that of {whose} the group `{}`.",
-        specimen.element_name,
+        models.reference.mesh.element_names(),
         models.reference.mesh.describe(),
         models.reference.kind(),
         lattice.nodes.len(),

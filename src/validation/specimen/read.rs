@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use crate::boundary::{BoundaryProblem, Drive, Load, Support};
 use crate::document::{Bound, Section};
+use crate::error::Severity;
 use crate::material::Card;
-use crate::mesh::{CellShape, Mesh, Shape, import};
+use crate::mesh::{Allowed, CellShape, Mesh, MeshReading, Shape, import};
 use crate::study;
 use crate::units::Dimension;
 
@@ -42,8 +43,6 @@ pub struct Specimen {
     pub factors: Vec<f64>,
     /// The group whose force is compared, or its displacement where the force is given.
     pub measured: String,
-    /// The finite elements' name.
-    pub element_name: &'static str,
     /// What the corrected field has to reach.
     pub tolerances: Tolerances,
     /// How far the finite elements are refined locally; nothing where they have three meshes.
@@ -60,8 +59,8 @@ enum Outline {
         lattice: CellShape,
         element: CellShape,
     },
-    /// The linear mesh of a file, and whether the finite elements are quadratic.
-    File { mesh: Box<Mesh>, quadratic: bool },
+    /// The mesh of a file, and the finite elements on it.
+    File { mesh: Box<Mesh>, element: CellShape },
 }
 
 /// The shape that is read from a file.
@@ -135,7 +134,6 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         card,
         factors,
         measured,
-        element_name: chosen?.0,
         tolerances,
         refinement,
         outline: outline?,
@@ -151,23 +149,11 @@ fn read_outline(
     element: CellShape,
 ) -> Option<Outline> {
     if name == MESH {
-        let file = section.text("file");
-        let unit = section.quantity("file_unit", Dimension::Length, Bound::Positive);
-        if file.is_empty() || !unit.is_finite() {
-            return None;
-        }
-        return match import(&folder.join(&file), unit) {
-            Ok(mesh) => Some(Outline::File {
-                mesh: Box::new(mesh.linear()),
-                quadratic: element.degree() == 2,
-            }),
-            Err(reason) => {
-                let hint =
-                    "Gmsh's .msh (ASCII) of the versions 2.2 and 4.1, .vtu and .vtk can be read";
-                section.fault("file", &format!("{file} {reason}"), hint);
-                None
-            }
-        };
+        let (mesh, element) = (read_mesh(section, folder)?, element);
+        return Some(Outline::File {
+            mesh: Box::new(mesh),
+            element,
+        });
     }
     let shape = read_shape(section, name);
     let cells = section.count("cells", 2, 400);
@@ -182,6 +168,52 @@ fn read_outline(
         lattice,
         element,
     })
+}
+
+/// The mesh of a file; nothing where it cannot be used, with the faults recorded.
+fn read_mesh(section: &Section, folder: &Path) -> Option<Mesh> {
+    let file = section.text("file");
+    let unit = section.quantity("file_unit", Dimension::Length, Bound::Positive);
+    let merge_nodes = section
+        .has("merge_nodes")
+        .then(|| section.quantity("merge_nodes", Dimension::Length, Bound::Positive));
+    let names = match section.has("allowed") {
+        true => section.texts("allowed"),
+        false => Vec::new(),
+    };
+    let allowed = Allowed::of_names(names.iter().map(String::as_str));
+    if let Err(unknown) = &allowed {
+        let hint = format!("one of {}", Allowed::NAMES.join(", "));
+        section.fault(
+            "allowed",
+            &format!("\"{unknown}\" is not known here"),
+            &hint,
+        );
+    }
+    if file.is_empty() {
+        section.fault("file", "must name a mesh", "such as \"specimen.msh\"");
+    }
+    if file.is_empty() || !unit.is_finite() || merge_nodes.is_some_and(f64::is_nan) {
+        return None;
+    }
+    let reading = MeshReading {
+        unit,
+        merge_nodes,
+        allowed: allowed.ok()?,
+    };
+    let read = import(&folder.join(&file), reading);
+    let (mesh, told) = match read {
+        Ok((mesh, told)) => (Some(mesh), told),
+        Err(told) => (None, told),
+    };
+    for found in told {
+        let hint = found.hint.unwrap_or_default();
+        match found.severity {
+            Severity::Error => section.fault("file", &found.message, &hint),
+            Severity::Warning => section.warning("file", &found.message, &hint),
+        }
+    }
+    mesh
 }
 
 /// What is measured at a group, with its unit.
@@ -223,7 +255,7 @@ impl Specimen {
         axis.map_or(Measured::Force, Measured::Displacement)
     }
 
-    /// The mesh of the springs and of the corrector.
+    /// The mesh of the springs and of the corrector; that of a file has a node wherever the file has one.
     pub fn lattice(&self) -> Mesh {
         match &self.outline {
             Outline::Shape {
@@ -232,7 +264,8 @@ impl Specimen {
                 lattice,
                 ..
             } => shape.mesh(*cells, *lattice),
-            Outline::File { mesh, .. } => (**mesh).clone(),
+            Outline::File { mesh, .. } if mesh.degree() == 1 => (**mesh).clone(),
+            Outline::File { mesh, .. } => mesh.refined().linear(),
         }
     }
 
@@ -246,18 +279,30 @@ impl Specimen {
                 element,
                 ..
             } => [cells / 2, *cells, 2 * cells].map(|cells| shape.mesh(cells, *element)),
-            Outline::File { mesh, quadratic } => {
+            Outline::File { mesh, .. } => {
                 let fine = mesh.refined();
                 let meshes = [(**mesh).clone(), fine.clone(), fine.refined()];
-                match quadratic {
-                    true => meshes.map(|mesh| mesh.quadratic()),
-                    false => meshes,
-                }
+                meshes.map(|mesh| self.elements_on(&mesh))
             }
         }
     }
 
-    /// The three-node triangles that local refinement begins with: as coarse as the coarsest of three meshes.
+    /// The middle one of the three meshes of a file's specimen with its edges on the curves that they stand for, see
+    /// [`Mesh::rounded`], and the whole change to those curves over the change to this mesh.
+    pub fn rounded_mesh(&self) -> Option<(Mesh, f64)> {
+        let Outline::File { mesh, .. } = &self.outline else {
+            return None;
+        };
+        // What is left between a curve and chords falls with h², between a curve and parabolas with h⁴.
+        let whole = if mesh.degree() == 1 {
+            4.0 / 3.0
+        } else {
+            16.0 / 15.0
+        };
+        Some((self.elements_on(&mesh.rounded()?), whole))
+    }
+
+    /// The triangles that local refinement begins with: as coarse as the coarsest of three meshes.
     pub fn first_triangles(&self) -> Mesh {
         match &self.outline {
             Outline::Shape { shape, cells, .. } => shape.mesh(*cells / 2, CellShape::Triangle3),
@@ -265,19 +310,17 @@ impl Specimen {
         }
     }
 
-    /// The mesh of the study's elements on some triangles.
-    pub fn elements_on(&self, triangles: &Mesh) -> Mesh {
-        let quadratic = match &self.outline {
-            Outline::Shape { element, .. } => element.degree() == 2,
-            Outline::File { quadratic, .. } => *quadratic,
-        };
-        match quadratic {
-            true => self.fitted(triangles.quadratic()),
-            false => triangles.clone(),
+    /// The mesh of the study's elements on some cells.
+    pub fn elements_on(&self, cells: &Mesh) -> Mesh {
+        let (Outline::Shape { element, .. } | Outline::File { element, .. }) = &self.outline;
+        match (element.degree(), cells.degree()) {
+            (1, 1) => cells.clone(),
+            (1, _) => cells.linear(),
+            _ => self.fitted(cells.quadratic()),
         }
     }
 
-    /// A refined mesh with its sides on the outline; that of a file is the polygon of its mesh.
+    /// A refined mesh with its sides on the outline; that of a file is the one of its mesh.
     pub fn fitted(&self, mut mesh: Mesh) -> Mesh {
         if let Outline::Shape { shape, .. } = &self.outline {
             shape.fit(&mut mesh);

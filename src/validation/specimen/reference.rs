@@ -24,6 +24,8 @@ pub struct Reference {
     /// One a load factor.
     pub estimates: Vec<ErrorEstimate>,
     history: History,
+    /// What the curves that a file's edges stand for change in what is measured, where there are such edges.
+    outline: Option<Vec<f64>>,
 }
 
 /// How the mesh was come by.
@@ -63,6 +65,7 @@ impl Reference {
             mesh,
             solved,
             estimates,
+            outline: outline_errors(specimen, Some(&middle.measured))?,
             history: History::Halved([coarse.measured, middle.measured]),
         })
     }
@@ -91,6 +94,7 @@ impl Reference {
                         mesh,
                         solved,
                         estimates,
+                        outline: outline_errors(specimen, None)?,
                         history: History::Adaptive(rounds),
                     });
                 }
@@ -117,16 +121,38 @@ impl Reference {
 
     /// What the own error of the measured quantity follows from.
     pub fn by_what(&self) -> &'static str {
-        match self.history {
-            History::Halved(_) => "by three meshes",
-            History::Adaptive(_) => "by recovery",
+        match (&self.history, &self.outline) {
+            (History::Halved(_), None) => "by three meshes",
+            (History::Halved(_), Some(_)) => "by three meshes and a rounded outline",
+            (History::Adaptive(_), None) => "by recovery",
+            (History::Adaptive(_), Some(_)) => "by recovery and a rounded outline",
         }
     }
 
-    /// The own error of what is measured at a load factor in %.
+    /// The own error of what is measured at a load factor in %, with that of a file's outline.
     pub fn measured_percent(&self, step: usize) -> f64 {
         let estimated = || self.recovered_percent(step);
-        self.three_meshes_percent(step).unwrap_or_else(estimated)
+        let own = self.three_meshes_percent(step).unwrap_or_else(estimated);
+        own + self.outline_percent(step).unwrap_or(0.0)
+    }
+
+    /// What the curves that a file's edges stand for change in what is measured at a load factor, in %.
+    fn outline_percent(&self, step: usize) -> Option<f64> {
+        let changes = self.outline.as_ref()?;
+        let change = changes.get(step).copied().unwrap_or(f64::NAN);
+        Some(100.0 * (change / self.solved.measured[step]).abs())
+    }
+
+    /// What is said about a file's outline.
+    fn outline_told(&self, specimen: &Specimen) -> Option<Block> {
+        let steps = 0..self.outline.as_ref()?.len();
+        let percents = steps.filter_map(|step| self.outline_percent(step));
+        let most = percents.fold(0.0, f64::max);
+        Some(Block::Paragraph(format!(
+            "The outline: finite elements on meshes of the file have its edges, chords or parabolas. With the smooth \
+             curves that these stand for the {} would change by up to {most:.2e} %; this is part of its own error.",
+            specimen.measured().name()
+        )))
     }
 
     /// The error of what is measured by three meshes at a load factor in %, where there are three.
@@ -167,10 +193,11 @@ impl Reference {
         ))
     }
 
-    /// The rounds of local refinement.
+    /// The outline's share of the error, and the rounds of local refinement.
     pub fn history(&self, specimen: &Specimen) -> Vec<Block> {
+        let outline = self.outline_told(specimen);
         let History::Adaptive(rounds) = &self.history else {
-            return Vec::new();
+            return outline.into_iter().collect();
         };
         let what = specimen.measured().name();
         let head = [
@@ -191,10 +218,9 @@ impl Reference {
         };
         let text = "Local refinement: in every round the cells with half of the squared error are cut into four. Errors \
                     are those of the worst load factor.";
-        vec![
-            Block::Paragraph(text.into()),
-            Block::table(&head, rounds.iter().enumerate().map(row)),
-        ]
+        let rounds = rounds.iter().enumerate().map(row);
+        let history = [Block::Paragraph(text.into()), Block::table(&head, rounds)];
+        outline.into_iter().chain(history).collect()
     }
 }
 
@@ -238,6 +264,24 @@ fn indicators(estimates: &[ErrorEstimate]) -> Vec<f64> {
         }
     }
     sums
+}
+
+/// What the curves that a file's edges stand for change in what is measured at each load factor; `None` where there are
+/// no such edges.
+fn outline_errors(specimen: &Specimen, middle: Option<&[f64]>) -> Result<Option<Vec<f64>>, Error> {
+    let Some((rounded, whole)) = specimen.rounded_mesh() else {
+        return Ok(None);
+    };
+    // Where a path ends is told of the meshes whose results are given.
+    let mut untold = Vec::new();
+    let mut measured = |mesh: &Mesh| Ok(on_mesh(specimen, mesh, FILE, &mut untold)?.measured);
+    let rounded = measured(&rounded)?;
+    let middle = match middle {
+        Some(middle) => middle.to_vec(),
+        None => measured(&specimen.reference_meshes()[1])?,
+    };
+    let pairs = rounded.iter().zip(&middle);
+    Ok(Some(pairs.map(|(r, m)| whole * (r - m)).collect()))
 }
 
 fn on_mesh(

@@ -1,0 +1,88 @@
+//! Parts that are not attached, and parts that are joined in a single node.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::sides::Sides;
+use super::{Allowed, Found, at};
+use crate::error::Diagnostic;
+
+/// Sets of numbers that are joined step by step.
+pub struct Joined(Vec<usize>);
+
+impl Joined {
+    pub fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    /// The number that stands for the set of one.
+    pub fn of(&mut self, mut one: usize) -> usize {
+        while self.0[one] != one {
+            self.0[one] = self.0[self.0[one]];
+            one = self.0[one];
+        }
+        one
+    }
+
+    pub fn join(&mut self, one: usize, other: usize) {
+        let [one, other] = [self.of(one), self.of(other)];
+        let (low, high) = (one.min(other), one.max(other));
+        self.0[high] = low;
+    }
+}
+
+/// Parts that are not attached to each other.
+pub fn parts(sides: &Sides, allowed: Allowed) -> Option<Diagnostic> {
+    if allowed.parts {
+        return None;
+    }
+    let mesh = sides.mesh;
+    let mut joined = Joined::new(mesh.nodes.len());
+    for cell in sides.cells() {
+        let nodes = mesh.cell(cell);
+        nodes[1..]
+            .iter()
+            .for_each(|node| joined.join(nodes[0], *node));
+    }
+    // Cells of each part, and the centre of the first one.
+    let mut parts: BTreeMap<usize, (usize, [f64; 2])> = BTreeMap::new();
+    for cell in sides.cells() {
+        let part = joined.of(mesh.cell(cell)[0]);
+        parts.entry(part).or_insert((0, mesh.centre(cell))).0 += 1;
+    }
+    let mut parts: Vec<_> = parts.into_values().collect();
+    if parts.len() < 2 {
+        return None;
+    }
+    parts.sort_by_key(|(cells, _)| std::cmp::Reverse(*cells));
+    let told = |(cells, place): &(usize, [f64; 2])| format!("{cells} cells near {} mm", at(*place));
+    let shown: Vec<String> = parts.iter().take(Found::SHOWN).map(told).collect();
+    let more = match parts.len().saturating_sub(Found::SHOWN) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let message = format!(
+        "{} parts are not attached to each other: {}{more}",
+        parts.len(),
+        shown.join(", ")
+    );
+    let remedy = "take out what does not belong to the specimen; where parts touch, merge their nodes (merge_nodes, \
+                  --merge-nodes); where each is held on its own, allow \"parts\"";
+    Some(Diagnostic::error("", message).hint(remedy))
+}
+
+/// Nodes from which the boundary goes on in two ways.
+pub fn hinges(sides: &Sides, allowed: Allowed) -> Option<Diagnostic> {
+    if allowed.hinges {
+        return None;
+    }
+    let mut once = BTreeSet::new();
+    let begins = sides.boundary().into_iter().map(|side| side.ends()[0]);
+    let twice: BTreeSet<usize> = begins.filter(|node| !once.insert(*node)).collect();
+    Found::of(twice.into_iter().map(|node| sides.mesh.nodes[node])).error(
+        [
+            "node alone joins cells on both sides of it: a hinge",
+            "nodes alone join cells on both sides of them: hinges",
+        ],
+        "join the cells along a side, or part them; where the boundary is meant to touch itself in a node, allow \"hinges\"",
+    )
+}

@@ -1,0 +1,103 @@
+//! The sides of all cells, sorted by their ends: which cells meet at each, and what of them is the boundary.
+
+use std::collections::HashSet;
+
+use super::Found;
+use crate::error::Diagnostic;
+use crate::mesh::Mesh;
+use crate::mesh::refine::key;
+
+/// A side of a cell.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Side {
+    key: [usize; 2],
+    pub cell: usize,
+    /// From the smaller end to the larger one, as the cell to its left goes around.
+    forward: bool,
+    /// The node in its middle.
+    pub middle: Option<usize>,
+}
+
+impl Side {
+    /// Begin and end, with the cell to the left.
+    pub fn ends(self) -> [usize; 2] {
+        let [a, b] = self.key;
+        if self.forward { [a, b] } else { [b, a] }
+    }
+}
+
+/// All sides of a mesh's cells but some.
+pub struct Sides<'a> {
+    pub mesh: &'a Mesh,
+    /// By their ends.
+    all: Vec<Side>,
+    /// The cells that are left out.
+    again: &'a HashSet<usize>,
+}
+
+impl<'a> Sides<'a> {
+    pub fn new(mesh: &'a Mesh, again: &'a HashSet<usize>) -> Self {
+        let mut all = Vec::with_capacity(4 * mesh.cell_count());
+        for cell in (0..mesh.cell_count()).filter(|cell| !again.contains(cell)) {
+            let nodes = mesh.cell(cell);
+            for edge in mesh.shape(cell).edges() {
+                let [a, b] = [nodes[edge[0]], nodes[edge[1]]];
+                all.push(Side {
+                    key: key(a, b),
+                    cell,
+                    forward: a < b,
+                    middle: edge.get(2).map(|middle| nodes[*middle]),
+                });
+            }
+        }
+        all.sort_unstable();
+        Self { mesh, all, again }
+    }
+
+    /// The sides with the same ends.
+    fn meeting(&self) -> impl Iterator<Item = &[Side]> {
+        self.all.chunk_by(|one, other| one.key == other.key)
+    }
+
+    /// The cells that are counted.
+    pub fn cells(&self) -> impl Iterator<Item = usize> {
+        (0..self.mesh.cell_count()).filter(|cell| !self.again.contains(cell))
+    }
+
+    /// The sides of one cell alone.
+    pub fn boundary(&self) -> Vec<Side> {
+        let alone = self.meeting().filter(|sides| sides.len() == 1);
+        alone.map(|sides| sides[0]).collect()
+    }
+
+    /// Half way between the ends of a side.
+    pub fn place(&self, side: Side) -> [f64; 2] {
+        let [a, b] = side.key.map(|node| self.mesh.nodes[node]);
+        [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+    }
+
+    /// Sides where cells overlap or do not go together.
+    pub fn faults(&self) -> Vec<Diagnostic> {
+        let overlapping = self.meeting().filter(|sides| {
+            sides.len() > 2 || (sides.len() == 2 && sides[0].forward == sides[1].forward)
+        });
+        let overlapping = Found::of(overlapping.map(|sides| self.place(sides[0]))).error(
+            [
+                "side has cells that overlap: two on the same side of it",
+                "sides have cells that overlap: two on the same side of each",
+            ],
+            "take one of the cells out; a surface meshed twice must be joined before it is meshed (Coherence in Gmsh)",
+        );
+        let apart = self
+            .meeting()
+            .filter(|sides| sides.len() == 2 && sides[0].middle != sides[1].middle);
+        let apart = Found::of(apart.map(|sides| self.place(sides[0]))).error(
+            [
+                "side has another node in its middle for each of its two cells",
+                "sides have another node in their middle for each of their two cells",
+            ],
+            "merge nodes at the same place (merge_nodes, --merge-nodes), or mesh with one order of elements",
+        );
+        overlapping.into_iter().chain(apart).collect()
+    }
+}

@@ -1,0 +1,240 @@
+//! Cells that touch or overlap without being joined: doubled nodes, hanging nodes, nodes inside of other cells.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::parts::Joined;
+use super::sides::{Side, Sides};
+use super::{Allowed, Found};
+use crate::error::Diagnostic;
+use crate::mesh::Mesh;
+
+/// What is nearer than this part of the shortest edge around is at the same place.
+const NEAR: f64 = 1e-3;
+/// A node is inside of a cell when it lies this far from its sides, in reference coordinates.
+const INSIDE: f64 = 1e-2;
+
+/// Doubled and hanging nodes.
+pub fn faults(sides: &Sides, allowed: Allowed) -> Vec<Diagnostic> {
+    let boundary = Boundary::new(sides);
+    let (mut doubled, mut hanging) = (Vec::new(), boundary.both_corner_and_middle());
+    for node in boundary.shortest.keys() {
+        for (side, which) in boundary.touched(*node) {
+            match which {
+                Touched::Node(other) => doubled.push([*node, other]),
+                Touched::Side => hanging.push((*node, side)),
+            }
+        }
+    }
+    hanging.sort_unstable();
+    let seam = boundary.seam(&doubled);
+    // A node that hangs on both sides of a seam, or on a side whose own node is at its place, is doubled.
+    let doubled: BTreeSet<usize> = doubled.into_iter().flatten().collect();
+    let hanging: BTreeSet<usize> = hanging.into_iter().map(|(node, _)| node).collect();
+    let mut found = Vec::new();
+    if !allowed.seams {
+        found.extend(seam.or_else(|| boundary.doubled_alone(&doubled)));
+    }
+    let places = hanging.iter().map(|node| sides.mesh.nodes[*node]);
+    found.extend(Found::of(places).error(
+        [
+            "node hangs on a cell's side without being its node",
+            "nodes hang on a cell's side without being its nodes",
+        ],
+        "cells must meet side to side: divide the larger cell through the node, or join the parts before meshing \
+         (BooleanFragments or Coherence in Gmsh)",
+    ));
+    found
+}
+
+/// What of the boundary a node is at.
+enum Touched {
+    Node(usize),
+    Side,
+}
+
+/// The sides of the boundary by the squares of a grid that their boxes touch.
+struct Boundary<'a> {
+    sides: &'a Sides<'a>,
+    all: Vec<Side>,
+    /// The length of the shortest side at each node of the boundary.
+    shortest: BTreeMap<usize, f64>,
+    step: f64,
+    squares: HashMap<[i64; 2], Vec<usize>>,
+}
+
+impl<'a> Boundary<'a> {
+    fn new(sides: &'a Sides) -> Self {
+        let all = sides.boundary();
+        let mut boundary = Self {
+            sides,
+            shortest: BTreeMap::new(),
+            step: 0.0,
+            squares: HashMap::new(),
+            all,
+        };
+        let mut sum = 0.0;
+        for side in &boundary.all {
+            let length = boundary.length(*side);
+            sum += length;
+            for node in side.ends().into_iter().chain(side.middle) {
+                let known = boundary.shortest.entry(node).or_insert(length);
+                *known = known.min(length);
+            }
+        }
+        boundary.step = (sum / boundary.all.len().max(1) as f64).max(f64::MIN_POSITIVE);
+        for (index, side) in boundary.all.iter().enumerate() {
+            let [low, high] = boundary.around(*side).map(|place| boundary.square(place));
+            for i in low[0]..=high[0] {
+                for j in low[1]..=high[1] {
+                    boundary.squares.entry([i, j]).or_default().push(index);
+                }
+            }
+        }
+        boundary
+    }
+
+    fn node(&self, node: usize) -> [f64; 2] {
+        self.sides.mesh.nodes[node]
+    }
+
+    fn length(&self, side: Side) -> f64 {
+        let [a, b] = side.ends().map(|node| self.node(node));
+        (b[0] - a[0]).hypot(b[1] - a[1])
+    }
+
+    fn square(&self, place: [f64; 2]) -> [i64; 2] {
+        place.map(|x| (x / self.step).floor() as i64)
+    }
+
+    /// The box around a side, with what is near.
+    fn around(&self, side: Side) -> [[f64; 2]; 2] {
+        let [a, b] = side.ends().map(|node| self.node(node));
+        let bow = self.bow(side);
+        let margin = NEAR * self.length(side) + bow[0].abs().max(bow[1].abs());
+        [
+            [0, 1].map(|axis| a[axis].min(b[axis]) - margin),
+            [0, 1].map(|axis| a[axis].max(b[axis]) + margin),
+        ]
+    }
+
+    /// From the middle of a side's chord to its middle.
+    fn bow(&self, side: Side) -> [f64; 2] {
+        let [a, b] = side.ends().map(|node| self.node(node));
+        side.middle.map_or([0.0; 2], |middle| {
+            let m = self.node(middle);
+            [0, 1].map(|axis| m[axis] - 0.5 * (a[axis] + b[axis]))
+        })
+    }
+
+    /// The sides that a node lies on without being their node.
+    fn touched(&self, node: usize) -> Vec<(Side, Touched)> {
+        let place = self.node(node);
+        let around = self.squares.get(&self.square(place));
+        let around = around.into_iter().flatten().map(|side| self.all[*side]);
+        let touch = |side: Side| {
+            let own: Vec<usize> = side.ends().into_iter().chain(side.middle).collect();
+            if own.contains(&node) {
+                return None;
+            }
+            let near = NEAR * self.length(side).min(self.shortest[&node]);
+            let is_near =
+                |other: [f64; 2]| (other[0] - place[0]).hypot(other[1] - place[1]) <= near;
+            if let Some(other) = own.into_iter().find(|other| is_near(self.node(*other))) {
+                return Some((side, Touched::Node(other)));
+            }
+            let foot = self.foot(side, place)?;
+            is_near(foot).then_some((side, Touched::Side))
+        };
+        around.filter_map(touch).collect()
+    }
+
+    /// The point of a side that is nearest to a place beside it.
+    fn foot(&self, side: Side, place: [f64; 2]) -> Option<[f64; 2]> {
+        let [a, b] = side.ends().map(|node| self.node(node));
+        let bow = self.bow(side);
+        let chord = [b[0] - a[0], b[1] - a[1]];
+        let square = chord[0].powi(2) + chord[1].powi(2);
+        let at =
+            |t: f64| [0, 1].map(|axis| a[axis] + t * chord[axis] + 4.0 * t * (1.0 - t) * bow[axis]);
+        // Along the chord; its own bow moves a point along it only where the middle is off the middle.
+        let mut t = 0.5;
+        for _ in 0..20 {
+            let here = at(t);
+            let miss = (0..2).map(|axis| (place[axis] - here[axis]) * chord[axis]);
+            t += miss.sum::<f64>() / square;
+        }
+        (0.0..=1.0).contains(&t).then(|| at(t))
+    }
+
+    /// Nodes that are a corner of one cell and in the middle of another one's side, with that side.
+    fn both_corner_and_middle(&self) -> Vec<(usize, Side)> {
+        let corners: BTreeSet<usize> = self.all.iter().flat_map(|side| side.ends()).collect();
+        let middles = self
+            .all
+            .iter()
+            .filter_map(|side| Some((side.middle?, *side)));
+        middles
+            .filter(|(middle, _)| corners.contains(middle))
+            .collect()
+    }
+
+    /// Sides of the boundary that lie on each other.
+    fn seam(&self, doubled: &[[usize; 2]]) -> Option<Diagnostic> {
+        let mut same = Joined::new(self.sides.mesh.nodes.len());
+        doubled
+            .iter()
+            .for_each(|[one, other]| same.join(*one, *other));
+        let mut known: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+        let mut twice = Vec::new();
+        for side in &self.all {
+            let [a, b] = side.ends().map(|node| same.of(node));
+            let count = known.entry([a.min(b), a.max(b)]).or_insert(0);
+            *count += 1;
+            if *count == 2 {
+                twice.push(self.sides.place(*side));
+            }
+        }
+        Found::of(twice).error(
+            [
+                "side lies on another cell's without sharing its nodes: a seam of doubled nodes",
+                "sides lie on another cell's without sharing its nodes: a seam of doubled nodes",
+            ],
+            SEAM,
+        )
+    }
+
+    fn doubled_alone(&self, doubled: &BTreeSet<usize>) -> Option<Diagnostic> {
+        Found::of(doubled.iter().map(|node| self.node(*node))).error(
+            [
+                "node lies where another one lies",
+                "nodes lie where others lie",
+            ],
+            SEAM,
+        )
+    }
+}
+
+const SEAM: &str = "join them with merge_nodes = \"1e-6 mm\" in [specimen] (--merge-nodes for measured fields); where a slit \
+                    is meant, allow \"seams\"";
+
+/// Nodes and centres of cells inside of other cells.
+pub fn overlaps(mesh: &Mesh) -> Option<Diagnostic> {
+    let corners = (0..mesh.nodes.len()).map(|node| mesh.nodes[node]);
+    let centres = (0..mesh.cell_count()).map(|cell| mesh.place(cell, mesh.shape(cell).centre()));
+    let mut found = Found::default();
+    for (index, place) in corners.chain(centres).enumerate() {
+        let own = index.checked_sub(mesh.nodes.len());
+        if mesh.holds_inside(place, INSIDE, |cell| {
+            own == Some(cell) || (own.is_none() && mesh.cell(cell).contains(&index))
+        }) {
+            found.add(place);
+        }
+    }
+    found.error(
+        [
+            "place is covered by two cells, which overlap",
+            "places are covered by two cells, which overlap",
+        ],
+        "take out what lies on other cells, or join the parts before meshing (BooleanFragments or Coherence in Gmsh)",
+    )
+}

@@ -1,0 +1,363 @@
+//! The smooth curve that the edges of a boundary stand for.
+//!
+//! An edge of two nodes is a chord, one of three nodes a parabola; where neighbouring edges go on in nearly the same
+//! direction a curve is meant, and the small turn δ from the end of one to the begin of the next tells how far the edges
+//! are from it. Each of the two edges takes its share of the turn, ψ, and the curve lies beside the edge by c(s) along
+//! the left normal of its chord, −1 ≤ s ≤ 1, with c'(±1) = ½ ℓ ψ:
+//!
+//! ```text
+//! two nodes     c = (1 − s²) (A + B s)       shares of δ as the lengths ℓ                     [mm]
+//! three nodes   c = s (1 − s²) (A + B s)     shares of δ as the third powers of the turns along the edges
+//! ```
+//!
+//! Both are exact to leading order: a chord of a circle is ℓ²/(8 R) beside it, a parabola through three points of an arc
+//! of the angle 2α at most R α⁴/32. An edge whose turn at one end is a corner's takes the other end's, mirrored.
+
+use std::collections::BTreeMap;
+
+use super::{Mesh, determinant};
+use crate::error::Diagnostic;
+
+/// A turn between straight edges that may belong to a curve, in rad: up to an octagon's.
+const TURNS: std::ops::Range<f64> = 0.003..0.8;
+/// Straight edges are a curve's where so many nodes in a row turn alike.
+const ALIKE: usize = 3;
+/// Turns per length of neighbouring nodes on a curve do not differ more than by this factor.
+const STEADY: f64 = 3.0;
+/// A turn between parabolas over the turns along them, up to which they are one curve's.
+const SMOOTH: f64 = 0.4;
+
+/// A distance to the curve over the edge's length that is rounding.
+const NOTHING: f64 = 1e-10;
+
+/// A part of the boundary that is drawn with straight edges where a curve may be meant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polygon {
+    /// The group of edges.
+    pub group: String,
+    /// Edges that may be chords.
+    pub edges: usize,
+    /// How far the curve lies beside an edge at most, in mm.
+    pub beside: f64,
+    /// What the specimen's area would be larger with the curve, in mm².
+    pub area: f64,
+}
+
+impl Polygon {
+    /// What it means if a curve is meant.
+    pub fn warning(&self, mesh: &Mesh) -> Diagnostic {
+        let message = format!(
+            "the boundary `{}` is a polygon: {} straight edges turn as those of a curve. If one is meant, it lies up to \
+             {:.2e} mm beside them, and the area is off by {:.2} %",
+            self.group,
+            self.edges,
+            self.beside,
+            100.0 * (self.area / mesh.area()).abs()
+        );
+        let hint = "save the mesh with elements of the second order, whose sides are curved";
+        Diagnostic::warning("", message).hint(hint)
+    }
+}
+
+/// An edge with its neighbours, and what the curve's ends turn against its own, in rad.
+struct Piece<'a> {
+    edge: &'a [usize],
+    /// From the first end to the last one.
+    chord: [f64; 2],
+    /// Direction at both ends.
+    tangents: [[f64; 2]; 2],
+    turns: [Option<f64>; 2],
+}
+
+impl Piece<'_> {
+    fn length(&self) -> f64 {
+        self.chord[0].hypot(self.chord[1])
+    }
+
+    /// The turn along the edge itself.
+    fn own_turn(&self) -> f64 {
+        angle(self.tangents[0], self.tangents[1])
+    }
+
+    /// What each end would turn if the edge were that of a circle.
+    fn circular(&self) -> f64 {
+        let half = 0.5 * self.own_turn();
+        2.0 * (0.5 * half.tan()).atan() - half
+    }
+
+    /// A and B of the distance to the curve.
+    fn bump(&self) -> Option<[f64; 2]> {
+        let [begin, end] = match self.turns {
+            [Some(begin), Some(end)] => [begin, end],
+            [Some(begin), None] => [begin, -begin],
+            [None, Some(end)] => [-end, end],
+            [None, None] if self.edge.len() == 3 => [-self.circular(), self.circular()],
+            [None, None] => return None,
+        };
+        let [begin, end] = [begin, end].map(|turn| 0.5 * self.length() * turn);
+        let (odd, even) = (-0.25 * (begin + end), 0.25 * (begin - end));
+        Some(match self.edge.len() {
+            2 => [even, odd],
+            _ => [odd, even],
+        })
+        .filter(|[a, b]| a.abs() + b.abs() > NOTHING * self.length())
+    }
+
+    /// The way from the edge to the curve at s in mm.
+    fn way(&self, [a, b]: [f64; 2], s: f64) -> [f64; 2] {
+        let odd = if self.edge.len() == 2 { 1.0 } else { s };
+        let height = odd * (1.0 - s * s) * (a + b * s) / self.length();
+        [-height * self.chord[1], height * self.chord[0]]
+    }
+
+    /// What the specimen to the left gains with the curve, in mm².
+    fn area(&self, [a, b]: [f64; 2]) -> f64 {
+        let mean = match self.edge.len() {
+            2 => 4.0 / 3.0 * a,
+            _ => 4.0 / 15.0 * b,
+        };
+        -0.5 * self.length() * mean
+    }
+}
+
+/// The angle from one direction to another.
+fn angle(from: [f64; 2], to: [f64; 2]) -> f64 {
+    determinant(&[from, to]).atan2(from[0] * to[0] + from[1] * to[1])
+}
+
+impl Mesh {
+    /// The mesh with every cell cut into four, its new boundary nodes on the smooth curves that its edges stand for;
+    /// [`Self::refined`] leaves them on the edges. `None` where no edge stands for a curve.
+    pub fn rounded(&self) -> Option<Self> {
+        let pieces = self.pieces();
+        let bumps: Vec<_> = pieces.iter().filter_map(|p| Some((p, p.bump()?))).collect();
+        if bumps.is_empty() {
+            return None;
+        }
+        let mut finer = self.quartered();
+        for (piece, bump) in bumps {
+            let (a, b) = (piece.edge[0], piece.edge[1]);
+            let places: &[_] = match piece.edge {
+                [_, _, m] => &[(a, *m, -0.5), (*m, b, 0.5)],
+                _ => &[(a, b, 0.0)],
+            };
+            for (from, to, s) in places {
+                let way = piece.way(bump, *s);
+                if let Some(node) = finer.between(*from, *to) {
+                    for (axis, way) in way.into_iter().enumerate() {
+                        finer.nodes[node][axis] += way;
+                    }
+                }
+            }
+        }
+        Some(finer.finish(super::refine::Subdivision::halves))
+    }
+
+    /// The groups of straight edges where a curve may be meant; the group of the whole boundary only where no other holds
+    /// such edges.
+    pub fn polygons(&self) -> Vec<Polygon> {
+        let pieces = self.pieces();
+        let straight = pieces.iter().filter(|piece| piece.edge.len() == 2);
+        let bumps: BTreeMap<&[usize], _> = straight
+            .filter_map(|piece| Some((piece.edge, (piece, piece.bump()?))))
+            .collect();
+        let of_group = |(name, group): (&String, &super::Group)| {
+            let own = group.edges.iter().filter_map(|edge| bumps.get(&edge[..]));
+            let mut found = Polygon {
+                group: name.clone(),
+                edges: 0,
+                beside: 0.0,
+                area: 0.0,
+            };
+            for (piece, bump) in own {
+                found.edges += 1;
+                found.beside = found.beside.max(bump[0].abs());
+                found.area += piece.area(*bump);
+            }
+            (found.edges > 0).then_some(found)
+        };
+        let found: Vec<Polygon> = self.groups().iter().filter_map(of_group).collect();
+        let named = |polygon: &&Polygon| polygon.group != "boundary";
+        match found.iter().any(|polygon| named(&polygon)) {
+            true => found.iter().filter(named).cloned().collect(),
+            false => found,
+        }
+    }
+
+    /// The edges of the boundary with what the curves that they stand for turn at their ends.
+    fn pieces(&self) -> Vec<Piece<'_>> {
+        let edges = self.boundary().iter();
+        let mut pieces: Vec<Piece> = edges.map(|edge| self.piece(edge)).collect();
+        let next = neighbours(&pieces);
+        let kinks: Vec<Option<f64>> = pieces
+            .iter()
+            .zip(&next)
+            .map(|(piece, next)| Some(angle(piece.tangents[1], pieces[(*next)?].tangents[0])))
+            .collect();
+        let mut before = vec![None; pieces.len()];
+        for (piece, next) in next.iter().enumerate() {
+            if let Some(next) = next {
+                before[*next] = Some(piece);
+            }
+        }
+        for piece in 0..pieces.len() {
+            let (Some(after), Some(kink)) = (next[piece], kinks[piece]) else {
+                continue;
+            };
+            let shares = match [&pieces[piece], &pieces[after]].map(|piece| piece.edge.len()) {
+                [3, 3] => parabolas(kink, [&pieces[piece], &pieces[after]]),
+                [2, 2] => chords(piece, &pieces, &kinks, &[&next, &before]),
+                _ => None,
+            };
+            if let Some([mine, other]) = shares {
+                pieces[piece].turns[1] = Some(mine);
+                pieces[after].turns[0] = Some(-other);
+            }
+        }
+        pieces
+    }
+
+    fn piece<'a>(&self, edge: &'a [usize]) -> Piece<'a> {
+        let at = |i: usize| self.nodes[edge[i]];
+        let (a, b) = (at(0), at(1));
+        let chord = [0, 1].map(|axis| b[axis] - a[axis]);
+        let tangents = match edge.len() {
+            2 => [chord; 2],
+            _ => {
+                let m = at(2);
+                let bow = [0, 1].map(|axis| 4.0 * m[axis] - 2.0 * (a[axis] + b[axis]));
+                [1.0, -1.0].map(|sign| [0, 1].map(|axis| chord[axis] + sign * bow[axis]))
+            }
+        };
+        Piece {
+            edge,
+            chord,
+            tangents,
+            turns: [None; 2],
+        }
+    }
+}
+
+/// The edge that goes on where each one ends; `None` where several do.
+fn neighbours(pieces: &[Piece]) -> Vec<Option<usize>> {
+    let mut begins: BTreeMap<usize, Option<usize>> = BTreeMap::new();
+    for (index, piece) in pieces.iter().enumerate() {
+        let begin = begins.entry(piece.edge[0]);
+        begin
+            .and_modify(|known| *known = None)
+            .or_insert(Some(index));
+    }
+    let next = |piece: &Piece| begins.get(&piece.edge[1]).copied().flatten();
+    pieces.iter().map(next).collect()
+}
+
+/// What the end of one parabola and the begin of the next have of the turn between them, if they are one curve's.
+fn parabolas(kink: f64, pair: [&Piece; 2]) -> Option<[f64; 2]> {
+    let turns = pair.map(|piece| piece.own_turn().abs());
+    let most = turns[0].max(turns[1]);
+    if most < TURNS.start || kink.abs() > SMOOTH * most {
+        return None;
+    }
+    let weights = turns.map(|turn| turn.powi(3));
+    let share = kink / (weights[0] + weights[1]);
+    Some(weights.map(|weight| share * weight))
+}
+
+/// What a chord and the next one have of the turn between them, if it is one of several alike in a row.
+fn chords(
+    piece: usize,
+    pieces: &[Piece],
+    kinks: &[Option<f64>],
+    ways: &[&[Option<usize>]; 2],
+) -> Option<[f64; 2]> {
+    // The turn at the end of an edge per length of the edges beside it.
+    let curvature = |piece: usize| {
+        let (kink, after) = (kinks[piece]?, ways[0][piece]?);
+        let curved = TURNS.contains(&kink.abs()) && pieces[after].edge.len() == 2;
+        curved.then(|| kink / (pieces[piece].length() + pieces[after].length()))
+    };
+    let mut alike = 1;
+    for way in ways {
+        let (mut at, mut own) = (piece, curvature(piece)?);
+        while let Some(to) = way[at].filter(|_| alike < ALIKE) {
+            let Some(other) = curvature(to) else { break };
+            if !(1.0 / STEADY..=STEADY).contains(&(other / own)) {
+                break;
+            }
+            alike += 1;
+            (at, own) = (to, other);
+        }
+    }
+    let (kink, after) = (kinks[piece]?, ways[0][piece]?);
+    let lengths = [piece, after].map(|piece| pieces[piece].length());
+    let share = kink / (lengths[0] + lengths[1]);
+    (alike >= ALIKE).then(|| lengths.map(|length| share * length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{CellShape, Shape};
+
+    const RING: Shape = Shape::RingSector {
+        radii: [10.0, 20.0],
+        angle: 2.0,
+    };
+
+    /// How far the nodes of the inner edge are from the circle.
+    fn beside(mesh: &Mesh) -> f64 {
+        let nodes = mesh.groups()["inside"].nodes.iter();
+        let radii = nodes.map(|node| mesh.nodes[*node][0].hypot(mesh.nodes[*node][1]));
+        radii.fold(0.0, |most, radius| f64::max(most, (radius - 10.0).abs()))
+    }
+
+    #[test]
+    fn edges_of_circles_are_rounded_to_them() {
+        for (_, kind) in CellShape::NAMES {
+            let mesh = RING.mesh(4, kind);
+            let edges = beside(&mesh.refined());
+            let rounded = beside(&mesh.rounded().expect("arcs"));
+            assert!(
+                edges > 1e-5 && rounded < 0.03 * edges,
+                "{kind:?}: {rounded} of {edges}"
+            );
+        }
+    }
+
+    #[test]
+    fn straight_boundaries_with_corners_are_no_curves() {
+        for (_, kind) in CellShape::NAMES {
+            let mesh = Shape::Strip { size: [30.0, 10.0] }.mesh(4, kind);
+            assert_eq!(mesh.rounded(), None);
+            assert_eq!(mesh.polygons(), []);
+        }
+    }
+
+    #[test]
+    fn polygons_are_told_with_what_they_lack() {
+        let hole = Shape::StripWithHole {
+            size: [30.0, 10.0],
+            radius: 2.0,
+        };
+        let mesh = hole.mesh(8, CellShape::Triangle3);
+        let [polygon] = &mesh.polygons()[..] else {
+            panic!("{:?}", mesh.polygons());
+        };
+        let corners = mesh.groups()["hole"].edges.len();
+        assert_eq!((polygon.group.as_str(), polygon.edges), ("hole", corners));
+        let angle = std::f64::consts::PI / corners as f64;
+        let sagitta = 2.0 * (1.0 - angle.cos());
+        assert!(
+            (polygon.beside / sagitta - 1.0).abs() < 0.3,
+            "{} {sagitta}",
+            polygon.beside
+        );
+        let lacking = 300.0 - 4.0 * std::f64::consts::PI - mesh.area();
+        assert!(
+            (polygon.area / lacking - 1.0).abs() < 0.05,
+            "{} {lacking}",
+            polygon.area
+        );
+        assert_eq!(hole.mesh(8, CellShape::Triangle6).polygons(), []);
+    }
+}
