@@ -168,6 +168,13 @@ pub const CASES: &[Case] = &[
         prepare: finite_elements::ring::prepare,
     },
     Case {
+        kind: "curved-meshes",
+        study: include_str!("../validation/cases/curved_meshes.toml"),
+        file: "validation/cases/curved_meshes.toml",
+        slow: true,
+        prepare: finite_elements::curved_meshes::prepare,
+    },
+    Case {
         kind: "cantilever",
         study: include_str!("../validation/cases/cantilever.toml"),
         file: "validation/cases/cantilever.toml",

@@ -11,6 +11,7 @@ use crate::solve::{NewtonSettings, PathEnd, State};
 
 pub mod cantilever;
 pub mod cook;
+pub mod curved_meshes;
 pub mod hole;
 pub mod manufactured;
 pub mod own_error;

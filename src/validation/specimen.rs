@@ -141,6 +141,21 @@ struct Models {
     corrected: Solved,
 }
 
+/// What is measured on the finest finite elements at the last load factor, and its own error in %.
+///
+/// # Errors
+/// [`Error::Solve`] when they have no solution.
+pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
+    let mut ends = Vec::new();
+    let reference = Reference::solve(specimen, &mut ends)?;
+    if let Some(end) = ends.pop() {
+        return Err(end.error());
+    }
+    let last = specimen.factors.len() - 1;
+    let force = reference.solved.measured[last];
+    Ok((force, reference.measured_percent(last)))
+}
+
 /// The mesh of the finest finite elements; a specimen that refines itself is solved for it.
 ///
 /// # Errors

@@ -10,6 +10,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 pub mod handed_over;
+pub mod mesh_files;
 
 pub fn gelbench(folder: &Path, arguments: &[&str]) -> Assert {
     let mut command = Command::cargo_bin("gelbench").unwrap();

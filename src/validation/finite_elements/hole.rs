@@ -67,7 +67,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
 }
 
 /// A quarter of the strip with cells that grow away from the hole.
-fn quarter(radius: f64, cells: usize, shape: CellShape) -> Mesh {
+pub fn quarter(radius: f64, cells: usize, shape: CellShape) -> Mesh {
     // Cells grow in proportion to their distance.
     let ratio = HALF / radius;
     let grow = move |s: f64| (ratio.powf(s) - 1.0) / (ratio - 1.0);

@@ -242,6 +242,33 @@ impl Measured {
 }
 
 impl Specimen {
+    /// A specimen on a mesh, as if it had been read from a file, with all loads at once.
+    pub fn of_mesh(
+        card: Card,
+        problem: BoundaryProblem,
+        mesh: Mesh,
+        element: CellShape,
+        measured: &str,
+    ) -> Self {
+        Self {
+            name: MESH.into(),
+            problem,
+            card,
+            factors: vec![1.0],
+            measured: measured.into(),
+            tolerances: Tolerances {
+                displacement_percent: 1.0,
+                force_percent: 1.0,
+                correction_percent: 1.0,
+            },
+            refinement: None,
+            outline: Outline::File {
+                mesh: Box::new(mesh),
+                element,
+            },
+        }
+    }
+
     /// What is measured at the measured group.
     pub fn measured(&self) -> Measured {
         let supports = self.problem.supports.iter().rev();

@@ -1,0 +1,142 @@
+//! Meshes of other programs with curved sides: the stated error of the force beside the true one.
+//!
+//! A mesh that is read has parabolas for circles, and so have its refinements: the stated error consists of the
+//! discretisation's, by three meshes, and the outline's, by the force on rounded sides. The true force is that of elements
+//! on circles, so fine that their error is below a thousandth of what is judged.
+
+use std::path::Path;
+
+use super::{held, hole, misfit, ring, solve};
+use crate::boundary::BoundaryProblem;
+use crate::document::Section;
+use crate::error::Error;
+use crate::material::Card;
+use crate::mesh::{CellShape, Mesh};
+use crate::output::Block;
+use crate::validation::specimen::{self, Specimen};
+use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure, number};
+
+/// Kinds of cells with curved sides.
+const KINDS: [CellShape; 3] = [CellShape::Triangle6, CellShape::Quad9, CellShape::Quad8];
+
+/// A specimen with round sides.
+struct Body {
+    name: &'static str,
+    problem: BoundaryProblem,
+    /// The group whose force is compared, along X.
+    measured: &'static str,
+    mesh: fn(usize, CellShape) -> Mesh,
+}
+
+fn bodies() -> [Body; 2] {
+    let ring = held(&[
+        ("symmetry_y", [None, Some(0.0)]),
+        ("symmetry_x", [Some(2.0), None]),
+    ]);
+    let strip = held(&[
+        ("symmetry_x", [Some(0.0), None]),
+        ("symmetry_y", [None, Some(0.0)]),
+        ("right", [Some(16.0), None]),
+    ]);
+    [
+        Body {
+            name: "quarter of a ring, opened",
+            problem: ring,
+            measured: "symmetry_x",
+            mesh: ring::quarter,
+        },
+        Body {
+            name: "strip with a hole, pulled",
+            problem: strip,
+            measured: "right",
+            mesh: |cells, kind| hole::quarter(10.0, cells, kind),
+        },
+    ]
+}
+
+/// Reads a study of this case.
+pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+    let section = root.section("mesh");
+    let cells = section.count("cells", 2, 8);
+    let exact = section.count("exact", 16, 64);
+    section.unknown_keys();
+    Box::new(move |progress| compute(cells, exact, progress))
+}
+
+fn compute(cells: usize, exact: usize, progress: Progress) -> Result<Outcome, Error> {
+    let mut outcome = Outcome::default();
+    let mut rows = Vec::new();
+    for body in bodies() {
+        progress(body.name);
+        let truth = truth(&body, exact)?;
+        for kind in KINDS {
+            for cells in [cells, 2 * cells] {
+                rows.push(judge(&body, kind, cells, truth, &mut outcome)?);
+            }
+        }
+    }
+    let head = [
+        "specimen",
+        "cells of the file",
+        "force [N]",
+        "true force [N]",
+        "stated error [%]",
+        "true error [%]",
+        "stated over true",
+    ];
+    let text = "The force on the finest of three meshes, each cut out of the cells of the file along their curved sides.";
+    outcome.blocks.push(Block::Paragraph(text.into()));
+    outcome.blocks.push(Block::table(&head, rows));
+    outcome.figures.push(mesh_figure(
+        "curved_meshes.png",
+        "The coarsest mesh of the ring, of six-node triangles: its sides are parabolas.",
+        "Quarter of a ring",
+        &ring::quarter(cells, CellShape::Triangle6),
+    ));
+    Ok(outcome)
+}
+
+/// The force in N on circles.
+fn truth(body: &Body, cells: usize) -> Result<f64, Error> {
+    let mesh = (body.mesh)(cells, CellShape::Quad9);
+    let energy = body.problem.finite_elements(&mesh);
+    let model = body.problem.on(&mesh, &energy).map_err(misfit)?;
+    let state = solve(&model, body.name, 1)?;
+    Ok(model.reaction(&state, body.measured)[0])
+}
+
+/// The stated error of a mesh as that of a file, checked beside the true one.
+fn judge(
+    body: &Body,
+    kind: CellShape,
+    cells: usize,
+    truth: f64,
+    outcome: &mut Outcome,
+) -> Result<Vec<String>, Error> {
+    let mesh = (body.mesh)(cells, kind);
+    let what = format!("{} {}", mesh.cell_count(), mesh.element_names());
+    let card = Card::load("neo-hooke", Path::new("."))?;
+    let specimen = Specimen::of_mesh(card, body.problem.clone(), mesh, kind, body.measured);
+    let (force, stated) = specimen::force_with_error(&specimen)?;
+    let error = 100.0 * (force / truth - 1.0).abs();
+    let ratio = stated / error;
+    outcome.checks.push(Check::new(
+        format!(
+            "{}, {what}: stated over true error or its inverse",
+            body.name
+        ),
+        "–",
+        Wanted::AtMost(2.0),
+        "the force on circles",
+        ratio.max(1.0 / ratio),
+    ));
+    Ok(vec![
+        body.name.into(),
+        what,
+        format!("{force:.8}"),
+        format!("{truth:.8}"),
+        number(stated),
+        number(error),
+        format!("{ratio:.3}"),
+    ])
+}
