@@ -173,6 +173,34 @@ fn seams_of_doubled_nodes_are_found_unless_they_are_allowed() {
 }
 
 #[test]
+fn banks_of_a_slit_need_not_have_nodes_at_the_same_places() {
+    // Two squares above each other, the upper one divided, with nodes of their own but for the left one.
+    let nodes = vec![
+        [0.0, 0.0],
+        [2.0, 0.0],
+        [2.0, 1.0],
+        [0.0, 1.0],
+        [1.0, 1.0],
+        [2.0, 1.0],
+        [2.0, 2.0],
+        [1.0, 2.0],
+        [0.0, 2.0],
+    ];
+    let cells = |end: usize| vec![vec![0, 1, 2, 3], vec![3, 4, 7, 8], vec![4, end, 6, 7]];
+    let slit = Allowed {
+        seams: true,
+        hinges: true,
+        parts: true,
+    };
+    let found = told(&mesh(nodes.clone(), cells(2)), slit);
+    assert!(found[0].contains("one node hangs"), "{found:?}");
+    let mut apart = nodes;
+    apart.push([0.0, 1.0]);
+    let cells = vec![vec![0, 1, 2, 3], vec![9, 4, 7, 8], vec![4, 5, 6, 7]];
+    assert_eq!(told(&mesh(apart, cells), slit), Vec::<String>::new());
+}
+
+#[test]
 fn unattached_parts_and_hinges_are_found() {
     let (mut nodes, mut cells) = strip();
     nodes.extend([[6.0, 0.0], [7.0, 0.0], [7.0, 1.0]]);

@@ -25,7 +25,10 @@ pub fn faults(sides: &Sides, allowed: Allowed) -> Vec<Diagnostic> {
             }
         }
     }
-    hanging.sort_unstable();
+    if allowed.seams {
+        // What lies on the other bank of a slit does not hang; what hangs has a neighbour among the side's own nodes.
+        hanging.retain(|(node, side)| boundary.is_neighbour(*node, *side));
+    }
     let seam = boundary.seam(&doubled);
     // A node that hangs on both sides of a seam, or on a side whose own node is at its place, is doubled.
     let doubled: BTreeSet<usize> = doubled.into_iter().flatten().collect();
@@ -176,6 +179,16 @@ impl<'a> Boundary<'a> {
         middles
             .filter(|(middle, _)| corners.contains(middle))
             .collect()
+    }
+
+    /// Whether a side of the boundary, or half of one, leads from a node to an end of a side, or is its own middle.
+    fn is_neighbour(&self, node: usize, side: Side) -> bool {
+        let ends = side.ends();
+        let leads = |other: &Side| {
+            let own = other.ends();
+            own.contains(&node) && own.iter().any(|end| ends.contains(end))
+        };
+        side.middle == Some(node) || self.all.iter().any(|other| leads(other))
     }
 
     /// Sides of the boundary that lie on each other.

@@ -127,8 +127,7 @@ fn beside_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> 
     Ok(checks)
 }
 
-/// A quarter of the ring.
-pub fn quarter(cells: usize, shape: CellShape) -> Mesh {
+fn quarter(cells: usize, shape: CellShape) -> Mesh {
     let block = Block {
         map: Box::new(|[s, t]: [f64; 2]| {
             let radius = INNER + s * (OUTER - INNER);
