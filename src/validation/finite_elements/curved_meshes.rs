@@ -151,3 +151,19 @@ fn judge(
         format!("{ratio:.3}"),
     ])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stated_error_of_a_curved_mesh_holds_that_of_its_outline() {
+        let [_, strip] = bodies();
+        let truth = truth(&strip, 12).unwrap();
+        for kind in [CellShape::Triangle6, CellShape::Quad8] {
+            let mut outcome = Outcome::default();
+            let row = judge(&strip, kind, 2, truth, &mut outcome).unwrap();
+            assert!(outcome.checks[0].passed(), "{row:?}");
+        }
+    }
+}
