@@ -175,7 +175,7 @@ impl<'a> Bodies<'a> {
     fn displacement(&self, unknown: usize) -> [f64; 3] {
         let [x, y] =
             [0, 1].map(|axis| (self.mesh.nodes[unknown / 2][axis] - self.centre[axis]) / self.size);
-        if unknown % 2 == 0 {
+        if unknown.is_multiple_of(2) {
             [1.0, 0.0, -y]
         } else {
             [0.0, 1.0, x]

@@ -74,7 +74,7 @@ fn supports_and_loads_balance_in_every_kind_of_problem() {
     let grip = |x, y| ("right", Support::Grip([x, y]));
     let pressure = ("top", Load::Pressure(0.01));
     let symmetric = [("left", Support::Roller), ("bottom", Support::Roller)];
-    let cases: Vec<(Vec<(&str, Support)>, Vec<(&str, Load)>)> = vec![
+    let cases: Vec<(Vec<_>, Vec<_>)> = vec![
         (vec![("left", CLAMP), right(Some(6.0), Some(3.0))], vec![]),
         (
             vec![("left", CLAMP), right(Some(6.0), Some(0.0))],
