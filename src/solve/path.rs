@@ -57,7 +57,7 @@ pub struct PathEnd {
 }
 
 impl PathEnd {
-    /// The largest load factor with an equilibrium; nothing where there is none.
+    /// The last load factor with an equilibrium; zero where there is none.
     pub fn reached(&self) -> f64 {
         let last = self.last.as_deref().or(self.states.last());
         last.map_or(0.0, |state| state.factor)
@@ -185,11 +185,12 @@ impl Path<'_> {
         loop {
             let previous = last.as_deref().or(from);
             let start = previous.map_or(0.0, |state| state.factor);
+            let rest = factor - start;
             // A rest that is hardly longer than a step is taken with it.
-            let aim = if factor - start <= 1.001 * self.step {
+            let aim = if rest.abs() <= 1.001 * self.step {
                 factor
             } else {
-                start + self.step
+                start + self.step.copysign(rest)
             };
             match self.solve_at(previous, aim) {
                 Ok(state) => {
@@ -209,8 +210,8 @@ impl Path<'_> {
                     }
                     last = Some(Box::new(state));
                 }
-                Err(_) if 0.5 * (aim - start) >= shortest => {
-                    self.step = 0.5 * (aim - start);
+                Err(_) if 0.5 * (aim - start).abs() >= shortest => {
+                    self.step = 0.5 * (aim - start).abs();
                     halved = true;
                 }
                 Err(fault) => {
@@ -360,6 +361,18 @@ mod tests {
         let steps = states[0].load_steps;
         assert!(steps > 6 && steps < 16, "{steps}");
         assert!(states[1].load_steps <= 3, "{}", states[1].load_steps);
+    }
+
+    #[test]
+    fn a_path_to_negative_factors_is_halved_as_one_to_positive_ones() {
+        let mirrored = |u: f64, s: f64| {
+            cautious(-u, -s).map(|[energy, force, stiffness]| [energy, -force, stiffness])
+        };
+        let point = Point { energy: mirrored };
+        let states = follow(&point, &[-10.0, -20.0], NEWTON, &|_| ()).unwrap();
+        assert!((states[1].displacement[0] + 20.0).abs() < 1e-12);
+        let steps = states[0].load_steps;
+        assert!(steps > 6 && steps < 16, "{steps}");
     }
 
     /// The force u − u²/2 has its maximum ½ at u = 1.
