@@ -3,9 +3,9 @@
 //! | code | meaning |
 //! |---|---|
 //! | 0 | done, and every requirement of the study is met |
-//! | 1 | done, but a requirement is not met |
+//! | 1 | done, but a requirement is not met, or the reference is too coarse to judge it |
 //! | 2 | the study, a card or the command line is wrong |
-//! | 3 | a model has no solution that could be found |
+//! | 3 | a model has no solution that could be found; what the others have is written |
 //! | 4 | a file could not be written |
 
 use std::io::{self, IsTerminal, Write};
@@ -173,15 +173,21 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
     let results = results.inspect_err(|_| output::abandon(&folder))?;
 
     let files = output::write(&study, &results, &folder)?;
-    let requirements = results.requirements(&study.tolerances);
-    let passed = requirements.iter().all(|requirement| requirement.passed);
+    let requirements = results.requirements(&study);
+    let warnings = output::warnings(&study, &results).into_iter();
+    let warnings: String = warnings.map(|warning| warning + "\n").collect();
     print(&format!(
-        "{}\n{} files in {}\n",
+        "{}{warnings}\n{} files in {}\n",
         message::summary(&results, &requirements),
         files.len(),
         folder.display()
     ))?;
-    Ok(u8::from(!passed))
+    results.ends.iter().for_each(complain);
+    let passed = requirements
+        .iter()
+        .all(|requirement| requirement.judgement.passed());
+    let ended = results.ends.first().map(Error::exit_code);
+    Ok(ended.unwrap_or(u8::from(!passed)))
 }
 
 /// Computes a study of one of the validation cases.

@@ -18,7 +18,7 @@
 use nalgebra::Vector4;
 
 use crate::finite_element::FiniteElements;
-use crate::finite_element::convergence::{Richardson, richardson};
+use crate::finite_element::convergence::{Richardson, of_distances, richardson};
 use crate::material::sheet::Kinematics;
 use crate::mesh::Mesh;
 use crate::problem::{Problem, Solution};
@@ -52,27 +52,35 @@ pub struct SelfConvergence {
     pub width: Richardson,
     /// Of the displacement in relative L2, in %: the difference of the two finer meshes over 2ᵖ − 1.
     pub displacement_percent: f64,
+    /// The same over the size of the departure from the affine stretch, in %.
+    pub departure_percent: f64,
     /// Observed order p of the displacement.
     pub displacement_order: f64,
 }
 
-/// One stretch, compared.
+/// One stretch, compared as far as there are fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepComparison {
     /// Grip displacement divided by the length.
     pub stretch: f64,
     /// Before the correction.
-    pub mass_spring: Deviation,
+    pub mass_spring: Option<Deviation>,
     /// After it.
-    pub corrected: Deviation,
-    /// The reference's own error.
-    pub reference: SelfConvergence,
+    pub corrected: Option<Deviation>,
+    /// The reference's own error; nothing where one of its meshes has no solution.
+    pub reference: Option<SelfConvergence>,
 }
 
 impl StepComparison {
+    /// The deviations before and after the correction, where there are both.
+    pub fn pair(&self) -> Option<[&Deviation; 2]> {
+        Some([self.mass_spring.as_ref()?, self.corrected.as_ref()?])
+    }
+
     /// 100 (1 − e_corrected/e_mass-spring) of one measure, in %.
-    pub fn correction_percent(&self, measure: impl Fn(&Deviation) -> f64) -> f64 {
-        100.0 * (1.0 - measure(&self.corrected).abs() / measure(&self.mass_spring).abs())
+    pub fn correction_percent(&self, measure: impl Fn(&Deviation) -> f64) -> Option<f64> {
+        let [before, after] = self.pair()?.map(|deviation| measure(deviation).abs());
+        Some(100.0 * (1.0 - after / before))
     }
 }
 
@@ -91,54 +99,55 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Compares a field on `mesh` with the finest mesh at stretch number `step`.
-    pub fn deviation(&self, mesh: &Mesh, solution: &Solution, step: usize) -> Deviation {
+    /// Compares a field on `mesh` with the finest mesh at stretch number `step`; nothing where that has no solution.
+    pub fn deviation(&self, mesh: &Mesh, solution: &Solution, step: usize) -> Option<Deviation> {
         let (fine, solutions) = self.meshes[2];
-        let reference = &solutions[step];
+        let reference = solutions.get(step)?;
         let expected = fine.displacement_on(&reference.displacement, mesh);
         let affine = self.problem.affine(mesh, solution.stretch);
         let field = &solution.displacement;
         let percent = |value: f64, expected: f64| 100.0 * (value / expected - 1.0);
-        Deviation {
+        Some(Deviation {
             displacement_percent: displacement_percent(mesh, field, &expected),
             departure_percent: departure_percent(mesh, field, &expected, &affine),
             max_difference: largest_distance(&solution.displacement, &expected),
             force_percent: percent(solution.force, reference.force),
             width_percent: percent(solution.mid_width, reference.mid_width),
             nominal_stress_percent: self.stress_deviation(mesh, &solution.displacement, step),
-        }
+        })
     }
 
-    /// The reference displacement at the nodes of `mesh` in mm.
-    pub fn displacement_on(&self, mesh: &Mesh, step: usize) -> Vec<f64> {
+    /// The reference displacements at the nodes of `mesh` in mm, as far as they go.
+    pub fn displacements_on(&self, mesh: &Mesh) -> Vec<Vec<f64>> {
         let (fine, solutions) = self.meshes[2];
-        fine.displacement_on(&solutions[step].displacement, mesh)
+        let solutions = solutions.iter();
+        solutions
+            .map(|solution| fine.displacement_on(&solution.displacement, mesh))
+            .collect()
     }
 
-    /// The reference's own error at stretch number `step`.
-    pub fn self_convergence(&self, step: usize) -> SelfConvergence {
-        let of = |value: fn(&Solution) -> f64| {
-            richardson(self.meshes.map(|(_, solutions)| value(&solutions[step])))
-        };
-        let coarse = &self.meshes[0].0.common_nodes();
-        let [first, second, third] = self
-            .meshes
-            .map(|(mesh, solutions)| mesh.displacement_on(&solutions[step].displacement, coarse));
-        let areas = coarse.nodal_areas();
-        let (before, last) = (
-            distance(&areas, &first, &second),
-            distance(&areas, &second, &third),
-        );
-        let size = distance(&areas, &third, &vec![0.0; third.len()]);
-        let ratio = before / last;
-        let converges = ratio > 1.0 && ratio.is_finite();
-        let divisor = if converges { ratio - 1.0 } else { 1.0 };
-        SelfConvergence {
-            force: of(|solution| solution.force),
-            width: of(|solution| solution.mid_width),
-            displacement_percent: 100.0 * last / divisor / size,
-            displacement_order: if converges { ratio.log2() } else { f64::NAN },
-        }
+    /// The reference's own error at stretch number `step`; nothing where one of its meshes has no solution.
+    pub fn self_convergence(&self, step: usize) -> Option<SelfConvergence> {
+        let of_mesh =
+            |(mesh, solutions): (&'a Mesh, &'a [Solution])| Some((mesh, solutions.get(step)?));
+        let [coarse, middle, fine] = self.meshes.map(of_mesh);
+        let meshes = [coarse?, middle?, fine?];
+        let of = |value: fn(&Solution) -> f64| richardson(meshes.map(|(_, state)| value(state)));
+        let common = &meshes[0].0.common_nodes();
+        let [first, second, third] =
+            meshes.map(|(mesh, state)| mesh.displacement_on(&state.displacement, common));
+        let areas = common.nodal_areas();
+        let size = |field: &[f64]| distance(&areas, &third, field);
+        let nothing = vec![0.0; third.len()];
+        let affine = self.problem.affine(common, meshes[2].1.stretch);
+        let (error, order) = of_distances(distance(&areas, &first, &second), size(&second));
+        Some(SelfConvergence {
+            force: of(|state| state.force),
+            width: of(|state| state.mid_width),
+            displacement_percent: 100.0 * error / size(&nothing),
+            departure_percent: 100.0 * error / size(&affine),
+            displacement_order: order,
+        })
     }
 
     fn stress_deviation(&self, mesh: &Mesh, displacement: &[f64], step: usize) -> f64 {
@@ -257,12 +266,12 @@ mod tests {
         let reference = Reference::new(&problem, meshes);
 
         let lattice = Mesh::plate(problem.size, [12, 8], CellShape::Quad4);
-        let exact = reference.displacement_on(&lattice, 0);
+        let exact = reference.displacements_on(&lattice).remove(0);
         let same = Solution {
             displacement: exact.clone(),
             ..fine.1[0].clone()
         };
-        let zero = reference.deviation(&lattice, &same, 0);
+        let zero = reference.deviation(&lattice, &same, 0).unwrap();
         assert_eq!(zero.displacement_percent, 0.0);
         assert_eq!((zero.max_difference, zero.force_percent), (0.0, 0.0));
 
@@ -272,14 +281,14 @@ mod tests {
             force: 1.01 * same.force,
             ..same
         };
-        let found = reference.deviation(&lattice, &larger, 0);
+        let found = reference.deviation(&lattice, &larger, 0).unwrap();
         assert!((found.displacement_percent - 1.0).abs() < 1e-10);
         assert!((found.force_percent - 1.0).abs() < 1e-10);
         assert!((found.max_difference - 0.06).abs() < 1e-12);
         assert!(found.departure_percent > 3.0);
         assert!(found.nominal_stress_percent > 0.5 && found.nominal_stress_percent < 2.0);
 
-        let own = reference.self_convergence(0);
+        let own = reference.self_convergence(0).unwrap();
         assert!(
             own.force.order > 1.0 && own.displacement_order > 1.0,
             "{own:?}"

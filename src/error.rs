@@ -266,6 +266,14 @@ impl Error {
         }
     }
 
+    /// What a user can try, where a solver failed.
+    pub fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Solve { fault, .. } => Some(fault.advice()),
+            _ => None,
+        }
+    }
+
     /// The command's exit code: 2 input, 3 no solution, 4 cannot write.
     pub fn exit_code(&self) -> u8 {
         match self {

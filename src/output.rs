@@ -19,6 +19,7 @@ pub mod picture;
 mod report;
 pub mod series;
 pub mod vtk;
+mod warnings;
 pub mod wrinkling;
 
 pub use figures::{
@@ -28,6 +29,7 @@ pub use figures::{
 pub use fit::{fit_json, fit_picture};
 pub use identification::{identification_json, identification_picture};
 pub use report::Block;
+pub use warnings::warnings;
 
 /// Writes everything a study asks for into its folder and returns the files in the order of writing.
 ///
@@ -56,8 +58,23 @@ pub fn write(study: &Study, results: &Results, folder: &Path) -> Result<Vec<Path
         written.extend(write_document(folder, "report", &blocks, &figures)?);
     }
     remove_stale(folder, &written)?;
+    for name in ONCE {
+        let path = folder.join(name);
+        if path.exists() && !written.contains(&path) {
+            std::fs::remove_file(&path).map_err(|cause| Error::write(&path, cause))?;
+        }
+    }
     Ok(written)
 }
+
+/// Files of a plate's study that are missing where a model has no solution.
+const ONCE: [&str; 5] = [
+    "estimated_error.png",
+    "vtk/mass_spring.pvd",
+    "vtk/springs.pvd",
+    "vtk/corrected.pvd",
+    "vtk/finite_element.pvd",
+];
 
 /// Removes what an earlier run of a study with more stretches or load factors has left among the files of this
 /// one.

@@ -19,7 +19,8 @@ pub struct Problem {
     pub thickness: f64,
     /// The material.
     pub law: Arc<dyn HyperelasticLaw>,
-    /// Grip displacements divided by the length, ascending: 0.5 is a stretch to 150 %.
+    /// Grip displacements divided by the length, all of one sign, from small to large: 0.5 is a stretch to 150 %, −0.1 a
+    /// compression to 90 %.
     pub stretches: Vec<f64>,
 }
 
@@ -143,24 +144,41 @@ impl Problem {
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<Solution>, Error> {
+        match self.follow_as_far(model, settings, progress) {
+            (solutions, None) => Ok(solutions),
+            (_, Some(end)) => Err(end),
+        }
+    }
+
+    /// The same as far as there are solutions: those that were found, and why there are no more of them.
+    pub fn follow_as_far(
+        &self,
+        model: &Model,
+        settings: NewtonSettings,
+        progress: &dyn Fn(f64),
+    ) -> (Vec<Solution>, Option<Error>) {
         let plate = PlateLoading {
             problem: self,
             model,
         };
-        let states = follow(&plate, &self.stretches, settings, progress);
-        let states = states.map_err(|end| Error::Solve {
-            model: model.name.clone(),
-            step: format!(
-                "{} (reached {} %)",
-                Problem::describe_step(end.factor),
-                Self::percent(end.reached())
-            ),
-            fault: end.fault,
-        })?;
-        Ok(states
-            .into_iter()
-            .map(|state| self.solution(model.mesh, state))
-            .collect())
+        let (states, end) = match follow(&plate, &self.stretches, settings, progress) {
+            Ok(states) => (states, None),
+            Err(end) => {
+                let error = Error::Solve {
+                    model: model.name.clone(),
+                    step: format!(
+                        "{} (reached {} %)",
+                        Problem::describe_step(end.factor),
+                        Self::percent(end.reached())
+                    ),
+                    fault: end.fault,
+                };
+                (end.states, Some(error))
+            }
+        };
+        let solutions = states.into_iter();
+        let solutions = solutions.map(|state| self.solution(model.mesh, state));
+        (solutions.collect(), end)
     }
 
     /// The field in mm/mm that a motion of the right grip along X brings about, by the tangent at a solution.

@@ -1,39 +1,51 @@
 //! Everything that a run has computed.
 
-use crate::compare::{Deviation, StepComparison};
+use crate::boundary::Balance;
+use crate::compare::StepComparison;
 use crate::corrector::plate::CorrectedState;
+use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mass_spring::MassSpring;
+use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::study::Tolerances;
+
+mod requirement;
+
+pub use requirement::{Requirement, verdict};
+
+/// The names of the models, in the order of [`Results::models`].
+pub const MODELS: [&str; 3] = ["mass-spring", "corrected", "finite elements"];
 
 /// One finite-element mesh and its solutions.
 #[derive(Debug)]
 pub struct ReferenceMesh {
     /// The model.
     pub model: FiniteElements,
-    /// One solution a stretch.
+    /// One solution a stretch, as far as the path goes.
     pub solutions: Vec<Solution>,
 }
 
-/// All fields and figures of a study; the vectors have one entry a stretch.
+/// All fields and figures of a study. A model that has ended early has fewer states than the study has stretches; the
+/// others go on without it.
 #[derive(Debug)]
 pub struct Results {
     /// The lattice; its mesh is that of the corrected fields too.
     pub springs: MassSpring,
-    /// The lattice in equilibrium.
+    /// The lattice in equilibrium, one solution a stretch, as far as the path goes.
     pub uncorrected: Vec<Solution>,
-    /// The corrected fields.
-    pub corrected: Vec<CorrectedState>,
+    /// The corrected field at every stretch; nothing where none was found.
+    pub corrected: Vec<Option<CorrectedState>>,
     /// The finite elements on three meshes, coarse to fine; the last is the reference.
     pub reference: [ReferenceMesh; 3],
-    /// The estimated error of the finest of them.
-    pub estimates: Vec<ErrorEstimate>,
-    /// The reference field at the nodes of the lattice in mm.
+    /// The estimated errors of the finest of them; nothing where its tangent cannot be factorised.
+    pub estimates: Vec<Option<ErrorEstimate>>,
+    /// The reference field at the nodes of the lattice in mm, as far as the path goes.
     pub reference_on_lattice: Vec<Vec<f64>>,
-    /// Deviations from the reference.
+    /// Deviations from the reference, one entry a stretch.
     pub comparison: Vec<StepComparison>,
+    /// Why models have no solution at stretches of the study, in the order in which they were solved.
+    pub ends: Vec<Error>,
     /// Wall-clock times: what, and seconds.
     pub times: Vec<(&'static str, f64)>,
 }
@@ -44,79 +56,102 @@ impl Results {
         &self.reference[2]
     }
 
-    /// The estimated error of the finest mesh's force at a stretch in %, without its sign.
-    pub fn estimated_force_percent(&self, step: usize) -> f64 {
-        100.0 * (self.estimates[step].force / self.finest().solutions[step].force).abs()
-    }
-
-    /// Every requirement on the corrected field with its worst value over all stretches.
-    pub fn requirements(&self, tolerances: &Tolerances) -> Vec<Requirement> {
-        let largest = |name, limit: f64, value: fn(&Deviation) -> f64| {
-            let steps = self.comparison.iter();
-            let worst = worst(steps.map(|step| value(&step.corrected).abs()), f64::max);
-            Requirement {
-                name,
-                limit,
-                worst,
-                passed: worst <= limit,
-                at_most: true,
-            }
-        };
-        let steps = self.comparison.iter();
-        let corrections = steps.map(|step| step.correction_percent(|d| d.departure_percent));
-        let correction = worst(corrections, f64::min);
-        vec![
-            largest("displacement", tolerances.displacement_percent, |d| {
-                d.displacement_percent
-            }),
-            largest("departure from affine", tolerances.departure_percent, |d| {
-                d.departure_percent
-            }),
-            largest("force", tolerances.force_percent, |d| d.force_percent),
-            Requirement {
-                name: "correction of the departure",
-                limit: tolerances.correction_percent,
-                worst: correction,
-                passed: correction >= tolerances.correction_percent,
-                at_most: false,
-            },
+    /// The mass-spring model, the corrected field and the finest finite elements at a stretch, each where it exists.
+    pub fn models(&self, step: usize) -> [Option<&Solution>; 3] {
+        let corrected = self.corrected[step].as_ref();
+        [
+            self.uncorrected.get(step),
+            corrected.map(|state| &state.solution),
+            self.finest().solutions.get(step),
         ]
     }
-}
 
-/// A requirement on the corrected field, in percent.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Requirement {
-    /// The measure.
-    pub name: &'static str,
-    /// The study's tolerance.
-    pub limit: f64,
-    /// The worst value over all stretches.
-    pub worst: f64,
-    /// Whether the worst value is within the limit; one that is not a number is not.
-    pub passed: bool,
-    /// Whether the limit is the largest value that passes; else it is the smallest.
-    pub at_most: bool,
-}
-
-/// The largest or smallest value; not a number when one of them is none.
-fn worst(values: impl Iterator<Item = f64>, pick: fn(f64, f64) -> f64) -> f64 {
-    let either = |a: f64, b: f64| match a.is_nan() || b.is_nan() {
-        true => f64::NAN,
-        false => pick(a, b),
-    };
-    values.reduce(either).unwrap_or(f64::NAN)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_value_that_is_not_a_number_is_the_worst() {
-        assert_eq!(worst([3.0, 1.0, 2.0].into_iter(), f64::max), 3.0);
-        assert_eq!(worst([3.0, 1.0, 2.0].into_iter(), f64::min), 1.0);
-        assert!(worst([3.0, f64::NAN, 2.0].into_iter(), f64::max).is_nan());
-        assert!(worst([].into_iter(), f64::max).is_nan());
+    /// The mesh of each of them.
+    pub fn meshes(&self) -> [&Mesh; 3] {
+        let lattice = &self.springs.mesh;
+        [lattice, lattice, &self.finest().model.mesh]
     }
+
+    /// The stretches at which a model of [`MODELS`] has a solution.
+    pub fn reached(&self, model: usize) -> Vec<f64> {
+        let steps = 0..self.comparison.len();
+        let stretch = |step: usize| Some(self.models(step)[model]?.stretch);
+        steps.filter_map(stretch).collect()
+    }
+
+    /// The stretches with a corrected field and without one of the springs.
+    pub fn stretches_without_springs(&self) -> Vec<f64> {
+        let steps = 0..self.comparison.len();
+        let stretch = |step: usize| match self.models(step) {
+            [None, Some(corrected), _] => Some(corrected.stretch),
+            _ => None,
+        };
+        steps.filter_map(stretch).collect()
+    }
+
+    /// The worst balance of the grips' reactions of a model of [`MODELS`], and the stretch of it; nothing where the model
+    /// has no solution.
+    pub fn worst_balance(&self, model: usize) -> Option<(f64, f64)> {
+        let mesh = self.meshes()[model];
+        let steps = 0..self.comparison.len();
+        let of_step = |step: usize| {
+            let solution = self.models(step)[model]?;
+            Some((balance(mesh, solution).relative(), solution.stretch))
+        };
+        let all = steps.filter_map(of_step);
+        all.max_by(|(a, _), (b, _)| a.total_cmp(b))
+    }
+
+    /// The largest residual force at a node that no grip holds over the force on a grip, the worst of all stretches, of a
+    /// model of [`MODELS`]; nothing where it has no solution.
+    pub fn worst_residual(&self, model: usize) -> Option<f64> {
+        let mesh = self.meshes()[model];
+        let of_step = |step: usize| {
+            let solution = self.models(step)[model]?;
+            let residual = solution.residual.iter().enumerate();
+            let free = residual.filter(|(unknown, _)| !mesh.on_grip(unknown / 2));
+            let largest = free.fold(0.0, |most: f64, (_, force)| most.max(force.abs()));
+            Some(largest / solution.force.abs())
+        };
+        let steps = 0..self.comparison.len();
+        steps.filter_map(of_step).reduce(f64::max)
+    }
+
+    /// The last stretch at which one of the models has a solution.
+    pub fn last_step(&self) -> Option<usize> {
+        let any = |step: &usize| self.models(*step).iter().any(Option::is_some);
+        (0..self.comparison.len()).rev().find(any)
+    }
+
+    /// The estimated error of the finest mesh's force at a stretch in %, by recovery, without its sign.
+    pub fn recovered_force_percent(&self, step: usize) -> Option<f64> {
+        let estimate = self.estimates.get(step)?.as_ref()?;
+        Some(100.0 * (estimate.force / self.finest().solutions[step].force).abs())
+    }
+
+    /// The finite elements' own error of the force at a stretch in %: that of three meshes, or the larger one of that and of
+    /// the recovery on the finest where the three do not converge monotonically.
+    pub fn own_force_percent(&self, step: usize) -> Option<f64> {
+        let own = self.comparison[step].reference?.force;
+        let doubted = self
+            .recovered_force_percent(step)
+            .filter(|_| own.order.is_nan());
+        Some(doubted.map_or(own.error_percent, |recovered| {
+            own.error_percent.max(recovered)
+        }))
+    }
+}
+
+/// The balance of the reactions of both grips.
+fn balance(mesh: &Mesh, solution: &Solution) -> Balance {
+    let displacements = solution.displacement.chunks_exact(2);
+    let places = mesh.nodes.iter().zip(displacements);
+    let places: Vec<[f64; 2]> = places.map(|([x, y], u)| [x + u[0], y + u[1]]).collect();
+    let mut reactions = solution.residual.clone();
+    for (unknown, reaction) in reactions.iter_mut().enumerate() {
+        if !mesh.on_grip(unknown / 2) {
+            *reaction = 0.0;
+        }
+    }
+    Balance::of_supports(&places, &reactions)
 }

@@ -6,7 +6,7 @@ use crate::compare::imported::ModelField;
 use crate::compare::{Reference, StepComparison};
 use crate::corrector::PlateCorrector;
 use crate::corrector::climb::Climb;
-use crate::corrector::plate::KnownConditions;
+use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::finite_element::recovery::Recovery;
@@ -21,72 +21,95 @@ pub fn progress_steps(study: &Study) -> usize {
     5 * study.problem.stretches.len()
 }
 
-/// Computes a study. `progress` is told each model and stretch that is done.
+/// Computes a study. `progress` is told each model and stretch that is done. A model that ends early leaves the others
+/// their way: the results hold what there is, and why there is no more.
 ///
 /// # Errors
-/// [`Error::Solve`] with the model and the stretch at which no solution was found.
+/// [`Error::Solve`] of the first model where no model has any solution.
 pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let problem = &study.problem;
-    let mut times = Vec::new();
+    let (mut times, mut ends) = (Vec::new(), Vec::new());
 
     let springs = MassSpring::new(problem, study.cells, study.lattice);
     let uncorrected = timed(&mut times, "mass-spring", || {
         let told = |stretch: f64| progress("mass-spring", stretch);
-        springs.solve(problem, study.mass_spring, &told)
-    })?;
+        let (solutions, end) = problem.follow_as_far(&springs.model(), study.mass_spring, &told);
+        ends.extend(end);
+        solutions
+    });
     let corrected = timed(&mut times, "corrector", || {
-        let corrector = PlateCorrector::new(problem, &springs.mesh, study.scheme, study.corrector);
-        let mut climb = study
-            .climb
-            .map(|settings| Climb::even(problem, study.cells, study.scheme, settings));
-        let correct = |field: &Solution| {
-            let (data, stretch) = (&field.displacement, field.stretch);
-            let state = match &mut climb {
-                Some(climb) => corrector.climb(climb, data, stretch)?,
-                None => corrector.correct(data, stretch, KnownConditions::ALL)?,
-            };
-            progress("corrector", field.stretch);
-            Ok(state)
-        };
-        uncorrected
-            .iter()
-            .map(correct)
-            .collect::<Result<Vec<_>, Error>>()
-    })?;
-    let reference = finite_elements(study, &mut times, progress)?;
+        let mut keep = |state: Result<_, Error>| state.map_err(|end| ends.push(end)).ok();
+        let states = correct(study, &springs.mesh, &uncorrected, progress).into_iter();
+        states.map(&mut keep).collect::<Vec<_>>()
+    });
+    let reference = finite_elements(study, &mut times, &mut ends, progress);
     let estimates = timed(&mut times, "finite elements' error", || {
         let [.., finest] = &reference;
         let recovery = Recovery::new(&finest.model.mesh);
-        let estimate = |solution| finest.model.estimate(problem, solution, &recovery);
-        let estimates = finest.solutions.iter().map(estimate);
-        estimates.collect::<Result<Vec<_>, Error>>()
-    })?;
+        let estimate = |solution| finest.model.estimate(problem, solution, &recovery).ok();
+        finest.solutions.iter().map(estimate).collect()
+    });
 
+    let nothing = uncorrected.is_empty() && corrected.iter().all(Option::is_none);
+    if nothing && reference[2].solutions.is_empty() {
+        return Err(ends.swap_remove(0));
+    }
     let measure = Reference::new(
         problem,
         reference
             .each_ref()
             .map(|mesh| (&mesh.model, &mesh.solutions[..])),
     );
-    let steps = 0..problem.stretches.len();
-    let compare = |step: usize| StepComparison {
-        stretch: problem.stretches[step],
-        mass_spring: measure.deviation(&springs.mesh, &uncorrected[step], step),
-        corrected: measure.deviation(&springs.mesh, &corrected[step].solution, step),
-        reference: measure.self_convergence(step),
+    let compare = |(step, stretch): (usize, &f64)| {
+        let deviation = |solution| measure.deviation(&springs.mesh, solution, step);
+        let state: Option<&CorrectedState> = corrected[step].as_ref();
+        StepComparison {
+            stretch: *stretch,
+            mass_spring: uncorrected.get(step).and_then(deviation),
+            corrected: state.and_then(|state| deviation(&state.solution)),
+            reference: measure.self_convergence(step),
+        }
     };
-    let comparison = steps.clone().map(compare).collect();
-    let on_lattice = |step| measure.displacement_on(&springs.mesh, step);
+    let comparison = problem.stretches.iter().enumerate().map(compare).collect();
     Ok(Results {
-        reference_on_lattice: steps.map(on_lattice).collect(),
+        reference_on_lattice: measure.displacements_on(&springs.mesh),
+        comparison,
         springs,
         uncorrected,
         corrected,
         reference,
         estimates,
-        comparison,
+        ends,
         times,
     })
+}
+
+/// The corrected field at every stretch. Where the springs have no field the affine stretch takes its place: it has a
+/// say in the multipliers, and in where the direct method begins.
+fn correct(
+    study: &Study,
+    lattice: &Mesh,
+    springs: &[Solution],
+    progress: Progress,
+) -> Vec<Result<CorrectedState, Error>> {
+    let problem = &study.problem;
+    let corrector = PlateCorrector::new(problem, lattice, study.scheme, study.corrector);
+    let mut climb = study
+        .climb
+        .map(|settings| Climb::even(problem, study.cells, study.scheme, settings));
+    let mut state = |(step, stretch): (usize, &f64)| {
+        let affine = || problem.affine(lattice, *stretch);
+        let own = springs.get(step).map(|solution| &solution.displacement);
+        let data = own.map_or_else(affine, Clone::clone);
+        let state = match &mut climb {
+            Some(climb) => corrector.climb(climb, &data, *stretch),
+            None => corrector.correct(&data, *stretch, KnownConditions::ALL),
+        };
+        progress("corrector", *stretch);
+        state
+    };
+    let stretches = problem.stretches.iter().enumerate();
+    stretches.map(&mut state).collect()
 }
 
 /// The fields of all models of a plate at a stretch: finite elements on the finest mesh, springs, corrected springs.
@@ -100,24 +123,23 @@ pub fn fields(
     progress: Progress,
 ) -> Result<[ModelField; 3], Error> {
     let stretches = &mut study.problem.stretches;
-    stretches.retain(|before| *before < stretch);
+    stretches.retain(|before| *before * stretch > 0.0 && before.abs() < stretch.abs());
     stretches.push(stretch);
-    let results = run(&study, progress)?;
-    let finest = results.finest();
+    let last = stretches.len() - 1;
+    let mut results = run(&study, progress)?;
+    if let Some(end) = results.ends.pop() {
+        return Err(end);
+    }
     let field = |model, mesh: &Mesh, solution: Option<&Solution>| ModelField {
         model,
         mesh: mesh.clone(),
-        displacement: solution.expect("the last stretch").displacement.clone(),
+        displacement: solution.expect("no model ended").displacement.clone(),
     };
+    let [springs, corrected, elements] = results.models(last);
     let lattice = &results.springs.mesh;
-    let corrected = results.corrected.last().map(|state| &state.solution);
     Ok([
-        field(
-            "finite elements",
-            &finest.model.mesh,
-            finest.solutions.last(),
-        ),
-        field("mass-spring", lattice, results.uncorrected.last()),
+        field("finite elements", &results.finest().model.mesh, elements),
+        field("mass-spring", lattice, springs),
         field("corrected", lattice, corrected),
     ])
 }
@@ -131,21 +153,24 @@ type Times = Vec<(&'static str, f64)>;
 fn finite_elements(
     study: &Study,
     times: &mut Times,
+    ends: &mut Vec<Error>,
     progress: Progress,
-) -> Result<[ReferenceMesh; 3], Error> {
-    let mut solve = |name, cells| -> Result<ReferenceMesh, Error> {
-        let model = FiniteElements::graded(&study.problem, cells, study.element, study.grading);
-        let told = |stretch: f64| progress(name, stretch);
-        let solve = || model.solve(&study.problem, study.finite_element, &told);
-        let solutions = timed(times, name, solve)?;
-        Ok(ReferenceMesh { model, solutions })
-    };
+) -> [ReferenceMesh; 3] {
+    let names = [
+        "finite elements, coarse",
+        "finite elements, middle",
+        "finite elements, fine",
+    ];
     let [coarse, middle, fine] = study.reference_meshes();
-    Ok([
-        solve("finite elements, coarse", coarse)?,
-        solve("finite elements, middle", middle)?,
-        solve("finite elements, fine", fine)?,
-    ])
+    [(names[0], coarse), (names[1], middle), (names[2], fine)].map(|(name, cells)| {
+        let problem = &study.problem;
+        let model = FiniteElements::graded(problem, cells, study.element, study.grading);
+        let told = |stretch: f64| progress(name, stretch);
+        let solve = || problem.follow_as_far(&model.model(), study.finite_element, &told);
+        let (solutions, end) = timed(times, name, solve);
+        ends.extend(end);
+        ReferenceMesh { model, solutions }
+    })
 }
 
 fn timed<T>(times: &mut Times, what: &'static str, work: impl FnOnce() -> T) -> T {

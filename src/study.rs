@@ -17,7 +17,7 @@ use crate::units::Dimension;
 
 mod plate;
 
-use plate::{STRETCHES, read_cells};
+use plate::{MOST_CELLS, check_cells, read_stretches, reference_cells};
 pub use plate::{check_range, read_card, read_plate, read_stretch};
 
 /// The study that `gelbench new` writes: every key with its default.
@@ -137,6 +137,17 @@ impl Study {
         })
     }
 
+    /// Whether the reference is the corrected field once more: the same equations on the same nodes.
+    pub fn is_its_own_reference(&self) -> bool {
+        let element = match self.scheme {
+            DifferenceScheme::Corners => return false,
+            DifferenceScheme::Gauss => Element::Q1,
+            DifferenceScheme::Biquadratic => Element::Q2,
+        };
+        let cells = self.reference_cells.map(|cells| cells * self.scheme.side());
+        self.element == element && self.grading == 1.0 && cells == self.cells
+    }
+
     /// Cells of the three meshes of the reference, coarse to fine.
     pub fn reference_meshes(&self) -> [[usize; 2]; 3] {
         [4, 2, 1].map(|coarser| self.reference_cells.map(|cells| cells / coarser))
@@ -186,7 +197,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
 
     let section = root.section("finite_element");
     let element = section.choice("element", &Element::NAMES);
-    let reference_cells = read_reference_cells(&section);
+    let reference_cells = read_reference_cells(&section, problem.size, cells);
     let grading = section.number("grading", Bound::Within(1.0, 4.0));
     let finite_element = read_newton(&section);
     section.unknown_keys();
@@ -194,7 +205,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let tolerances = read_tolerances(&root.section("tolerances"));
     let output = read_output(&root.section("output"), name);
     root.unknown_keys();
-    Some(Study {
+    let study = Study {
         name: name.to_owned(),
         title,
         problem: Problem {
@@ -216,32 +227,15 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
         output,
         text: String::new(),
         warnings: Vec::new(),
-    })
-}
-
-fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
-    const KEY: &str = "stretches";
-    let stretches = section.quantities(KEY, Dimension::Ratio, STRETCHES);
-    section.unknown_keys();
-    let good = stretches.iter().all(|stretch| *stretch > 0.0);
-    if stretches.is_empty() {
-        section.fault(
-            KEY,
-            "needs at least one stretch",
-            "such as [\"15 %\", \"30 %\"]",
+    };
+    if study.is_its_own_reference() {
+        root.section("finite_element").warning(
+            "cells",
+            "with these the finite elements are the corrected field's own equations on the same nodes and cannot judge it",
+            "leave `cells` and `grading` out, which suits the lattice, or take finer ones",
         );
     }
-    if good && stretches.windows(2).any(|pair| pair[1] <= pair[0]) {
-        section.fault(KEY, "must ascend", "sort them and leave out repetitions");
-    }
-    for (stretch, card) in stretches
-        .iter()
-        .filter(|_| good)
-        .zip(card.into_iter().cycle())
-    {
-        check_range(section, KEY, *stretch, card);
-    }
-    stretches
+    Some(study)
 }
 
 fn read_newton(section: &Section<'_>) -> NewtonSettings {
@@ -251,18 +245,22 @@ fn read_newton(section: &Section<'_>) -> NewtonSettings {
     }
 }
 
-fn read_reference_cells(section: &Section<'_>) -> [usize; 2] {
-    let Some(cells) = read_cells(section, 4) else {
-        return [4, 4];
+/// The cells that a study gives, or those that suit its lattice.
+fn read_reference_cells(section: &Section<'_>, size: [f64; 2], lattice: [usize; 2]) -> [usize; 2] {
+    const KEY: &str = "cells";
+    let given = section.count_pair_or("automatic", KEY, [4, MOST_CELLS]);
+    let Some(cells) = given.flatten() else {
+        return reference_cells(size, lattice);
     };
     if cells.iter().any(|cells| cells % 4 != 0) {
         let [x, y] = cells.map(|cells| cells.next_multiple_of(4));
         section.fault(
-            "cells",
+            KEY,
             "must be multiples of 4: the error is estimated on meshes with half and a quarter as many",
             &format!("the next are [{x}, {y}]"),
         );
     }
+    check_cells(section, cells);
     cells
 }
 
@@ -330,7 +328,8 @@ mod tests {
         assert_eq!(empty.problem.thickness, 2.0);
         assert_eq!(empty.problem.stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
         assert_eq!(empty.cells, [60, 20]);
-        assert_eq!(empty.reference_meshes(), [[30, 10], [60, 20], [120, 40]]);
+        assert_eq!(empty.reference_meshes(), [[18, 10], [36, 20], [72, 40]]);
+        assert_eq!(empty.grading, 2.0);
         assert_eq!(empty.output.folder, Path::new("output/plate"));
         assert_eq!(empty.tolerances, full.tolerances);
         assert!(full.warnings.is_empty());
@@ -378,13 +377,47 @@ mod tests {
         assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
         assert!(faults("[finite_element]\ngrading = 0.5\n")[0].contains("must be"));
         assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));
-        assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("ascend"));
+        assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("from small to large"));
+        assert!(faults("[load]\nstretches = [-0.1, 0.3]\n")[0].contains("one sign"));
+        assert!(faults("[load]\nstretches = [-0.1, -0.05]\n")[0].contains("from small to large"));
+        assert!(faults("[load]\nstretches = [0, 0.3]\n")[0].contains("zero"));
+        assert!(faults("[load]\nstretches = [-1]\n")[0].contains("must be"));
+        assert!(faults("[finite_element]\ncells = \"auto\"\n")[0].contains("\"automatic\""));
         assert!(faults("[corrector]\nscheme = \"gaus\"\n")[0].contains("did you mean \"gauss\""));
         assert!(
             faults("[plate\n")
                 .iter()
                 .any(|line| line.contains("TOML syntax"))
         );
+    }
+
+    /// Equal cells of the reference that are the lattice's own pairs of cells.
+    #[test]
+    fn a_plate_that_is_compared_with_itself_is_told_so() {
+        let study = parse("[plate]\ncells = [240, 80]\n").unwrap();
+        assert!(study.reference_cells[1] >= 40 && study.grading > 1.0);
+        let own = "[plate]\ncells = [48, 16]\n[finite_element]\ncells = [24, 8]\ngrading = 1\n";
+        let study = parse(own).unwrap();
+        assert!(study.is_its_own_reference());
+        assert!(study.warnings[0].to_string().contains("own equations"));
+        let gauss = "[corrector]\nscheme = \"gauss\"\n";
+        assert!(
+            !parse(&format!("{own}{gauss}"))
+                .unwrap()
+                .is_its_own_reference()
+        );
+        let q1 = own.replace("[24, 8]", "[48, 16]\nelement = \"Q1\"");
+        assert!(
+            parse(&format!("{q1}{gauss}"))
+                .unwrap()
+                .is_its_own_reference()
+        );
+    }
+
+    #[test]
+    fn compressions_are_a_path_of_their_own() {
+        let study = parse("[load]\nstretches = [\"-5 %\", \"-10 %\"]\n").unwrap();
+        assert_eq!(study.problem.stretches, [-0.05, -0.1]);
     }
 
     #[test]

@@ -175,19 +175,165 @@ fn faults_of_a_study_are_told_at_once_with_code_2() {
     gelbench(folder.path(), &["walk"]).code(2);
 }
 
+/// The report for programs of a study that ended with a code.
+fn report_of(folder: &TempDir) -> Value {
+    let path = folder.path().join("output/small/report.json");
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn judgements(report: &Value) -> Vec<&str> {
+    let requirements = report["requirements"].as_array().unwrap().iter();
+    requirements
+        .map(|requirement| requirement["judgement"].as_str().unwrap())
+        .collect()
+}
+
+/// Q2 elements on equal cells are the biquadratic scheme on a lattice of twice as many: deviation 0, whatever the error is.
 #[test]
-fn a_model_without_solution_ends_with_code_3() {
-    let folder = folder_with(&format!("{SMALL}\n[mass_spring]\nmax_iterations = 1\n"));
-    let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
-    let told = words(&done.get_output().stderr);
+fn a_plate_compared_with_itself_is_not_judged() {
+    let own = SMALL.replace("cells = [24, 8]", "cells = [12, 4]\ngrading = 1.0");
+    let own = own.replacen("cells = [12, 4]", "cells = [24, 8]", 1);
+    let folder = folder_with(&own);
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);
+    let printed = words(&done.get_output().stdout);
+    assert_eq!(printed.matches("cannot be judged").count(), 4, "{printed}");
+    assert!(!printed.contains("pass ") && !printed.contains("FAIL "));
+    assert!(words(&done.get_output().stderr).contains("own equations on the same nodes"));
+    let report = report_of(&folder);
+    assert_eq!(judgements(&report), ["cannot be judged"; 4]);
+    assert_eq!(report["passed"], false);
+    let text = fs::read_to_string(folder.path().join("output/small/report.md")).unwrap();
+    assert!(text.contains("cannot be judged") && text.contains("not been judged in all"));
+}
+
+/// A reference coarser than the lattice is blamed, and not the corrected field.
+#[test]
+fn a_reference_coarser_than_the_lattice_judges_nothing() {
+    let coarse = SMALL.replace("cells = [24, 8]", "cells = [8, 4]\ngrading = 1.0");
+    let coarse = coarse.replacen("cells = [12, 4]", "cells = [48, 16]", 1);
+    let coarse = coarse.replace("\"5 %\"", "\"0.001 %\"");
+    let folder = folder_with(&coarse);
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);
+    let printed = words(&done.get_output().stdout);
     assert!(
-        told.contains("mass-spring (12 × 4 cells) at 20 % stretch") && told.contains("try:"),
-        "{told}"
+        !printed.contains("FAIL") && !printed.contains("pass "),
+        "{printed}"
     );
+    assert!(
+        printed.contains("the reference is too coarse") && printed.contains("finite_element.cells"),
+        "{printed}"
+    );
+}
+
+#[test]
+fn where_the_springs_end_the_other_models_are_complete() {
+    for method in ["climb", "direct"] {
+        let study = format!(
+            "{SMALL}\n[mass_spring]\nmax_iterations = 1\n[corrector]\nmethod = \"{method}\"\n"
+        );
+        let folder = folder_with(&study);
+        let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
+        let told = words(&done.get_output().stderr);
+        assert!(
+            told.contains("mass-spring (12 × 4 cells) at 20 % stretch") && told.contains("try:"),
+            "{told}"
+        );
+        let report = report_of(&folder);
+        assert_eq!(
+            judgements(&report),
+            ["pass", "pass", "pass", "cannot be judged"]
+        );
+        assert_eq!(report["passed"], false);
+        assert!(report["ends"][0].as_str().unwrap().contains("mass-spring"));
+        let step = &report["steps"][0];
+        assert!(step["mass_spring"].is_null());
+        assert!(number(step, &["corrected", "displacement_percent"]) < 1.0);
+        assert!(number(step, &["finite_element", "force_N"]) > 1.0);
+        let output = folder.path().join("output/small");
+        for (file, there) in [
+            ("vtk/mass_spring_001.vtu", false),
+            ("vtk/mass_spring.pvd", false),
+            ("vtk/corrected_001.vtu", true),
+            ("vtk/finite_element_001.vtu", true),
+            ("plates_001.png", true),
+            ("error_001.png", true),
+        ] {
+            assert_eq!(output.join(file).exists(), there, "{file}");
+        }
+        let text = fs::read_to_string(output.join("report.md")).unwrap();
+        assert!(text.contains("Models that ended early") && text.contains("takes the place of ū"));
+    }
+}
+
+#[test]
+fn where_the_finite_elements_end_springs_and_corrected_field_are_complete() {
+    let folder = folder_with(&SMALL.replace("[24, 8]", "[24, 8]\nmax_iterations = 1"));
+    let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
+    assert!(words(&done.get_output().stderr).contains("finite elements (Q2, 24 × 8 cells"));
+    let report = report_of(&folder);
+    assert_eq!(judgements(&report), ["cannot be judged"; 4]);
+    let step = &report["steps"][0];
+    assert!(step["finite_element"].is_null() && step["corrected"]["force_percent"].is_null());
+    assert!(number(step, &["corrected", "force_N"]) > 1.0);
+    assert!(number(step, &["mass_spring", "force_N"]) > 1.0);
+    let output = folder.path().join("output/small");
+    assert!(output.join("plates_001.png").exists() && !output.join("error_001.png").exists());
+}
+
+#[test]
+fn nothing_is_written_where_no_model_has_a_solution() {
+    let folder = folder_with(&format!(
+        "{}\n[mass_spring]\nmax_iterations = 1\n[corrector]\nmethod = \"direct\"\nmax_steps = 1\n",
+        SMALL.replace("[24, 8]", "[24, 8]\nmax_iterations = 1")
+    ));
+    gelbench(folder.path(), &["run", "small.toml"]).code(3);
     assert!(
         !folder.path().join("output/small").exists(),
         "no empty folder is left"
     );
+}
+
+#[test]
+fn a_compressed_plate_is_computed_and_warned_of() {
+    let folder = folder_with(&SMALL.replace("[\"20 %\"]", "[\"-5 %\", \"-10 %\"]"));
+    let done = gelbench(folder.path(), &["run", "small.toml"]);
+    let printed = words(&done.get_output().stdout);
+    assert!(
+        printed.contains("under compression") && printed.contains("wrinkles"),
+        "{printed}"
+    );
+    let report = report_of(&folder);
+    for step in report["steps"].as_array().unwrap() {
+        for model in ["mass_spring", "corrected", "finite_element"] {
+            assert!(number(step, &[model, "force_N"]) < 0.0, "{model}");
+        }
+    }
+    assert!(
+        report["warnings"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|warning| { warning.as_str().unwrap().contains("under compression") })
+    );
+    assert_eq!(done.get_output().status.code(), Some(0), "{printed}");
+}
+
+#[test]
+fn the_grips_forces_are_in_balance_and_the_report_says_so() {
+    let folder = folder_with(SMALL);
+    gelbench(folder.path(), &["run", "small.toml"]).code(0);
+    let report = report_of(&folder);
+    for model in ["mass_spring", "corrected", "finite_element"] {
+        let grips = number(&report, &["balance", model, "grips"]);
+        assert!(grips < 1e-9, "{model}: {grips}");
+        let left = number(&report, &["balance", model, "free_nodes"]);
+        assert!(
+            left < if model == "corrected" { 1e-3 } else { 1e-9 },
+            "{model}: {left}"
+        );
+    }
+    let text = fs::read_to_string(folder.path().join("output/small/report.md")).unwrap();
+    assert!(text.contains("Balance of forces and moments") && text.contains("thickness at rest"));
 }
 
 #[test]

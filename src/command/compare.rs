@@ -24,7 +24,7 @@ pub struct Options {
     /// The field: .vtu, .vtk, CalculiX' .frd, or .csv with X, Y, ux, uy
     pub field: PathBuf,
     /// The load factor or stretch, such as 0.5 or "50 %"; the last one of the study where it is not given
-    #[arg(long, visible_alias = "stretch", value_name = "FACTOR", value_parser = ratio)]
+    #[arg(long, visible_alias = "stretch", value_name = "FACTOR", value_parser = ratio, allow_hyphen_values = true)]
     pub factor: Option<f64>,
     /// The file's unit of length, where the file does not say it
     #[arg(long, value_name = "UNIT", default_value = "mm", value_parser = length)]
@@ -119,6 +119,14 @@ fn shape(
     warn(&warnings);
     let last = specimen.factors[specimen.factors.len() - 1];
     let factor = options.factor.unwrap_or(last);
+    if factor < 0.0 {
+        let message =
+            format!("the load factor {factor} is negative, and a specimen's begin at zero");
+        return Err(Error::input(
+            message,
+            "turn the signs of supports and loads in the study",
+        ));
+    }
     let (imported, sites) = import(options, factor, &specimen.lattice())?;
     Ok(Compared {
         title,
@@ -244,11 +252,11 @@ fn report(compared: &Compared, differences: &[Difference], file: &Path) -> Vec<B
     ]
 }
 
-/// A load factor.
+/// A load factor, or a stretch, which is negative where a plate is compressed.
 fn ratio(text: &str) -> Result<f64, String> {
     match units::parse(text, Dimension::Ratio) {
-        Ok(factor) if factor > 0.0 => Ok(factor),
-        Ok(_) => Err("it must be greater than zero".into()),
+        Ok(factor) if factor != 0.0 => Ok(factor),
+        Ok(_) => Err("it must not be zero".into()),
         Err(fault) => Err(fault.to_string()),
     }
 }

@@ -7,6 +7,8 @@ use miette::{
 };
 
 use super::fit_message;
+use crate::compare::Deviation;
+use crate::compare::judgement::Judgement;
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
 use crate::material::curve::Mode;
@@ -60,8 +62,12 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
 pub fn study(path: &Path, study: &Study) -> String {
     let [nx, ny] = study.cells;
     let [fx, fy] = study.reference_cells;
+    let graded = match study.grading > 1.0 {
+        true => format!(" graded by {}", study.grading),
+        false => String::new(),
+    };
     format!(
-        "{}: no faults; {} stretches, {nx} × {ny} cells, card {}, finite elements {} with {fx} × {fy} cells, output in {}",
+        "{}: no faults; {} stretches, {nx} × {ny} cells, card {}, finite elements {} with {fx} × {fy} cells{graded}, output in {}",
         path.display(),
         study.problem.stretches.len(),
         study.card.name,
@@ -78,33 +84,49 @@ pub fn summary(results: &Results, requirements: &[Requirement]) -> String {
          stretch  displacement  departure  force   displacement  departure  force\n",
     );
     for step in &results.comparison {
-        let (before, after) = (&step.mass_spring, &step.corrected);
+        let row = |deviation: Option<&Deviation>, decimals: [usize; 3]| {
+            let figure = |value: fn(&Deviation) -> f64, index: usize| match deviation {
+                Some(deviation) => format!("{:.*}", decimals[index], value(deviation)),
+                None => "–".to_owned(),
+            };
+            [
+                figure(|deviation| deviation.displacement_percent, 0),
+                figure(|deviation| deviation.departure_percent, 1),
+                figure(|deviation| deviation.force_percent.abs(), 2),
+            ]
+        };
+        let [u, departure, force] = row(step.mass_spring.as_ref(), [3, 2, 2]);
         text += &format!(
-            "{:>5} %  {:>12.3}  {:>9.2}  {:>5.2}   {:>12.4}  {:>9.3}  {:>5.3}\n",
-            Problem::percent(step.stretch),
-            before.displacement_percent,
-            before.departure_percent,
-            before.force_percent.abs(),
-            after.displacement_percent,
-            after.departure_percent,
-            after.force_percent.abs()
+            "{:>5} %  {u:>12}  {departure:>9}  {force:>5}   ",
+            Problem::percent(step.stretch)
         );
+        let [u, departure, force] = row(step.corrected.as_ref(), [4, 3, 3]);
+        text += &format!("{u:>12}  {departure:>9}  {force:>5}\n");
     }
     for requirement in requirements {
-        text += &format!(
-            "{} {}: {:.3} % ({} {} %)\n",
-            if requirement.passed { "pass" } else { "FAIL" },
-            requirement.name,
-            requirement.worst,
-            if requirement.at_most {
-                "at most"
-            } else {
-                "at least"
-            },
-            requirement.limit
-        );
+        text += &self::requirement(requirement);
     }
     text
+}
+
+fn requirement(requirement: &Requirement) -> String {
+    let judgement = &requirement.judgement;
+    let bound = if requirement.at_most {
+        "at most"
+    } else {
+        "at least"
+    };
+    let mut text = format!("{} {}", judgement.word(), requirement.name);
+    if !requirement.worst.is_nan() || *judgement == Judgement::Fail {
+        text += &format!(
+            ": {:.3} % ({bound} {} %)",
+            requirement.worst, requirement.limit
+        );
+    }
+    if let Some(remark) = judgement.remark() {
+        text += &format!(": {remark}");
+    }
+    text + "\n"
 }
 
 /// One line for each check of some cases, and their number.

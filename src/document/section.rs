@@ -186,18 +186,21 @@ impl<'a> Section<'a> {
     /// as a fault.
     pub fn count_pair(&self, key: &'static str, low: usize, high: usize) -> Option<[usize; 2]> {
         let wanted = format!("two whole numbers from {low} to {high}, such as [60, 20]");
-        self.read(key, &wanted, |value| {
-            let DeValue::Array(items) = value else {
-                return None;
-            };
-            let numbers: Vec<_> = items
-                .iter()
-                .filter_map(|item| whole_number(item.get_ref()))
-                .collect();
-            let inside = numbers.iter().all(|n| (low..=high).contains(n));
-            (items.len() == 2 && inside)
-                .then(|| numbers.try_into().ok())
-                .flatten()
+        self.read(key, &wanted, |value| count_pair(value, low, high))
+    }
+
+    /// The same, or a word that leaves the choice to the program: nothing within the result.
+    pub fn count_pair_or(
+        &self,
+        word: &str,
+        key: &'static str,
+        [low, high]: [usize; 2],
+    ) -> Option<Option<[usize; 2]>> {
+        let wanted =
+            format!("two whole numbers from {low} to {high}, such as [60, 20], or \"{word}\"");
+        self.read(key, &wanted, |value| match value {
+            DeValue::String(text) => (text == word).then_some(None),
+            other => count_pair(other, low, high).map(Some),
         })
     }
 
@@ -437,6 +440,16 @@ fn plain_number(value: &DeValue<'_>) -> Option<f64> {
         _ => return None,
     };
     text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+fn count_pair(value: &DeValue<'_>, low: usize, high: usize) -> Option<[usize; 2]> {
+    let DeValue::Array(items) = value else {
+        return None;
+    };
+    let numbers = items.iter().map(|item| whole_number(item.get_ref()));
+    let numbers: Vec<usize> = numbers.collect::<Option<_>>()?;
+    let inside = numbers.iter().all(|n| (low..=high).contains(n));
+    inside.then(|| numbers.try_into().ok()).flatten()
 }
 
 fn whole_number(value: &DeValue<'_>) -> Option<usize> {

@@ -4,13 +4,13 @@ use super::picture::animation::{Animation, Frame};
 use super::picture::fields::{Colours, FieldCell, FieldFigure, Panel, outlines};
 use super::picture::lines::{Axis, Line, LineChart, Stroke};
 use super::picture::{PALETTE, Scale};
-use crate::compare::StepComparison;
+use crate::compare::{Deviation, StepComparison};
 use crate::material::Card;
 use crate::material::curve::{Mode, simple_shear};
 use crate::material::stability::{SEARCHED, stable_range};
 use crate::mesh::Mesh;
 use crate::problem::{Problem, Solution};
-use crate::results::Results;
+use crate::results::{MODELS, Results};
 use crate::study::Study;
 
 /// A picture and its caption.
@@ -47,20 +47,10 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
         material_chart(&study.card).png(),
     )];
     for (step, stretch) in study.problem.stretches.iter().enumerate() {
-        let at = Problem::describe_step(*stretch);
-        let plates = plates(results, step, &at).png();
-        let name = format!("plates_{:03}.png", step + 1);
-        all.push(Figure::new(
-            &name,
-            &format!("The plate at {at} in all three models, on one colour scale."),
-            plates,
-        ));
-        let error = error_map(results, step, &at).png();
-        let name = format!("error_{:03}.png", step + 1);
-        all.push(Figure::new(
-            &name,
-            &format!("Distance to the finite elements at {at}, before and after the correction."),
-            error,
+        all.extend(step_figures(
+            results,
+            step,
+            &Problem::describe_step(*stretch),
         ));
     }
     all.extend([
@@ -76,15 +66,40 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
         ),
         Figure::new(
             "residuals.png",
-            "Residual over iteration, at the largest stretch.",
+            "Residual over iteration, at the last stretch with a solution.",
             residuals(results).png(),
         ),
-        Figure::new(
-            "estimated_error.png",
-            "Estimated error of every finite element at the largest stretch, in % of the solution's energy norm.",
-            estimated_error(study, results),
-        ),
     ]);
+    all.extend(estimated_error(results).map(|png| {
+        let caption = "Estimated error of every finite element at the last stretch, in % of the solution's energy norm.";
+        Figure::new("estimated_error.png", caption, png)
+    }));
+    all
+}
+
+/// The pictures of one stretch, of those models that have a solution there.
+fn step_figures(results: &Results, step: usize, at: &str) -> Vec<Figure> {
+    let mut all = Vec::new();
+    let plates = plates(results, step, at);
+    if !plates.panels.is_empty() {
+        let models = match plates.panels.len() {
+            3 => "in all three models",
+            _ => "in the models that have a solution there",
+        };
+        let caption = format!("The plate at {at} {models}, on one colour scale.");
+        let name = format!("plates_{:03}.png", step + 1);
+        all.push(Figure::new(&name, &caption, plates.png()));
+    }
+    let error = error_map(results, step, at);
+    if !error.panels.is_empty() {
+        let models = match error.panels.len() {
+            2 => ", before and after the correction",
+            _ => "",
+        };
+        let caption = format!("Distance to the finite elements at {at}{models}.");
+        let name = format!("error_{:03}.png", step + 1);
+        all.push(Figure::new(&name, &caption, error.png()));
+    }
     all
 }
 
@@ -209,56 +224,51 @@ pub fn mesh_picture(title: &str, mesh: &Mesh) -> Vec<u8> {
 }
 
 fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
-    let transverse = |mesh: &Mesh, solution: &Solution| {
-        let u = &solution.displacement;
-        cells(mesh, u, &|node| u[2 * node + 1])
+    let labels = [
+        MODELS[0].to_owned(),
+        MODELS[1].to_owned(),
+        format!("{} ({})", MODELS[2], results.finest().model.describe()),
+    ];
+    let models = labels
+        .into_iter()
+        .zip(results.meshes())
+        .zip(results.models(step));
+    let panel = |((label, mesh), solution): ((String, &Mesh), Option<&Solution>)| {
+        let u = &solution?.displacement;
+        let cells = cells(mesh, u, &|node| u[2 * node + 1]);
+        Some(Panel { label, cells })
     };
-    let lattice = &results.springs.mesh;
-    let finest = results.finest();
     FieldFigure {
         title: format!("Plate at {at}"),
         quantity: "transverse displacement [mm]".into(),
         scale: Scale::Linear,
         colours: Colours::Diverging,
-        panels: vec![
-            Panel {
-                label: "mass-spring".into(),
-                cells: transverse(lattice, &results.uncorrected[step]),
-            },
-            Panel {
-                label: "corrected".into(),
-                cells: transverse(lattice, &results.corrected[step].solution),
-            },
-            Panel {
-                label: format!("finite elements ({})", finest.model.describe()),
-                cells: transverse(&finest.model.mesh, &finest.solutions[step]),
-            },
-        ],
+        panels: models.filter_map(panel).collect(),
     }
 }
 
 fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
     let mesh = &results.springs.mesh;
-    let reference = &results.reference_on_lattice[step];
-    let distance = |label: &str, solution: &Solution| {
-        let u = &solution.displacement;
-        let distance = |node: usize| {
-            (u[2 * node] - reference[2 * node]).hypot(u[2 * node + 1] - reference[2 * node + 1])
-        };
-        Panel {
+    let [springs, corrected, _] = results.models(step);
+    let distance = |(label, solution): (&str, Option<&Solution>)| {
+        let (u, v) = (
+            &solution?.displacement,
+            results.reference_on_lattice.get(step)?,
+        );
+        let distance =
+            |node: usize| (u[2 * node] - v[2 * node]).hypot(u[2 * node + 1] - v[2 * node + 1]);
+        Some(Panel {
             label: label.to_owned(),
             cells: cells(mesh, u, &distance),
-        }
+        })
     };
+    let models = [(MODELS[0], springs), (MODELS[1], corrected)];
     FieldFigure {
         title: format!("Distance to the finite elements at {at}"),
         quantity: "distance [mm]".into(),
         scale: Scale::Logarithmic,
         colours: Colours::Sequential,
-        panels: vec![
-            distance("mass-spring", &results.uncorrected[step]),
-            distance("corrected", &results.corrected[step].solution),
-        ],
+        panels: models.into_iter().filter_map(distance).collect(),
     }
 }
 
@@ -305,20 +315,17 @@ pub fn field_figure(title: &str, quantity: &str, scale: Scale, fields: &[Field])
     figure.png()
 }
 
-fn estimated_error(study: &Study, results: &Results) -> Vec<u8> {
-    let last = study.problem.stretches.len() - 1;
-    let at = Problem::describe_step(study.problem.stretches[last]);
-    let (mesh, error) = (
-        &results.finest().model.mesh,
-        &results.estimates[last].energy,
-    );
-    cell_figure(
+fn estimated_error(results: &Results) -> Option<Vec<u8>> {
+    let finest = results.finest();
+    let (last, estimate) = results.estimates.iter().enumerate().next_back()?;
+    let at = Problem::describe_step(finest.solutions[last].stretch);
+    Some(cell_figure(
         (&format!("Estimated error at {at}"), "error of a cell [%]"),
         Scale::Logarithmic,
-        mesh,
-        &results.finest().solutions[last].displacement,
-        &error.cell_percents(),
-    )
+        &finest.model.mesh,
+        &finest.solutions[last].displacement,
+        &estimate.as_ref()?.energy.cell_percents(),
+    ))
 }
 
 /// One value a cell on a deformed mesh.
@@ -374,118 +381,108 @@ pub(super) fn deformed(
 }
 
 fn errors(results: &Results) -> LineChart {
-    let mut lines = Vec::new();
-    let mut add = |label: &str, colour, stroke, value: &dyn Fn(&StepComparison) -> f64| {
-        let steps = results.comparison.iter();
-        lines.push(Line {
+    type OfStep = fn(&StepComparison) -> Option<Deviation>;
+    type Measure = fn(&Deviation) -> f64;
+    let before: (OfStep, _) = (|step| step.mass_spring, MASS_SPRING);
+    let after: (OfStep, _) = (|step| step.corrected, CORRECTED);
+    let departure: Measure = |deviation| deviation.departure_percent;
+    let displacement: Measure = |deviation| deviation.displacement_percent;
+    let line = |(label, (deviation, colour), stroke, value): (&str, (OfStep, _), _, Measure)| {
+        let point = |step: &StepComparison| Some([100.0 * step.stretch, value(&deviation(step)?)]);
+        Line {
             label: label.to_owned(),
-            points: steps
-                .map(|step| [100.0 * step.stretch, value(step)])
-                .collect(),
+            points: results.comparison.iter().filter_map(point).collect(),
             colour,
             stroke,
-        });
+        }
     };
-    add(
-        "mass-spring: departure from affine",
-        MASS_SPRING,
-        Stroke::Marked,
-        &|step| step.mass_spring.departure_percent,
-    );
-    add(
-        "mass-spring: displacement",
-        MASS_SPRING,
-        Stroke::Dashed,
-        &|step| step.mass_spring.displacement_percent,
-    );
-    add(
-        "corrected: departure from affine",
-        CORRECTED,
-        Stroke::Marked,
-        &|step| step.corrected.departure_percent,
-    );
-    add(
-        "corrected: displacement",
-        CORRECTED,
-        Stroke::Dashed,
-        &|step| step.corrected.displacement_percent,
-    );
+    let lines = [
+        (
+            "mass-spring: departure from affine",
+            before,
+            Stroke::Marked,
+            departure,
+        ),
+        (
+            "mass-spring: displacement",
+            before,
+            Stroke::Dashed,
+            displacement,
+        ),
+        (
+            "corrected: departure from affine",
+            after,
+            Stroke::Marked,
+            departure,
+        ),
+        (
+            "corrected: displacement",
+            after,
+            Stroke::Dashed,
+            displacement,
+        ),
+    ];
     LineChart {
         title: "Deviation from the finite elements".into(),
         x: Axis::linear("stretch of the plate [%]"),
         y: Axis::logarithmic("deviation, relative L2 [%]"),
-        lines,
+        lines: with_points(lines.map(line), 1),
         band: None,
     }
 }
 
+/// The lines with so many points at least: a model without solutions has no place in a legend.
+fn with_points(lines: impl IntoIterator<Item = Line>, fewest: usize) -> Vec<Line> {
+    let lines = lines.into_iter();
+    lines.filter(|line| line.points.len() >= fewest).collect()
+}
+
 fn force(results: &Results) -> LineChart {
-    let line = |label: &str, colour, stroke, solutions: &mut dyn Iterator<Item = &Solution>| Line {
-        label: label.to_owned(),
-        points: std::iter::once([0.0, 0.0])
-            .chain(solutions.map(|solution| [100.0 * solution.stretch, solution.force]))
-            .collect(),
-        colour,
-        stroke,
+    let line = |model: usize, colour, stroke| {
+        let steps = 0..results.comparison.len();
+        let solutions = steps.filter_map(|step| results.models(step)[model]);
+        let points = solutions.map(|solution| [100.0 * solution.stretch, solution.force]);
+        Line {
+            label: MODELS[model].to_owned(),
+            points: std::iter::once([0.0, 0.0]).chain(points).collect(),
+            colour,
+            stroke,
+        }
     };
+    let lines = [
+        line(2, FINITE_ELEMENT, Stroke::Solid),
+        line(0, MASS_SPRING, Stroke::Marked),
+        line(1, CORRECTED, Stroke::Points),
+    ];
     LineChart {
         title: "Grip force".into(),
         x: Axis::linear("stretch of the plate [%]"),
         y: Axis::linear("force [N]"),
-        lines: vec![
-            line(
-                "finite elements",
-                FINITE_ELEMENT,
-                Stroke::Solid,
-                &mut results.finest().solutions.iter(),
-            ),
-            line(
-                "mass-spring",
-                MASS_SPRING,
-                Stroke::Marked,
-                &mut results.uncorrected.iter(),
-            ),
-            line(
-                "corrected",
-                CORRECTED,
-                Stroke::Points,
-                &mut results.corrected.iter().map(|state| &state.solution),
-            ),
-        ],
+        lines: with_points(lines, 2),
         band: None,
     }
 }
 
+/// The residuals of the models that have a solution at the last stretch that one of them has reached.
 fn residuals(results: &Results) -> LineChart {
-    let line = |label: &str, colour, solution: &Solution| Line {
-        label: label.to_owned(),
-        points: solution
-            .convergence
-            .residuals
-            .iter()
-            .enumerate()
-            .map(|(i, r)| [i as f64, *r])
-            .collect(),
-        colour,
-        stroke: Stroke::Marked,
+    let last = results.last_step().unwrap_or_default();
+    let colours = [MASS_SPRING, CORRECTED, FINITE_ELEMENT];
+    let models = MODELS.into_iter().zip(colours).zip(results.models(last));
+    let line = |((label, colour), solution): ((&str, _), Option<&Solution>)| {
+        let residuals = solution?.convergence.residuals.iter().enumerate();
+        Some(Line {
+            label: label.to_owned(),
+            points: residuals.map(|(i, r)| [i as f64, *r]).collect(),
+            colour,
+            stroke: Stroke::Marked,
+        })
     };
-    let last = results.uncorrected.len() - 1;
+    let at = Problem::describe_step(results.comparison[last].stretch);
     LineChart {
-        title: format!(
-            "Residual at {}",
-            Problem::describe_step(results.uncorrected[last].stretch)
-        ),
+        title: format!("Residual at {at}"),
         x: Axis::linear("iteration"),
         y: Axis::logarithmic("relative residual [–]"),
-        lines: vec![
-            line("mass-spring", MASS_SPRING, &results.uncorrected[last]),
-            line("corrector", CORRECTED, &results.corrected[last].solution),
-            line(
-                "finite elements",
-                FINITE_ELEMENT,
-                &results.finest().solutions[last],
-            ),
-        ],
+        lines: models.filter_map(line).collect(),
         band: None,
     }
 }

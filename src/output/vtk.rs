@@ -27,18 +27,20 @@ use crate::study::Study;
 /// η_c/‖u_h‖ of each cell: the root of the sum of their squares is the error of the field in %.
 const ESTIMATED_ERROR: &str = "estimated_error_percent_of_energy_norm";
 
-/// All VTK files of a run: name and content, one after the other.
+/// All VTK files of a run: name and content, one after the other; those of a model as far as it has solutions.
 pub fn files(study: &Study, results: &Results) -> impl Iterator<Item = (String, Vec<u8>)> {
-    let steps = 0..study.problem.stretches.len();
     let model = move |model: Model| {
-        let grids = steps.clone().map(move |step| {
-            let grid = model.grid(study, results, step);
-            (model.file_name(step), encode(&study.title, grid))
+        let steps = 0..study.problem.stretches.len();
+        let steps: Vec<usize> = steps.filter(|step| model.has(results, *step)).collect();
+        let stretch = |step: &usize| (study.problem.stretches[*step], model.file_name(*step));
+        let named: Vec<_> = steps.iter().map(stretch).collect();
+        let collection =
+            (!named.is_empty()).then(|| (format!("{}.pvd", model.name()), collection(&named)));
+        let grids = steps.into_iter().filter_map(move |step| {
+            let grid = model.grid(study, results, step)?;
+            Some((model.file_name(step), encode(&study.title, grid)))
         });
-        let steps = study.problem.stretches.iter().enumerate();
-        let named = steps.map(|(step, stretch)| (*stretch, model.file_name(step)));
-        let collection = collection(&named.collect::<Vec<_>>());
-        grids.chain([(format!("{}.pvd", model.name()), collection)])
+        grids.chain(collection)
     };
     Model::ALL.into_iter().flat_map(model)
 }
@@ -72,42 +74,48 @@ impl Model {
         format!("{}_{:03}.vtu", self.name(), step + 1)
     }
 
-    fn grid(self, study: &Study, results: &Results, step: usize) -> UnstructuredGridPiece {
-        let problem = &study.problem;
-        let lattice = &results.springs.mesh;
-        let reference = &results.reference_on_lattice[step];
-        let difference = |u: &[f64]| difference(TO_FINITE_ELEMENTS, u, reference);
+    fn has(self, results: &Results, step: usize) -> bool {
+        let [springs, corrected, elements] = results.models(step).map(|model| model.is_some());
         match self {
+            Self::MassSpring | Self::Springs => springs,
+            Self::Corrected => corrected,
+            Self::FiniteElement => elements,
+        }
+    }
+
+    /// The grid at a stretch at which the model has a solution.
+    fn grid(self, study: &Study, results: &Results, step: usize) -> Option<UnstructuredGridPiece> {
+        let sheet = &(&study.problem).into();
+        let lattice = &results.springs.mesh;
+        let reference = results.reference_on_lattice.get(step);
+        let difference =
+            |u: &[f64]| reference.map(|reference| difference(TO_FINITE_ELEMENTS, u, reference));
+        let [springs, _, elements] = results.models(step);
+        Some(match self {
             Self::MassSpring => {
-                let u = &results.uncorrected[step].displacement;
-                plate(&problem.into(), lattice, u, vec![difference(u)], None)
+                let u = &springs?.displacement;
+                plate(sheet, lattice, u, difference(u).into_iter().collect(), None)
             }
             Self::Corrected => {
-                let state = &results.corrected[step];
+                let state = results.corrected[step].as_ref()?;
                 let u = &state.solution.displacement;
                 let multipliers = state.multipliers.iter();
-                let size = u.len();
-                let arrays = multipliers.filter_map(|group| multiplier_array(group, size));
-                plate(
-                    &problem.into(),
-                    lattice,
-                    u,
-                    [difference(u)].into_iter().chain(arrays).collect(),
-                    None,
-                )
+                let arrays = multipliers.filter_map(|group| multiplier_array(group, u.len()));
+                let all = difference(u).into_iter().chain(arrays).collect();
+                plate(sheet, lattice, u, all, None)
             }
             Self::FiniteElement => {
-                let finest = results.finest();
+                let estimate = results.estimates[step].as_ref();
                 plate(
-                    &problem.into(),
-                    &finest.model.mesh,
-                    &finest.solutions[step].displacement,
+                    sheet,
+                    &results.finest().model.mesh,
+                    &elements?.displacement,
                     Vec::new(),
-                    Some(&results.estimates[step].energy),
+                    estimate.map(|estimate| &estimate.energy),
                 )
             }
-            Self::Springs => springs(&results.springs, &results.uncorrected[step].displacement),
-        }
+            Self::Springs => self::springs(&results.springs, &springs?.displacement),
+        })
     }
 }
 

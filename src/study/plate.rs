@@ -14,13 +14,16 @@ use crate::problem::Problem;
 use crate::units::Dimension;
 
 /// Most cells of a mesh in one direction, and in all: more than this would not fit into common memories.
-const MOST_CELLS: usize = 2000;
+pub(super) const MOST_CELLS: usize = 2000;
 const MOST_CELLS_IN_ALL: usize = 200_000;
 
 /// Lengths that a plate may have, in mm: from a micrometre to a kilometre.
 const LENGTHS: Bound = Bound::Range(1e-3, 1e6, "greater than zero, from 1 µm to 1 km");
 /// Stretches that a plate may be given.
-pub(super) const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
+const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
+/// The same with compressions, and the smallest that is none.
+const WITH_COMPRESSIONS: Bound = Bound::Range(-0.95, 100.0, "from −95 % to 10000 %");
+const SMALLEST: f64 = 1e-9;
 
 /// The card under `card` of a section, looked for relative to `folder`; nothing when it is no card to work
 /// with, which is recorded as a fault.
@@ -69,7 +72,8 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (Problem, [usiz
     let length = |key| section.quantity(key, Dimension::Length, LENGTHS);
     let size = [length("length"), length("width")];
     let thickness = length("thickness");
-    let cells = read_cells(section, 2);
+    let cells = section.count_pair("cells", 2, MOST_CELLS);
+    let cells = cells.filter(|cells| check_cells(section, *cells));
     if let Some(cells) = cells {
         check_aspect(section, size, cells);
     }
@@ -86,18 +90,31 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (Problem, [usiz
     (problem, cells.unwrap_or([2, 2]))
 }
 
-/// The cells of a mesh, not too many in all.
-pub(super) fn read_cells(section: &Section<'_>, fewest: usize) -> Option<[usize; 2]> {
-    let cells = section.count_pair("cells", fewest, MOST_CELLS)?;
-    if cells[0] * cells[1] > MOST_CELLS_IN_ALL {
-        section.fault(
-            "cells",
-            &format!("{} cells are too many", cells[0] * cells[1]),
-            &format!("take at most {MOST_CELLS_IN_ALL}"),
-        );
-        return None;
+/// Records the fault of a mesh with too many cells in all; whether it has not.
+pub(super) fn check_cells(section: &Section<'_>, cells: [usize; 2]) -> bool {
+    let all = cells[0] * cells[1];
+    if all > MOST_CELLS_IN_ALL {
+        let hint = format!("take at most {MOST_CELLS_IN_ALL}");
+        section.fault("cells", &format!("{all} cells are too many"), &hint);
     }
-    Some(cells)
+    all <= MOST_CELLS_IN_ALL
+}
+
+/// The cells of biquadratic elements, graded by 2, that can judge a lattice. Their error falls with the third power of their
+/// number n over the shorter side, that of a lattice with the 1.5th power of its own number m:
+///
+/// ```text
+/// n = max(√(40 m), min(40, 2 √(20 m))),   n √(long/short) over the longer side
+/// ```
+///
+/// so that it is 1/100 and less of the lattice's on plates of 1:1 to 20:1 with 4 to 80 cells across. Between the grips a
+/// long plate is nearly in uniaxial tension: over the longer side the cells need not be square.
+pub(super) fn reference_cells(size: [f64; 2], lattice: [usize; 2]) -> [usize; 2] {
+    let short = if size[0] < size[1] { 0 } else { 1 };
+    let m = lattice[short] as f64;
+    let n = (40.0 * m).sqrt().max(40.0_f64.min(2.0 * (20.0 * m).sqrt()));
+    let over = |axis: usize| (n * (size[axis] / size[short]).sqrt()).ceil() as usize;
+    [0, 1].map(|axis| over(axis).next_multiple_of(4).min(MOST_CELLS))
 }
 
 /// Springs cannot make a lattice of long cells isotropic.
@@ -115,10 +132,49 @@ fn check_aspect(section: &Section<'_>, size: [f64; 2], cells: [usize; 2]) {
     }
 }
 
+/// The stretches of a plate: at least one, all of one sign, from small to large, as a path from rest takes them.
+pub(super) fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
+    const KEY: &str = "stretches";
+    let stretches = section.quantities(KEY, Dimension::Ratio, WITH_COMPRESSIONS);
+    section.unknown_keys();
+    if stretches.is_empty() {
+        let hint = "such as [\"15 %\", \"30 %\"]";
+        section.fault(KEY, "needs at least one stretch", hint);
+    }
+    if stretches.iter().any(|stretch| stretch.is_nan()) {
+        return stretches;
+    }
+    if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
+        let hint = "at rest there is nothing to solve; leave it out";
+        section.fault(KEY, "must not hold zero", hint);
+        return stretches;
+    }
+    let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
+    if !one_sign {
+        let hint = "every path begins at rest: write one study for the tension and one for the compression";
+        section.fault(KEY, "must have one sign", hint);
+    } else if stretches
+        .windows(2)
+        .any(|pair| pair[1].abs() <= pair[0].abs())
+    {
+        let hint = "sort them by their size and leave out repetitions";
+        section.fault(KEY, "must go from small to large", hint);
+    }
+    for (stretch, card) in stretches.iter().zip(card.into_iter().cycle()) {
+        check_range(section, KEY, *stretch, card);
+    }
+    stretches
+}
+
 /// Warns of a stretch outside the range of the card, or beyond the stability of its law.
 pub fn check_range(section: &Section<'_>, key: &'static str, stretch: f64, card: &Card) {
-    let stable = stable_range(&*card.law, Mode::Uniaxial)[1];
-    if 1.0 + stretch > stable && stable < SEARCHED[1] {
+    let [low, high] = stable_range(&*card.law, Mode::Uniaxial);
+    let end = if stretch > 0.0 {
+        (1.0 + stretch > high && high < SEARCHED[1]).then_some(("tension", "up", high))
+    } else {
+        (1.0 + stretch < low && low > SEARCHED[0]).then_some(("compression", "down", low))
+    };
+    if let Some((test, way, end)) = end {
         section.warning(
             key,
             &format!(
@@ -127,8 +183,8 @@ pub fn check_range(section: &Section<'_>, key: &'static str, stretch: f64, card:
                 card.name
             ),
             &format!(
-                "in uniaxial tension it is stable up to {:.0} % stretch",
-                100.0 * (stable - 1.0)
+                "in uniaxial {test} it is stable {way} to {:.0} % stretch",
+                100.0 * (end - 1.0)
             ),
         );
     }

@@ -45,7 +45,7 @@ cells = [12, 4]
 [load]
 stretches = ["20 %"]
 [finite_element]
-cells = [12, 4]
+cells = [24, 8]
 [tolerances]
 displacement = "5 %"
 departure = "20 %"

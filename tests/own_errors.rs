@@ -1,0 +1,87 @@
+//! The finite elements' own error, as the verdict of a plate's study takes it, beside the true one.
+
+use std::path::Path;
+
+use gelbench::compare::{Reference, departure_percent, displacement_percent};
+use gelbench::finite_element::{Element, FiniteElements};
+use gelbench::material::Card;
+use gelbench::mesh::{CellShape, Mesh};
+use gelbench::problem::{Problem, Solution};
+use gelbench::solve::NewtonSettings;
+
+const SETTINGS: NewtonSettings = NewtonSettings {
+    tolerance: 1e-11,
+    max_iterations: 40,
+};
+
+type Solved = (FiniteElements, Vec<Solution>);
+
+fn solve(problem: &Problem, cells: [usize; 2], grading: f64) -> Solved {
+    let model = FiniteElements::graded(problem, cells, Element::Q2, grading);
+    let solutions = model.solve(problem, SETTINGS, &|_| ()).unwrap();
+    (model, solutions)
+}
+
+/// Stated over true errors of displacement, departure and force at the last stretch.
+fn effectivities(problem: &Problem, cells: [usize; 2], grading: f64, truth: &Solved) -> [f64; 3] {
+    let meshes = [4, 2, 1].map(|part| solve(problem, cells.map(|n| n / part), grading));
+    let pairs = meshes.each_ref().map(|(model, found)| (model, &found[..]));
+    let last = problem.stretches.len() - 1;
+    let stated = Reference::new(problem, pairs)
+        .self_convergence(last)
+        .unwrap();
+    let found = &meshes[2].1;
+    let lattice = Mesh::plate(problem.size, cells.map(|n| 2 * n), CellShape::Quad4);
+    let on_lattice = |(model, found): &Solved| {
+        model
+            .mesh
+            .displacement_on(&found[last].displacement, &lattice)
+    };
+    let (field, exact) = (on_lattice(&meshes[2]), on_lattice(truth));
+    let affine = problem.affine(&lattice, problem.stretches[last]);
+    let force = 100.0 * (found[last].force / truth.1[last].force - 1.0).abs();
+    [
+        stated.displacement_percent / displacement_percent(&lattice, &field, &exact),
+        stated.departure_percent / departure_percent(&lattice, &field, &exact, &affine),
+        stated.force.error_percent / force,
+    ]
+}
+
+fn plate(card: &str, size: [f64; 2], stretches: &[f64]) -> Problem {
+    Problem {
+        size,
+        thickness: 2.0,
+        law: Card::load(card, Path::new(".")).unwrap().law,
+        stretches: stretches.to_vec(),
+    }
+}
+
+/// Laws, aspects, gradings, tension and compression: never much too small, and seldom much too large.
+#[test]
+fn what_the_finite_elements_state_as_their_own_error_is_their_error() {
+    let wide = [50.0, 50.0];
+    let long = [150.0, 50.0];
+    let cases: [(&str, [f64; 2], &[f64], f64); 8] = [
+        ("pva-10", long, &[0.15], 2.0),
+        ("pva-10", long, &[0.5, 1.0], 2.0),
+        ("neo-hooke", long, &[0.5, 1.0], 2.0),
+        ("neo-hooke", wide, &[0.5], 3.0),
+        ("mooney-rivlin", wide, &[0.5], 2.0),
+        ("treloar-ogden-3", long, &[1.0], 2.0),
+        ("pva-10", long, &[0.5], 1.0),
+        ("neo-hooke", long, &[-0.1], 2.0),
+    ];
+    for (card, size, stretches, grading) in cases {
+        let problem = plate(card, size, stretches);
+        let cells = [8.0 * size[0] / size[1], 8.0].map(|n: f64| n as usize);
+        let truth = solve(&problem, cells.map(|n| 4 * n), 2.5);
+        let ratios = effectivities(&problem, cells, grading, &truth);
+        println!("{card} {size:?} {stretches:?} grading {grading}: {ratios:.2?}");
+        for ratio in ratios {
+            assert!(
+                (0.5..2.5).contains(&ratio),
+                "{card} {size:?} {stretches:?} grading {grading}: {ratios:?}"
+            );
+        }
+    }
+}
