@@ -227,6 +227,8 @@ fn an_empty_file_name_is_an_error_and_a_polygon_a_warning() {
         found.contains("the boundary `hole` is a polygon"),
         "{found}"
     );
+    let meant = told(&file, "allowed = [\"polygons\"]", &CHECK, 0);
+    assert_eq!(meant, "");
     let found = told(
         &MeshFile::of(&hole.mesh(4, CellShape::Quad8)),
         "",

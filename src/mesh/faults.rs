@@ -35,11 +35,13 @@ pub struct Allowed {
     pub parts: bool,
     /// Cells or parts that are joined in a single node.
     pub hinges: bool,
+    /// Straight edges that turn as those of a curve.
+    pub polygons: bool,
 }
 
 impl Allowed {
     /// The names that studies and options use.
-    pub const NAMES: [&'static str; 3] = ["seams", "parts", "hinges"];
+    pub const NAMES: [&'static str; 4] = ["seams", "parts", "hinges", "polygons"];
 
     /// Those of some names; the first name that is not known otherwise.
     ///
@@ -52,6 +54,7 @@ impl Allowed {
                 "seams" => allowed.seams = true,
                 "parts" => allowed.parts = true,
                 "hinges" => allowed.hinges = true,
+                "polygons" => allowed.polygons = true,
                 other => return Err(other.to_owned()),
             }
         }

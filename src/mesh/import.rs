@@ -75,7 +75,9 @@ pub fn import(
     let wrong = told.iter().any(|fault| fault.severity == Severity::Error);
     if !wrong {
         told.extend(lost_groups(&lost, &mesh));
-        told.extend(mesh.polygons().iter().map(|polygon| polygon.warning(&mesh)));
+        if !reading.allowed.polygons {
+            told.extend(mesh.polygons().iter().map(|polygon| polygon.warning(&mesh)));
+        }
     }
     for fault in &mut told {
         fault.message = format!("{}: {}", path.display(), fault.message);
@@ -83,7 +85,8 @@ pub fn import(
     if wrong {
         return Err(told);
     }
-    let mixed = (0..mesh.cell_count()).any(|cell| mesh.shape(cell).degree() < mesh.degree());
+    let degree = mesh.degree();
+    let mixed = (0..mesh.cell_count()).any(|cell| mesh.shape(cell).degree() < degree);
     Ok((if mixed { mesh.quadratic() } else { mesh }, told))
 }
 

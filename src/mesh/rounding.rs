@@ -54,7 +54,7 @@ impl Polygon {
             self.beside,
             100.0 * (self.area / mesh.area()).abs()
         );
-        let hint = "save the mesh with elements of the second order, whose sides are curved";
+        let hint = "save the mesh with elements of the second order, whose sides are curved; where a polygon is meant, allow \"polygons\"";
         Diagnostic::warning("", message).hint(hint)
     }
 }

@@ -59,8 +59,12 @@ enum Outline {
         lattice: CellShape,
         element: CellShape,
     },
-    /// The mesh of a file, and the finite elements on it.
-    File { mesh: Box<Mesh>, element: CellShape },
+    /// The mesh of a file, the finite elements on it, and whether straight edges are meant where they turn as a curve's.
+    File {
+        mesh: Box<Mesh>,
+        element: CellShape,
+        polygons: bool,
+    },
 }
 
 /// The shape that is read from a file.
@@ -149,10 +153,11 @@ fn read_outline(
     element: CellShape,
 ) -> Option<Outline> {
     if name == MESH {
-        let (mesh, element) = (read_mesh(section, folder)?, element);
+        let (mesh, allowed) = read_mesh(section, folder)?;
         return Some(Outline::File {
             mesh: Box::new(mesh),
             element,
+            polygons: allowed.polygons,
         });
     }
     let shape = read_shape(section, name);
@@ -171,7 +176,7 @@ fn read_outline(
 }
 
 /// The mesh of a file; nothing where it cannot be used, with the faults recorded.
-fn read_mesh(section: &Section, folder: &Path) -> Option<Mesh> {
+fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
     let file = section.text("file");
     let unit = section.quantity("file_unit", Dimension::Length, Bound::Positive);
     let merge_nodes = section
@@ -213,7 +218,7 @@ fn read_mesh(section: &Section, folder: &Path) -> Option<Mesh> {
             Severity::Warning => section.warning("file", &found.message, &hint),
         }
     }
-    mesh
+    Some((mesh?, reading.allowed))
 }
 
 /// What is measured at a group, with its unit.
@@ -265,6 +270,7 @@ impl Specimen {
             outline: Outline::File {
                 mesh: Box::new(mesh),
                 element,
+                polygons: false,
             },
         }
     }
@@ -317,9 +323,12 @@ impl Specimen {
     /// The middle one of the three meshes of a file's specimen with its edges on the curves that they stand for, see
     /// [`Mesh::rounded`], and the whole change to those curves over the change to this mesh.
     pub fn rounded_mesh(&self) -> Option<(Mesh, f64)> {
-        let Outline::File { mesh, .. } = &self.outline else {
+        let Outline::File { mesh, polygons, .. } = &self.outline else {
             return None;
         };
+        if *polygons && mesh.degree() == 1 {
+            return None;
+        }
         // What is left between a curve and chords falls with h², between a curve and parabolas with h⁴.
         let whole = if mesh.degree() == 1 {
             4.0 / 3.0
