@@ -18,6 +18,7 @@ mod ogden;
 pub mod parameters;
 mod polynomial;
 pub mod registry;
+pub mod samples;
 pub mod scalar_function;
 pub mod sheet;
 pub mod stability;

@@ -1,13 +1,13 @@
 //! The tests that every law must pass, shipped cards and a synthetic law alike.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector4};
 
 use super::curve::{self, Mode};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::registry::{CARDS, LAWS};
+use super::samples::{SAMPLES, sample};
 use super::sheet::{Gradient, Kinematics};
 use super::{Card, Gent, NeoHooke};
 
@@ -42,59 +42,6 @@ fn for_each_law(test: impl Fn(&str, &dyn HyperelasticLaw)) {
     for (name, parameters) in SAMPLES {
         test(name, &*sample(name, parameters));
     }
-}
-
-/// Parameters of the laws that no shipped card uses.
-const SAMPLES: [(&str, &str); 13] = [
-    (
-        "mooney-rivlin-3",
-        "c10 = \"0.04 MPa\"\nc01 = \"0.01 MPa\"\nc11 = \"2 kPa\"",
-    ),
-    (
-        "mooney-rivlin-5",
-        "c10 = \"0.04 MPa\"\nc01 = \"0.01 MPa\"\nc20 = \"3 kPa\"\nc11 = \"2 kPa\"\nc02 = \"1 kPa\"",
-    ),
-    (
-        "yeoh",
-        "c10 = \"0.03 MPa\"\nc20 = \"-2 kPa\"\nc30 = \"1 kPa\"",
-    ),
-    ("gent", "mu = \"0.05 MPa\"\njm = 30"),
-    ("arruda-boyce", "mu = \"0.05 MPa\"\nlambda_m = 2.5"),
-    ("fung-demiray", "mu = \"0.05 MPa\"\nb = 0.4"),
-    ("veronda-westmann", "c = \"0.05 MPa\"\nbeta = 0.4"),
-    (
-        "ogden-1",
-        "mu_1 = \"0.05 MPa\"\nalpha_1 = 5.781\nconvention = \"2mu/alpha^2\"",
-    ),
-    (
-        "ogden-2",
-        "mu_1 = \"0.04 MPa\"\nalpha_1 = 2\nmu_2 = \"-0.01 MPa\"\nalpha_2 = -2\nconvention = \"mu/alpha\"",
-    ),
-    (
-        "ogden-3",
-        "mu_1 = \"0.04 MPa\"\nalpha_1 = 1.3\nmu_2 = \"0.001 MPa\"\nalpha_2 = 5\nmu_3 = \"0.01 MPa\"\nalpha_3 = -2.5\nconvention = \"2mu/alpha^2\"",
-    ),
-    (
-        "ogden-4",
-        "mu_1 = \"0.04 MPa\"\nalpha_1 = 1\nmu_2 = \"1 kPa\"\nalpha_2 = 4\nmu_3 = \"3 kPa\"\nalpha_3 = -1\nmu_4 = \"0.1 kPa\"\nalpha_4 = 7\nconvention = \"2mu/alpha^2\"",
-    ),
-    (
-        "marlow-table",
-        "strain = [0, 0.1, 0.25, 0.6, 1.3, 4.0, 200.0]\nstress = [\"0 kPa\", \"18 kPa\", \"38 kPa\", \"100 kPa\", \"320 kPa\", \"3 MPa\", \"300 MPa\"]\nextrapolation = \"linear\"",
-    ),
-    (
-        "holzapfel-gasser-ogden",
-        "mu = \"0.02 MPa\"\nk1 = \"0.03 MPa\"\nk2 = 0.3\nkappa = 0.1\nangle = \"35 deg\"\nfamilies = \"two\"",
-    ),
-];
-
-fn sample(law: &str, parameters: &str) -> Arc<dyn HyperelasticLaw> {
-    let card = CARDS[0].1;
-    let (head, rest) = card.split_once("[parameters]").unwrap();
-    let (_, rest) = rest.split_once("[data]").unwrap();
-    let head = head.replace("marlow-exponential", law);
-    let text = format!("{head}[parameters]\n{parameters}\n[data]{rest}");
-    Card::parse(law, law, &text).unwrap().law
 }
 
 #[test]

@@ -1,0 +1,83 @@
+//! A material of every kind: the shipped cards, and parameters of a usual soft material for the laws that no card uses.
+//!
+//! Tests and validation cases that hold for all laws run over these.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::Card;
+use super::law::HyperelasticLaw;
+use super::registry::CARDS;
+
+/// Laws that no shipped card uses, and parameters of a usual soft material as a card states them.
+pub const SAMPLES: &[(&str, &str)] = &[
+    (
+        "mooney-rivlin-3",
+        "c10 = \"0.04 MPa\"\nc01 = \"0.01 MPa\"\nc11 = \"2 kPa\"",
+    ),
+    (
+        "mooney-rivlin-5",
+        "c10 = \"0.04 MPa\"\nc01 = \"0.01 MPa\"\nc20 = \"3 kPa\"\nc11 = \"2 kPa\"\nc02 = \"1 kPa\"",
+    ),
+    (
+        "yeoh",
+        "c10 = \"0.03 MPa\"\nc20 = \"-2 kPa\"\nc30 = \"1 kPa\"",
+    ),
+    ("gent", "mu = \"0.05 MPa\"\njm = 30"),
+    ("arruda-boyce", "mu = \"0.05 MPa\"\nlambda_m = 2.5"),
+    ("fung-demiray", "mu = \"0.05 MPa\"\nb = 0.4"),
+    ("veronda-westmann", "c = \"0.05 MPa\"\nbeta = 0.4"),
+    (
+        "ogden-1",
+        "mu_1 = \"0.05 MPa\"\nalpha_1 = 5.781\nconvention = \"2mu/alpha^2\"",
+    ),
+    (
+        "ogden-2",
+        "mu_1 = \"0.04 MPa\"\nalpha_1 = 2\nmu_2 = \"-0.01 MPa\"\nalpha_2 = -2\nconvention = \"mu/alpha\"",
+    ),
+    (
+        "ogden-3",
+        "mu_1 = \"0.04 MPa\"\nalpha_1 = 1.3\nmu_2 = \"0.001 MPa\"\nalpha_2 = 5\nmu_3 = \"0.01 MPa\"\nalpha_3 = -2.5\nconvention = \"2mu/alpha^2\"",
+    ),
+    (
+        "ogden-4",
+        "mu_1 = \"0.04 MPa\"\nalpha_1 = 1\nmu_2 = \"1 kPa\"\nalpha_2 = 4\nmu_3 = \"3 kPa\"\nalpha_3 = -1\nmu_4 = \"0.1 kPa\"\nalpha_4 = 7\nconvention = \"2mu/alpha^2\"",
+    ),
+    (
+        "marlow-table",
+        "strain = [0, 0.1, 0.25, 0.6, 1.3, 4.0, 200.0]\nstress = [\"0 kPa\", \"18 kPa\", \"38 kPa\", \"100 kPa\", \"320 kPa\", \"3 MPa\", \"300 MPa\"]\nextrapolation = \"linear\"",
+    ),
+    (
+        "holzapfel-gasser-ogden",
+        "mu = \"0.02 MPa\"\nk1 = \"0.03 MPa\"\nk2 = 0.3\nkappa = 0.1\nangle = \"35 deg\"\nfamilies = \"two\"",
+    ),
+];
+
+/// A law with parameters as a card states them.
+///
+/// # Panics
+/// When the text is none of that law's parameters.
+pub fn sample(law: &str, parameters: &str) -> Arc<dyn HyperelasticLaw> {
+    let card = CARDS[0].1;
+    let (head, rest) = card.split_once("[parameters]").unwrap();
+    let (_, rest) = rest.split_once("[data]").unwrap();
+    let head = head.replace("marlow-exponential", law);
+    let text = format!("{head}[parameters]\n{parameters}\n[data]{rest}");
+    Card::parse(law, law, &text).unwrap().law
+}
+
+/// All shipped cards and all [`SAMPLES`] by name.
+///
+/// # Panics
+/// Never: the battery of law tests reads all of them.
+pub fn all() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>)> {
+    let card = |name| {
+        Card::load(name, Path::new("."))
+            .expect("a shipped card")
+            .law
+    };
+    let cards = CARDS.iter().map(|(name, _)| (*name, card(*name)));
+    let samples = SAMPLES.iter();
+    let samples = samples.map(|(law, parameters)| (*law, sample(law, parameters)));
+    cards.chain(samples).collect()
+}
