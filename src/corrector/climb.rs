@@ -16,9 +16,12 @@ use crate::error::{Error, SolveFault};
 use crate::multigrid::{Multigrid, NotPositiveDefinite};
 use crate::problem::Problem;
 
+mod ascent;
+mod fall;
 mod forces;
 mod grid;
 mod level;
+mod load_path;
 mod multipliers;
 mod newton;
 mod path;
@@ -29,8 +32,9 @@ mod tests;
 
 pub use grid::{Field, Grid};
 pub use level::Work;
-use level::{Inverted, Level, Reached, Sheet};
+use level::{Ending, Inverted, Level, Reached, Sheet};
 pub use path::{Grips, Interactive, RigidMotion};
+pub use start::{Start, Way};
 
 /// How exactly the climb solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,8 +70,10 @@ pub struct Climbed {
     pub iteration_error: f64,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
-    /// What was done on each grid, coarse to fine: its nodes, and the work.
+    /// What was done on each grid by the iteration, coarse to fine: its nodes, and the work.
     pub work: Vec<(usize, Work)>,
+    /// How the climb came to the field.
+    pub way: Way,
 }
 
 impl Climbed {
@@ -94,21 +100,20 @@ pub struct Climb<'a> {
     levels: Vec<Level>,
     multigrid: Multigrid,
     start: usize,
+    /// The smallest eigenvalue of the preconditioned operators that the grids have told at this stretch.
+    weakest: f64,
 }
 
 /// Unknowns of the coarsest grid at most.
 const COARSEST: usize = 100;
 /// Nodes of the lattice of springs at least, where the finest grid has as many.
 const SPRINGS: usize = 30;
-/// The ratio of the changes of two grids where it is not known yet, and the ratios that are believed.
-const RATIO: f64 = 1.0 / 3.0;
-const RATIOS: [f64; 2] = [0.15, 0.7];
 /// Times that a grid's equation is linearised anew before it is given up.
 const LINEARISATIONS: usize = 6;
-/// What the iteration may leave on all grids but the finest, relative to what it may leave there.
-const ON_THE_WAY: f64 = 3.0;
-/// What the iteration may leave on the lattice of springs, relative to its first correction.
+/// What the iteration may leave on the first grid, relative to its first correction, where finer ones follow and where
+/// none does.
 const START_TOLERANCE: f64 = 1e-3;
+const ONLY_GRID_TOLERANCE: f64 = 1e-6;
 
 impl<'a> Climb<'a> {
     /// Prepares the grids of a plate with so many equal cells.
@@ -158,6 +163,7 @@ impl<'a> Climb<'a> {
             settings,
             multigrid: Multigrid::new(&coordinates),
             start: start.unwrap_or(levels.len() - 1),
+            weakest: 1.0,
             levels,
         }
     }
@@ -172,8 +178,9 @@ impl<'a> Climb<'a> {
     /// # Errors
     /// [`Error::Solve`] when no field was found.
     pub fn correct(&mut self, stretch: f64) -> Result<Climbed, Error> {
-        let (field, work) = self.first_field(stretch)?;
-        self.ascend(field, work).map_err(at_stretch(stretch))
+        self.weakest = 1.0;
+        let first = self.first_field(stretch)?;
+        self.ascend(first, stretch)
     }
 
     fn sheet(&self) -> Sheet<'a> {
@@ -182,59 +189,6 @@ impl<'a> Climb<'a> {
             thickness: self.problem.thickness,
             scheme: self.scheme,
         }
-    }
-
-    /// From the corrected field on the lattice of springs to the finest grid.
-    fn ascend(
-        &mut self,
-        mut field: Field,
-        mut work: Vec<(usize, Work)>,
-    ) -> Result<Climbed, SolveFault> {
-        let mut change: Option<Field> = None;
-        let (mut size, mut ratio) = (f64::NAN, RATIO);
-        let mut iteration_error = f64::NAN;
-        let mut corrections = Vec::new();
-        for index in self.start + 1..self.levels.len() {
-            let [coarse, fine] = [index - 1, index].map(|index| &self.levels[index].grid);
-            let mut interpolated = field.onto(coarse, fine);
-            field.clone_from(&interpolated);
-            if let Some(before) = &change {
-                field.add(ratio, &before.onto(coarse, fine));
-            }
-            let expected = ratio * size;
-            let tolerance = match index + 1 < self.levels.len() {
-                true => ON_THE_WAY * self.settings.tolerance,
-                false => self.settings.tolerance,
-            };
-            let enough = |first: f64, left: f64| {
-                let change = if expected.is_nan() { first } else { expected };
-                left <= tolerance * geometric_tail(change, ratio)
-            };
-            let reached = self.solve(index, &mut field, &enough)?;
-            interpolated.scale(-1.0);
-            interpolated.add(1.0, &field);
-            let own = interpolated.size();
-            if !size.is_nan() {
-                ratio = (own / size).clamp(RATIOS[0], RATIOS[1]);
-            }
-            (size, change) = (own, Some(interpolated));
-            iteration_error = reached.left();
-            corrections = reached.corrections;
-            work.push((self.levels[index].grid.nodes(), reached.work));
-        }
-        let force = self.force(&field).map_err(|Inverted| inverted())?;
-        if let Some((_, work)) = work.last_mut() {
-            work.evaluations += 1;
-        }
-        Ok(Climbed {
-            field,
-            force,
-            change,
-            discretisation_error: geometric_tail(size, ratio),
-            iteration_error,
-            corrections,
-            work,
-        })
     }
 
     /// Linearises a grid's equation and iterates, again where the iteration does not end.
@@ -251,25 +205,27 @@ impl<'a> Climb<'a> {
             level
                 .linearise(sheet, field, &mut self.multigrid)
                 .map_err(|Inverted| inverted())?;
-            let first = whole.as_ref().map(Reached::first);
-            let enough = |own: f64, left: f64| enough(first.unwrap_or(own), left);
+            let first = whole.as_ref().map(|whole| whole.fall.first());
+            let ending = Ending {
+                most,
+                weakest: self.weakest,
+                enough: &|own, left| enough(first.unwrap_or(own), left),
+            };
             let mut reached = level
-                .iterate(sheet, field, &mut self.multigrid, most, &enough)
+                .iterate(sheet, field, &mut self.multigrid, &ending)
                 .map_err(|Inverted| inverted())?;
             reached.work.linearisations += 1;
-            if let Some(mut whole) = whole.take() {
-                reached.work.add(whole.work);
-                whole.corrections.append(&mut reached.corrections);
-                reached.corrections = whole.corrections;
+            if let Some(whole) = whole.take() {
+                reached = whole.followed_by(reached);
             }
-            if enough(reached.first(), reached.left()) {
+            if enough(reached.fall.first(), reached.fall.left()) {
                 return Ok(reached);
             }
             whole = Some(reached);
         }
         Err(SolveFault::Stalled {
             iterations: LINEARISATIONS * most,
-            residual: whole.map_or(f64::NAN, |whole| whole.left() / whole.first()),
+            residual: whole.map_or(f64::NAN, |whole| whole.fall.left() / whole.fall.first()),
             tolerance: self.settings.tolerance,
         })
     }
@@ -319,11 +275,6 @@ impl<'a> Climb<'a> {
     }
 }
 
-/// The sum of d q + d q² + …: what all finer grids would add after a change d.
-fn geometric_tail(change: f64, ratio: f64) -> f64 {
-    change * ratio / (1.0 - ratio)
-}
-
 /// A fault of the climb at one stretch.
 fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error + Copy {
     move |fault| Error::Solve {
@@ -348,7 +299,9 @@ fn coarser(boundaries: &[Vec<f64>; 2], scheme: DifferenceScheme) -> Option<[Vec<
     }
     let length = |axis: usize| boundaries[axis][elements[axis]] / elements[axis] as f64;
     let longer = [0, 1].map(|axis| length(axis) > 1.6 * length(1 - axis));
-    let halve = [0, 1].map(|axis| !longer[axis] && elements[axis] > 1);
+    // Two cells along X at least: one has no node between the grips.
+    let enough = [elements[0].div_ceil(2) * scheme.side() > 1, elements[1] > 1];
+    let halve = [0, 1].map(|axis| !longer[axis] && elements[axis] > 1 && enough[axis]);
     if halve == [false, false] {
         return None;
     }

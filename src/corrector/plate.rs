@@ -6,7 +6,7 @@
 //! | T: grips | on the short sides | known displacement in mm | η in mm |
 //! | T: traction-free edges | on the long sides, without corners | balance of forces in N | η in mm²/N |
 
-use super::climb::Climb;
+use super::climb::{Climb, Way};
 use super::condition::{Condition, Equilibrium, Linear};
 use super::{
     Correction, Corrector, CorrectorSettings, Describe, DifferenceScheme, Multipliers, Step,
@@ -51,6 +51,8 @@ pub struct CorrectedState {
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
     pub multipliers: Vec<Multipliers>,
+    /// How the climb came to the field; nothing where the method was direct.
+    pub way: Option<Way>,
 }
 
 /// The difference scheme of a plate on the nodes of a lattice, ready to correct fields on them.
@@ -141,6 +143,7 @@ impl<'a> PlateCorrector<'a> {
             solution: self.solution(&correction, stretch),
             steps: correction.steps,
             multipliers: correction.multipliers,
+            way: None,
         })
     }
 
@@ -198,6 +201,7 @@ impl<'a> PlateCorrector<'a> {
         stretch: f64,
     ) -> Result<CorrectedState, Error> {
         let climbed = climb.correct(stretch)?;
+        let way = climbed.way.clone();
         let all = climb.multipliers(data, &climbed, stretch)?;
         let of_condition = |condition: &dyn Condition| {
             let unknowns = condition.unknowns().unwrap_or_default();
@@ -221,6 +225,7 @@ impl<'a> PlateCorrector<'a> {
             solution,
             steps: Vec::new(),
             multipliers,
+            way: Some(way),
         })
     }
 

@@ -101,6 +101,11 @@ impl Grid {
         }
     }
 
+    /// Cells along X and Y.
+    pub fn cells(&self) -> [usize; 2] {
+        self.coordinates.each_ref().map(|places| places.len() - 1)
+    }
+
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
         self.coordinates[0].len() * self.coordinates[1].len()

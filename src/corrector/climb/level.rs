@@ -1,38 +1,12 @@
 //! One grid of the climb: its equation, and the iteration that solves it.
 
+use super::fall::Fall;
 use super::forces::forces;
 use super::grid::{Field, Grid, Rule};
 use super::tangents::linearise;
 use crate::corrector::DifferenceScheme;
 use crate::material::HyperelasticLaw;
 use crate::multigrid::{Multigrid, Vector};
-
-impl Reached {
-    /// The first correction.
-    pub fn first(&self) -> f64 {
-        self.corrections[0]
-    }
-
-    /// What the last correction left, estimated from how the corrections fell.
-    pub fn left(&self) -> f64 {
-        left_by(&self.corrections)
-    }
-}
-
-/// Of corrections that fall by a factor ρ each, the last one d leaves d ρ/(1 − ρ); on even grids half of it or a
-/// little more was measured where they fall faster.
-fn left_by(corrections: &[f64]) -> f64 {
-    let (first, last) = (corrections[0], corrections[corrections.len() - 1]);
-    let rate = match corrections.len() {
-        1 => 0.0,
-        count => (last / first).powf(1.0 / (count - 1) as f64).min(SLOWEST),
-    };
-    last * (rate / (1.0 - rate)).max(LEFT)
-}
-
-/// Share of a correction that it leaves at least, and the slowest fall of corrections that is believed.
-const LEFT: f64 = 0.6;
-const SLOWEST: f64 = 0.95;
 
 /// Iterations of a linear system at most.
 const LINEAR_ITERATIONS: usize = 200;
@@ -105,13 +79,34 @@ impl Work {
     }
 }
 
-/// How far an iteration came; root mean squares over the nodes in mm.
+/// How far an iteration came.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// Of every correction: the first says how far the start was away, the last one has been applied.
-    pub corrections: Vec<f64>,
+    /// Its corrections: the first says how far the start was away, the last one has been applied.
+    pub fall: Fall,
     /// What it took.
     pub work: Work,
+}
+
+impl Reached {
+    /// This iteration and one that went on from it, as one.
+    pub fn followed_by(mut self, more: Self) -> Self {
+        self.work.add(more.work);
+        Self {
+            fall: self.fall.followed_by(more.fall),
+            work: self.work,
+        }
+    }
+}
+
+/// When an iteration ends.
+pub struct Ending<'a> {
+    /// Iterations at most.
+    pub most: usize,
+    /// The smallest eigenvalue of the preconditioned operator that coarser grids have told: see [`Fall`].
+    pub weakest: f64,
+    /// Whether the first correction and what the last one left are good enough.
+    pub enough: &'a dyn Fn(f64, f64) -> bool,
 }
 
 impl Level {
@@ -155,8 +150,6 @@ impl Level {
     /// Moves the free nodes of `u` towards F(u) = 0 by conjugate gradients, whose products with the Jacobian are
     /// differences of F and whose preconditioner is one V-cycle with the operators written before.
     ///
-    /// Ends when `enough` says so of the first correction and of what the last one left, or after so many iterations.
-    ///
     /// # Errors
     /// [`Inverted`] when `u` or every step from it turns a cell inside out.
     pub fn iterate(
@@ -164,8 +157,7 @@ impl Level {
         sheet: Sheet,
         u: &mut Field,
         multigrid: &mut Multigrid,
-        max_iterations: usize,
-        enough: &dyn Fn(f64, f64) -> bool,
+        ending: &Ending,
     ) -> Result<Reached, Inverted> {
         let mut work = Work {
             evaluations: 1,
@@ -173,30 +165,28 @@ impl Level {
         };
         self.evaluate_residual(sheet, u)?;
         let mut steepness = self.precondition(multigrid, &mut work);
-        let first = self.correction.size();
-        let mut corrections = Vec::with_capacity(max_iterations + 1);
-        corrections.push(first);
+        let mut fall = Fall::new(self.correction.size(), ending.weakest);
         for component in &mut self.direction.components {
             component.fill(0.0);
         }
         let mut share = 0.0;
-        for _ in 0..max_iterations {
-            if enough(first, left_by(&corrections)) {
+        for _ in 0..ending.most {
+            if (ending.enough)(fall.first(), fall.left()) {
                 break;
             }
             self.turn(share);
-            self.step(sheet, u, &mut work)?;
+            let length = self.step(sheet, u, &mut work)?;
             let before = steepness;
             steepness = self.precondition(multigrid, &mut work);
             share = steepness / before;
-            corrections.push(self.correction.size());
+            fall.push(self.correction.size(), length, share);
         }
         let free = u.free();
         for (u, correction) in u.components.iter_mut().zip(&self.correction.components) {
             let pairs = u[free.clone()].iter_mut().zip(&correction[free.clone()]);
             pairs.for_each(|(u, correction)| *u -= correction);
         }
-        Ok(Reached { corrections, work })
+        Ok(Reached { fall, work })
     }
 
     /// The correction z = M⁻¹ r of the residual; returns r · z.
@@ -304,8 +294,8 @@ impl Level {
         Ok(None)
     }
 
-    /// Goes along the direction to where the residual is orthogonal to it.
-    fn step(&mut self, sheet: Sheet, u: &mut Field, work: &mut Work) -> Result<(), Inverted> {
+    /// Goes along the direction to where the residual is orthogonal to it; how far.
+    fn step(&mut self, sheet: Sheet, u: &mut Field, work: &mut Work) -> Result<f64, Inverted> {
         let free = u.free();
         let mut length = 1.0;
         loop {
@@ -350,6 +340,6 @@ impl Level {
                 *r += share * (there - *r);
             }
         }
-        Ok(())
+        Ok(share * length)
     }
 }

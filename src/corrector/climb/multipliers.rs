@@ -1,6 +1,6 @@
 //! The Lagrange multipliers of a climbed field.
 
-use super::{Climb, Climbed, Field, Inverted, inverted};
+use super::{Climb, Climbed, Field};
 use crate::error::{Error, SolveFault};
 use crate::problem::Problem;
 
@@ -35,23 +35,22 @@ impl Climb<'_> {
         found.map(|field| field.to_nodes()).map_err(fault)
     }
 
+    /// By the iteration, or by a sparse factor where it does not end.
     fn solve_multipliers(&mut self, data: &[f64], corrected: &Field) -> Result<Field, SolveFault> {
-        let finest = self.levels.len() - 1;
-        self.linearise_below(finest, corrected)?;
-        let sheet = self.sheet();
         let mut difference = Field::of_nodes(self.grid(), data);
         difference.add(-1.0, corrected);
-        let level = &mut self.levels[finest];
-        let solved = level.solve_linear(
-            sheet,
-            corrected,
-            &difference,
-            &mut self.multigrid,
-            TOLERANCE,
-        );
-        let solved = solved.map_err(|Inverted| inverted())?;
-        solved
-            .map(|(multipliers, _)| multipliers)
-            .ok_or(SolveFault::NotPositiveDefinite)
+        match self.iterate_multipliers(&difference, corrected) {
+            Some(multipliers) => Ok(multipliers),
+            None => self.solve_by_factor(corrected, &difference),
+        }
+    }
+
+    fn iterate_multipliers(&mut self, difference: &Field, corrected: &Field) -> Option<Field> {
+        let finest = self.levels.len() - 1;
+        self.linearise_below(finest, corrected).ok()?;
+        let sheet = self.sheet();
+        let (level, multigrid) = (&mut self.levels[finest], &mut self.multigrid);
+        let solved = level.solve_linear(sheet, corrected, difference, multigrid, TOLERANCE);
+        solved.ok()?.map(|(multipliers, _)| multipliers)
     }
 }

@@ -1,6 +1,6 @@
 //! Plain Newton on the finest grid alone, with the same multigrid: the ablation of the climb.
 
-use super::{Climb, Climbed, Field, Inverted, Work, inverted};
+use super::{Climb, Climbed, Field, Inverted, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};
 use crate::problem::Problem;
 
@@ -63,6 +63,7 @@ impl Climb<'_> {
                     iteration_error: last,
                     corrections,
                     work: vec![(self.grid().nodes(), work)],
+                    way: Way::from_start(Start::AffineStretch, self.grid().cells()),
                 });
             }
         }

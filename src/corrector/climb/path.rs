@@ -1,6 +1,6 @@
 //! Many states, each near the one before: a path of stretches, and grips that are moved by hand.
 
-use super::{Climb, Climbed, Field, Inverted, Reached, Work, at_stretch, inverted};
+use super::{Climb, Climbed, Ending, Field, Inverted, Reached, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};
 
 /// States that the next one is extrapolated from.
@@ -77,18 +77,20 @@ impl Climb<'_> {
         // cells. Writing the operators anew costs about as much as a few of them.
         let mut beyond = usize::MAX;
         for stretch in between.iter().copied() {
-            let fault = at_stretch(stretch);
-            let mut field = combine(&known, &value_shares(&known, stretch));
-            if beyond > BEYOND {
-                beyond = 0;
-                let finest = self.levels.len() - 1;
-                self.linearise_below(finest, &field).map_err(fault)?;
-            }
-            let error = relative_error * self.departure(&field, stretch);
-            let reached = self.near(&mut field, error).map_err(fault)?;
-            beyond += reached.work.cycles.saturating_sub(self.scheme.side());
-            let force = self.force_along(&combine(&known, &rate_shares(&known, stretch)));
-            let climbed = Climbed::near(field, force, error, reached);
+            let anew = beyond > BEYOND;
+            let climbed = match self.near_known(&known, stretch, relative_error, anew) {
+                Ok(climbed) => {
+                    let (_, work) = climbed.work[0];
+                    beyond = if anew { 0 } else { beyond };
+                    beyond += work.cycles.saturating_sub(self.scheme.side());
+                    climbed
+                }
+                // Too far from the states before: a climb of its own.
+                Err(_) => {
+                    beyond = usize::MAX;
+                    self.correct(stretch)?
+                }
+            };
             told(&climbed);
             if known.len() == HISTORY {
                 known.remove(0);
@@ -100,6 +102,24 @@ impl Climb<'_> {
         }
         told(&last_state);
         Ok(())
+    }
+
+    /// The state at one stretch from those before, extrapolated; the operators are written anew where they no longer serve.
+    fn near_known(
+        &mut self,
+        known: &[Known],
+        stretch: f64,
+        relative_error: f64,
+        anew: bool,
+    ) -> Result<Climbed, SolveFault> {
+        let mut field = combine(known, &value_shares(known, stretch));
+        if anew {
+            self.linearise_below(self.levels.len() - 1, &field)?;
+        }
+        let error = relative_error * self.departure(&field, stretch);
+        let reached = self.near(&mut field, error)?;
+        let force = self.force_along(&combine(known, &rate_shares(known, stretch)));
+        Ok(Climbed::near(field, force, error, reached))
     }
 
     /// The root mean square over the nodes of a field's departure from the affine stretch in mm.
@@ -120,14 +140,17 @@ impl Climb<'_> {
         let limit = self.settings.tolerance * error;
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
         let level = &mut self.levels[finest];
-        let iterated = level.iterate(sheet, field, &mut self.multigrid, most, &|_, left| {
-            left <= limit
-        });
+        let ending = Ending {
+            most,
+            weakest: self.weakest,
+            enough: &|_, left| left <= limit,
+        };
+        let iterated = level.iterate(sheet, field, &mut self.multigrid, &ending);
         let reached = iterated.map_err(|Inverted| inverted())?;
-        if reached.left() > limit {
+        if reached.fall.left() > limit {
             return Err(SolveFault::Stalled {
                 iterations: most,
-                residual: reached.left(),
+                residual: reached.fall.left(),
                 tolerance: limit,
             });
         }
@@ -147,14 +170,16 @@ impl Climbed {
     /// A state found near another one.
     fn near(field: Field, force: f64, discretisation_error: f64, reached: Reached) -> Self {
         let nodes = field.components[0].len();
+        let cells = [nodes / field.width - 1, field.width - 1];
         Self {
             field,
             force,
             change: None,
             discretisation_error,
-            iteration_error: reached.left(),
+            iteration_error: reached.fall.left(),
             work: vec![(nodes, reached.work)],
-            corrections: reached.corrections,
+            corrections: reached.fall.corrections,
+            way: Way::from_start(Start::StatesBefore, cells),
         }
     }
 }

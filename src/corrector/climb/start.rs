@@ -1,12 +1,110 @@
-//! The lattice at which the climb begins: few springs, corrected.
+//! Where the climb begins: a field on a coarse grid, near enough to be corrected there.
+//!
+//! The corrector does not care where ū came from, so that several starts are tried in a fixed order until one can be
+//! corrected: see [`Start`].
 
+use std::fmt;
 use std::sync::Arc;
 
-use super::{Climb, Field, Grid, START_TOLERANCE, Work, at_stretch};
+use super::ascent::Ascent;
+use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE, Work};
 use crate::error::{Error, SolveFault};
-use crate::mass_spring::{LatticeSettings, MassSpring};
+use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings, MassSpring};
 use crate::problem::Problem;
 use crate::solve::NewtonSettings;
+
+/// What a corrected field was first made from, in the order in which it is tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Springs alone, in equilibrium on a coarse lattice.
+    Springs,
+    /// Springs with the area term of each cell, which keeps cells from collapsing.
+    SpringsWithAreaTerm,
+    /// Springs at the first of so many equal load steps.
+    LoadSteps(usize),
+    /// The affine stretch, contracted across away from the grips: see [`contracted_stretch`].
+    ContractedStretch,
+    /// Newton's method with a sparse factor along a path of load steps.
+    LoadPath,
+    /// The affine stretch on the finest grid: the ablation [`Climb::newton_from_affine`].
+    AffineStretch,
+    /// States found before, in [`Climb::follow`] and [`super::Interactive`].
+    StatesBefore,
+}
+
+impl Start {
+    /// Whether springs had a part in it.
+    pub fn by_springs(self) -> bool {
+        matches!(
+            self,
+            Self::Springs | Self::SpringsWithAreaTerm | Self::LoadSteps(_)
+        )
+    }
+}
+
+impl fmt::Display for Start {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Springs => f.write_str("springs"),
+            Self::SpringsWithAreaTerm => f.write_str("springs with the area term"),
+            Self::LoadSteps(steps) => write!(f, "springs at the first of {steps} load steps"),
+            Self::ContractedStretch => f.write_str("the affine stretch, contracted across"),
+            Self::LoadPath => f.write_str("Newton's method along a path of load steps"),
+            Self::AffineStretch => f.write_str("the affine stretch"),
+            Self::StatesBefore => f.write_str("states before"),
+        }
+    }
+}
+
+/// How a climb came to its field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    /// What the field on the first grid was made from.
+    pub start: Start,
+    /// Cells of the first grid.
+    pub cells: [usize; 2],
+    /// How far the start was from the corrected field on the first grid, root mean square over its nodes in mm, in the
+    /// first load step; not a number where nothing was corrected.
+    pub away: f64,
+    /// Cells of the finer grids on which the iteration found no field, so that Newton's method along a path of load steps
+    /// was taken there.
+    pub by_load_path: Vec<[usize; 2]>,
+}
+
+impl Way {
+    /// From one start on a grid with so many cells.
+    pub(super) fn from_start(start: Start, cells: [usize; 2]) -> Self {
+        Self {
+            start,
+            cells,
+            away: f64::NAN,
+            by_load_path: Vec::new(),
+        }
+    }
+}
+
+impl fmt::Display for Way {
+    /// `springs on 8 × 4 cells`, and `; Newton's method along a path of load steps on 60 × 20 cells` where it was needed.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [along, across] = self.cells;
+        write!(f, "{} on {along} × {across} cells", self.start)?;
+        for [along, across] in &self.by_load_path {
+            write!(f, "; {} on {along} × {across} cells", Start::LoadPath)?;
+        }
+        Ok(())
+    }
+}
+
+/// A corrected field on the first grid.
+pub(super) struct First {
+    /// The displacements in mm.
+    pub field: Field,
+    /// See [`Way::away`].
+    away: f64,
+    /// What the correction left, root mean square over the nodes in mm.
+    left: f64,
+    work: Work,
+}
 
 /// The springs are a first guess.
 const SPRINGS: NewtonSettings = NewtonSettings {
@@ -17,77 +115,182 @@ const SPRINGS: NewtonSettings = NewtonSettings {
 /// Load steps that are tried where the springs are too far away.
 const LOAD_STEPS: [usize; 4] = [2, 4, 8, 16];
 
+/// Cells of a lattice of springs at most: more would take longer than what follows.
+const MOST_CELLS: usize = 10_000;
+
+/// Linearisations on the first grid, because its start is far away.
+const LINEARISATIONS: usize = 2;
+
 impl Climb<'_> {
-    /// The corrected field on the lattice of springs, and what it took. Where the springs are too far from it,
-    /// it is approached by load steps.
-    pub(super) fn first_field(
-        &mut self,
-        stretch: f64,
-    ) -> Result<(Field, Vec<(usize, Work)>), Error> {
-        let springs = self.springs(stretch)?;
-        let mut found = self.correct_start(springs);
-        for steps in LOAD_STEPS {
-            if found.is_ok() {
-                break;
+    /// The corrected field on the first grid: the first of all starts that can be corrected there, or Newton's method
+    /// along a path of load steps, there or on the next finer grid on which it finds an equilibrium.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] with the reason on the finest grid.
+    pub(super) fn first_field(&mut self, stretch: f64) -> Result<Ascent, Error> {
+        let steps = LOAD_STEPS.map(Start::LoadSteps);
+        let springs = [Start::Springs, Start::SpringsWithAreaTerm];
+        let starts = springs.into_iter().chain(steps);
+        for start in starts.chain([Start::ContractedStretch]) {
+            if let Some(first) = self.correct_from(start, stretch) {
+                return Ok(self.begin(start, first));
             }
-            found = self.load_steps(stretch, steps)?;
         }
-        let (field, work) = found.map_err(at_stretch(stretch))?;
-        Ok((field, vec![(self.levels[self.start].grid.nodes(), work)]))
+        let found = self.along_load_path(self.start, stretch)?;
+        let (grid, left) = (&self.levels[found.index].grid, found.left);
+        let work = vec![(grid.nodes(), Work::default())];
+        let way = Way::from_start(Start::LoadPath, grid.cells());
+        Ok(Ascent::new(found.index, way, found.field, left, work))
     }
 
-    /// Corrects on the lattice of springs: two linearisations, because the springs are far away.
-    fn correct_start(&mut self, mut field: Field) -> Result<(Field, Work), SolveFault> {
-        let mut work = Work::default();
-        for _ in 0..2 {
-            self.linearise_below(self.start, &field)?;
-            let enough = |first: f64, left: f64| left <= START_TOLERANCE * first;
-            work.add(self.solve(self.start, &mut field, &enough)?.work);
-        }
-        Ok((field, work))
+    fn begin(&self, start: Start, first: First) -> Ascent {
+        let grid = &self.levels[self.start].grid;
+        let way = Way {
+            away: first.away,
+            ..Way::from_start(start, grid.cells())
+        };
+        let work = vec![(grid.nodes(), first.work)];
+        Ascent::new(self.start, way, first.field, first.left, work)
     }
 
-    /// The same in equal load steps, each from the field before, scaled with the motion of the grip.
-    pub(super) fn load_steps(
-        &mut self,
-        stretch: f64,
-        steps: usize,
-    ) -> Result<Result<(Field, Work), SolveFault>, Error> {
-        let mut field = self.springs(stretch / steps as f64)?;
-        let mut all = Work::default();
+    /// The corrected field from one start on the first grid; nothing where it cannot be corrected.
+    pub(super) fn correct_from(&mut self, start: Start, stretch: f64) -> Option<First> {
+        let (guess, steps) = match start {
+            Start::Springs => (self.springs(stretch, false)?, 1),
+            Start::SpringsWithAreaTerm => (self.springs(stretch, true)?, 1),
+            Start::LoadSteps(steps) => (self.springs(stretch / steps as f64, false)?, steps),
+            Start::ContractedStretch => {
+                let grid = &self.levels[self.start].grid;
+                (contracted_stretch(self.problem.size, grid, stretch), 1)
+            }
+            Start::LoadPath | Start::AffineStretch | Start::StatesBefore => return None,
+        };
+        self.load_steps(guess, steps).ok()
+    }
+
+    /// Corrects on the first grid in equal load steps, each from the field before, scaled with the motion of the grip.
+    fn load_steps(&mut self, mut field: Field, steps: usize) -> Result<First, SolveFault> {
+        let (mut all, mut left, mut away) = (Work::default(), f64::NAN, f64::NAN);
         for step in 1..=steps {
-            match self.correct_start(field) {
-                Ok((found, work)) => {
-                    field = found;
-                    all.add(work);
-                }
-                Err(fault) => return Ok(Err(fault)),
+            let mut guess = field.clone();
+            self.weakest = 1.0;
+            let work;
+            (left, work) = self.correct_start(&mut field)?;
+            all.add(work);
+            if step == 1 {
+                guess.add(-1.0, &field);
+                away = guess.size();
             }
             if step < steps {
-                let ratio = (step + 1) as f64 / step as f64;
-                for component in &mut field.components {
-                    component.iter_mut().for_each(|u| *u *= ratio);
-                }
+                field.scale((step + 1) as f64 / step as f64);
             }
         }
-        Ok(Ok((field, all)))
+        Ok(First {
+            field,
+            away,
+            left,
+            work: all,
+        })
     }
 
-    /// The springs in equilibrium, at the nodes of the grid at which the climb begins.
-    fn springs(&self, stretch: f64) -> Result<Field, Error> {
+    /// Corrects on the first grid; what is left in mm, and what it took.
+    fn correct_start(&mut self, field: &mut Field) -> Result<(f64, Work), SolveFault> {
+        let alone = self.start + 1 == self.levels.len();
+        let tolerance = if alone {
+            ONLY_GRID_TOLERANCE
+        } else {
+            START_TOLERANCE
+        };
+        let (mut work, mut left, mut weakest) = (Work::default(), f64::NAN, 1.0);
+        for _ in 0..LINEARISATIONS {
+            self.linearise_below(self.start, field)?;
+            let enough = |first: f64, left: f64| left <= tolerance * first;
+            let reached = self.solve(self.start, field, &enough)?;
+            (left, weakest) = (reached.fall.left(), reached.fall.weakest);
+            work.add(reached.work);
+        }
+        self.weakest = weakest;
+        Ok((left, work))
+    }
+
+    /// The springs in equilibrium, at the nodes of the grid at which the climb begins; nothing where they find none.
+    ///
+    /// The lattice has the grid's own cells where springs can make them isotropic, else as many cells of a sound shape.
+    fn springs(&self, stretch: f64, area_term: bool) -> Option<Field> {
         let grid = &self.levels[self.start].grid;
-        let lines = grid.lines();
-        let cells = [lines.count - 1, lines.nodes - 1];
+        let cells = sound_cells(self.problem.size, grid.cells());
+        if cells[0] * cells[1] > MOST_CELLS {
+            return None;
+        }
         let problem = Problem {
             size: self.problem.size,
             thickness: self.problem.thickness,
             law: Arc::clone(&self.problem.law),
             stretches: vec![stretch],
         };
-        let springs = MassSpring::new(&problem, cells, LatticeSettings { area_term: false });
-        let solved = springs.solve(&problem, SPRINGS, &|_| ())?;
+        let springs = MassSpring::new(&problem, cells, LatticeSettings { area_term });
+        let solved = springs.solve(&problem, SPRINGS, &|_| ()).ok()?;
         let lattice = Grid::even(self.problem.size, cells);
         let field = Field::of_nodes(&lattice, &solved[0].displacement);
-        Ok(field.onto(&lattice, grid))
+        Some(field.onto(&lattice, grid))
     }
 }
+
+/// The given cells where the ratio of their sides is one that springs bear, else about as many that are nearly square.
+fn sound_cells(size: [f64; 2], cells: [usize; 2]) -> [usize; 2] {
+    let [hx, hy] = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
+    if (hx / hy).max(hy / hx) <= LARGEST_ASPECT {
+        return cells;
+    }
+    let side = (hx * hy).sqrt().min(size[1]).min(0.5 * size[0]);
+    let across = (size[1] / side).round();
+    let along = (size[0] * across / size[1]).round().max(2.0);
+    [along as usize, across as usize]
+}
+
+/// The affine stretch along X, and across a contraction as of a strip, λ^(−1/2), that the grips hold back:
+///
+/// ```text
+/// ux = (λ − 1) X,   uy = (λ^(−1/2) − 1) g(X) h(Y − W/2)
+/// g(X) = 1 − cosh(4 (X − L/2)/W)/cosh(2 L/W)           nothing at the grips, 1 far from both
+/// h(η) = sinh(2 η/L)/(2/L cosh(W/L))                   η in a narrow plate, next to nothing inside a wide one
+/// ```
+///
+/// It turns no cell inside out on any grid: ux is of X alone, and y grows with Y because 0 ≤ g < 1 and 0 < h′ ≤ 1.
+pub(super) fn contracted_stretch(size: [f64; 2], grid: &Grid, stretch: f64) -> Field {
+    let [length, width] = size;
+    let contraction = (1.0 + stretch).max(f64::MIN_POSITIVE).powf(-0.5) - 1.0;
+    let held = |x: f64| 1.0 - cosh_ratio(4.0 * (x - 0.5 * length) / width, 2.0 * length / width);
+    let across = |eta: f64| {
+        let (own, edge) = (2.0 * eta / length, width / length);
+        0.5 * length * sinh_over_cosh(own, edge)
+    };
+    let mut field = Field::zeros(grid);
+    let [x, y] = &grid.coordinates;
+    let [u_x, u_y] = &mut field.components;
+    let lines = u_x
+        .chunks_exact_mut(y.len())
+        .zip(u_y.chunks_exact_mut(y.len()));
+    for (x, (u_x, u_y)) in x.iter().zip(lines) {
+        u_x.fill(stretch * x);
+        for (y, u_y) in y.iter().zip(u_y) {
+            *u_y = contraction * held(*x) * across(y - 0.5 * width);
+        }
+    }
+    field
+}
+
+/// cosh a/cosh b for |a| ≤ b, however large they are.
+fn cosh_ratio(a: f64, b: f64) -> f64 {
+    let a = a.abs();
+    (a - b).exp() * (1.0 + (-2.0 * a).exp()) / (1.0 + (-2.0 * b).exp())
+}
+
+/// sinh a/cosh b for |a| ≤ b, however large they are.
+fn sinh_over_cosh(a: f64, b: f64) -> f64 {
+    let size = a.abs();
+    a.signum() * (size - b).exp() * -(-2.0 * size).exp_m1() / (1.0 + (-2.0 * b).exp())
+}
+
+#[cfg(test)]
+mod tests;

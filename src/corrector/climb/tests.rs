@@ -219,13 +219,26 @@ fn threads_do_not_change_a_bit() {
 }
 
 #[test]
-fn load_steps_reach_the_same_field() {
+fn all_starts_come_to_the_same_field() {
     let problem = problem("pva-10", [150.0, 50.0], 1.0);
     let mut climb = Climb::even(&problem, [60, 20], DifferenceScheme::Gauss, TIGHT);
-    let (at_once, _) = climb.first_field(1.0).unwrap();
-    let (in_steps, _) = climb.load_steps(1.0, 4).unwrap().unwrap();
-    let mut difference = at_once;
-    difference.add(-1.0, &in_steps);
+    let at_once = climb.correct_from(Start::Springs, 1.0).unwrap().field;
+    let others = [
+        Start::SpringsWithAreaTerm,
+        Start::LoadSteps(4),
+        Start::ContractedStretch,
+    ];
+    for start in others {
+        let mut difference = climb.correct_from(start, 1.0).unwrap().field;
+        difference.add(-1.0, &at_once);
+        assert!(
+            difference.size() < 1e-4,
+            "{start}: {} mm",
+            difference.size()
+        );
+    }
+    let mut difference = climb.along_load_path(climb.start, 1.0).unwrap().field;
+    difference.add(-1.0, &at_once);
     assert!(difference.size() < 1e-4, "{} mm", difference.size());
 }
 

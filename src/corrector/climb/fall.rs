@@ -1,0 +1,121 @@
+//! How the corrections of an iteration fall, and what the last one leaves.
+//!
+//! The iteration ends with the correction z = M⁻¹ r, where M⁻¹ is one V-cycle: an error e, K e = r, becomes
+//! (1 − M⁻¹ K) e. In the direction of the smallest eigenvalue θ of M⁻¹ K, which a cycle reaches least, |z| = θ |e|, so that
+//!
+//! ```text
+//! |e − z| = (1/θ − 1) |z|
+//! ```
+//!
+//! Conjugate gradients tell θ as they go, by Lanczos' matrix of their step lengths α and shares β:
+//!
+//! ```text
+//! T = tridiagonal:   Tⱼⱼ = 1/αⱼ + βⱼ₋₁/αⱼ₋₁,   Tⱼ,ⱼ₊₁ = √βⱼ/αⱼ
+//! ```
+//!
+//! and corrections that fall by a factor ρ each leave ρ/(1 − ρ) of the last one: the larger one counts, with room for
+//! what few iterations do not see. As one sheet under one stretch has much the same θ on all grids, the smallest one of the
+//! coarser grids, which take more iterations, counts too.
+//!
+//! # References
+//! Y. Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., SIAM (2003), § 6.7.3, doi:10.1137/1.9780898718003
+
+use nalgebra::DMatrix;
+
+/// Share of a correction that it leaves at least: half of it or a little more was measured where they fall fast.
+const LEFT: f64 = 0.6;
+/// Few iterations see the corrections fall too fast: by so much less than the error at most, on the plates measured.
+const ROOM: f64 = 1.5;
+/// The slowest fall of corrections and the smallest eigenvalue that are believed.
+const SLOWEST: f64 = 0.95;
+const SMALLEST: f64 = 1.0 - SLOWEST;
+
+/// Corrections of an iteration, one after the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fall {
+    /// Root mean squares over the nodes in mm.
+    pub corrections: Vec<f64>,
+    /// θ, as far as it is known.
+    pub weakest: f64,
+    diagonal: Vec<f64>,
+    beside: Vec<f64>,
+    /// βⱼ/αⱼ of the last iteration.
+    carried: f64,
+}
+
+impl Fall {
+    /// Begins with a first correction; `weakest` is θ of coarser grids, 1 where there are none.
+    pub fn new(first: f64, weakest: f64) -> Self {
+        Self {
+            corrections: vec![first],
+            weakest,
+            diagonal: Vec::new(),
+            beside: Vec::new(),
+            carried: 0.0,
+        }
+    }
+
+    /// Takes the correction after a step of length α along a direction that holds a share β of the one before it; `share`
+    /// is the next direction's.
+    pub fn push(&mut self, correction: f64, length: f64, share: f64) {
+        self.corrections.push(correction);
+        if !(length > 0.0 && share >= 0.0) {
+            return;
+        }
+        self.diagonal.push(1.0 / length + self.carried);
+        self.beside.push(share.sqrt() / length);
+        self.carried = share / length;
+        let smallest = smallest_eigenvalue(&self.diagonal, &self.beside);
+        self.weakest = self.weakest.min(smallest.max(SMALLEST));
+    }
+
+    /// The first correction.
+    pub fn first(&self) -> f64 {
+        self.corrections[0]
+    }
+
+    /// What the last correction left, once it has been applied.
+    pub fn left(&self) -> f64 {
+        let last = self.corrections[self.corrections.len() - 1];
+        let rate = self.rate().max(1.0 - self.weakest);
+        last * (ROOM * rate / (1.0 - rate)).max(LEFT)
+    }
+
+    /// The factor by which the corrections fall: on the whole or at last, whichever is slower.
+    fn rate(&self) -> f64 {
+        let [.., before, last] = self.corrections[..] else {
+            return 0.0;
+        };
+        let steps = (self.corrections.len() - 1) as f64;
+        let whole = (last / self.first()).powf(1.0 / steps);
+        whole.max(last / before).min(SLOWEST)
+    }
+
+    /// θ as an iteration that goes on from this one takes it: by Lanczos' matrix, or by how the corrections fell.
+    pub fn slowest(&self) -> f64 {
+        self.weakest.min(1.0 - self.rate())
+    }
+
+    /// This iteration and one that went on from it, as one.
+    pub fn followed_by(mut self, mut more: Self) -> Self {
+        self.corrections.append(&mut more.corrections);
+        Self {
+            corrections: self.corrections,
+            weakest: self.weakest.min(more.weakest),
+            ..more
+        }
+    }
+}
+
+/// The smallest eigenvalue of a symmetric tridiagonal matrix.
+fn smallest_eigenvalue(diagonal: &[f64], beside: &[f64]) -> f64 {
+    let entry = |row: usize, column: usize| match row.abs_diff(column) {
+        0 => diagonal[row],
+        1 => beside[row.min(column)],
+        _ => 0.0,
+    };
+    let size = diagonal.len();
+    DMatrix::from_fn(size, size, entry)
+        .symmetric_eigenvalues()
+        .min()
+}

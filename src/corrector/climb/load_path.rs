@@ -1,0 +1,244 @@
+//! One grid alone, slowly and safely: Newton's method with a sparse factor along a path of load steps.
+//!
+//! The equation is that of [`forces`](super::forces) to the last term: the same energy, sampled at the same points. What
+//! the climb's iteration lacks is here: a line search by the energy that keeps J > 0 everywhere, tangents that are
+//! shifted where they are not positive definite, load steps that are halved where they fail, and a diagnosis of why a
+//! path ends.
+
+use super::grid::{Field, Grid, Rule};
+use super::start::contracted_stretch;
+use super::{Climb, DifferenceScheme};
+use crate::error::{Error, SolveFault};
+use crate::problem::Problem;
+use crate::sheet_energy::{SamplingPoint, SheetEnergy};
+use crate::solve::{
+    Assembly, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow,
+};
+
+/// The residual that Newton's method leaves, relative to the largest reaction.
+const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-9,
+    max_iterations: 60,
+};
+
+/// An equilibrium on one grid.
+pub(super) struct Equilibrium {
+    /// Which of the climb's grids it is on.
+    pub index: usize,
+    /// The displacements in mm.
+    pub field: Field,
+    /// What Newton's method left, in mm: its relative residual as a share of the displacements.
+    pub left: f64,
+}
+
+/// A grid's plate between its grips; the load factor is the share of the stretch, so that its sign does not matter.
+struct GridLoading<'a> {
+    problem: &'a Problem,
+    grid: &'a Grid,
+    energy: &'a SheetEnergy,
+    stretch: f64,
+}
+
+impl GridLoading<'_> {
+    fn on_left(&self, node: usize) -> bool {
+        node < self.grid.lines().nodes
+    }
+
+    fn on_right(&self, node: usize) -> bool {
+        node >= self.grid.nodes() - self.grid.lines().nodes
+    }
+
+    fn place(&self, node: usize) -> [f64; 2] {
+        let nodes = self.grid.lines().nodes;
+        let [x, y] = &self.grid.coordinates;
+        [x[node / nodes], y[node % nodes]]
+    }
+}
+
+impl Loading for GridLoading<'_> {
+    fn held(&self) -> Vec<bool> {
+        let unknowns = 0..2 * self.grid.nodes();
+        unknowns
+            .map(|unknown| self.on_left(unknown / 2) || self.on_right(unknown / 2))
+            .collect()
+    }
+
+    fn impose(&self, factor: f64, displacement: &mut [f64]) {
+        for (node, u) in displacement.chunks_exact_mut(2).enumerate() {
+            if self.on_left(node) {
+                u.fill(0.0);
+            } else if self.on_right(node) {
+                u.copy_from_slice(&[factor * self.stretch * self.problem.size[0], 0.0]);
+            }
+        }
+    }
+
+    fn potential(&self, _: f64) -> Box<dyn Potential + '_> {
+        Box::new(self.energy)
+    }
+
+    /// The state before, scaled with the grip's motion, or the contracted stretch.
+    fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
+        Some(match previous {
+            Some(previous) => {
+                let ratio = factor / previous.factor;
+                previous.displacement.iter().map(|u| ratio * u).collect()
+            }
+            None => {
+                let field = contracted_stretch(self.problem.size, self.grid, factor * self.stretch);
+                field.to_nodes()
+            }
+        })
+    }
+
+    fn describe(&self, element: usize) -> String {
+        let unknowns = self.energy.element_unknowns(element);
+        let [[x, y], [to_x, to_y]] =
+            [unknowns[0], unknowns[unknowns.len() - 1]].map(|unknown| self.place(unknown / 2));
+        let (x, y) = (0.5 * (x + to_x), 0.5 * (y + to_y));
+        format!("cell {element} near ({x:.1}, {y:.1}) mm")
+    }
+
+    fn describe_unknown(&self, unknown: usize) -> String {
+        let [x, y] = self.place(unknown / 2);
+        let axis = ["x", "y"][unknown % 2];
+        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
+    }
+}
+
+impl Climb<'_> {
+    /// The equilibrium on the first grid, from a given one upward, on which it can be found.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] with the reason on the finest grid.
+    pub(super) fn along_load_path(&self, from: usize, stretch: f64) -> Result<Equilibrium, Error> {
+        let mut last = None;
+        for index in from..self.levels.len() {
+            match self.load_path(index, stretch) {
+                Ok(found) => return Ok(found),
+                Err(end) => last = Some(end),
+            }
+        }
+        let end = last.expect("one grid at least");
+        Err(Error::Solve {
+            model: "corrector (climb)".into(),
+            step: format!(
+                "{} (reached {} %)",
+                Problem::describe_step(stretch),
+                Problem::percent(end.reached() * stretch)
+            ),
+            fault: end.fault,
+        })
+    }
+
+    fn load_path(&self, index: usize, stretch: f64) -> Result<Equilibrium, PathEnd> {
+        let grid = &self.levels[index].grid;
+        let energy = energy(self.problem, self.scheme, grid);
+        let loading = GridLoading {
+            problem: self.problem,
+            grid,
+            energy: &energy,
+            stretch,
+        };
+        let state = follow(&loading, &[1.0], NEWTON, &|_| ())?.remove(0);
+        let field = Field::of_nodes(grid, &state.displacement);
+        let residual = state.convergence.residuals.last();
+        Ok(Equilibrium {
+            index,
+            left: residual.map_or(0.0, |left| left * field.size()),
+            field,
+        })
+    }
+
+    /// x with K x = b at the free nodes of the finest grid and −K x + b at the grips, by a sparse factor of the
+    /// Jacobian K at `u`.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when K cannot be factorised.
+    pub(super) fn solve_by_factor(&self, u: &Field, b: &Field) -> Result<Field, SolveFault> {
+        let grid = self.grid();
+        let energy = energy(self.problem, self.scheme, grid);
+        let loading = GridLoading {
+            problem: self.problem,
+            grid,
+            energy: &energy,
+            stretch: 0.0,
+        };
+        let (u, b) = (u.to_nodes(), b.to_nodes());
+        let mut x = compliance(&loading, (1.0, &u), &b)?;
+        let mut image = vec![0.0; x.len()];
+        let product = Assembly::add_product(&energy, &u, &x, &mut image);
+        product.map_err(|fault| SolveFault::Inverted {
+            element: loading.describe(fault.element),
+        })?;
+        for (unknown, held) in loading.held().into_iter().enumerate() {
+            if held {
+                x[unknown] = b[unknown] - image[unknown];
+            }
+        }
+        Ok(Field::of_nodes(grid, &x))
+    }
+}
+
+/// The energy of a grid's elements in the scheme of the climb.
+fn energy(problem: &Problem, scheme: DifferenceScheme, grid: &Grid) -> SheetEnergy {
+    match scheme {
+        DifferenceScheme::Corners => sampled(problem, grid, &Rule::corners()),
+        DifferenceScheme::Gauss => sampled(problem, grid, &Rule::linear()),
+        DifferenceScheme::Biquadratic => sampled(problem, grid, &Rule::quadratic()),
+    }
+}
+
+/// Π = Σ t hx hy wₐ w_b Ψ(H) over the points (a, b) of all elements, nodes line by line.
+fn sampled<const NODES: usize>(problem: &Problem, grid: &Grid, rule: &Rule<NODES>) -> SheetEnergy {
+    let order = NODES - 1;
+    let width = grid.lines().nodes;
+    let [columns, rows] = [0, 1].map(|axis| (grid.coordinates[axis].len() - 1) / order);
+    let places = (0..columns).flat_map(|column| (0..rows).map(move |row| [column, row]));
+    let nodes = |[column, row]: [usize; 2]| -> Vec<usize> {
+        let lines = column * order..=(column + 1) * order;
+        let on_line =
+            |line: usize| (row * order..=(row + 1) * order).map(move |j| line * width + j);
+        lines.flat_map(on_line).collect()
+    };
+    let points = |[column, row]: [usize; 2]| -> Vec<SamplingPoint> {
+        let sides = [
+            grid.span(0, column * order, (column + 1) * order),
+            grid.span(1, row * order, (row + 1) * order),
+        ];
+        let pairs = (0..NODES).flat_map(|a| (0..NODES).map(move |b| [a, b]));
+        pairs
+            .map(|point| sampling_point(rule, point, sides, problem.thickness))
+            .collect()
+    };
+    let cells: Vec<_> = places.map(|place| (nodes(place), points(place))).collect();
+    let cells = cells
+        .iter()
+        .map(|(nodes, points)| (&nodes[..], points.clone()));
+    SheetEnergy::new(std::sync::Arc::clone(&problem.law), grid.nodes(), cells)
+}
+
+/// One point of an element with given sides: ∂φ/∂X = φ′ φ/hx, ∂φ/∂Y = φ φ′/hy of its nodes, line by line.
+fn sampling_point<const NODES: usize>(
+    rule: &Rule<NODES>,
+    [a, b]: [usize; 2],
+    [hx, hy]: [f64; 2],
+    thickness: f64,
+) -> SamplingPoint {
+    let Rule {
+        weights,
+        values,
+        derivatives,
+    } = rule;
+    let pairs = (0..NODES).flat_map(|line| (0..NODES).map(move |node| [line, node]));
+    let gradient = |[line, node]: [usize; 2]| {
+        [
+            derivatives[a][line] * values[b][node] / hx,
+            values[a][line] * derivatives[b][node] / hy,
+        ]
+    };
+    SamplingPoint {
+        gradients: pairs.map(gradient).collect(),
+        volume: thickness * hx * hy * weights[a] * weights[b],
+    }
+}
