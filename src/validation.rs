@@ -14,6 +14,7 @@ use crate::output::{Figure, mesh_picture};
 mod correction_matrix;
 mod cost;
 mod finite_elements;
+mod flagship;
 mod measured_fields;
 mod motion;
 mod motion_correction;
@@ -75,6 +76,13 @@ pub const CASES: &[Case] = &[
         file: "examples/plate_ablation.toml",
         slow: false,
         prepare: plate_ablation::prepare,
+    },
+    Case {
+        kind: "flagship",
+        study: include_str!("../validation/cases/flagship.toml"),
+        file: "validation/cases/flagship.toml",
+        slow: true,
+        prepare: flagship::prepare,
     },
     Case {
         kind: "vibrating-spring",

@@ -1,0 +1,234 @@
+//! The plate's climb for every law, shape, number of cells and stretch: which start led where, and how far the result is
+//! from the direct method's.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::plate::NEWTON;
+use super::{Check, Outcome, Prepared, Progress, Wanted, number};
+use crate::corrector::DifferenceScheme;
+use crate::corrector::climb::{Climb, ClimbSettings, Climbed};
+use crate::document::{Bound, Section};
+use crate::error::Error;
+use crate::material::{HyperelasticLaw, samples};
+use crate::mesh::{CellShape, Mesh};
+use crate::output::Block;
+use crate::problem::{Model, Problem, Solution};
+use crate::units::Dimension;
+
+/// Reads a study of this case.
+pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+    let section = root.section("plates");
+    let shapes = section.tables("shape");
+    let sizes = shapes.iter().map(|shape| {
+        let length = |key| shape.quantity(key, Dimension::Length, Bound::Positive);
+        let size = [length("length"), length("width")];
+        shape.unknown_keys();
+        size
+    });
+    let sizes: Vec<[f64; 2]> = sizes.collect();
+    let meshes = section.tables("mesh");
+    let cells = meshes.iter().filter_map(|mesh| {
+        let cells = mesh.count_pair("cells", 2, 400);
+        mesh.unknown_keys();
+        cells
+    });
+    let cells: Vec<[usize; 2]> = cells.collect();
+    let stretches = section.quantities("stretches", Dimension::Ratio, Bound::Positive);
+    section.unknown_keys();
+    Box::new(move |progress| Ok(compute(&sizes, &cells, &stretches, progress)))
+}
+
+/// A plate whose law, size and cells are chosen.
+struct Plate {
+    law: &'static str,
+    problem: Problem,
+    cells: [usize; 2],
+}
+
+/// What became of a plate at one stretch.
+struct Found {
+    law: &'static str,
+    climbed: Result<Climbed, Error>,
+    /// Distance to the direct method's field over the discretisation error; not a number where one of them is missing.
+    share: f64,
+    /// Whether the direct method has a field.
+    direct: bool,
+    /// The plate and the stretch, for messages.
+    place: String,
+}
+
+impl Plate {
+    fn compute(&self) -> Vec<Found> {
+        let settings = ClimbSettings::default();
+        let mut climb = Climb::even(&self.problem, self.cells, DifferenceScheme::Gauss, settings);
+        let direct = self.direct();
+        let stretches = self.problem.stretches.iter().enumerate();
+        let found = |(step, stretch): (usize, &f64)| {
+            let climbed = climb.correct(*stretch);
+            let direct: Option<&Solution> = direct.get(step);
+            let share = match (&climbed, direct) {
+                (Ok(climbed), Some(direct)) => share(climbed, &direct.displacement),
+                _ => f64::NAN,
+            };
+            Found {
+                law: self.law,
+                climbed,
+                share,
+                direct: direct.is_some(),
+                place: self.describe(*stretch),
+            }
+        };
+        stretches.map(found).collect()
+    }
+
+    /// The fields of the same equations by Newton's method from stretch to stretch, as far as there are any.
+    fn direct(&self) -> Vec<Solution> {
+        let mesh = Mesh::plate(self.problem.size, self.cells, CellShape::Quad4);
+        let energy = DifferenceScheme::Gauss.energy(&self.problem, &mesh);
+        let model = Model {
+            name: "direct".into(),
+            mesh: &mesh,
+            potential: &energy,
+            describe: Box::new(|cell| mesh.describe_cell(cell)),
+        };
+        self.problem.follow_as_far(&model, NEWTON, &|_| ()).0
+    }
+
+    fn describe(&self, stretch: f64) -> String {
+        let ([length, width], [along, across]) = (self.problem.size, self.cells);
+        format!(
+            "{}, {length} × {width} mm, {along} × {across} cells, {}",
+            self.law,
+            Problem::describe_step(stretch)
+        )
+    }
+}
+
+/// Root mean square distance of a climbed field to another one over its discretisation error.
+fn share(climbed: &Climbed, direct: &[f64]) -> f64 {
+    let field = climbed.field.to_nodes();
+    let squares = field.iter().zip(direct).map(|(a, b)| (a - b).powi(2));
+    let distance = (squares.sum::<f64>() / (0.5 * direct.len() as f64)).sqrt();
+    distance / climbed.discretisation_error
+}
+
+fn compute(
+    sizes: &[[f64; 2]],
+    cells: &[[usize; 2]],
+    stretches: &[f64],
+    progress: Progress,
+) -> Outcome {
+    let mut found = Vec::new();
+    for (law, material) in samples::all() {
+        progress(law);
+        let plate = |(size, cells): ([f64; 2], [usize; 2])| Plate {
+            law,
+            problem: problem(&material, size, stretches),
+            cells,
+        };
+        let pairs = sizes
+            .iter()
+            .flat_map(|size| cells.iter().map(|cells| (*size, *cells)));
+        let plates: Vec<Plate> = pairs.map(plate).collect();
+        found.par_extend(plates.par_iter().flat_map_iter(Plate::compute));
+    }
+    outcome(&found)
+}
+
+fn problem(law: &Arc<dyn HyperelasticLaw>, size: [f64; 2], stretches: &[f64]) -> Problem {
+    Problem {
+        size,
+        thickness: 2.0,
+        law: Arc::clone(law),
+        stretches: stretches.to_vec(),
+    }
+}
+
+fn outcome(found: &[Found]) -> Outcome {
+    let lost = found
+        .iter()
+        .filter(|found| found.direct && found.climbed.is_err());
+    let worst = worst_share(found.iter());
+    let check = |quantity: &str, limit, source, value| {
+        Check::new(quantity, "–", Wanted::AtMost(limit), source, value)
+    };
+    Outcome {
+        checks: vec![
+            check(
+                "plates without a climbed field where the direct method has one",
+                0.0,
+                "the start does not matter",
+                lost.clone().count() as f64,
+            ),
+            check(
+                "largest distance to the direct method's field over the discretisation error",
+                0.1,
+                "the same equations",
+                worst,
+            ),
+        ],
+        blocks: [
+            Block::Paragraph(
+                "What the climb began with, and the largest distance of its field to that of Newton's method on the same \
+                 equations, root mean square over the nodes, over the discretisation error that the climb states:"
+                    .into(),
+            ),
+            table(found),
+        ]
+        .into_iter()
+        .chain(lost.map(|lost| Block::Paragraph(format!("No climbed field: {}", lost.place))))
+        .collect(),
+        ..Outcome::default()
+    }
+}
+
+/// The largest share, one that is not a number where no field can be compared.
+fn worst_share<'a>(found: impl Iterator<Item = &'a Found>) -> f64 {
+    let shares = found
+        .map(|found| found.share)
+        .filter(|share| !share.is_nan());
+    shares.reduce(f64::max).unwrap_or(f64::NAN)
+}
+
+/// A row for each law: how often each start led to the field, and the largest share.
+fn table(found: &[Found]) -> Block {
+    let mut laws: Vec<&str> = found.iter().map(|found| found.law).collect();
+    laws.dedup();
+    let row = |law: &&str| {
+        let own = || found.iter().filter(|found| found.law == *law);
+        let mut starts = BTreeMap::new();
+        for climbed in own().filter_map(|found| found.climbed.as_ref().ok()) {
+            let by_path = match climbed.way.by_load_path.is_empty() {
+                true => "",
+                false => ", finer grids by load steps",
+            };
+            *starts
+                .entry(format!("{}{by_path}", climbed.way.start))
+                .or_insert(0) += 1;
+        }
+        let starts: Vec<String> = starts
+            .iter()
+            .map(|(start, count)| format!("{start}: {count}"))
+            .collect();
+        let neither = own().filter(|found| !found.direct).count();
+        vec![
+            (*law).to_owned(),
+            own().count().to_string(),
+            starts.join("; "),
+            neither.to_string(),
+            number(worst_share(own())),
+        ]
+    };
+    let head = [
+        "law",
+        "plates",
+        "start",
+        "no field by the direct method",
+        "largest distance over discretisation error",
+    ];
+    Block::table(&head, laws.iter().map(row))
+}
