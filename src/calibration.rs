@@ -22,4 +22,6 @@ pub use table::{Column, Table};
 pub use test_data::{KEYS, Observation, Reading, StrainColumn, Test, TestData};
 
 #[cfg(test)]
+mod quality_tests;
+#[cfg(test)]
 mod tests;

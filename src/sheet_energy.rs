@@ -198,3 +198,50 @@ pub fn add_stiffness(stiffness: &mut [f64], gradients: &[[f64; 2]], a: &[f64]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{MooneyRivlin, NeoHooke};
+    use crate::mesh::CellShape;
+    use crate::solve::potential::derivative_errors;
+
+    fn mesh() -> Mesh {
+        Mesh::plate([4.0, 3.0], [2, 2], CellShape::Quad9)
+    }
+
+    /// Π = t A Ψ of a homogeneous deformation, its forces and its stiffness by differences.
+    #[test]
+    fn a_homogeneous_deformation_has_the_energy_of_its_volume() {
+        let law = NeoHooke { c10: 0.05 };
+        let mesh = mesh();
+        let energy = SheetEnergy::of_mesh(Arc::new(law), &mesh, 2.0);
+        let h = Gradient::new(0.3, 0.1, -0.05, 0.2);
+        let field = |[x, y]: &[f64; 2]| [h[0] * x + h[1] * y, h[2] * x + h[3] * y];
+        let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
+        let mut residual = vec![0.0; u.len()];
+        let found = crate::solve::Assembly::residual(&energy, &u, &mut residual).unwrap();
+        let (density, stress) = law.stress(&Kinematics::new(&h).unwrap());
+        assert!((found / (2.0 * 12.0 * density) - 1.0).abs() < 1e-13);
+        // The right side of 3 × 2 mm² carries the first column of P.
+        let right = (0..mesh.nodes.len()).filter(|node| mesh.nodes[*node][0] == 4.0);
+        let force = right.fold([0.0; 2], |[x, y], node| {
+            [x + residual[2 * node], y + residual[2 * node + 1]]
+        });
+        assert!((force[0] - 6.0 * stress[0]).abs() < 1e-13);
+        assert!((force[1] - 6.0 * stress[2]).abs() < 1e-13);
+        let direction: Vec<f64> = (0..u.len()).map(|i| (1.3 * i as f64).sin()).collect();
+        let errors = derivative_errors(&energy, &u, &direction);
+        assert!(errors.iter().all(|error| *error < 1e-8), "{errors:?}");
+    }
+
+    #[test]
+    fn a_cell_whose_material_is_unstable_is_named_with_its_invariant() {
+        let law = |c01| Arc::new(MooneyRivlin { c10: 0.307, c01 });
+        let mesh = mesh();
+        let rest = vec![0.0; 2 * mesh.nodes.len()];
+        let told = |c01| SheetEnergy::of_mesh(law(c01), &mesh, 2.0).instability(0, &rest[..18]);
+        assert_eq!(told(-0.359).as_deref(), Some("I₁ = 3.00"));
+        assert_eq!(told(0.1), None);
+    }
+}

@@ -102,6 +102,7 @@ mod tests {
     fn there_and_back_again() {
         for text in [
             "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n0.8,-0.5\n1.5,0.25\n",
+            "# test: uniaxial; direction: 2\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n",
             "# test: planar; direction: 2\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n2,0.5\n",
             "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n1.5,1.25,0.5,0.25\n",
         ] {

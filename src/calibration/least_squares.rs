@@ -147,3 +147,31 @@ pub fn linear(columns: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f
     }
     Some(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ln p − ln 0.01, which has no value where p is not positive.
+    struct Logarithm;
+
+    impl Residuals for Logarithm {
+        fn count(&self) -> usize {
+            2
+        }
+
+        fn evaluate(&self, parameters: &[f64], residuals: &mut [f64]) -> bool {
+            residuals.fill((parameters[0] / 0.01).ln());
+            residuals[0].is_finite()
+        }
+    }
+
+    /// The first step from 5 leads to −26, where there is nothing.
+    #[test]
+    fn a_step_to_where_the_model_has_no_value_is_refused() {
+        let free = [[f64::NEG_INFINITY, f64::INFINITY]];
+        let found = minimise(&Logarithm, &[5.0], &free, Precision::Full).unwrap();
+        assert!((found[0] / 0.01 - 1.0).abs() < 1e-6, "{found:?}");
+        assert!(minimise(&Logarithm, &[-1.0], &free, Precision::Full).is_none());
+    }
+}

@@ -137,3 +137,62 @@ impl Residuals for Misfit<'_> {
         residuals.iter().all(|residual| residual.is_finite())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibration::Reading;
+
+    const TEXT: &str =
+        "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.2,0.05\n1.6,0.13\n2.0,0.15\n";
+
+    fn tests() -> [TestData; 1] {
+        [TestData::parse("a.csv", TEXT, &Reading::new()).unwrap()]
+    }
+
+    /// Σ w² f σ/Σ w² f² with the slope f = 2 (λ − λ⁻²), and the secant Σ |σ x|/Σ x².
+    #[test]
+    fn parameters_that_are_stresses_are_completed_by_weighted_linear_regression() {
+        let tests = tests();
+        let law = Law::named("neo-hooke").unwrap();
+        let data = [(1.2_f64, 0.05_f64), (1.6, 0.13), (2.0, 0.15)];
+        for weighting in [Weighting::Absolute, Weighting::Relative] {
+            let sum = |value: &dyn Fn(f64, f64) -> f64| -> f64 {
+                let weight = |stress: f64| match weighting {
+                    Weighting::Absolute => 1.0,
+                    Weighting::Relative => stress.powi(-2),
+                };
+                let slope = |l: f64| 2.0 * (l - l.powi(-2));
+                data.iter()
+                    .map(|(l, s)| weight(*s) * value(slope(*l), *s))
+                    .sum()
+            };
+            let mut values = [7.0];
+            let misfit = Misfit::new(law, &tests, weighting);
+            misfit.complete(&mut values, &[0]).unwrap();
+            let expected = sum(&|f, s| f * s) / sum(&|f, _| f * f);
+            assert!((values[0] / expected - 1.0).abs() < 1e-12, "{weighting:?}");
+            let products: f64 = data.iter().map(|(l, s)| (l - 1.0) * s).sum();
+            let squares: f64 = data.iter().map(|(l, _)| (l - 1.0) * (l - 1.0)).sum();
+            assert!((misfit.stiffness() / (products / squares) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    /// The mean pulls on a line as the points do together: Σ w² (σ − s)² differs by a constant.
+    #[test]
+    fn the_mean_of_points_weighs_as_all_of_them() {
+        let observation = tests()[0].observations[0];
+        let point = |stress: f64, weight: f64| Point {
+            test: 0,
+            observation: Observation {
+                stress,
+                ..observation
+            },
+            weight,
+        };
+        let points = [point(1.0, 2.0), point(4.0, 1.0)];
+        let found = mean(&points);
+        assert!((found.observation.stress - 1.6).abs() < 1e-15);
+        assert!((found.weight - 5.0_f64.sqrt()).abs() < 1e-15);
+    }
+}

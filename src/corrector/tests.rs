@@ -11,6 +11,7 @@ use crate::solve::{Newton, NewtonSettings};
 
 use plate::KnownConditions;
 
+mod closed_forms;
 mod instrument;
 
 const SETTINGS: CorrectorSettings = CorrectorSettings {

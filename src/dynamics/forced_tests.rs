@@ -40,6 +40,11 @@ fn generalised_alpha(rho: f64) -> Constants {
     [alpha_m, alpha_f, beta, 0.5 + difference]
 }
 
+/// Those of central differences where there is no ρ∞.
+fn constants_of(rho: Option<f64>) -> Constants {
+    rho.map_or([0.0, 0.0, 0.0, 0.5], generalised_alpha)
+}
+
 /// Û, V̂ and Â of the steps.
 fn of_steps([alpha_m, alpha_f, beta, gamma]: Constants, h: f64) -> [Complex<f64>; 3] {
     let z = Complex::from_polar(1.0, OMEGA * h);
@@ -99,8 +104,7 @@ const METHODS: [(Integrator, Option<f64>); 5] = [
 fn the_steady_state_is_that_of_the_difference_equations() {
     let h = 0.1;
     for (integrator, rho) in METHODS {
-        let constants = rho.map_or([0.0, 0.0, 0.0, 0.5], generalised_alpha);
-        let [u, v, a] = of_steps(constants, h);
+        let [u, v, a] = of_steps(constants_of(rho), h);
         for now in settled(integrator, h) {
             let turn = Complex::from_polar(1.0, OMEGA * now.time);
             let expected = [
@@ -123,7 +127,7 @@ fn the_steady_state_is_that_of_the_difference_equations() {
 /// A force that is taken at the wrong end of a step shifts the motion in time: an error of first order.
 #[test]
 fn a_force_that_changes_in_time_keeps_the_second_order() {
-    for (integrator, _) in METHODS {
+    for (integrator, rho) in METHODS {
         let error = |h: f64| {
             let off = settled(integrator, h).into_iter().map(|now| {
                 let turn = Complex::from_polar(1.0, OMEGA * now.time);
@@ -134,7 +138,138 @@ fn a_force_that_changes_in_time_keeps_the_second_order() {
         let [coarse, fine] = [0.04, 0.02].map(error);
         let order = (coarse / fine).log2();
         assert!((order - 2.0).abs() < 0.1, "{integrator:?}: order {order}");
-        // (Ω h)² is the largest share that a term of second order can have here, within a factor of a few.
-        assert!(fine < (OMEGA * 0.02_f64).powi(2), "{integrator:?}: {fine}");
+        // How far the steps' own closed form is from the body's.
+        let bound = (of_steps(constants_of(rho), 0.02)[0] - exact()).norm() / exact().norm();
+        assert!(
+            (0.9..1.0 + 1e-6).contains(&(fine / bound)),
+            "{integrator:?}: {fine} {bound}"
+        );
     }
+}
+
+/// What holds an unknown must carry its inertia, spring and dashpot, less the load; it does the work that the energies gain.
+#[test]
+fn a_support_carries_inertia_spring_and_dashpot_less_the_load() {
+    let (amplitude, load) = (0.5, 0.3);
+    let frequency = OMEGA / TAU;
+    let sine = TimeFunction::Sine {
+        mean: 0.0,
+        amplitude,
+        frequency,
+    };
+    let motion = Motion {
+        energy: &SPRING,
+        viscosity: Some(&SPRING),
+        mass: vec![2.0],
+        supports: vec![MovingSupport {
+            unknowns: vec![0],
+            displacement: vec![1.0],
+            time: sine,
+            until: None,
+        }],
+        forces: vec![MovingForce {
+            force: vec![load],
+            time: TimeFunction::Constant(1.0),
+        }],
+        start: Start::at_rest(1),
+        describe: Box::new(|_| "the spring".into()),
+    };
+    for integrator in [Integrator::VelocityVerlet, alpha(0.8)] {
+        let history = run(&motion, every(integrator, 1.0, 0.01, 0.01));
+        for now in &history.instants {
+            let (sine, cosine) = (OMEGA * now.time).sin_cos();
+            let [u, v, a] = [sine, OMEGA * cosine, -OMEGA * OMEGA * sine].map(|x| amplitude * x);
+            let carried = 2.0 * a + SPRING.k * u + SPRING.c * v - load;
+            assert!((now.support_forces[0][0] - carried).abs() < 1e-12);
+            let energy = now.energy;
+            assert!((energy.kinetic - v * v).abs() < 1e-12);
+            assert!((energy.stored - 0.5 * SPRING.k * u * u).abs() < 1e-12);
+            // ∫ c v² dt of the exact motion, by the trapezoidal rule of second order.
+            let square = amplitude * amplitude * OMEGA * OMEGA;
+            let twice = 2.0 * OMEGA * now.time;
+            let spent = SPRING.c * square * (0.5 * now.time + twice.sin() / (4.0 * OMEGA));
+            assert!((energy.dissipated - spent).abs() < 1e-3 * square);
+        }
+        assert!(history.energy_error() < 1e-3, "{}", history.energy_error());
+    }
+}
+
+fn every(integrator: Integrator, duration: f64, interval: f64, step: f64) -> TimeSettings {
+    TimeSettings {
+        duration,
+        interval,
+        step: Step::AtMost(step),
+        integrator,
+    }
+}
+
+/// The spring without its dashpot, let go at 1 mm.
+fn released(spring: &Spring) -> Motion<'_> {
+    Motion {
+        energy: spring,
+        viscosity: None,
+        mass: vec![1.0],
+        supports: Vec::new(),
+        forces: Vec::new(),
+        start: Start::held_at(vec![1.0]),
+        describe: Box::new(|_| "the spring".into()),
+    }
+}
+
+/// ω = 2 rad/s: the longest stable step of central differences is 2/ω = 1 s, and half of that is taken; generalised-α
+/// takes a hundredth of the period.
+#[test]
+fn automatic_steps_are_shares_of_the_longest_stable_one_and_of_the_period() {
+    for (integrator, step) in [
+        (Integrator::VelocityVerlet, 0.5),
+        (alpha(1.0), 0.01 * 0.5 * TAU),
+    ] {
+        // Six steps of central differences are a turn, since cos θ = 1 − ½ (ω h)²: the energy that they sway by is back.
+        let duration = 41.999 * step;
+        let settings = TimeSettings {
+            step: Step::Automatic,
+            ..every(integrator, duration, duration, step)
+        };
+        let history = run(&released(&SPRING), settings);
+        assert_eq!((history.steps, history.halved), (42, 0), "{integrator:?}");
+    }
+}
+
+/// ρ∞ = 0 damps fast motions away; that is no motion that explodes.
+#[test]
+fn numerical_damping_is_no_explosion() {
+    let history = run(&released(&SPRING), every(alpha(0.0), 20.0, 1.0, 0.5));
+    assert_eq!(history.halved, 0);
+    let [first, .., last] = &history.instants[..] else {
+        panic!("instants");
+    };
+    let total = |instant: &Instant| instant.energy.kinetic + instant.energy.stored;
+    assert!(total(last) < 0.5 * total(first), "{last:?}");
+}
+
+/// The kinks of a function are ends of steps, not instants that anybody asked for.
+#[test]
+fn kinks_between_instants_are_met_and_not_told() {
+    let mut motion = released(&SPRING);
+    motion.supports = vec![MovingSupport {
+        unknowns: vec![0],
+        displacement: vec![3.0],
+        time: TimeFunction::Ramp {
+            begin: 0.13,
+            end: 0.88,
+        },
+        until: None,
+    }];
+    motion.start = Start::at_rest(1);
+    let history = run(&motion, every(alpha(1.0), 1.0, 0.25, 0.25));
+    assert_eq!(history.times(), [0.0, 0.25, 0.5, 0.75, 1.0]);
+    let speeds: Vec<f64> = history.instants.iter().map(|now| now.velocity[0]).collect();
+    // 3 mm in 0.75 s.
+    for (found, expected) in speeds.into_iter().zip([0.0, 4.0, 4.0, 4.0, 0.0]) {
+        assert!((found - expected).abs() < 1e-12);
+    }
+    // ½ k u² at the end, and the kinetic energy that was given and taken back.
+    let end = &history.instants[4].energy;
+    assert!((end.external_work - 0.5 * SPRING.k * 9.0).abs() < 1e-12);
+    assert!(history.energy_error() < 1e-12);
 }

@@ -246,3 +246,78 @@ pub(super) fn conjugate_gradients(
     }
     x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::tests::{DENSITY, clamp, plate};
+    use crate::dynamics::{Start, lumped_mass};
+    use crate::mass_spring::{LatticeSettings, MassSpring};
+
+    /// Beside all eigenvalues of the dense matrix M^−½ K M^−½.
+    #[test]
+    fn the_slowest_and_the_fastest_vibrations_are_those_of_the_dense_matrix() {
+        let problem = plate();
+        let springs = MassSpring::new(&problem, [5, 3], LatticeSettings { area_term: false });
+        let size = 2 * springs.mesh.nodes.len();
+        let motion = Motion {
+            energy: springs.potential(),
+            viscosity: None,
+            mass: lumped_mass(&springs.mesh, DENSITY, problem.thickness),
+            supports: vec![clamp(&springs.mesh)],
+            forces: Vec::new(),
+            start: Start::at_rest(size),
+            describe: Box::new(|element| element.to_string()),
+        };
+        let (held, rest) = (motion.held(0.0), vec![0.0; size]);
+        let assembly = Assembly::new(motion.energy, &held);
+        let (mut residual, mut stiffness) = (rest.clone(), Vec::new());
+        assembly
+            .linearise(motion.energy, &rest, &mut residual, &mut stiffness)
+            .unwrap();
+        let (pattern, mass) = (assembly.pattern(), gather(assembly.free(), &motion.mass));
+        let mut dense = DMatrix::zeros(mass.len(), mass.len());
+        for (row, entries) in pattern.full_rows(&stiffness).into_iter().enumerate() {
+            for (column, value) in entries {
+                dense[(row, column)] = value / (mass[row] * mass[column]).sqrt();
+            }
+        }
+        let mut squares: Vec<f64> = dense.symmetric_eigenvalues().iter().copied().collect();
+        squares.sort_by(f64::total_cmp);
+
+        let modes = slowest(&motion, &held, &rest, 4).unwrap();
+        assert_eq!(modes.len(), 4);
+        for (i, (mode, square)) in modes.iter().zip(&squares).enumerate() {
+            let expected = square.sqrt() / TAU;
+            assert!((mode.frequency / expected - 1.0).abs() < 1e-8, "{i}");
+            for (j, other) in modes.iter().enumerate() {
+                let pairs = mode.shape.iter().zip(&other.shape).zip(&motion.mass);
+                let share: f64 = pairs.map(|((a, b), m)| m * a * b).sum();
+                assert!(
+                    (share - f64::from(i == j)).abs() < 1e-10,
+                    "{i} {j}: {share}"
+                );
+            }
+        }
+        // The largest Ritz value with its bound is never below, and not far above.
+        let most = squares[squares.len() - 1].sqrt();
+        let found = fastest(pattern, &stiffness, &mass);
+        assert!((1.0..1.05).contains(&(found / most)), "{found} {most}");
+    }
+
+    #[test]
+    fn the_strongest_mode_moves_most_mass_along_its_axis() {
+        let mode = |frequency: f64, shape: [f64; 4]| Mode {
+            frequency,
+            shape: shape.to_vec(),
+        };
+        // One moves the nodes against each other, one along X, one along Y.
+        let modes = vec![
+            mode(1.0, [3.0, 0.1, -3.0, 0.0]),
+            mode(2.0, [0.7, 0.0, 0.7, -0.3]),
+            mode(3.0, [-0.1, 0.8, 0.0, 0.9]),
+        ];
+        let found = [0, 1].map(|axis| strongest(modes.clone(), &[1.0; 4], axis).unwrap().frequency);
+        assert_eq!(found, [2.0, 3.0]);
+    }
+}

@@ -96,6 +96,7 @@ mod tests {
         assert_eq!(ramp.at(1.0, 1.0), [0.0, 0.5, 0.0]);
         assert_eq!(ramp.at(3.0, 2.9), [1.0, 0.5, 0.0]);
         assert_eq!(ramp.at(9.0, 9.0), [1.0, 0.0, 0.0]);
+        assert_eq!(ramp.kinks(), [1.0, 3.0]);
         let table = TimeFunction::Table(vec![[0.0, 2.0], [1.0, 4.0], [3.0, 0.0]]);
         assert_eq!(table.at(2.0, 1.5), [2.0, -2.0, 0.0]);
         assert_eq!(table.kinks(), [0.0, 1.0, 3.0]);

@@ -86,5 +86,9 @@ mod tests {
         let found = richardson([1.0, 1.1, 1.0]);
         assert!(found.order.is_nan());
         assert_eq!(found.extrapolated, 1.0);
+        // The last difference is all that is known of its error.
+        assert!((found.error_percent - 10.0).abs() < 1e-12);
+        let apart = richardson([1.0, 1.1, 1.3]);
+        assert!(apart.order.is_nan() && apart.extrapolated == 1.3);
     }
 }

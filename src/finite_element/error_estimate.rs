@@ -264,6 +264,54 @@ mod tests {
         }
     }
 
+    /// ‖u‖² = t A H : 𝔸 : H of a homogeneous deformation, and a field whose gradient is a tenth larger is 10 % away.
+    #[test]
+    fn the_distance_between_homogeneous_deformations_is_that_of_their_gradients() {
+        let law = NeoHooke { c10: 0.05 };
+        let h = Vector4::new(0.3, 0.1, -0.05, 0.2);
+        let mesh = Shape::Strip { size: [12.0, 6.0] }.mesh(2, CellShape::Triangle6);
+        let field = |[x, y]: &[f64; 2]| [h[0] * x + h[1] * y, h[2] * x + h[3] * y];
+        let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
+        let solved = Solved {
+            law: &law,
+            thickness: 2.0,
+            mesh: &mesh,
+            displacement: &u,
+        };
+        let found = solved.distance(|_, _| (1.1 * h).into());
+        assert!((found.percent() - 10.0).abs() < 1e-9);
+        let response = law.response(&Kinematics::new(&h).unwrap());
+        let norm = 2.0 * 72.0 * h.dot(&(response.tangent * h));
+        assert!((found.norm_squared / norm - 1.0).abs() < 1e-12);
+        assert!((found.squared() / (0.01 * norm) - 1.0).abs() < 1e-9);
+        let squares = found.cell_percents().into_iter().map(|share| share * share);
+        assert!((squares.sum::<f64>() - 100.0).abs() < 1e-7);
+    }
+
+    /// A small turn of a compressed sheet gains energy; it is no negative error.
+    #[test]
+    fn a_turn_of_a_compressed_sheet_has_no_negative_error() {
+        let law = NeoHooke { c10: 0.05 };
+        let mesh = Shape::Strip { size: [12.0, 6.0] }.mesh(2, CellShape::Quad4);
+        let u: Vec<f64> = mesh
+            .nodes
+            .iter()
+            .flat_map(|[x, y]| [-0.2 * x, -0.2 * y])
+            .collect();
+        let solved = Solved {
+            law: &law,
+            thickness: 2.0,
+            mesh: &mesh,
+            displacement: &u,
+        };
+        let turn = Vector4::new(0.0, -0.01, 0.01, 0.0);
+        let rest = Vector4::new(-0.2, 0.0, 0.0, -0.2);
+        let response = law.response(&Kinematics::new(&rest).unwrap());
+        assert!(turn.dot(&(response.tangent * turn)) < 0.0);
+        let found = solved.distance(|_, _| (rest + turn).into());
+        assert!(found.cells.iter().all(|cell| (0.0..1e-12).contains(cell)));
+    }
+
     /// Twice the surplus of the potential, and the error of the force, on a plate whose corners are resolved.
     #[test]
     fn the_estimates_are_those_of_the_potential_and_of_the_force() {

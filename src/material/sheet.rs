@@ -212,3 +212,33 @@ pub fn cofactor_derivative() -> Matrix4<f64> {
     (e[(0, 3)], e[(3, 0)], e[(1, 2)], e[(2, 1)]) = (1.0, 1.0, -1.0, -1.0);
     e
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix2, Rotation2};
+
+    use super::*;
+    use crate::material::{HyperelasticLaw, NeoHooke};
+
+    /// F = R(α) diag(λ₁, λ₂) R(β)ᵀ: the stretches are λ₁, λ₂ and 1/(λ₁ λ₂), and σ = 2 C₁₀ (F Fᵀ − λ₃² I).
+    #[test]
+    fn principal_stretches_and_cauchy_stress_are_those_of_the_polar_decomposition() {
+        let (c10, stretches) = (0.05, [1.4, 0.8]);
+        let turn = |angle: f64| Rotation2::new(angle).into_inner();
+        let diagonal = Matrix2::from_diagonal(&stretches.into());
+        let f = turn(0.7) * diagonal * turn(-0.3);
+        let h = f - Matrix2::identity();
+        let state = Kinematics::new(&Vector4::new(h.m11, h.m12, h.m21, h.m22)).unwrap();
+        let through = 1.0 / (1.4 * 0.8);
+        let found = state.principal_stretches();
+        for (found, expected) in found.into_iter().zip([1.4, 0.8, through]) {
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        }
+        let (_, p) = NeoHooke { c10 }.stress(&state);
+        let b = f * f.transpose() - Matrix2::identity() * (through * through);
+        let found = state.cauchy_stress(&p);
+        for (found, expected) in found.into_iter().zip([b.m11, b.m12, b.m22]) {
+            assert!((found - 2.0 * c10 * expected).abs() < 1e-15);
+        }
+    }
+}

@@ -127,6 +127,22 @@ mod tests {
         }
     }
 
+    /// τ = 2 C₁₀ (B − λ₃² I), B = F Fᵀ: a shear gives dτ : dε = 2 C₁₀ (B₁₁ + B₂₂), and all of D follows from B alone.
+    #[test]
+    fn the_tangent_of_an_isotropic_law_depends_on_the_left_stretch_alone() {
+        let law = NeoHooke { c10: 0.05 };
+        let of = |f: Matrix2<f64>| {
+            let h = f - Matrix2::identity();
+            let state = Kinematics::new(&Vector4::new(h.m11, h.m12, h.m21, h.m22)).unwrap();
+            tangent(&law, &state).unwrap()
+        };
+        let left = Matrix2::new(1.3, 0.2, 0.2, 0.9);
+        let turned = left * nalgebra::Rotation2::new(0.6).into_inner();
+        assert!((of(left) - of(turned)).amax() < 1e-14);
+        let shear = 0.1 * (left * left).trace();
+        assert!((of(left)[(2, 2)] - shear).abs() < 1e-14);
+    }
+
     #[test]
     fn neo_hooke_and_the_shipped_cards_are_stable_where_they_are_used() {
         for (_, mode) in Mode::ALL {
@@ -168,5 +184,11 @@ mod tests {
         assert!(high > 1.58 && high < 1.63, "{high}");
         let slope = law.tension([1.0, 0.0], high - 1.0).slope;
         assert!(slope > 0.0, "{slope}");
+        // The end of the range is sharp.
+        let stable = |stretch: f64| {
+            let gradient = Mode::Uniaxial.gradient(&law, stretch - 1.0).unwrap();
+            is_stable(&law, &Kinematics::new(&gradient).unwrap())
+        };
+        assert!(stable(high * (1.0 - 1e-9)) && !stable(high * (1.0 + 1e-9)));
     }
 }

@@ -244,3 +244,43 @@ fn motions_that_three_instants_do_not_tell_are_refused() {
     body.mass = vec![0.0];
     assert!(EquationOfMotion::new(&body, 0.1, 0.25).is_err());
 }
+
+/// β = ¼ is Newmark's average acceleration: under a force that changes in time the corrected motion is that of
+/// generalised-α with ρ∞ = 1, whatever the motion that was given.
+#[test]
+fn a_motion_under_a_force_that_changes_in_time_is_that_of_newmarks_method() {
+    let spring = Spring {
+        k: 4.0,
+        q: 3.0,
+        c: 0.4,
+    };
+    let mut body = motion(&spring, Some(&spring), 0.5);
+    body.forces = vec![crate::dynamics::MovingForce {
+        force: vec![2.0],
+        time: crate::dynamics::TimeFunction::Sine {
+            mean: 0.3,
+            amplitude: 1.0,
+            frequency: 0.4,
+        },
+    }];
+    let (step, count) = (0.05, 80);
+    let settings = TimeSettings {
+        duration: step * f64::from(count),
+        interval: step,
+        step: Step::AtMost(step),
+        integrator: Integrator::GeneralisedAlpha {
+            spectral_radius: 1.0,
+            tolerance: 1e-13,
+        },
+    };
+    let expected = follow(&body, settings, &|_| ())
+        .map_err(|end| end.fault)
+        .unwrap();
+    let equation = EquationOfMotion::new(&body, step, 0.25).unwrap();
+    let given = wrong(expected.instants.len());
+    let found = equation.correct(&given, &body.start, windows(16)).unwrap();
+    for (found, expected) in found.displacement.iter().zip(&expected.instants) {
+        let off = (found[0] - expected.displacement[0]).abs();
+        assert!(off < 1e-8, "{} s: {off:.1e}", expected.time);
+    }
+}

@@ -1,0 +1,155 @@
+//! Figures of a fit beside their definitions.
+
+use super::fit::{Fit, FitSettings, Weighting, fit};
+use super::quality::{StableRange, differs};
+use super::test_data::{Reading, TestData};
+use crate::material::curve::Mode;
+use crate::material::registry::Law;
+
+fn tests(points: &[(f64, f64)]) -> [TestData; 1] {
+    let rows: String = points.iter().map(|(l, s)| format!("{l},{s}\n")).collect();
+    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
+    [TestData::parse("a.csv", &text, &Reading::new()).unwrap()]
+}
+
+fn fitted(law: &str, tests: &[TestData], settings: &FitSettings) -> Fit {
+    fit(Law::named(law).unwrap(), tests, settings).unwrap()
+}
+
+/// 2 (λ − λ⁻²), which the neo-Hookean C₁₀ is multiplied by.
+fn slope(stretch: f64) -> f64 {
+    2.0 * (stretch - stretch.powi(-2))
+}
+
+/// AICc after Hurvich and Tsai, Biometrika 76, 297 (1989), with the variance as a parameter.
+#[test]
+fn the_figures_of_a_fit_are_as_defined() {
+    // The last two stresses are below a hundredth, and above one but below a tenth, of the largest.
+    let points = [
+        (1.2, 0.05),
+        (1.6, 0.13),
+        (2.0, 0.16),
+        (1.001, 0.0012),
+        (1.01, 0.004),
+    ];
+    for weighting in [Weighting::Absolute, Weighting::Relative] {
+        let settings = FitSettings {
+            weighting,
+            ..FitSettings::default()
+        };
+        let data = tests(&points);
+        let found = fitted("neo-hooke", &data, &settings);
+        let c10 = found.parameters[0].value;
+        let off: Vec<f64> = points.iter().map(|(l, s)| s - c10 * slope(*l)).collect();
+        let squares: f64 = off.iter().map(|d| d * d).sum();
+        let weighted: f64 = off
+            .iter()
+            .zip(&points)
+            .map(|(d, (_, s))| match weighting {
+                Weighting::Absolute => d * d,
+                Weighting::Relative => (d / s.max(0.0016)).powi(2),
+            })
+            .sum();
+        let mean = points.iter().map(|(_, s)| s).sum::<f64>() / 5.0;
+        let spread: f64 = points.iter().map(|(_, s)| (s - mean).powi(2)).sum();
+        let counted = off.iter().zip(&points).filter(|(_, (_, s))| *s > 0.0016);
+        let largest = counted.map(|(d, (_, s))| (d / s).abs()).fold(0.0, f64::max);
+        let quality = &found.quality;
+        // n = 5 points, k = 2: 2k + 2k(k + 1)/(n − k − 1) = 4 + 12/2.
+        for (what, found, expected) in [
+            ("S", quality.sum_of_squares, squares),
+            ("rmse", quality.rmse, (squares / 5.0).sqrt()),
+            ("R²", quality.r_squared, 1.0 - squares / spread),
+            ("AICc", quality.aicc, 5.0 * (weighted / 5.0).ln() + 10.0),
+            (
+                "largest",
+                quality.largest_relative_error_percent,
+                100.0 * largest,
+            ),
+        ] {
+            assert!(
+                (found / expected - 1.0).abs() < 1e-9,
+                "{what}: {found} {expected}"
+            );
+        }
+    }
+    // Three points, k = 2: n − k − 1 is zero, and nothing can be said.
+    let few = fitted("neo-hooke", &tests(&points[..2]), &FitSettings::default());
+    assert_eq!(few.quality.aicc, f64::INFINITY);
+}
+
+/// σ = C₁₀ f + C₀₁ f/λ is linear: Cov = s² (XᵀX)⁻¹ with two columns.
+#[test]
+fn two_parameters_have_the_covariance_of_linear_regression() {
+    for sign in [1.0, -1.0] {
+        let wiggle = |i: i32| sign * 2e-3 * (1.7 * f64::from(i)).sin();
+        let row = |i: i32| {
+            let stretch = 1.0 + 0.1 * f64::from(i);
+            (stretch, 0.05 * slope(stretch) + wiggle(i))
+        };
+        let points: Vec<_> = (1..=12).map(row).collect();
+        let data = tests(&points);
+        let found = fitted("mooney-rivlin", &data, &FitSettings::default());
+        let columns = |l: f64| [slope(l), slope(l) / l];
+        let sum = |value: &dyn Fn([f64; 2]) -> f64| -> f64 {
+            points.iter().map(|(l, _)| value(columns(*l))).sum()
+        };
+        let [a, b, c] = [
+            sum(&|x| x[0] * x[0]),
+            sum(&|x| x[0] * x[1]),
+            sum(&|x| x[1] * x[1]),
+        ];
+        let (variance, determinant) = (found.quality.sum_of_squares / 10.0, a * c - b * b);
+        for (i, own) in [c, a].into_iter().enumerate() {
+            let expected = (variance * own / determinant).sqrt();
+            let error = found.quality.estimates[i].standard_error;
+            assert!((error / expected - 1.0).abs() < 1e-6, "{error} {expected}");
+        }
+        let correlation = found.quality.correlation[(0, 1)];
+        assert!((correlation + b / (a * c).sqrt()).abs() < 1e-6);
+        // C₀₁, whose true value is zero, has either sign and is not known to have it.
+        assert!(!found.quality.is_identifiable(&found.parameters));
+        let told = &found.quality.warnings;
+        let vague = told.iter().find(|told| told.contains("not identifiable"));
+        assert!(vague.unwrap().contains("c01"), "{told:?}");
+        let close = told.iter().any(|told| told.contains("hardly told apart"));
+        assert_eq!(close, correlation.abs() >= 0.99, "{correlation}");
+    }
+}
+
+#[test]
+fn a_bound_nearby_does_not_hold_a_parameter() {
+    let settings = FitSettings {
+        bounds: vec![("c10".into(), [0.0, 0.052])],
+        ..FitSettings::default()
+    };
+    let points = [
+        (1.2, 0.05 * slope(1.2) + 1e-4),
+        (1.6, 0.05 * slope(1.6)),
+        (2.0, 0.0875),
+    ];
+    let found = fitted("neo-hooke", &tests(&points), &settings);
+    let estimate = found.quality.estimates[0];
+    assert!((found.parameters[0].value - 0.05).abs() < 1e-3);
+    assert!(!estimate.at_bound && estimate.standard_error > 0.0);
+    let value = found.parameters[0].value;
+    assert!(!differs(&[1.05 * value], &found.parameters));
+    assert!(differs(&[1.2 * value], &found.parameters));
+}
+
+#[test]
+fn pressing_counts_in_uniaxial_tests_alone() {
+    for (mode, stretches, enough) in [
+        (Mode::Uniaxial, [0.9, 2.0], false),
+        (Mode::Uniaxial, [0.7, 2.0], true),
+        (Mode::Uniaxial, [0.7, 1.4], false),
+        (Mode::Planar, [0.9, 2.0], true),
+    ] {
+        let range = StableRange {
+            mode,
+            stretches,
+            needed: [0.8, 1.5],
+        };
+        assert_eq!(range.is_enough(), enough, "{mode:?} {stretches:?}");
+    }
+}

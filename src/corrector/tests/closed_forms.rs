@@ -1,0 +1,252 @@
+//! Conditions, scales, estimates and corrected states beside closed forms and beside the finite elements.
+
+use std::sync::Arc;
+
+use super::*;
+use crate::boundary::{BoundaryProblem, Drive, Load, Support};
+use crate::corrector::climb::{Climb, ClimbSettings};
+use crate::finite_element::{Element, FiniteElements};
+use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::{HyperelasticLaw, NeoHooke};
+use crate::mesh::{CellShape, Shape};
+use crate::solve::{Assembly, Loading};
+
+const TIGHT: NewtonSettings = NewtonSettings {
+    tolerance: 1e-12,
+    max_iterations: 40,
+};
+
+#[test]
+fn the_residual_is_the_largest_distance_over_the_largest_entry() {
+    // 10 u₀ = 0 at u₀ = 3 is 3 mm away, whatever the row is multiplied by; 3 mm is the largest entry.
+    let mut rows = SparseRows::new(2);
+    rows.push([(0, 10.0)]);
+    let condition = Linear::new("zero", rows, vec![0.0]);
+    let corrector = Corrector::new(vec![Box::new(condition)], vec![1.0; 2], SETTINGS);
+    let correction = corrector.correct(&[3.0, 2.0], &[3.0, 2.0]).unwrap();
+    assert!((correction.steps[0].residual - 1.0).abs() < 1e-14);
+    assert!(largest_difference(correction.field(), &[0.0, 2.0]) < 1e-14);
+}
+
+#[test]
+fn unknowns_that_move_together_move_by_their_mean() {
+    let condition = Linear::together("grip", 4, &[vec![0, 1, 3]]);
+    let corrector = Corrector::new(vec![Box::new(condition)], vec![1.0; 4], SETTINGS);
+    let data = [1.0, 3.0, 7.0, 5.0];
+    let correction = corrector.correct(&data, &data).unwrap();
+    assert!(largest_difference(correction.field(), &[3.0, 3.0, 7.0, 3.0]) < 1e-13);
+}
+
+/// A square of 2 mm whose right side moves by 1 mm encloses 6 mm².
+#[test]
+fn an_enclosed_area_is_what_it_lacks_of_the_known_one() {
+    let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+    let line = corners.into_iter().enumerate().collect();
+    let area = EnclosedArea::new("area", line, 5.0);
+    let u = [0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+    assert!((area.values(&u).unwrap()[0] - 1.0).abs() < 1e-14);
+}
+
+/// At rest there are no internal forces: the loads alone are out of balance.
+#[test]
+fn at_rest_balances_of_forces_lack_the_loads() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let size = uncorrected.displacement.len();
+    let assembly = Assembly::new(plate.energy(), &vec![false; size]);
+    let rest = vec![0.0; size];
+    let balance = Equilibrium::new("loaded", plate.energy(), &assembly, vec![4, 7]);
+    let values = balance.with_loads(vec![0.5, -0.2]).values(&rest).unwrap();
+    assert!(largest_difference(&values, &[-0.5, 0.2]) < 1e-15);
+    let total = TotalForce::new("force", plate.energy(), &assembly, vec![4, 6], 0.7);
+    assert!((total.values(&rest).unwrap()[0] + 0.7).abs() < 1e-15);
+}
+
+#[test]
+fn a_function_hands_on_its_curvature() {
+    let rows = |value: f64| {
+        let mut rows = SparseRows::new(1);
+        rows.push([(0, value)]);
+        rows
+    };
+    let square = Function::new("u² = 4", 1, move |u: &[f64]| Linearised {
+        values: vec![u[0] * u[0] - 4.0],
+        jacobian: rows(2.0 * u[0]),
+    });
+    assert!(square.curvature(&[3.0], &[5.0]).unwrap().is_none());
+    let curved = square.with_curvature(move |_, psi| rows(2.0 * psi[0]));
+    assert!(curvature_error_of(&curved) < 1e-9);
+}
+
+fn curvature_error_of(condition: &dyn Condition) -> f64 {
+    super::instrument::curvature_error(condition, &[3.0], &[5.0])
+}
+
+/// u₀ = 1 and 10 u₀ = 10 say the same; 10 u₀ = 5 does not.
+#[test]
+fn rows_of_any_length_contradict_each_other_by_their_right_hand_sides() {
+    let mut rows = SparseRows::new(2);
+    rows.push([(0, 1.0)]);
+    rows.push([(0, 10.0)]);
+    for (second, contradictory) in [(10.0, false), (5.0, true)] {
+        let found = dependence::find(&rows, &[-1.0, -second], 1.0).unwrap();
+        assert_eq!(found.contradictory, contradictory, "{second}");
+        assert_eq!(found.rows.len(), 2);
+    }
+}
+
+/// ū = p + noise of variance s²/w: p = Σ w ū/Σ w, s² = Σ w (ū − p)²/(n − 1), and p is known to s/√Σ w.
+#[test]
+fn an_estimate_weighs_its_data() {
+    let (mut data, mut weights) = (vec![1.0, 2.0, 4.0, 3.0], vec![1.0, 4.0, 0.5, 2.0]);
+    let pairs = || data.iter().zip(&weights);
+    let all: f64 = weights.iter().sum();
+    let mean = pairs().map(|(u, w)| u * w).sum::<f64>() / all;
+    let variance = pairs().map(|(u, w)| w * (u - mean).powi(2)).sum::<f64>() / 3.0;
+    data.push(0.0);
+    weights.push(0.0);
+    let mut rows = SparseRows::new(5);
+    (0..4).for_each(|row| rows.push([(row, 1.0), (4, -1.0)]));
+    let same = Linear::new("the same", rows, vec![0.0; 4]);
+    let corrector = Corrector::new(vec![Box::new(same)], weights, SETTINGS);
+    let correction = corrector.correct(&data, &data).unwrap();
+    let found = corrector.estimate(&data, &correction, 4).unwrap();
+    assert!((found.value - mean).abs() < 1e-13);
+    assert!((found.standard_error / (variance / all).sqrt() - 1.0).abs() < 1e-12);
+}
+
+/// Corners: the difference along the edge from a corner, and no other; a quarter of the cell each.
+#[test]
+fn the_corner_scheme_takes_one_sided_differences() {
+    let problem = Problem {
+        size: [3.0, 2.0],
+        ..problem()
+    };
+    let mesh = Mesh::plate(problem.size, [1, 1], CellShape::Quad4);
+    let energy = DifferenceScheme::Corners.energy(&problem, &mesh);
+    let u: Vec<f64> = noise(8).iter().map(|n| 0.2 * n).collect();
+    let at = |x: f64, y: f64| {
+        let node = mesh.nodes.iter().position(|node| *node == [x, y]).unwrap();
+        [u[2 * node], u[2 * node + 1]]
+    };
+    let mut expected = 0.0;
+    for x in [0.0, 3.0] {
+        for y in [0.0, 2.0] {
+            let (right, left, top, bottom) = (at(3.0, y), at(0.0, y), at(x, 2.0), at(x, 0.0));
+            let by_x = [0, 1].map(|i| (right[i] - left[i]) / 3.0);
+            let by_y = [0, 1].map(|i| (top[i] - bottom[i]) / 2.0);
+            let h = Gradient::new(by_x[0], by_y[0], by_x[1], by_y[1]);
+            let kinematics = Kinematics::new(&h).unwrap();
+            expected += 3.0 * problem.law.stress(&kinematics).0;
+        }
+    }
+    let mut residual = vec![0.0; 8];
+    let found = Assembly::residual(&energy, &u, &mut residual).unwrap();
+    assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+}
+
+/// The scheme of the Gauss points has the equations of Q1 elements, that of pairs of cells those of Q2: force, width,
+/// energy and field are theirs, by both paths.
+#[test]
+fn a_corrected_state_is_that_of_the_finite_elements_on_the_same_nodes() {
+    let problem = Problem {
+        size: [30.0, 10.0],
+        ..problem()
+    };
+    let plate = MassSpring::new(&problem, [12, 4], LatticeSettings { area_term: false });
+    let data = &plate.solve(&problem, TIGHT, &|_| ()).unwrap()[0];
+    for (scheme, cells, element) in [
+        (DifferenceScheme::Gauss, [12, 4], Element::Q1),
+        (DifferenceScheme::Biquadratic, [6, 2], Element::Q2),
+    ] {
+        let model = FiniteElements::new(&problem, cells, element);
+        let expected = &model.solve(&problem, TIGHT, &|_| ()).unwrap()[0];
+        let corrector = PlateCorrector::new(&problem, &plate.mesh, scheme, SETTINGS);
+        let settings = ClimbSettings {
+            tolerance: 1e-7,
+            max_iterations: 60,
+        };
+        let mut climb = Climb::even(&problem, [12, 4], scheme, settings);
+        let field = &data.displacement;
+        let direct = corrector.correct(field, STRETCH, KnownConditions::ALL);
+        let climbed = corrector.climb(&mut climb, field, STRETCH);
+        for state in [direct.unwrap().solution, climbed.unwrap().solution] {
+            for (found, expected) in [
+                (state.force, expected.force),
+                (state.mid_width, expected.mid_width),
+                (state.energy, expected.energy),
+                (state.convergence.energy, expected.energy),
+            ] {
+                assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+            }
+        }
+    }
+}
+
+/// A strip clamped on the left, pulled by a rigid grip with a force and by a traction on its upper side: the corrected
+/// field is the finite elements' equilibrium, and its multipliers are balanced by the distance to the data.
+#[test]
+fn a_corrected_specimen_is_in_equilibrium_with_loads_supports_and_ties() {
+    let mesh = Shape::Strip { size: [12.0, 6.0] }.mesh(3, CellShape::Quad4);
+    let law: Arc<dyn HyperelasticLaw> = Arc::new(NeoHooke { c10: 0.05 });
+    let boundary = BoundaryProblem {
+        thickness: 2.0,
+        law,
+        supports: vec![
+            ("left".into(), Support::Displacement([Some(0.0); 2])),
+            (
+                "right".into(),
+                Support::Grip([Drive::Force(0.8), Drive::Displacement(0.5)]),
+            ),
+        ],
+        loads: vec![("top".into(), Load::Traction([0.002, 0.003]))],
+    };
+    let energy = boundary.finite_elements(&mesh);
+    let model = boundary.on(&mesh, &energy).unwrap();
+    let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
+    let numbers = noise(state.displacement.len()).into_iter();
+    let data: Vec<f64> = numbers
+        .zip(&state.displacement)
+        .map(|(n, u)| u + 0.05 * n)
+        .collect();
+    let found = specimen::correct(&mesh, &model, &data, &state.displacement, 1.0, SETTINGS);
+    let found = found.unwrap();
+    assert!(largest_difference(&found.state.displacement, &state.displacement) < 1e-8);
+    // Stationary in every unknown: W (u − ū) + Bᵀ ψ = 0.
+    let psi: Vec<f64> = found
+        .correction
+        .multipliers
+        .iter()
+        .flat_map(|own| own.values.clone())
+        .collect();
+    let pull = found.correction.factor.jacobian().multiply_transposed(&psi);
+    let moved = difference(found.correction.field(), &data);
+    assert!(largest(&moved) > 0.01);
+    let left: Vec<f64> = moved.iter().zip(&pull).map(|(a, b)| a + b).collect();
+    assert!(largest(&left) < 1e-9, "{:.1e}", largest(&left));
+    let mut residual = vec![0.0; data.len()];
+    let potential = model.potential(1.0);
+    let stored = Assembly::residual(&*potential, &state.displacement, &mut residual).unwrap();
+    assert!((found.state.convergence.energy / stored - 1.0).abs() < 1e-8);
+    assert_eq!(potential.unknowns(), data.len());
+}
+
+#[test]
+fn no_more_steps_are_taken_than_allowed() {
+    let problem = problem();
+    let (springs, uncorrected) = lattice(&problem);
+    let plate = plate_corrector(&problem, &springs.mesh);
+    let conditions = plate.conditions(STRETCH, KnownConditions::ALL);
+    let settings = CorrectorSettings {
+        max_steps: 1,
+        ..SETTINGS
+    };
+    let data = &uncorrected.displacement;
+    let corrector = Corrector::new(conditions, vec![1.0; data.len()], settings);
+    let fault = corrector.correct(data, data).map(|_| ()).unwrap_err();
+    assert!(
+        matches!(fault, SolveFault::Stalled { iterations: 1, .. }),
+        "{fault}"
+    );
+}
