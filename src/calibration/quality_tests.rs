@@ -126,7 +126,7 @@ fn a_bound_nearby_does_not_hold_a_parameter() {
     let points = [
         (1.2, 0.05 * slope(1.2) + 1e-4),
         (1.6, 0.05 * slope(1.6)),
-        (2.0, 0.0875),
+        (2.0, 0.05 * slope(2.0)),
     ];
     let found = fitted("neo-hooke", &tests(&points), &settings);
     let estimate = found.quality.estimates[0];

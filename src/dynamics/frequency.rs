@@ -250,30 +250,31 @@ pub(super) fn conjugate_gradients(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::tests::{DENSITY, clamp, plate};
+    use crate::dynamics::tests::{DENSITY, clamp, plate, solved};
     use crate::dynamics::{Start, lumped_mass};
-    use crate::mass_spring::{LatticeSettings, MassSpring};
+    use crate::finite_element::{Element, FiniteElements};
 
     /// Beside all eigenvalues of the dense matrix M^−½ K M^−½.
     #[test]
     fn the_slowest_and_the_fastest_vibrations_are_those_of_the_dense_matrix() {
         let problem = plate();
-        let springs = MassSpring::new(&problem, [5, 3], LatticeSettings { area_term: false });
-        let size = 2 * springs.mesh.nodes.len();
+        let elements = FiniteElements::new(&problem, [5, 3], Element::Q1);
+        let size = 2 * elements.mesh.nodes.len();
         let motion = Motion {
-            energy: springs.potential(),
+            energy: elements.energy(),
             viscosity: None,
-            mass: lumped_mass(&springs.mesh, DENSITY, problem.thickness),
-            supports: vec![clamp(&springs.mesh)],
+            mass: lumped_mass(&elements.mesh, DENSITY, problem.thickness),
+            supports: vec![clamp(&elements.mesh)],
             forces: Vec::new(),
             start: Start::at_rest(size),
             describe: Box::new(|element| element.to_string()),
         };
-        let (held, rest) = (motion.held(0.0), vec![0.0; size]);
+        let stretched = solved(&problem, &elements.mesh, elements.energy(), 0.3);
+        let held = motion.held(0.0);
         let assembly = Assembly::new(motion.energy, &held);
-        let (mut residual, mut stiffness) = (rest.clone(), Vec::new());
+        let (mut residual, mut stiffness) = (vec![0.0; size], Vec::new());
         assembly
-            .linearise(motion.energy, &rest, &mut residual, &mut stiffness)
+            .linearise(motion.energy, &stretched, &mut residual, &mut stiffness)
             .unwrap();
         let (pattern, mass) = (assembly.pattern(), gather(assembly.free(), &motion.mass));
         let mut dense = DMatrix::zeros(mass.len(), mass.len());
@@ -285,7 +286,7 @@ mod tests {
         let mut squares: Vec<f64> = dense.symmetric_eigenvalues().iter().copied().collect();
         squares.sort_by(f64::total_cmp);
 
-        let modes = slowest(&motion, &held, &rest, 4).unwrap();
+        let modes = slowest(&motion, &held, &stretched, 4).unwrap();
         assert_eq!(modes.len(), 4);
         for (i, (mode, square)) in modes.iter().zip(&squares).enumerate() {
             let expected = square.sqrt() / TAU;

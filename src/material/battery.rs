@@ -550,15 +550,3 @@ fn many_points_at_once_are_each_point_by_itself() {
         );
     });
 }
-
-/// P₁₂ = μ₀ γ of a small shear, fibres or not.
-#[test]
-fn the_shear_modulus_is_the_slope_of_a_small_shear() {
-    use super::parameters::{StrainMeasure, StressMeasure};
-    let fibres = super::registry::Law::named("holzapfel-gasser-ogden").unwrap();
-    let values = [0.02, 0.03, 0.8, 0.1, 0.5];
-    let (law, _) = fibres.with_values(&values, StressMeasure::Nominal, StrainMeasure::Nominal);
-    let kinematics = Kinematics::new(&Gradient::new(0.0, 1e-7, 0.0, 0.0)).unwrap();
-    let slope = law.stress(&kinematics).1[1] / 1e-7;
-    assert!((law.shear_modulus() / slope - 1.0).abs() < 1e-5);
-}
