@@ -123,11 +123,15 @@ pub enum SolveFault {
         /// The state that is not stable, as in `I₁ = 5.10`.
         state: String,
     },
-    /// A force or pressure beyond what the body can carry.
-    #[error("the load has its maximum near load factor {factor:.4}")]
+    /// A motion that the loads drive has lost its stiffness: the load has its maximum, or a part snaps through.
+    #[error(
+        "no equilibrium follows load factor {factor:.4} under a growing load: a motion that the load drives and that is largest at {place} has lost its stiffness, so that the load has a maximum there or a part snaps through"
+    )]
     LoadMaximum {
         /// The last load factor with an equilibrium.
         factor: f64,
+        /// The unknown that moves most, named with its place.
+        place: String,
     },
     /// A direction of no stiffness that the loads do not push along: the sheet buckles, wrinkles or necks.
     #[error(

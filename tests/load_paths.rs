@@ -106,7 +106,7 @@ fn a_force_ends_at_its_maximum() {
         .map(|i| stress(0.01 * f64::from(i)))
         .fold(0.0, f64::max);
     let end = end([30.0, 10.0], 4, law, &Right::Pulled(1.0));
-    let SolveFault::LoadMaximum { factor } = end.fault else {
+    let SolveFault::LoadMaximum { factor, .. } = end.fault else {
         panic!("{}", end.fault)
     };
     assert_eq!(factor, end.reached());

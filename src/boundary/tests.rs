@@ -1,11 +1,13 @@
 use std::sync::Arc;
 
 use super::{Balance, BoundaryProblem, Drive, Load, Support};
+use crate::error::SolveFault;
 use crate::material::NeoHooke;
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::solve::potential::derivative_errors;
 use crate::solve::sparse::{largest, norm};
-use crate::solve::{Assembly, Loading, NewtonSettings, Potential, State};
+use crate::solve::{Assembly, Convergence, Loading, NewtonSettings, Potential, State};
+use crate::units::parse_linear_length;
 
 const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-13,
@@ -347,26 +349,132 @@ fn the_tangent_of_a_pressure_that_ends_freely_is_complete() {
     }
 }
 
-/// A slender cantilever under a pressure on one side up to its free end: w = 3/2 p L⁴/(E h³) for a plane-stress beam of
-/// height h with a little shear, and the tip turns towards it.
+/// A slender beam that cannot stretch under a force q per length across its turned axis, from its free end, where all is
+/// nothing, to its clamp, by Runge and Kutta's method; the displacement of the free end.
+///
+/// ```text
+/// F' = −q n,   M' = −t × F,   θ' = M/(E I),   r' = t
+/// ```
+fn elastica(q: f64, stiffness: f64, length: f64) -> [f64; 2] {
+    const STEPS: usize = 400;
+    let slope = |[fx, fy, moment, angle, ..]: [f64; 6]| {
+        let (sine, cosine) = angle.sin_cos();
+        [
+            q * sine,
+            -q * cosine,
+            sine * fx - cosine * fy,
+            moment / stiffness,
+            cosine,
+            sine,
+        ]
+    };
+    let step = length / STEPS as f64;
+    let mut state = [0.0; 6];
+    for _ in 0..STEPS {
+        let along = |k: [f64; 6], by: f64| std::array::from_fn(|i| state[i] + by * k[i]);
+        let k1 = slope(state);
+        let k2 = slope(along(k1, 0.5 * step));
+        let k3 = slope(along(k2, 0.5 * step));
+        let k4 = slope(along(k3, step));
+        state = std::array::from_fn(|i| {
+            state[i] + step / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])
+        });
+    }
+    let [.., angle, x, y] = state;
+    let [x, y] = turned([-x, -y], std::f64::consts::PI - angle);
+    [x - length, y]
+}
+
+/// A slender cantilever under a pressure on one side up to its free end, where the tangent is not symmetric.
 #[test]
 fn a_pressure_may_end_at_a_free_corner() {
     let mesh = Shape::Strip { size: [100.0, 5.0] }.mesh(2, CellShape::Quad9);
-    let modulus = 0.3;
-    let deflection = |pressure: f64| {
+    for pressure in [1e-8, 1.5e-5] {
         let problem = problem(&[("left", CLAMP)], &[("top", Load::Pressure(pressure))]);
         let found = solved(&problem, &mesh, &[]);
         assert!(found.balance.relative() < 1e-9, "{:?}", found.balance);
         let log = &found.state.convergence;
         assert!(log.iterations() <= 15, "{:?}", log.residuals);
-        mesh.displacement_at(&found.state.displacement, [100.0, 0.0])
+        let [x, y] = mesh.displacement_at(&found.state.displacement, [100.0, 0.0]);
+        let beam = elastica(pressure, 0.3 * 5.0_f64.powi(3) / 12.0, 100.0);
+        let off = (x - beam[0]).hypot(y - beam[1]) / beam[1].abs();
+        assert!(off < 0.02, "{x} {y} {beam:?}");
+    }
+}
+
+/// A strip that is squeezed far beyond its buckling: what followed from a shifted tangent would be no sensitivity.
+#[test]
+fn an_influence_field_is_refused_where_the_tangent_is_not_positive_definite() {
+    let mesh = Shape::Strip { size: [100.0, 5.0] }.mesh(2, CellShape::Quad4);
+    let supports = [
+        ("left", CLAMP),
+        ("right", Support::Displacement([Some(-10.0), Some(0.0)])),
+    ];
+    let problem = problem(&supports, &[]);
+    let energy = problem.finite_elements(&mesh);
+    let model = problem.on(&mesh, &energy).unwrap();
+    let at = |factor: f64| State {
+        factor,
+        displacement: mesh
+            .nodes
+            .iter()
+            .flat_map(|[x, _]| [-0.1 * factor * x, 0.0])
+            .collect(),
+        residual: Vec::new(),
+        load_steps: 1,
+        convergence: Convergence::default(),
     };
-    let beam = |pressure: f64| -1.5 * pressure * 100.0_f64.powi(4) / (modulus * 5.0_f64.powi(3));
-    let small = 1e-8;
-    let [_, y] = deflection(small);
-    assert!((y / beam(small) - 1.0).abs() < 0.02, "{y} {}", beam(small));
-    // At large turns a following pressure bends on where a dead one would tire.
-    let large = 1.5e-5;
-    let [x, y] = deflection(large);
-    assert!(x < -20.0 && y < -50.0, "{x} {y}");
+    assert!(model.influence(&at(0.001), "right", 0).is_ok());
+    let refused = model.influence(&at(1.0), "right", 0);
+    assert_eq!(refused, Err(SolveFault::NotPositiveDefinite));
+}
+
+/// The affine field u = G X is an equilibrium where the whole boundary moves so, and a radial motion of a round bore is one
+/// of its nodes along their radii.
+#[test]
+fn linear_and_radial_displacements_are_those_of_the_place() {
+    let linear = |text: &str| Some(parse_linear_length(text).unwrap());
+    let fields = [
+        linear("1 mm + 0.2 * X - 0.05 * Y"),
+        linear("0.1 * Y + 0.1 * X"),
+    ];
+    for (_, shape) in CellShape::NAMES {
+        let mut mesh = strip(shape);
+        mesh.name_boundary("boundary", |_| true);
+        let problem = problem(&[("boundary", Support::LinearDisplacement(fields))], &[]);
+        let found = solved(&problem, &mesh, &[]);
+        for (place, u) in mesh
+            .nodes
+            .iter()
+            .zip(found.state.displacement.chunks_exact(2))
+        {
+            for (u, field) in u.iter().zip(fields) {
+                assert!((u - field.unwrap().at(*place)).abs() < 1e-11, "{shape:?}");
+            }
+        }
+        assert!(found.balance.relative() < 1e-9, "{:?}", found.balance);
+    }
+    let radii = [10.0, 20.0];
+    let mesh = Shape::RingSector { radii, angle: 1.0 }.mesh(4, CellShape::Quad9);
+    let radial = Support::Radial {
+        centre: [0.0; 2],
+        displacement: 2.0,
+    };
+    let found = solved(&problem(&[("inside", radial)], &[]), &mesh, &[]);
+    for node in &mesh.groups()["inside"].nodes {
+        let [x, y] = mesh.nodes[*node];
+        let u = &found.state.displacement[2 * node..2 * node + 2];
+        assert!(
+            (u[0] - 0.2 * x).abs() < 1e-12 && (u[1] - 0.2 * y).abs() < 1e-12,
+            "{u:?}"
+        );
+    }
+    let through = Support::Radial {
+        centre: mesh.nodes[mesh.groups()["inside"].nodes[0]],
+        displacement: 2.0,
+    };
+    let refused = problem(&[("inside", through)], &[])
+        .check(&mesh)
+        .unwrap_err();
+    assert!(refused[0].message.contains("at the centre"), "{refused:?}");
 }

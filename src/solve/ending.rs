@@ -56,15 +56,13 @@ pub fn diagnose(
     let Some((_, mode)) = newton.softest_mode(&*potential, &u) else {
         return fault;
     };
-    if is_driven(newton, loading, factor, &u, &mode) {
-        return SolveFault::LoadMaximum {
-            factor: previous.map_or(0.0, |state| state.factor),
-        };
-    }
     let most = (0..mode.len()).max_by(|a, b| mode[*a].abs().total_cmp(&mode[*b].abs()));
-    SolveFault::Buckling {
-        place: most.map_or_else(String::new, |unknown| loading.describe_unknown(unknown)),
+    let place = most.map_or_else(String::new, |unknown| loading.describe_unknown(unknown));
+    if !is_driven(newton, loading, factor, &u, &mode) {
+        return SolveFault::Buckling { place };
     }
+    let factor = previous.map_or(0.0, |state| state.factor);
+    SolveFault::LoadMaximum { factor, place }
 }
 
 /// A place at or near the last equilibrium at which a direction has no stiffness any more.

@@ -270,6 +270,12 @@ impl Newton {
         let Some((first, others)) = residuals.split_first() else {
             return Ok(Vec::new());
         };
+        if !self.skew.is_empty() {
+            return residuals
+                .iter()
+                .map(|residual| self.change(residual))
+                .collect();
+        }
         let mut changes = vec![self.change(first)?];
         let free = self.assembly.free();
         for group in others.chunks(TOGETHER) {

@@ -76,6 +76,9 @@ impl PathEnd {
 /// The shortest step, as a share of the load factor that it leads to; how near a path comes to its end.
 const SHORTEST: f64 = 1.0 / 1024.0;
 
+/// The shortest step from rest, as a share of the load factor that is wanted.
+const SHORTEST_FROM_REST: f64 = 1.0 / 1_048_576.0;
+
 /// Iterations up to which a step was easy.
 const EASY: usize = 6;
 
@@ -180,7 +183,7 @@ impl Path<'_> {
         from: Option<&State>,
         factor: f64,
     ) -> Result<State, (SolveFault, Option<Box<State>>)> {
-        let shortest = SHORTEST * factor.abs();
+        let from_rest = SHORTEST_FROM_REST * factor.abs();
         let (mut last, mut load_steps, mut halved) = (None::<Box<State>>, 0, false);
         loop {
             let previous = last.as_deref().or(from);
@@ -210,7 +213,7 @@ impl Path<'_> {
                     }
                     last = Some(Box::new(state));
                 }
-                Err(_) if 0.5 * (aim - start).abs() >= shortest => {
+                Err(_) if 0.5 * (aim - start).abs() >= from_rest.max(SHORTEST * aim.abs()) => {
                     self.step = 0.5 * (aim - start).abs();
                     halved = true;
                 }
@@ -375,6 +378,22 @@ mod tests {
         assert!(steps > 6 && steps < 16, "{steps}");
     }
 
+    /// A maximum far below the load that is wanted is found as exactly as one near by.
+    #[test]
+    fn a_maximum_far_below_the_wanted_load_is_named() {
+        let point = Point {
+            energy: |u, _| Some([0.5 * u * u - u.powi(3) / 6.0, u - 0.5 * u * u, 1.0 - u]),
+        };
+        let end = follow(&point, &[1000.0], NEWTON, &|_| ()).unwrap_err();
+        let reached = end.reached();
+        assert!(reached <= 0.5 && reached > 0.5 - 2e-3, "{reached}");
+        assert!(
+            matches!(end.fault, SolveFault::LoadMaximum { .. }),
+            "{}",
+            end.fault
+        );
+    }
+
     /// The force u − u²/2 has its maximum ½ at u = 1.
     #[test]
     fn a_path_comes_near_to_the_maximum_of_its_load_and_names_it() {
@@ -397,7 +416,8 @@ mod tests {
         assert_eq!(
             end.fault,
             SolveFault::LoadMaximum {
-                factor: last.factor
+                factor: last.factor,
+                place: "its place".into(),
             }
         );
     }

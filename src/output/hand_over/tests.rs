@@ -486,3 +486,34 @@ fn febio_gets_half_of_the_loads_on_faces_that_look_outwards() {
         assert!(file.text.contains("<pressure lc=\"1\">0.01</pressure>"));
     }
 }
+
+/// A displacement that is linear in the place goes out node by node.
+#[test]
+fn linear_displacements_go_out_with_the_value_of_every_node() {
+    let card = Card::load("neo-hooke", Path::new(".")).unwrap();
+    let mesh = Shape::Strip { size: [4.0, 2.0] }.mesh(2, CellShape::Quad4);
+    let field = crate::units::parse_linear_length("0.1 * X + 0.05 * Y").unwrap();
+    let mut problem = problem(&card);
+    problem.supports[1].1 = Support::LinearDisplacement([Some(field), None]);
+    let given = HandOver {
+        title: "strip",
+        problem: &problem,
+        card: &card,
+        mesh: &mesh,
+        factors: &[1.0],
+        bulk_ratio: 100.0,
+    };
+    for code in [Code::CalculiX, Code::FeBio] {
+        assert!(hand_over(&given, code).is_ok());
+    }
+    let text = hand_over(&given, Code::CalculiX).unwrap().text;
+    for node in &mesh.groups()["right"].nodes {
+        let line = format!("\n{}, 1, 1, ", node + 1);
+        let (_, after) = text.split_once(&line).expect("a line of the node");
+        let value: f64 = after.lines().next().unwrap().parse().unwrap();
+        assert!(
+            (value - field.at(mesh.nodes[*node])).abs() < 1e-12,
+            "{value}"
+        );
+    }
+}
