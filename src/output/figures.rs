@@ -389,11 +389,17 @@ fn errors(results: &Results) -> LineChart {
     let displacement: Measure = |deviation| deviation.displacement_percent;
     let line = |(label, (deviation, colour), stroke, value): (&str, (OfStep, _), _, Measure)| {
         let point = |step: &StepComparison| Some([100.0 * step.stretch, value(&deviation(step)?)]);
+        let points: Vec<[f64; 2]> = results.comparison.iter().filter_map(point).collect();
         Line {
             label: label.to_owned(),
-            points: results.comparison.iter().filter_map(point).collect(),
+            // A single point has no line to be seen by.
+            stroke: if points.len() == 1 {
+                Stroke::Points
+            } else {
+                stroke
+            },
+            points,
             colour,
-            stroke,
         }
     };
     let lines = [

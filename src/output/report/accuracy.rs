@@ -3,6 +3,7 @@
 use super::{Block, at_stretches, figure, heading, power};
 use crate::compare::{Deviation, StepComparison};
 use crate::corrector::DifferenceScheme;
+use crate::corrector::plate::CorrectedState;
 use crate::finite_element::convergence::Richardson;
 use crate::problem::{Problem, Solution};
 use crate::results::{MODELS, Results};
@@ -202,6 +203,7 @@ pub fn convergence(study: &Study, results: &Results) -> Vec<Block> {
         )),
     ];
     blocks.push(Block::Paragraph(role_of_springs(study)));
+    blocks.extend(starts(results));
     let without = results.stretches_without_springs();
     if !without.is_empty() {
         blocks.push(Block::Paragraph(format!(
@@ -212,12 +214,29 @@ pub fn convergence(study: &Study, results: &Results) -> Vec<Block> {
     blocks
 }
 
+/// How the climb came to the corrected field at every stretch; nothing where the method was direct.
+fn starts(results: &Results) -> Option<Block> {
+    let row = |(step, state): (&StepComparison, &Option<CorrectedState>)| {
+        let way = state.as_ref()?.way.as_ref()?;
+        let stretch = Problem::percent(step.stretch);
+        Some(vec![stretch, way.to_string(), figure(Some(way.away), 3)])
+    };
+    let steps = results.comparison.iter().zip(&results.corrected);
+    let rows: Vec<_> = steps.filter_map(row).collect();
+    let head = [
+        "stretch [%]",
+        "the climb began with",
+        "root mean square distance of that to the corrected field on the first grid [mm]",
+    ];
+    (!rows.is_empty()).then(|| Block::table(&head, rows))
+}
+
 /// What the springs do, and what they do not.
 fn role_of_springs(study: &Study) -> String {
     let start = match study.climb {
         Some(_) => {
-            "The climb begins on a coarse lattice of springs of its own and needs the study's springs for the \
-             multipliers alone."
+            "The climb begins with a field of its own on a coarse grid, as the table says, and needs the study's springs \
+             for the multipliers alone."
         }
         None => {
             "The direct method begins at the springs' field, and the multipliers are those of that field."
