@@ -19,6 +19,8 @@ use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::solve::Newton;
 use crate::units::Dimension;
 
+mod springs_or_affine;
+
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
     let plate = Plate::read(root, folder);
@@ -77,6 +79,7 @@ fn compute(
     };
     let mut outcome = Outcome::default();
     known_conditions(plate, &fields, progress, &mut outcome)?;
+    springs_or_affine::side_by_side(plate, &fields, &mut outcome)?;
     other_lattices(plate, &fields, disturbance, seed, progress, &mut outcome)?;
     plain_newton(plate, &fields, &mut outcome)?;
     Ok(outcome)

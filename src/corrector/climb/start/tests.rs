@@ -105,7 +105,7 @@ fn any_plate_climbs_to_the_direct_field() {
         -4.0..0.4772_f64,
     );
     let config = Config {
-        cases: 40,
+        cases: 80,
         rng_seed: RngSeed::Fixed(15),
         failure_persistence: None,
         ..Config::default()
