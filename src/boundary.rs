@@ -14,6 +14,7 @@ use crate::units::Linear;
 mod balance;
 mod contradictions;
 mod discretised;
+mod groups;
 mod loads;
 mod pressure;
 mod rigid;

@@ -255,6 +255,10 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
 
 /// Prints the checks and decides on the exit code.
 fn conclude(cases: &[Computed], report: &Path) -> Outcome {
+    for warning in cases.iter().flat_map(|case| &case.outcome.warnings) {
+        let warning = warning.strip_prefix("Warning: ").unwrap_or(warning);
+        warn(&[Diagnostic::warning("", warning)]);
+    }
     print(&format!(
         "{}\nreport: {}\n",
         message::checks(cases),

@@ -24,17 +24,33 @@ pub struct Document<'a> {
 
 /// Collects what is found while a document is read.
 #[derive(Debug, Default)]
-pub struct Faults(RefCell<Vec<Diagnostic>>);
+pub struct Faults {
+    found: RefCell<Vec<Diagnostic>>,
+    defaulted: RefCell<Vec<String>>,
+}
 
 impl Faults {
     /// Adds a finding.
     pub fn push(&self, diagnostic: Diagnostic) {
-        self.0.borrow_mut().push(diagnostic);
+        self.found.borrow_mut().push(diagnostic);
+    }
+
+    /// Notes a key that was not written and took its default.
+    fn defaulted(&self, said: String) {
+        let mut all = self.defaulted.borrow_mut();
+        if !all.contains(&said) {
+            all.push(said);
+        }
+    }
+
+    /// The keys that were not written, with the defaults that they took: `finite_element.element = "Q2"`.
+    pub fn defaults(&self) -> Vec<String> {
+        self.defaulted.borrow().clone()
     }
 
     /// Whether nothing found so far stops the program.
     pub fn none(&self) -> bool {
-        self.0
+        self.found
             .borrow()
             .iter()
             .all(|fault| fault.severity == Severity::Warning)
@@ -46,7 +62,7 @@ impl Faults {
     /// [`Error::Input`] with all findings when one of them is an error.
     pub fn finish(self) -> Result<Vec<Diagnostic>, Error> {
         let ok = self.none();
-        let mut all = self.0.into_inner();
+        let mut all = self.found.into_inner();
         all.sort_by_key(|fault| fault.place.as_ref().map_or(0, |(_, span)| span.start));
         if ok { Ok(all) } else { Err(Error::Input(all)) }
     }

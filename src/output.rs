@@ -14,6 +14,7 @@ mod html;
 mod identification;
 mod json;
 mod markdown;
+mod material;
 pub mod measured;
 pub mod picture;
 mod report;
@@ -28,7 +29,8 @@ pub use figures::{
 };
 pub use fit::{fit_json, fit_picture};
 pub use identification::{identification_json, identification_picture};
-pub use report::Block;
+pub use material::material_json;
+pub use report::{Block, material_statement};
 pub use warnings::warnings;
 
 /// Writes everything a study asks for into its folder and returns the files in the order of writing.

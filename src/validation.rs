@@ -40,6 +40,8 @@ pub type Progress<'a> = &'a dyn Fn(&str);
 pub struct Ready {
     title: String,
     kind: &'static str,
+    text: String,
+    defaults: Vec<String>,
     prepared: Prepared,
     /// What deserves attention but does not stop the work.
     pub warnings: Vec<Diagnostic>,
@@ -278,16 +280,12 @@ impl Case {
         let ready = self.read(Path::new(self.file), self.study)?;
         match ready.compute(progress) {
             Err(fault @ Error::Solve { .. }) => {
-                let check = Check::new(
-                    fault.to_string(),
-                    "–",
-                    Wanted::AtMost(0.0),
-                    "no fault",
-                    f64::NAN,
-                );
+                let check = Check::fault(fault.to_string(), "no fault");
                 Ok(Computed {
                     title: self.kind.to_owned(),
                     kind: self.kind,
+                    text: self.study.to_owned(),
+                    defaults: Vec::new(),
                     outcome: Outcome {
                         checks: vec![check],
                         ..Outcome::default()
@@ -304,22 +302,24 @@ impl Case {
     /// # Errors
     /// [`Error::Input`] with every fault.
     pub fn read(&self, file: &Path, text: &str) -> Result<Ready, Error> {
-        let (title, prepared, warnings) = self.read_with(file, text, self.prepare)?;
+        let read = self.read_with(file, text, self.prepare)?;
         Ok(Ready {
-            title,
+            title: read.title,
             kind: self.kind,
-            prepared,
-            warnings,
+            text: text.to_owned(),
+            defaults: read.defaults,
+            prepared: read.made,
+            warnings: read.warnings,
         })
     }
 
-    /// What `read` makes of a study of this case, after its title and before the warnings.
+    /// What `read` makes of a study of this case.
     fn read_with<T>(
         &self,
         file: &Path,
         text: &str,
         read: impl FnOnce(&Section, &Path) -> T,
-    ) -> Result<(String, T, Vec<Diagnostic>), Error> {
+    ) -> Result<Read<T>, Error> {
         let folder = file.parent().unwrap_or(Path::new("."));
         let file = file.display().to_string();
         let faults = Faults::default();
@@ -333,9 +333,24 @@ impl Case {
             root.unknown_keys();
             (title, made)
         };
+        let defaults = faults.defaults();
         let warnings = faults.finish()?;
-        Ok((title, made, warnings))
+        Ok(Read {
+            title,
+            made,
+            defaults,
+            warnings,
+        })
     }
+}
+
+/// What was read of a study.
+struct Read<T> {
+    title: String,
+    made: T,
+    /// The keys that it does not hold, with the defaults that they took.
+    defaults: Vec<String>,
+    warnings: Vec<Diagnostic>,
 }
 
 impl Ready {
@@ -349,6 +364,8 @@ impl Ready {
         Ok(Computed {
             title: self.title,
             kind: self.kind,
+            text: self.text,
+            defaults: self.defaults,
             outcome,
             seconds: start.elapsed().as_secs_f64(),
         })

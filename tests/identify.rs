@@ -31,7 +31,11 @@ fn an_identified_law_is_taken_by_a_study() {
         assert!(here.join("law/spring").with_extension(ending).exists());
     }
     let law = fs::read_to_string(here.join("law/spring.toml")).unwrap();
-    fs::write(here.join("study.toml"), format!("kind = \"motion\"\n{law}")).unwrap();
+    let plate = "[material]\ncard = \"pva-10\"\ndensity = \"1020 kg/m^3\"\n\
+        [plate]\nlength = \"15 cm\"\nwidth = \"5 cm\"\nthickness = \"2 mm\"\n\
+        [start]\nstretch = \"10 %\"\n[grip]\nmotion = \"hold\"\n[time]\nduration = \"1 s\"\n";
+    let study = format!("kind = \"motion\"\n{plate}{law}");
+    fs::write(here.join("study.toml"), study).unwrap();
     gelbench(here, &["check", "study.toml"]).code(0);
 }
 

@@ -6,13 +6,23 @@ mod common;
 
 use common::{folder_with, gelbench, words};
 
-/// A motion study with little to compute.
+/// A motion study with little to compute; the rest says what is not released from 10 % stretch.
 fn motion(rest: &str) -> String {
+    let usual = [
+        ("[start]", "[start]\nstretch = \"10 %\"\n"),
+        ("[grip]", "[grip]\nmotion = \"release\"\ntime = \"0 s\"\n"),
+        (
+            "[material]",
+            "[material]\ncard = \"pva-10\"\ndensity = \"1020 kg/m^3\"\n",
+        ),
+    ];
+    let usual = usual.iter().filter(|(head, _)| !rest.contains(head));
+    let usual: String = usual.map(|(_, text)| *text).collect();
     format!(
         "kind = \"motion\"\ntitle = \"small\"\n\
          [plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\nthickness = \"1 mm\"\ncells = [6, 2]\n\
          [finite_element]\nelement = \"Q1\"\ncells = [6, 2]\n\
-         [[probe]]\nname = \"end\"\nat = [\"30 mm\", \"5 mm\"]\n{rest}\n"
+         [[probe]]\nname = \"end\"\nat = [\"30 mm\", \"5 mm\"]\n{usual}{rest}\n"
     )
 }
 
@@ -42,7 +52,7 @@ fn a_released_plate_is_written_with_tables_and_series() {
 
 #[test]
 fn a_viscous_plate_in_sine_motion_dissipates_under_gravity_and_a_force() {
-    let rest = "[material]\ndensity = \"1 g/cm^3\"\n\
+    let rest = "[material]\ncard = \"pva-10\"\ndensity = \"1 g/cm^3\"\n\
         [material.viscosity]\nshear = \"100 Pa·s\"\nrelaxation = [{ share = 0.2, time = \"5 ms\" }]\n\
         [grip]\nmotion = \"sine\"\namplitude = \"2 %\"\nfrequency = \"50 Hz\"\n\
         [gravity]\nx = \"0 m/s^2\"\ny = \"-9.81 m/s^2\"\n\
@@ -64,7 +74,7 @@ fn a_viscous_plate_in_sine_motion_dissipates_under_gravity_and_a_force() {
 
 #[test]
 fn every_fault_of_a_motion_is_told_with_its_remedy() {
-    let rest = "[material]\ndensity = \"1 mm\"\n\
+    let rest = "[material]\ncard = \"pva-10\"\ndensity = \"1 mm\"\n\
         [grip]\nmotion = \"table\"\ntimes = [\"0 s\", \"0 s\"]\nstretches = [\"10 %\", \"20 %\"]\n\
         [time]\nduration = \"1 s\"\ninterval = \"2 s\"\nintegrator = \"verlet\"\n\
         [[force]]\nat = [\"40 mm\", \"0 mm\"]\nx = \"1 N\"\ny = \"0 N\"\n\
@@ -83,4 +93,47 @@ fn every_fault_of_a_motion_is_told_with_its_remedy() {
         assert!(told.contains(fault), "{fault}: {told}");
     }
     assert!(!folder.path().join("output").exists());
+}
+
+/// What moves is never taken from the study that comes along.
+#[test]
+fn a_motion_that_does_not_say_its_physics_is_refused() {
+    let folder =
+        folder_with("kind = \"motion\"\ntitle = \"nothing\"\n[grip]\nmotion = \"release\"\n");
+    let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
+    let told = words(&done.get_output().stderr);
+    for key in [
+        "material.card: is missing",
+        "material.density: is missing",
+        "plate.length: is missing",
+        "plate.width: is missing",
+        "plate.thickness: is missing",
+        "start.stretch: is missing",
+        "grip.time: is missing",
+        "time.duration: is missing",
+    ] {
+        assert!(told.contains(key), "{key}: {told}");
+    }
+    assert!(told.contains("card = \"pva-10\""), "{told}");
+}
+
+#[test]
+fn the_report_of_a_motion_says_plate_material_and_grips() {
+    let folder = folder_with(&motion(TIME));
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+    let (report, json) = (read("report.md"), read("report.json"));
+    for said in [
+        "30 × 10 × 1 mm at rest",
+        "held at 10.0000 % stretch; let go at 0 s",
+        "1020.0 kg/m³",
+        "marlow-exponential",
+        "0.0611 MPa",
+    ] {
+        assert!(report.contains(said), "{said}: {report}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let material = &json["statement"]["material"];
+    assert_eq!(material["parameters"]["amplitude"]["value"], 0.0611);
+    assert_eq!(json["statement"]["thickness_mm"], 1.0);
 }

@@ -1,6 +1,7 @@
 //! A boundary value problem on a mesh: its solution, and what follows from its states.
 
 use super::balance::{Balance, Body, Resultant};
+use super::groups::shares;
 use super::loads::Loaded;
 use super::rigid::free_motions;
 use super::supports::{Motion, Supported};
@@ -81,7 +82,7 @@ impl<'a> Discretised<'a> {
 
     /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
     /// state, while everything else that is held rests; the field in mm/N that a force on the group brings about where it
-    /// is a grip with a given force.
+    /// is a grip with a given force, or where nothing holds it.
     ///
     /// # Errors
     /// A [`SolveFault`] when the tangent cannot be factorised.
@@ -111,6 +112,14 @@ impl<'a> Discretised<'a> {
             force = Some(unit);
         }
         let at = (state.factor, &*state.displacement);
+        if force.is_none() && motion.iter().all(|motion| *motion == 0.0) {
+            // Nothing holds or pulls the group: a unit of force on it, shared as its mean displacement is.
+            let mut unit = vec![0.0; motion.len()];
+            for (node, share) in shares(self.mesh, &self.mesh.groups()[name]) {
+                unit[2 * node + axis] += share;
+            }
+            force = Some(unit);
+        }
         let mut field = match force {
             Some(force) => compliance(self, at, &force)?,
             None => influence(self, at, &motion)?,
@@ -119,21 +128,6 @@ impl<'a> Discretised<'a> {
             field[*unknown] = field[*master];
         }
         Ok(field)
-    }
-
-    /// The mean displacement of a group in mm, from a state.
-    ///
-    /// # Panics
-    /// When the mesh has no such group.
-    pub fn displacement(&self, state: &State, name: &str) -> [f64; 2] {
-        let nodes = &self.mesh.groups()[name].nodes;
-        [0, 1].map(|axis| {
-            let sum: f64 = nodes
-                .iter()
-                .map(|node| state.displacement[2 * node + axis])
-                .sum();
-            sum / nodes.len() as f64
-        })
     }
 
     /// The force of the supports on a group in N, from a state: the internal forces of its nodes less the loads on them,

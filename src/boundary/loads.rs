@@ -161,7 +161,7 @@ fn need_edges(group: &Group, what: &str) -> Result<(), String> {
 }
 
 /// The share of an edge's length that belongs to each of its nodes, in mm.
-fn edge_lengths(mesh: &Mesh, edge: &[usize]) -> Vec<(usize, f64)> {
+pub fn edge_lengths(mesh: &Mesh, edge: &[usize]) -> Vec<(usize, f64)> {
     const GAUSS: [(f64, f64); 3] = [
         (-0.774_596_669_241_483_4, 5.0 / 9.0),
         (0.0, 8.0 / 9.0),

@@ -127,7 +127,7 @@ fn shape(
             "turn the signs of supports and loads in the study",
         ));
     }
-    let (imported, sites) = import(options, factor, &specimen.lattice())?;
+    let (imported, sites) = import(options, factor, &specimen.outline.lattice())?;
     Ok(Compared {
         title,
         law: Arc::clone(&specimen.problem.law),

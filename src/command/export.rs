@@ -92,7 +92,7 @@ pub fn not_for_other_codes(case: &Case) -> Error {
 fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<Written, Error> {
     let mesh = match (specimen.refinement, options.level) {
         (_, Level::Fine) => specimen::finest_mesh(specimen)?,
-        (None, level) => specimen.reference_meshes()[level as usize].clone(),
+        (None, level) => specimen.outline.reference_meshes()[level as usize].clone(),
         (Some(_), _) => {
             let message = "a study with `adaptive = true` has one mesh, the refined one";
             return Err(Error::input(message, "leave out --mesh"));

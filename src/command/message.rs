@@ -147,12 +147,15 @@ pub fn checks(cases: &[Computed]) -> String {
         };
         text += &format!(
             "{} {}: {} = {} {} ({wanted})\n",
-            if check.passed() { "pass" } else { "FAIL" },
+            check.judgement().word(),
             case.kind,
             check.quantity,
             number(check.computed),
             check.unit,
         );
+        if let Some(remark) = check.judgement().remark() {
+            text += &format!("     {remark}\n");
+        }
     }
     text + &format!("{} of {} checks passed\n", passed[1], passed[0] + passed[1])
 }

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::{Bound, Faults};
 use crate::error::{Diagnostic, Source, nearest, suggestion};
-use crate::units::{self, Dimension, QuantityFault};
+use crate::units::{self, Dimension, Linear, LinearFault, QuantityFault};
 
 /// One table of a document.
 #[derive(Debug)]
@@ -21,6 +21,7 @@ pub struct Section<'a> {
     defaults: Option<&'a DeTable<'a>>,
     faults: &'a Faults,
     known: RefCell<Vec<&'static str>>,
+    required: &'static [&'static str],
 }
 
 type Value<'a> = &'a Spanned<DeValue<'a>>;
@@ -41,7 +42,14 @@ impl<'a> Section<'a> {
             defaults,
             faults,
             known: RefCell::default(),
+            required: &[],
         }
+    }
+
+    /// With keys that the file must hold: for these a default is an example, and never taken.
+    #[must_use]
+    pub fn requiring(self, required: &'static [&'static str]) -> Self {
+        Self { required, ..self }
     }
 
     /// The table under `key`; a missing one is read from the defaults alone.
@@ -76,6 +84,7 @@ impl<'a> Section<'a> {
             defaults,
             faults: self.faults,
             known: RefCell::default(),
+            required: &[],
         }
     }
 
@@ -91,7 +100,11 @@ impl<'a> Section<'a> {
         };
         let table = |item: &'a Spanned<DeValue<'a>>| match item.get_ref() {
             DeValue::Table(table) => Some((table, item.span())),
-            _ => None,
+            _ => {
+                let hint = format!("write [[{}]] before each", self.full(key));
+                self.fault_at(key, item, "must be a list of tables", &hint);
+                None
+            }
         };
         let tables = items.iter().filter_map(table).enumerate();
         tables
@@ -103,6 +116,7 @@ impl<'a> Section<'a> {
                 defaults: None,
                 faults: self.faults,
                 known: RefCell::default(),
+                required: &[],
             })
             .collect()
     }
@@ -225,15 +239,43 @@ impl<'a> Section<'a> {
 
     /// A quantity with a unit, in the internal unit of `dimension`.
     pub fn quantity(&self, key: &'static str, dimension: Dimension, bound: Bound) -> f64 {
-        match self.value(key) {
+        match self.value_like(key, dimension.example()) {
             Some(value) => self.quantity_of(key, value, dimension, bound),
             None => f64::NAN,
         }
     }
 
+    /// A length that may be linear in the place at rest, as text such as `"2 mm + 0.1 * X"`.
+    pub fn linear_length(&self, key: &'static str) -> Linear {
+        const EXAMPLE: &str = "\"2 mm\" or \"0.1 * X\"";
+        let nothing = Linear::constant(f64::NAN);
+        let Some(value) = self.value_like(key, EXAMPLE) else {
+            return nothing;
+        };
+        let DeValue::String(text) = value.get_ref() else {
+            self.fault_at(
+                key,
+                value,
+                "must be a length",
+                &format!("such as {EXAMPLE}"),
+            );
+            return nothing;
+        };
+        units::parse_linear_length(text).unwrap_or_else(|fault| {
+            self.fault_at(
+                key,
+                value,
+                &format!("\"{text}\" {fault}"),
+                LinearFault::HINT,
+            );
+            nothing
+        })
+    }
+
     /// A list of quantities of one dimension.
     pub fn quantities(&self, key: &'static str, dimension: Dimension, bound: Bound) -> Vec<f64> {
-        let Some(value) = self.value(key) else {
+        let example = format!("[{}, …]", dimension.example());
+        let Some(value) = self.value_like(key, &example) else {
             return Vec::new();
         };
         match value.get_ref() {
@@ -388,15 +430,45 @@ impl<'a> Section<'a> {
         converted
     }
 
-    /// The value in the file, else the default; a fault when there is neither.
+    /// The value in the file, else the default; a fault when there is neither, or when the file must hold it.
     fn value(&self, key: &'static str) -> Option<Value<'a>> {
-        let found = self
-            .written(key)
-            .or_else(|| self.defaults.and_then(|table| table.get(key)));
-        if found.is_none() {
-            self.fault(key, "is missing", &format!("add `{key} = …`"));
+        self.value_like(key, "…")
+    }
+
+    /// The same with an example for the fault where the defaults have none.
+    fn value_like(&self, key: &'static str, example: &str) -> Option<Value<'a>> {
+        if let Some(written) = self.written(key) {
+            return Some(written);
         }
-        found
+        let default = self.defaults.and_then(|table| table.get(key));
+        let required = self.required.contains(&key);
+        match default.filter(|_| !required) {
+            Some(default) => {
+                let said = format!("{} = {}", self.full(key), shown(default.get_ref()));
+                self.faults.defaulted(said);
+                Some(default)
+            }
+            None => {
+                let example = default.map_or(example.to_owned(), |value| shown(value.get_ref()));
+                self.missing(key, &example);
+                None
+            }
+        }
+    }
+
+    /// Records that the file does not hold a key, with an example of its value.
+    fn missing(&self, key: &'static str, example: &str) {
+        let hint = match (self.required.contains(&key), self.path.is_empty()) {
+            (false, _) => format!("add `{key} = {example}`"),
+            (true, true) => {
+                format!("only what a study says is done: add `{key} = {example}`, for example")
+            }
+            (true, false) => format!(
+                "only what a study says is done: add `{key} = {example}`, for example, under [{}]",
+                self.path
+            ),
+        };
+        self.fault(key, "is missing", &hint);
     }
 
     fn written(&self, key: &'static str) -> Option<Value<'a>> {
@@ -429,6 +501,27 @@ impl<'a> Section<'a> {
             key.to_owned()
         } else {
             format!("{}.{key}", self.path)
+        }
+    }
+}
+
+/// A value as a document has it.
+fn shown(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => super::quoted(text),
+        DeValue::Integer(number) => number.as_str().to_owned(),
+        DeValue::Float(number) => number.as_str().to_owned(),
+        DeValue::Boolean(flag) => flag.to_string(),
+        DeValue::Datetime(date) => date.to_string(),
+        DeValue::Array(items) => {
+            let items = items.iter().map(|item| shown(item.get_ref()));
+            format!("[{}]", items.collect::<Vec<_>>().join(", "))
+        }
+        DeValue::Table(table) => {
+            let entries = table.iter();
+            let entries = entries
+                .map(|(key, value)| format!("{} = {}", key.get_ref(), shown(value.get_ref())));
+            format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
         }
     }
 }

@@ -13,6 +13,8 @@ use super::warnings::warnings;
 mod accuracy;
 mod material;
 
+pub use material::material as material_statement;
+
 /// A part of a report.
 #[derive(Clone, Debug)]
 pub enum Block {

@@ -30,6 +30,9 @@ const SMALLEST: f64 = 1e-9;
 pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
     const KEY: &str = "card";
     let name = section.text(KEY);
+    if name.is_empty() && !section.has(KEY) {
+        return None; // told already
+    }
     match Card::load(&name, folder) {
         Ok(card) if card.offset == OffsetTreatment::Keep => {
             section.fault(

@@ -21,6 +21,7 @@ mod corrected;
 mod files;
 mod outcome;
 mod read;
+mod statement;
 
 use read::MovingPlate;
 

@@ -1,7 +1,8 @@
 //! What a case finds: checks, claims, explanations, pictures.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
+use crate::compare::judgement::Judgement;
 use crate::output::{Block, Figure};
 
 /// What a computed value has to be.
@@ -28,6 +29,9 @@ pub struct Check {
     pub source: &'static str,
     /// What gelbench computed.
     pub computed: f64,
+    /// The own error of what it was compared with, in the check's unit, where that is known.
+    pub own_error: Option<f64>,
+    judgement: Option<Judgement>,
 }
 
 impl Check {
@@ -45,6 +49,23 @@ impl Check {
             wanted,
             source,
             computed,
+            own_error: None,
+            judgement: None,
+        }
+    }
+
+    /// A fault that leaves nothing to be checked.
+    pub fn fault(quantity: impl Into<String>, source: &'static str) -> Self {
+        Self::new(quantity, "–", Wanted::AtMost(0.0), source, f64::NAN)
+    }
+
+    /// With what the comparison with something that has an error of its own comes to.
+    #[must_use]
+    pub fn judged(self, judgement: Judgement, own_error: f64) -> Self {
+        Self {
+            judgement: Some(judgement),
+            own_error: own_error.is_finite().then_some(own_error),
+            ..self
         }
     }
 
@@ -56,8 +77,31 @@ impl Check {
         }
     }
 
-    /// Whether the value is what it has to be; one that is not a number is not.
+    /// What the check comes to.
+    pub fn judgement(&self) -> Judgement {
+        match &self.judgement {
+            Some(judgement) => judgement.clone(),
+            None if self.is_met() => Judgement::Pass,
+            None => Judgement::Fail,
+        }
+    }
+
+    /// Whether the check passed; one that cannot be judged did not.
     pub fn passed(&self) -> bool {
+        self.judgement().passed()
+    }
+
+    /// `pass`, `FAIL` or `cannot be judged`, with the reason where there is one.
+    pub fn result(&self) -> String {
+        let judgement = self.judgement();
+        match judgement.remark() {
+            Some(remark) => format!("{}: {remark}", judgement.word()),
+            None => judgement.word().to_owned(),
+        }
+    }
+
+    /// Whether the value is what it has to be; one that is not a number is not.
+    fn is_met(&self) -> bool {
         match self.wanted {
             Wanted::Equal(_, tolerance) => {
                 self.error_percent().is_some_and(|error| error <= tolerance)
@@ -94,6 +138,13 @@ pub struct Outcome {
     pub files: Vec<(String, Vec<u8>)>,
     /// Times that were measured: what, and seconds.
     pub times: Vec<(String, f64)>,
+    /// What deserves attention in the results, each in a sentence.
+    pub warnings: Vec<String>,
+    /// The worst balance of forces and moments of all boundary value problems that were solved, relative to the largest
+    /// force or moment; `None` where none was solved.
+    pub balance: Option<f64>,
+    /// More for machines than checks and times: key and value.
+    pub json: Map<String, Value>,
 }
 
 /// A case that was computed.
@@ -103,6 +154,10 @@ pub struct Computed {
     pub title: String,
     /// The case's kind.
     pub kind: &'static str,
+    /// The study's text; empty where there is none.
+    pub text: String,
+    /// The keys that it does not hold, with the defaults that they took.
+    pub defaults: Vec<String>,
     /// Its result.
     pub outcome: Outcome,
     /// Computing time in s.
@@ -131,6 +186,9 @@ impl Computed {
                 "computed": check.computed,
                 "error_percent": check.error_percent(),
                 "tolerance_percent": tolerance,
+                "own_error": check.own_error,
+                "result": check.judgement().word(),
+                "remark": check.judgement().remark(),
                 "passed": check.passed(),
             })
         };
@@ -139,12 +197,20 @@ impl Computed {
             .times
             .iter()
             .map(|(what, seconds)| (what.clone(), json!(seconds)));
-        json!({
+        let mut all = json!({
+            "gelbench": env!("CARGO_PKG_VERSION"),
             "case": self.kind,
             "title": self.title,
+            "study": { "text": self.text, "defaults": self.defaults },
+            "warnings": self.outcome.warnings,
             "checks": self.outcome.checks.iter().map(check).collect::<Vec<_>>(),
             "passed": self.passed(),
-            "times_s": times.collect::<serde_json::Map<_, _>>(),
-        })
+            "balance": self.outcome.balance,
+            "times_s": times.collect::<Map<_, _>>(),
+        });
+        for (key, value) in &self.outcome.json {
+            all[key] = value.clone();
+        }
+        all
     }
 }

@@ -14,6 +14,7 @@ pub fn report(title: &str, cases: &[Computed]) -> (Vec<Block>, Vec<Figure>) {
     blocks.push(Block::Paragraph(format!(
         "{passed} of {all} checks passed."
     )));
+    blocks.extend(balance(cases).map(Block::Paragraph));
     let head = [
         "case",
         "quantity",
@@ -22,6 +23,7 @@ pub fn report(title: &str, cases: &[Computed]) -> (Vec<Block>, Vec<Figure>) {
         "source",
         "computed",
         "error [%]",
+        "own error of what it is compared with [%]",
         "tolerance [%]",
         "result",
     ];
@@ -62,8 +64,36 @@ pub fn report(title: &str, cases: &[Computed]) -> (Vec<Block>, Vec<Figure>) {
             figures.push(figure.clone());
         }
     }
+    if let [case] = cases {
+        blocks.extend(study(case));
+    }
     blocks.extend(times(cases));
     (blocks, figures)
+}
+
+/// The text of a study, and what it left out.
+fn study(case: &Computed) -> Vec<Block> {
+    let mut blocks = vec![
+        Block::Heading(2, "Study".into()),
+        Block::Code(case.text.clone()),
+    ];
+    if !case.defaults.is_empty() {
+        let text = "Settings that the study does not hold, with the defaults that they took:";
+        blocks.push(Block::Paragraph(text.into()));
+        blocks.push(Block::Code(case.defaults.join("\n")));
+    }
+    blocks
+}
+
+/// The worst balance of forces and moments over all cases.
+fn balance(cases: &[Computed]) -> Option<String> {
+    let known = cases.iter();
+    let known = known.filter_map(|case| Some((case.kind, case.outcome.balance?)));
+    let (kind, worst) = known.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(format!(
+        "Balance of forces and moments, supports and loads together: the worst of all boundary value problems leaves \
+         {worst:.1e} of the largest force or moment ({kind})."
+    ))
 }
 
 fn row(case: &str, check: &Check) -> Vec<String> {
@@ -80,8 +110,9 @@ fn row(case: &str, check: &Check) -> Vec<String> {
         check.source.to_owned(),
         number(check.computed),
         check.error_percent().map_or("–".into(), number),
+        check.own_error.map_or("–".into(), number),
         tolerance,
-        if check.passed() { "pass" } else { "FAIL" }.to_owned(),
+        check.result(),
     ]
 }
 

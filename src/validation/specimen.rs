@@ -2,27 +2,34 @@
 
 use std::path::Path;
 
-use crate::boundary::{BoundaryProblem, Discretised};
+use crate::boundary::Discretised;
 use crate::compare::imported::ModelField;
-use crate::corrector::{CorrectorSettings, Solver, specimen::correct};
 use crate::document::Section;
 use crate::error::{Diagnostic, Error};
-use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::output::vtk;
-use crate::solve::{NewtonSettings, Potential, State};
+use crate::solve::Potential;
 use crate::validation::{Case, Outcome, Prepared, Progress};
 
 mod end;
 mod files;
+mod forces;
+mod measured;
 mod outcome;
+mod outline;
+mod paths;
 mod read;
 mod reference;
+mod solved;
+mod statement;
+mod supports;
+mod verdict;
+mod warnings;
 
-use end::End;
-use read::Measured;
+use paths::OnLattice;
 pub use read::{Refinement, Specimen, Tolerances};
-use reference::Reference;
+use reference::{OnMesh, Reference};
+use solved::Solved;
 
 /// The `kind` of these studies.
 pub const KIND: &str = "specimen";
@@ -36,82 +43,20 @@ pub fn load(
     file: &Path,
     text: &str,
 ) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
-    let (title, specimen, warnings) = case.read_with(file, text, read::read)?;
-    let specimen = specimen.expect("a study without faults has a specimen");
-    Ok((title, specimen, warnings))
+    let read = case.read_with(file, text, read::read)?;
+    let specimen = read.made.expect("a study without faults has a specimen");
+    Ok((read.title, specimen, read.warnings))
 }
 
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
     let specimen = read::read(root, folder);
     Box::new(move |progress| {
-        specimen.map_or(Ok(Outcome::default()), |read| compute(read, progress))
+        specimen.map_or(Ok(Outcome::default()), |read| compute(&read, progress))
     })
 }
 
-const NEWTON: NewtonSettings = NewtonSettings {
-    tolerance: 1e-10,
-    max_iterations: 60,
-};
-
-const CORRECTOR: CorrectorSettings = CorrectorSettings {
-    tolerance: 1e-8,
-    movement: 1e-9,
-    max_steps: 60,
-    solver: Solver::Automatic,
-};
-
-/// The states of one model and what is measured at each load factor: force in N or displacement in mm.
-struct Solved {
-    states: Vec<State>,
-    measured: Vec<f64>,
-}
-
-impl Solved {
-    fn new(specimen: &Specimen, model: &Discretised, states: Vec<State>) -> Self {
-        let measured = states.iter().map(|state| specimen.measure(model, state));
-        Self {
-            measured: measured.collect(),
-            states,
-        }
-    }
-}
-
-/// Solves as many load factors as can be reached; where others cannot, the end is told.
-fn solve(
-    specimen: &Specimen,
-    model: &Discretised,
-    names: [&str; 2],
-    mesh: &Mesh,
-    ends: &mut Vec<End>,
-) -> Solved {
-    let states = match model.solve(&specimen.factors, NEWTON, &|_| ()) {
-        Ok(states) => states,
-        Err(end) => {
-            let last = end.last.as_deref().or(end.states.last());
-            let measured = last.map_or(0.0, |state| specimen.measure(model, state));
-            ends.push(End::of_path(names, mesh, &end, measured));
-            end.states
-        }
-    };
-    Solved::new(specimen, model, states)
-}
-
 impl Specimen {
-    /// What is measured, with its axis: the larger component of the force on the measured group in N with its sign, or the
-    /// displacement in mm of a grip with a given force.
-    fn component(&self, model: &Discretised, state: &State) -> (usize, f64) {
-        if let Measured::Displacement(axis) = self.measured() {
-            return (axis, model.displacement(state, &self.measured)[axis]);
-        }
-        let [x, y] = model.reaction(state, &self.measured);
-        if x.abs() >= y.abs() { (0, x) } else { (1, y) }
-    }
-
-    fn measure(&self, model: &Discretised, state: &State) -> f64 {
-        self.component(model, state).1
-    }
-
     /// What stresses follow from.
     fn sheet(&self) -> vtk::Sheet<'_> {
         vtk::Sheet {
@@ -121,24 +66,54 @@ impl Specimen {
     }
 
     /// The problem on a mesh; groups were checked when the study was read.
-    fn on<'a>(
-        &self,
-        problem: &BoundaryProblem,
-        mesh: &'a Mesh,
-        energy: &'a dyn Potential,
-    ) -> Result<Discretised<'a>, Error> {
-        problem
-            .on(mesh, energy)
-            .map_err(|found| Error::Input(vec![found]))
+    fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Potential) -> Result<Discretised<'a>, Error> {
+        let found = self.problem.on(mesh, energy);
+        found.map_err(|fault| Error::Input(vec![fault]))
     }
 }
 
-/// The three models of a specimen, as far as their paths go.
+/// The three models of a specimen, each as far as its path goes.
 struct Models {
     reference: Reference,
-    springs: MassSpring,
-    uncorrected: Solved,
-    corrected: Solved,
+    on_lattice: OnLattice,
+}
+
+impl Models {
+    fn solve(
+        specimen: &Specimen,
+        ends: &mut Vec<end::End>,
+        progress: Progress,
+    ) -> Result<Self, Error> {
+        progress("finite elements");
+        let reference = Reference::solve(specimen, ends)?;
+        let on_lattice = OnLattice::solve(specimen, ends, progress)?;
+        Ok(Self {
+            reference,
+            on_lattice,
+        })
+    }
+
+    /// The models with their names for people and for files: springs, corrected, finite elements.
+    fn named(&self) -> [(&'static str, &'static str, &Mesh, &Solved); 3] {
+        let OnLattice {
+            springs,
+            uncorrected,
+            corrected,
+            ..
+        } = &self.on_lattice;
+        let Reference { mesh, solved, .. } = &self.reference;
+        [
+            ("mass-spring", "mass_spring", &springs.mesh, uncorrected),
+            ("corrected", "corrected", &springs.mesh, corrected),
+            ("finite elements", "finite_element", mesh, solved),
+        ]
+    }
+
+    /// How many load factors at least one model has reached.
+    fn reached(&self) -> usize {
+        let reached = self.named().map(|(_, _, _, solved)| solved.reached());
+        reached.into_iter().max().unwrap_or(0)
+    }
 }
 
 /// What is measured on the finest finite elements at the last load factor, and its own error in %.
@@ -152,8 +127,9 @@ pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
         return Err(end.error());
     }
     let last = specimen.factors.len() - 1;
-    let force = reference.solved.measured[last];
-    Ok((force, reference.measured_percent(last)))
+    let force = reference.solved.measured(&reference.measured, last);
+    let own = reference.measured_percent(last);
+    Ok((force.unwrap_or(f64::NAN), own.unwrap_or(f64::NAN)))
 }
 
 /// The mesh of the finest finite elements; a specimen that refines itself is solved for it.
@@ -162,11 +138,11 @@ pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
 /// [`Error::Solve`] when it must be solved and has no solution.
 pub fn finest_mesh(specimen: &Specimen) -> Result<Mesh, Error> {
     if specimen.refinement.is_none() {
-        let [_, _, mesh] = specimen.reference_meshes();
+        let [_, _, mesh] = specimen.outline.reference_meshes();
         return Ok(mesh);
     }
     let mut ends = Vec::new();
-    let (mesh, _) = reference::finest(specimen, &mut ends)?;
+    let OnMesh { mesh, .. } = reference::finest(specimen, &mut ends)?;
     ends.pop().map_or(Ok(mesh), |end| Err(end.error()))
 }
 
@@ -184,8 +160,13 @@ pub fn fields(
     specimen.factors.push(factor);
     let mut ends = Vec::new();
     progress("finite elements");
-    let (mesh, reference) = reference::finest(&specimen, &mut ends)?;
-    let (springs, [uncorrected, corrected]) = on_lattice(&specimen, &mut ends, progress)?;
+    let OnMesh { mesh, solved } = reference::finest(&specimen, &mut ends)?;
+    let OnLattice {
+        springs,
+        uncorrected,
+        corrected,
+        ..
+    } = OnLattice::solve(&specimen, &mut ends, progress)?;
     if let Some(end) = ends.first() {
         return Err(end.error());
     }
@@ -195,86 +176,25 @@ pub fn fields(
         displacement: solved.states.pop().expect("the last factor").displacement,
     };
     Ok([
-        field("finite elements", mesh, reference),
+        field("finite elements", mesh, solved),
         field("mass-spring", springs.mesh.clone(), uncorrected),
         field("corrected", springs.mesh, corrected),
     ])
 }
 
-fn compute(mut specimen: Specimen, progress: Progress) -> Result<Outcome, Error> {
+fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
     let mut ends = Vec::new();
-    progress("finite elements");
-    let reference = Reference::solve(&specimen, &mut ends)?;
-    let (springs, [uncorrected, corrected]) = on_lattice(&specimen, &mut ends, progress)?;
-    let on_lattice = uncorrected.states.len().min(corrected.states.len());
-    specimen
-        .factors
-        .truncate(reference.reached().min(on_lattice));
-    let mut outcome = if specimen.factors.is_empty() {
-        end::without_state(&ends)?
-    } else {
-        let models = Models {
-            reference,
-            springs,
-            uncorrected,
-            corrected,
-        };
-        outcome::outcome(&specimen, &models)
-    };
-    end::tell(&specimen, ends, &mut outcome);
-    Ok(outcome)
-}
-
-/// The springs, and the states of them before and after the correction.
-fn on_lattice(
-    specimen: &Specimen,
-    ends: &mut Vec<End>,
-    progress: Progress,
-) -> Result<(MassSpring, [Solved; 2]), Error> {
-    let problem = &specimen.problem;
-    progress("mass-spring");
-    let springs = MassSpring::on_mesh(&problem.law, problem.thickness, specimen.lattice());
-    let lattice = &springs.mesh;
-    let model = specimen.on(problem, lattice, springs.potential())?;
-    let model = model.named(|element| springs.describe_element(element));
-    let names = ["mass-spring", "mass_spring"];
-    let uncorrected = solve(specimen, &model, names, lattice, ends);
-    drop(model);
-
-    progress("corrector");
-    let energy = problem.finite_elements(lattice);
-    let model = specimen.on(problem, lattice, &energy)?;
-    let corrected = correct_all(specimen, &model, lattice, &uncorrected, ends);
-    drop(model);
-    Ok((springs, [uncorrected, corrected]))
-}
-
-/// Corrects the states of the springs as far as they can be.
-fn correct_all(
-    specimen: &Specimen,
-    model: &Discretised,
-    lattice: &Mesh,
-    uncorrected: &Solved,
-    ends: &mut Vec<End>,
-) -> Solved {
-    let mut states: Vec<State> = Vec::new();
-    let mut change = vec![0.0; 2 * lattice.nodes.len()];
-    for state in &uncorrected.states {
-        // What the correction has changed at the load factor before is nearly right at this one.
-        let data = &state.displacement;
-        let pairs = data.iter().zip(&change);
-        let start: Vec<f64> = pairs.map(|(u, change)| u + change).collect();
-        match correct(lattice, model, data, &start, state.factor, CORRECTOR) {
-            Ok(field) => {
-                let pairs = field.state.displacement.iter().zip(data);
-                change = pairs.map(|(corrected, u)| corrected - u).collect();
-                states.push(field.state);
-            }
-            Err(fault) => {
-                ends.push(End::at("corrector", state.factor, fault));
-                break;
-            }
-        }
+    let mut models = Models::solve(specimen, &mut ends, progress)?;
+    if models.reference.may_be_finer(specimen) && outcome::is_open(specimen, &models) {
+        progress("finer finite elements");
+        models.reference = models.reference.finer(specimen, &mut ends)?;
     }
-    Solved::new(specimen, model, states)
+    if models.reached() == 0 && ends.iter().all(end::End::is_empty) {
+        // Not even an equilibrium on the way to the first load factor.
+        let first = ends.first().map(end::End::error);
+        return first.map_or(Ok(Outcome::default()), Err);
+    }
+    let mut outcome = outcome::outcome(specimen, &models);
+    end::tell(specimen, &models.reference.measured, ends, &mut outcome);
+    Ok(outcome)
 }

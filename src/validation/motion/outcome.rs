@@ -4,6 +4,7 @@ use super::Moved;
 use super::corrected::Corrected;
 use super::files::{animation, figures, tables, vtk_files};
 use super::read::MovingPlate;
+use super::statement;
 use crate::dynamics::lumped_mass;
 use crate::mesh::Mesh;
 use crate::output::Block;
@@ -69,9 +70,7 @@ pub fn outcome(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) 
     let times = models
         .iter()
         .map(|model| (model.name.to_owned(), model.seconds));
-    Outcome {
-        checks: checks(plate, models, &deviations),
-        blocks: vec![
+    let mut blocks = vec![
             Block::Paragraph(introduction(plate)),
             summary(models),
             Block::Paragraph(corrected.note.clone()),
@@ -81,7 +80,14 @@ pub fn outcome(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) 
                     .into(),
             ),
             in_time(models, &deviations),
-        ],
+        ];
+    blocks.extend(statement::blocks(plate));
+    Outcome {
+        checks: checks(plate, models, &deviations),
+        blocks,
+        json: [("statement".to_owned(), statement::json(plate))]
+            .into_iter()
+            .collect(),
         figures: figures(plate, models, corrected),
         vtk: vtk_files(plate, models, corrected, &expected),
         files: tables(plate, models, corrected)

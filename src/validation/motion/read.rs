@@ -7,6 +7,7 @@ use crate::document::{Bound, Section};
 use crate::dynamics::{Integrator, Step, TimeFunction, TimeSettings};
 use crate::finite_element::Element;
 use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
+use crate::material::Card;
 use crate::material::card::read_viscosity;
 use crate::material::scalar_function::ScalarFunction;
 use crate::material::viscosity::ViscousMaterial;
@@ -45,6 +46,8 @@ pub struct Tolerances {
 pub struct MovingPlate {
     /// The plate; its stretches are that of the start, or none at rest.
     pub problem: Problem,
+    /// The card of its material.
+    pub card: Card,
     /// In tonne/mm³.
     pub density: f64,
     /// The viscous part of the material.
@@ -83,7 +86,7 @@ const MOST_INSTANTS: f64 = 20_000.0;
 
 /// Reads a study; nothing where it has faults, which are recorded.
 pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
-    let material = root.section("material");
+    let material = root.section("material").requiring(&["card", "density"]);
     let card = study::read_card(&material, folder);
     let own_density = card.as_ref().and_then(|card| card.density);
     let density = match own_density {
@@ -98,15 +101,24 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
             .unwrap_or_default(),
     };
     material.unknown_keys();
-    let plate = root.section("plate");
+    let plate = root
+        .section("plate")
+        .requiring(&["length", "width", "thickness"]);
     let (problem, cells) = study::read_plate(&plate, card.as_ref());
     plate.unknown_keys();
 
-    let section = root.section("start");
+    let section = root.section("start").requiring(&["stretch"]);
     let start = section.quantity("stretch", Dimension::Ratio, STRETCHES);
+    if let Some(card) = card.as_ref().filter(|_| start > 0.0) {
+        study::check_range(&section, "stretch", start, card);
+    }
     section.unknown_keys();
-    let section = root.section("grip");
+    let section = root.section("grip").requiring(&["motion", "time"]);
     let grip = read_grip(&section, start);
+    let largest = grip.as_ref().map_or(0.0, |(motion, _)| largest(motion));
+    if let Some(card) = card.as_ref().filter(|_| largest > start) {
+        study::check_range(&section, "motion", largest, card);
+    }
     section.unknown_keys();
     let section = root.section("gravity");
     let gravity =
@@ -120,7 +132,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
             .collect(),
         false => Vec::new(),
     };
-    let time = read_time(&root.section("time"));
+    let time = read_time(&root.section("time").requiring(&["duration"]));
 
     let section = root.section("mass_spring");
     let lattice = LatticeSettings {
@@ -139,11 +151,12 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let element = section.choice("element", &Element::NAMES);
     let element_cells = section.count_pair("cells", 1, 500);
     section.unknown_keys();
-    let probes = root.tables("probe");
-    let probes = probes
-        .iter()
-        .map(|probe| read_probe(probe, &problem))
-        .collect();
+    let probes = match root.has("probe") {
+        true => root.tables("probe"),
+        false => Vec::new(),
+    };
+    let probes = probes.iter();
+    let probes = probes.map(|probe| read_probe(probe, &problem)).collect();
     let section = root.section("tolerances");
     let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
     let tolerances = Tolerances {
@@ -157,12 +170,14 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     } else {
         vec![start]
     };
+    let card = card?;
     Some(MovingPlate {
         problem: Problem {
-            law: Arc::clone(&card?.law),
+            law: Arc::clone(&card.law),
             stretches,
             ..problem
         },
+        card,
         density,
         viscosity,
         grip,
@@ -232,6 +247,20 @@ fn read_grip(section: &Section, start: f64) -> Option<(TimeFunction, Option<f64>
             (TimeFunction::Table(points), None)
         }
     })
+}
+
+/// The largest stretch of a grip's motion.
+fn largest(motion: &TimeFunction) -> f64 {
+    match motion {
+        TimeFunction::Constant(stretch) => *stretch,
+        TimeFunction::Ramp { .. } => 1.0,
+        TimeFunction::Sine {
+            mean, amplitude, ..
+        } => mean + amplitude.abs(),
+        TimeFunction::Table(points) => points
+            .iter()
+            .fold(f64::NEG_INFINITY, |most, point| most.max(point[1])),
+    }
 }
 
 /// Points of a table whose times ascend.

@@ -1,11 +1,14 @@
 //! Paths that end before their last load factor.
 
+use super::measured::Measured;
 use super::read::Specimen;
+use super::solved::{GroupState, group_states};
+use crate::boundary::Discretised;
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::output::{Block, vtk};
 use crate::solve::{PathEnd, State};
-use crate::validation::{Check, Outcome, Wanted};
+use crate::validation::{Check, Outcome};
 
 /// Where the path of one model ended, and why.
 pub struct End {
@@ -21,24 +24,29 @@ struct Last {
     file: String,
     mesh: Mesh,
     state: State,
-    measured: f64,
+    groups: Vec<GroupState>,
     /// Whether it lies between two load factors of the study, so that nothing else holds it.
     between: bool,
 }
 
 impl End {
-    /// The end of a path at the model with the names `[model, file]`; `measured` is of the last equilibrium.
-    pub fn of_path([model, file]: [&str; 2], mesh: &Mesh, end: &PathEnd, measured: f64) -> Self {
+    /// The end of the path of a model with the names `[model, file]` on a mesh.
+    pub fn of_path(
+        [name, file]: [&str; 2],
+        specimen: &Specimen,
+        (mesh, model): (&Mesh, &Discretised),
+        end: &PathEnd,
+    ) -> Self {
         let state = end.last.as_deref().or(end.states.last());
         Self {
-            model: model.to_owned(),
+            model: name.to_owned(),
             step: end.describe(),
             fault: end.fault.clone(),
             last: state.map(|state| Last {
                 file: format!("{file}_end.vtu"),
                 mesh: mesh.clone(),
+                groups: group_states(specimen, model, state),
                 state: state.clone(),
-                measured,
                 between: end.last.is_some(),
             }),
         }
@@ -54,6 +62,11 @@ impl End {
         }
     }
 
+    /// Whether not one equilibrium was found on the way.
+    pub fn is_empty(&self) -> bool {
+        self.last.is_none()
+    }
+
     /// The end as an error.
     pub fn error(&self) -> Error {
         Error::Solve {
@@ -64,29 +77,27 @@ impl End {
     }
 }
 
-/// The outcome where no load factor was reached by all models: empty, or the fault of the first where not
-/// even an equilibrium on the way was found.
-pub fn without_state(ends: &[End]) -> Result<Outcome, Error> {
-    match ends.first() {
-        Some(first) if ends.iter().all(|end| end.last.is_none()) => Err(first.error()),
-        _ => Ok(Outcome::default()),
-    }
+/// What was the last equilibrium of any of the paths, for a choice of what is measured.
+pub fn last_groups(ends: &[End]) -> Option<(&Mesh, &[GroupState])> {
+    let last = ends.iter().rev().find_map(|end| end.last.as_ref())?;
+    Some((&last.mesh, &last.groups))
 }
 
 /// Adds the ends to an outcome: a requirement that is not met, a row of a table, a file.
-pub fn tell(specimen: &Specimen, ends: Vec<End>, outcome: &mut Outcome) {
+pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &mut Outcome) {
     let mut rows = Vec::new();
     for end in ends {
-        let wanted = Wanted::AtMost(0.0);
         let quantity = format!("{} ({})", end.error(), end.fault.advice());
-        let check = Check::new(quantity, "–", wanted, "the whole path", f64::NAN);
-        outcome.checks.push(check);
+        outcome
+            .checks
+            .push(Check::fault(quantity, "the whole path"));
         let Some(last) = end.last else { continue };
         let file = if last.between { &*last.file } else { "–" };
         rows.push(vec![
             end.model,
             format!("{:.4}", last.state.factor),
-            format!("{:.5}", last.measured),
+            end.fault.to_string(),
+            format!("{:.5}", measured.of(&last.groups)),
             file.to_owned(),
         ]);
         if last.between {
@@ -98,15 +109,16 @@ pub fn tell(specimen: &Specimen, ends: Vec<End>, outcome: &mut Outcome) {
     }
     if !rows.is_empty() {
         let text = "Paths that ended early: the last equilibrium of each, at the largest load factor reached. \
-            One between the study's load factors has a file of its own.";
-        let measured = specimen.measured();
-        let head = vec![
-            "model".into(),
-            "load factor reached [–]".into(),
-            format!("{} [{}]", measured.name(), measured.unit()),
-            "file".into(),
+            One between the study's load factors has a file of its own. The other models went on without them.";
+        let what = format!("{} [{}]", measured.describe(), measured.unit());
+        let head = [
+            "model",
+            "load factor reached [–]",
+            "why it ended",
+            &what,
+            "file",
         ];
         outcome.blocks.push(Block::Paragraph(text.into()));
-        outcome.blocks.push(Block::Table(head, rows));
+        outcome.blocks.push(Block::table(&head, rows));
     }
 }

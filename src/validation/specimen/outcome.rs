@@ -1,65 +1,108 @@
-//! What is told about a specimen: deviations, own errors, compression.
+//! What is told about a specimen: what the study says, deviations, own errors, forces, warnings.
 
 use super::files::{figures, files};
-use super::read::Measured;
-use super::{Models, Solved, Specimen};
+use super::paths::Start;
+use super::verdict::{Deviation, checks};
+use super::warnings::warnings;
+use super::{Models, Solved, Specimen, forces, statement};
 use crate::compare::area_weighted_percent;
-use crate::mesh::Mesh;
-use crate::output::{Block, wrinkling};
-use crate::validation::{Check, Outcome, Wanted};
+use crate::compare::judgement::Judgement;
+use crate::output::Block;
+use crate::validation::{Check, Outcome};
 
-/// Deviations of one model at one load factor, in %.
-struct Deviation {
-    displacement: f64,
-    measured: f64,
-}
-
-fn deviation(
-    lattice: &Mesh,
-    solved: &Solved,
-    step: usize,
-    expected: &[f64],
-    measured: f64,
-) -> Deviation {
-    Deviation {
-        displacement: area_weighted_percent(lattice, &solved.states[step].displacement, expected),
-        measured: 100.0 * (solved.measured[step] / measured - 1.0),
-    }
-}
-
-/// The worst of all load factors, in %.
-struct Worst {
-    displacement: f64,
-    measured: f64,
-    correction: f64,
-    own_error: f64,
-}
-
-/// The outcome at the load factors that all models have reached.
+/// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
-    let lattice = &models.springs.mesh;
-    let reference = &models.reference;
-    let states = reference.solved.states.iter();
-    let expected = states.map(|state| reference.mesh.displacement_on(&state.displacement, lattice));
-    let expected: Vec<Vec<f64>> = expected.take(specimen.factors.len()).collect();
-    let mut worst = Worst {
-        displacement: 0.0,
-        measured: 0.0,
-        correction: f64::INFINITY,
-        own_error: 0.0,
-    };
-    let steps = expected.iter().enumerate();
-    let rows = steps.map(|(step, expected)| row(specimen, models, step, expected, &mut worst));
-    let table = Block::Table(head(specimen), rows.collect());
-    let mut blocks = vec![Block::Paragraph(introduction(specimen, models)), table];
-    blocks.extend(reference.history(specimen));
-    blocks.extend(compression(specimen, models).map(Block::Paragraph));
+    let expected = expected(models);
+    let deviations = deviations(specimen, models, &expected);
+    let steps = 0..models.reached();
+    let rows = steps.map(|step| row(specimen, models, step, deviations[step].as_ref()));
+    let table = Block::Table(head(models), rows.collect());
+    let mut warnings = warnings(specimen, models);
+    warnings.extend(forces::unbalanced(models));
+    let mut blocks: Vec<_> = warnings.iter().cloned().map(Block::Paragraph).collect();
+    blocks.extend([Block::Paragraph(introduction(models)), table]);
+    blocks.extend(starts(specimen, models).map(Block::Paragraph));
+    blocks.extend(models.reference.history());
+    blocks.extend(forces::table(specimen, models));
+    blocks.extend(statement::blocks(specimen));
+    let judged: Vec<_> = deviations.into_iter().flatten().collect();
+    let json = [
+        ("statement".to_owned(), statement::json(specimen)),
+        ("models".to_owned(), forces::json(specimen, models)),
+    ];
     Outcome {
-        checks: checks(specimen, models, &worst),
+        checks: checks(specimen, models, &judged),
         blocks,
         figures: figures(specimen, models, &expected),
         vtk: files(specimen, models, &expected),
+        warnings,
+        balance: forces::worst_balance(models),
+        json: json.into_iter().collect(),
         ..Outcome::default()
+    }
+}
+
+/// Whether the finite elements are too coarse for something that they have to judge.
+pub fn is_open(specimen: &Specimen, models: &Models) -> bool {
+    let deviations = deviations(specimen, models, &expected(models));
+    let judged: Vec<_> = deviations.into_iter().flatten().collect();
+    let checks = checks(specimen, models, &judged);
+    let open = |check: &Check| matches!(check.judgement(), Judgement::CannotBeJudged { .. });
+    checks.iter().any(open)
+}
+
+/// The deviations at each load factor, where there are any.
+fn deviations(
+    specimen: &Specimen,
+    models: &Models,
+    expected: &[Vec<f64>],
+) -> Vec<Option<Deviation>> {
+    let steps = 0..specimen.factors.len();
+    steps
+        .map(|step| deviation(models, step, expected.get(step)?))
+        .collect()
+}
+
+/// The finite elements' displacements at the lattice's nodes, at the load factors that they reach.
+fn expected(models: &Models) -> Vec<Vec<f64>> {
+    let (reference, lattice) = (&models.reference, &models.on_lattice.springs.mesh);
+    let states = reference.solved.states.iter();
+    states
+        .map(|state| reference.mesh.displacement_on(&state.displacement, lattice))
+        .collect()
+}
+
+/// Deviations from the expected field, where there is a corrected one.
+fn deviation(models: &Models, step: usize, expected: &[f64]) -> Option<Deviation> {
+    let reference = &models.reference;
+    let lattice = &models.on_lattice.springs.mesh;
+    let what = &reference.measured;
+    let measured = reference.solved.measured(what, step)?;
+    let of = |solved: &Solved| {
+        let field = &solved.states.get(step)?.displacement;
+        let displacement = area_weighted_percent(lattice, field, expected);
+        Some([
+            displacement,
+            percent(solved.measured(what, step)?, measured),
+        ])
+    };
+    Some(Deviation {
+        springs: of(&models.on_lattice.uncorrected),
+        corrected: of(&models.on_lattice.corrected)?,
+        own: [
+            reference
+                .displacement_percent(step, lattice)
+                .unwrap_or(f64::NAN),
+            reference.measured_percent(step).unwrap_or(f64::NAN),
+        ],
+    })
+}
+
+/// The deviation of a value from another one in % of it; two zeros do not deviate.
+fn percent(value: f64, expected: f64) -> f64 {
+    match value == expected {
+        true => 0.0,
+        false => 100.0 * (value / expected - 1.0),
     }
 }
 
@@ -68,106 +111,88 @@ fn row(
     specimen: &Specimen,
     models: &Models,
     step: usize,
-    expected: &[f64],
-    worst: &mut Worst,
+    deviation: Option<&Deviation>,
 ) -> Vec<String> {
-    let (lattice, reference) = (&models.springs.mesh, &models.reference);
-    let measured = reference.solved.measured[step];
-    let before = deviation(lattice, &models.uncorrected, step, expected, measured);
-    let after = deviation(lattice, &models.corrected, step, expected, measured);
-    let correction = 100.0 * (1.0 - after.displacement / before.displacement);
-    worst.displacement = worst.displacement.max(after.displacement);
-    worst.measured = worst.measured.max(after.measured.abs());
-    worst.correction = worst.correction.min(correction);
-    worst.own_error = worst.own_error.max(reference.measured_percent(step));
-    let three_meshes = reference.three_meshes_percent(step);
+    let reference = &models.reference;
+    let text = |value: Option<f64>, digits: usize| {
+        value.map_or("–".into(), |value| format!("{value:.digits$}"))
+    };
+    let own = |which: usize| {
+        deviation
+            .map(|own| own.own[which])
+            .filter(|own| !own.is_nan())
+    };
+    let springs = |which: usize| deviation.and_then(|own| Some(own.springs?[which]));
+    let corrected = |which: usize| deviation.map(|own| own.corrected[which]);
     vec![
         specimen.factors[step].to_string(),
-        format!("{:.3}", before.displacement),
-        format!("{:.4}", after.displacement),
-        format!("{correction:.2}"),
-        format!("{:.2}", before.measured),
-        format!("{:.3}", after.measured),
-        format!("{measured:.5}"),
-        three_meshes.map_or("–".into(), |error| format!("{error:.4}")),
-        format!("{:.4}", reference.recovered_percent(step)),
-        format!("{:.4}", reference.estimates[step].energy.percent()),
+        text(springs(0), 3),
+        text(corrected(0), 4),
+        text(deviation.and_then(Deviation::correction_percent), 2),
+        text(own(0), 4),
+        text(springs(1), 2),
+        text(corrected(1), 3),
+        text(reference.solved.measured(&reference.measured, step), 5),
+        text(reference.three_meshes_percent(step), 4),
+        text(reference.recovered_percent(step), 4),
+        text(reference.energy_percent(step), 4),
     ]
 }
 
-fn head(specimen: &Specimen) -> Vec<String> {
-    let measured = specimen.measured();
+fn head(models: &Models) -> Vec<String> {
+    let measured = &models.reference.measured;
     let what = measured.name();
     vec![
         "load factor [–]".into(),
         "mass-spring: displacement [%]".into(),
         "corrected: displacement [%]".into(),
         "correction [%]".into(),
+        "finite elements: own error of the displacement [%]".into(),
         format!("mass-spring: {what} [%]"),
         format!("corrected: {what} [%]"),
         format!("finite elements: {what} [{}]", measured.unit()),
-        "their own error, by three meshes [%]".into(),
-        "their own error, by recovery [%]".into(),
+        format!("their own error of the {what}, by three meshes [%]"),
+        "the same, by recovery [%]".into(),
         "their field's own error by recovery, energy norm [%]".into(),
     ]
 }
 
-fn introduction(specimen: &Specimen, models: &Models) -> String {
-    let lattice = &models.springs.mesh;
-    let whose = match specimen.measured() {
-        Measured::Force => "the supports on",
-        Measured::Displacement(_) => "the grip at",
-    };
+fn introduction(models: &Models) -> String {
+    let lattice = &models.on_lattice.springs.mesh;
+    let measured = &models.reference.measured;
     format!(
-        "Deviations from the finite elements ({} on {}, {}) at {} nodes of the lattice ({}). \
-         Displacements in relative L2, weighted by area; the {} is that of {whose} the group `{}`.",
-        models.reference.mesh.element_names(),
-        models.reference.mesh.describe(),
-        models.reference.kind(),
+        "Deviations from the finite elements ({}) at {} nodes of the lattice ({}). Displacements in relative L2, weighted \
+         by area; what is measured is {}, its {} axis being that of the larger component or of the given load.",
+        models.reference.describe(),
         lattice.nodes.len(),
         lattice.describe(),
-        specimen.measured().name(),
-        specimen.measured
+        measured.describe(),
+        measured.axis_name(),
     )
 }
 
-fn checks(specimen: &Specimen, models: &Models, worst: &Worst) -> Vec<Check> {
-    let limits = specimen.tolerances;
-    let what = specimen.measured().name();
-    let by_what = models.reference.by_what();
-    let check = |quantity: &str, wanted, value| {
-        Check::new(quantity, "%", wanted, "the study's tolerance", value)
+/// Where the corrector began elsewhere than at the springs' field.
+fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
+    let at = |wanted: Start| {
+        let starts = models.on_lattice.starts.iter().zip(&specimen.factors);
+        let found = starts.filter(|(start, _)| **start == wanted);
+        let found: Vec<_> = found.map(|(_, factor)| factor.to_string()).collect();
+        found.join(", ")
     };
-    let mut checks = vec![
-        check(
-            "corrected displacement from the finite elements",
-            Wanted::AtMost(limits.displacement_percent),
-            worst.displacement,
-        ),
-        check(
-            &format!("corrected {what} from the finite elements"),
-            Wanted::AtMost(limits.force_percent),
-            worst.measured,
-        ),
-        check(
-            "correction of the displacement",
-            Wanted::AtLeast(limits.correction_percent),
-            worst.correction,
-        ),
-        check(
-            &format!("finite elements' own error of the {what}, {by_what}"),
-            Wanted::AtMost(limits.force_percent),
-            worst.own_error,
-        ),
-    ];
-    checks.extend(models.reference.goal_check(specimen));
-    checks
-}
-
-/// The warning about compression in the finite elements.
-fn compression(specimen: &Specimen, models: &Models) -> Option<String> {
-    let states = models.reference.solved.states.iter().zip(&specimen.factors);
-    let states =
-        states.map(|(state, factor)| (format!("load factor {factor}"), &*state.displacement));
-    wrinkling::warning(&*specimen.problem.law, &models.reference.mesh, states)
+    let (alone, steps) = (at(Start::Alone), at(Start::LoadSteps));
+    let mut text = String::new();
+    if !steps.is_empty() {
+        text += &format!(
+            "From the springs' field itself the corrector found no way at the load factors {steps}; it began at an \
+             equilibrium that Newton's method reached from rest in load steps. "
+        );
+    }
+    if !alone.is_empty() {
+        text += &format!(
+            "The springs have no equilibrium at the load factors {alone}. There the corrected field comes from the \
+             corrector's conditions alone, by Newton's method in load steps from rest: no springs' field enters it, and \
+             there is no correction to be measured."
+        );
+    }
+    (!text.is_empty()).then(|| text.trim_end().to_owned())
 }

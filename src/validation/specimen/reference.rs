@@ -1,8 +1,12 @@
 //! The finite elements that a specimen's other models are held to, and their own error.
 
-use super::read::Refinement;
-use super::{End, Solved, Specimen, solve};
+use super::end::{End, last_groups};
+use super::measured::Measured;
+use super::paths::solve;
+use super::read::{Refinement, Specimen};
+use super::solved::Solved;
 use crate::boundary::Discretised;
+use crate::compare::area_weighted_percent;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;
 use crate::finite_element::error_estimate::{self, ErrorEstimate, bulk};
@@ -14,26 +18,34 @@ use crate::validation::{Check, Wanted};
 /// The part of the squared error that is refined in a round.
 const SHARE: f64 = 0.5;
 
-/// Begin of the names of the finest finite elements' files.
+/// Cells up to which the finite elements are refined once more where they are too coarse to judge.
+const MOST_CELLS: usize = 30_000;
+
+/// Begin of the names of the files of the meshes, from coarse to fine.
+const FILES: [&str; 3] = ["finite_element_coarse", "finite_element_middle", FILE];
 const FILE: &str = "finite_element";
+
+/// A mesh and its solutions, as far as they go.
+pub struct OnMesh {
+    pub mesh: Mesh,
+    pub solved: Solved,
+}
 
 /// The finest finite elements.
 pub struct Reference {
     pub mesh: Mesh,
     pub solved: Solved,
-    /// One a load factor.
-    pub estimates: Vec<ErrorEstimate>,
-    history: History,
-    /// What the curves that a file's edges stand for change in what is measured, where there are such edges.
+    /// What is compared of all models.
+    pub measured: Measured,
+    /// One a load factor; `None` where the tangent of that state gives none.
+    pub estimates: Vec<Option<ErrorEstimate>>,
+    /// Up to two coarser meshes, from coarse to fine.
+    coarser: Vec<OnMesh>,
+    /// The rounds of local refinement; none where the meshes are halved.
+    rounds: Vec<Round>,
+    /// What the curves that a file's edges stand for change in what is measured at each load factor; `None` where there
+    /// are no such edges.
     outline: Option<Vec<f64>>,
-}
-
-/// How the mesh was come by.
-enum History {
-    /// What is measured on meshes of a quarter and of half as many cells along each side.
-    Halved([Vec<f64>; 2]),
-    /// The rounds of local refinement.
-    Adaptive(Vec<Round>),
 }
 
 /// One mesh of local refinement, with its errors at the worst load factor.
@@ -43,9 +55,6 @@ struct Round {
     energy_percent: f64,
     measured_percent: f64,
 }
-
-/// A mesh, its solutions and their errors.
-type Estimated = (Mesh, Solved, Vec<ErrorEstimate>);
 
 impl Reference {
     /// Solves the specimen on three meshes, or on as many as the goal of local refinement takes.
@@ -57,124 +66,218 @@ impl Reference {
     }
 
     fn halved(specimen: &Specimen, ends: &mut Vec<End>) -> Result<Self, Error> {
-        let [coarse, middle, fine] = specimen.reference_meshes();
-        let coarse = on_mesh(specimen, &coarse, "finite_element_coarse", ends)?;
-        let middle = on_mesh(specimen, &middle, "finite_element_middle", ends)?;
-        let (mesh, solved, estimates) = estimated(specimen, fine, ends)?;
+        let meshes = specimen.outline.reference_meshes();
+        let meshes = meshes.into_iter().zip(FILES);
+        let solved = meshes.map(|(mesh, file)| OnMesh::solve(specimen, mesh, file, ends));
+        let solved = solved.collect::<Result<Vec<_>, _>>()?;
+        Self::of_meshes(specimen, solved, Vec::new(), ends)
+    }
+
+    /// The reference on the last of some meshes.
+    fn of_meshes(
+        specimen: &Specimen,
+        mut meshes: Vec<OnMesh>,
+        rounds: Vec<Round>,
+        ends: &[End],
+    ) -> Result<Self, Error> {
+        let OnMesh { mesh, solved } = meshes.pop().expect("a mesh at least");
+        let measured = measured(specimen, &mesh, &solved, ends);
+        let estimates = estimate_all(specimen, &mesh, &solved, &measured)?;
         Ok(Self {
             mesh,
             solved,
             estimates,
-            outline: outline_errors(specimen, Some(&middle.measured))?,
-            history: History::Halved([coarse.measured, middle.measured]),
+            outline: outline_errors(specimen, &measured, meshes.last())?,
+            measured,
+            coarser: meshes,
+            rounds,
         })
     }
 
+    /// Whether one more halving of the cells is possible and not too much work.
+    pub fn may_be_finer(&self, specimen: &Specimen) -> bool {
+        specimen.outline.is_shape()
+            && self.rounds.is_empty()
+            && self.reached() == specimen.factors.len()
+            && 4 * self.mesh.cell_count() <= MOST_CELLS
+    }
+
+    /// The reference with cells of half the size: the two finer ones of its meshes, and one more.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a group of the mesh cannot be held or loaded as the study says.
+    pub fn finer(mut self, specimen: &Specimen, ends: &mut Vec<End>) -> Result<Self, Error> {
+        let mesh = specimen.outline.reference_mesh(3);
+        let finest = OnMesh::solve(specimen, mesh, FILE, ends)?;
+        let mut meshes = self.coarser.split_off(self.coarser.len() - 1);
+        let (mesh, solved) = (self.mesh, self.solved);
+        meshes.extend([OnMesh { mesh, solved }, finest]);
+        Self::of_meshes(specimen, meshes, Vec::new(), ends)
+    }
+
     fn adaptive(specimen: &Specimen, goal: Refinement, ends: &mut Vec<End>) -> Result<Self, Error> {
-        let mut triangles = specimen.first_triangles();
-        let mut rounds = Vec::new();
+        let mut triangles = specimen.outline.first_triangles();
+        let (mut rounds, mut meshes) = (Vec::new(), Vec::new());
         let ends_before = ends.len();
         loop {
             // A finer mesh may reach what a coarser one did not.
             ends.truncate(ends_before);
-            let mesh = specimen.elements_on(&triangles);
-            let (mesh, solved, estimates) = estimated(specimen, mesh, ends)?;
-            rounds.push(Round::of(&mesh, &solved, &estimates));
-            let reached = estimates.is_empty()
-                || rounds[rounds.len() - 1].energy_percent <= goal.error_percent;
+            let mesh = specimen.outline.elements_on(&triangles);
+            let OnMesh { mesh, solved } = OnMesh::solve(specimen, mesh, FILE, ends)?;
+            let measured = measured(specimen, &mesh, &solved, ends);
+            let estimates = estimate_all(specimen, &mesh, &solved, &measured)?;
+            rounds.push(Round::of(&mesh, &solved, &measured, &estimates));
+            let reached = rounds[rounds.len() - 1].energy_percent <= goal.error_percent;
+            // The error of the displacement takes two meshes.
+            let done = estimates.iter().all(Option::is_none) || reached && rounds.len() > 1;
             let finer = || {
-                let finer = triangles.refined_where(&bulk(&indicators(&estimates), SHARE));
-                specimen.fitted(finer)
+                let marked = bulk(&indicators(mesh.cell_count(), &estimates), SHARE);
+                specimen.outline.fitted(triangles.refined_where(&marked))
             };
-            let next = (!reached).then(finer);
+            let next = (!done).then(finer);
             match next.filter(|next| next.cell_count() <= goal.most_cells) {
-                Some(next) => triangles = next,
+                Some(next) => {
+                    triangles = next;
+                    meshes.push(OnMesh { mesh, solved });
+                }
                 None => {
+                    let coarser = meshes.split_off(meshes.len().saturating_sub(2));
                     return Ok(Self {
                         mesh,
                         solved,
+                        outline: outline_errors(specimen, &measured, None)?,
+                        measured,
                         estimates,
-                        outline: outline_errors(specimen, None)?,
-                        history: History::Adaptive(rounds),
+                        coarser,
+                        rounds,
                     });
                 }
             }
         }
     }
 
-    /// How many load factors all meshes have reached.
+    /// How many load factors the finest mesh has reached.
     pub fn reached(&self) -> usize {
-        let all = self.solved.states.len();
-        match &self.history {
-            History::Halved(coarser) => coarser.iter().map(Vec::len).fold(all, usize::min),
-            History::Adaptive(_) => all,
+        self.solved.reached()
+    }
+
+    /// `Q2 elements on 48 × 16 cells, the finest of three meshes`, for reports.
+    pub fn describe(&self) -> String {
+        let (elements, cells) = (self.mesh.element_names(), self.mesh.describe());
+        match self.rounds.len() {
+            0 => format!("{elements} elements on {cells}, the finest of three meshes"),
+            rounds => format!(
+                "{elements} elements on {cells}, refined locally in {} rounds",
+                rounds - 1
+            ),
         }
     }
 
-    /// `finest of three meshes`, for reports.
-    pub fn kind(&self) -> String {
-        match &self.history {
-            History::Halved(_) => "finest of three meshes".to_owned(),
-            History::Adaptive(rounds) => format!("refined locally in {} rounds", rounds.len() - 1),
+    /// How the finite elements become better.
+    pub fn remedy(&self) -> &'static str {
+        let quadratic = self.mesh.shape(0).degree() == 2;
+        match (self.rounds.is_empty(), quadratic) {
+            (true, false) => "take finite elements of the second degree, such as \"Q2\"",
+            (true, true) => "take more cells, or `adaptive = true` with \"T2\"",
+            (false, _) => "take a smaller `finite_element.error`",
         }
     }
 
-    /// What the own error of the measured quantity follows from.
-    pub fn by_what(&self) -> &'static str {
-        match (&self.history, &self.outline) {
-            (History::Halved(_), None) => "by three meshes",
-            (History::Halved(_), Some(_)) => "by three meshes and a rounded outline",
-            (History::Adaptive(_), None) => "by recovery",
-            (History::Adaptive(_), Some(_)) => "by recovery and a rounded outline",
+    /// The own error of what is measured at a load factor in %: by three meshes where there are three that were halved,
+    /// otherwise by recovery, with that of a file's outline; `None` where it is not known.
+    pub fn measured_percent(&self, step: usize) -> Option<f64> {
+        let by_meshes = self.three_meshes_percent(step);
+        let own = by_meshes.or_else(|| self.recovered_percent(step))?;
+        match self.outline {
+            Some(_) => Some(own + self.outline_percent(step)?),
+            None => Some(own),
         }
-    }
-
-    /// The own error of what is measured at a load factor in %, with that of a file's outline.
-    pub fn measured_percent(&self, step: usize) -> f64 {
-        let estimated = || self.recovered_percent(step);
-        let own = self.three_meshes_percent(step).unwrap_or_else(estimated);
-        own + self.outline_percent(step).unwrap_or(0.0)
     }
 
     /// What the curves that a file's edges stand for change in what is measured at a load factor, in %.
     fn outline_percent(&self, step: usize) -> Option<f64> {
-        let changes = self.outline.as_ref()?;
-        let change = changes.get(step).copied().unwrap_or(f64::NAN);
-        Some(100.0 * (change / self.solved.measured[step]).abs())
+        let change = self.outline.as_ref()?.get(step)?;
+        let measured = self.solved.measured(&self.measured, step)?;
+        Some(100.0 * (change / measured).abs())
     }
 
     /// What is said about a file's outline.
-    fn outline_told(&self, specimen: &Specimen) -> Option<Block> {
+    fn outline_told(&self) -> Option<Block> {
         let steps = 0..self.outline.as_ref()?.len();
         let percents = steps.filter_map(|step| self.outline_percent(step));
         let most = percents.fold(0.0, f64::max);
         Some(Block::Paragraph(format!(
             "The outline: finite elements on meshes of the file have its edges, chords or parabolas. With the smooth \
              curves that these stand for the {} would change by up to {most:.2e} %; this is part of its own error.",
-            specimen.measured().name()
+            self.measured.name()
         )))
     }
 
     /// The error of what is measured by three meshes at a load factor in %, where there are three.
     pub fn three_meshes_percent(&self, step: usize) -> Option<f64> {
-        let History::Halved([coarse, middle]) = &self.history else {
+        let [coarse, middle] = &self.coarser[..] else {
             return None;
         };
-        let forces = [coarse[step], middle[step], self.solved.measured[step]];
-        Some(richardson(forces).error_percent)
+        if !self.rounds.is_empty() {
+            return None;
+        }
+        let all = [&coarse.solved, &middle.solved, &self.solved];
+        let all = all.map(|solved| solved.measured(&self.measured, step));
+        let [Some(coarse), Some(middle), Some(fine)] = all else {
+            return None;
+        };
+        Some(richardson([coarse, middle, fine]).error_percent)
     }
 
     /// The error of what is measured by recovery at a load factor in %.
-    pub fn recovered_percent(&self, step: usize) -> f64 {
-        100.0 * (self.estimates[step].force / self.solved.measured[step]).abs()
+    pub fn recovered_percent(&self, step: usize) -> Option<f64> {
+        let estimate = self.estimates.get(step)?.as_ref()?;
+        let measured = self.solved.measured(&self.measured, step)?;
+        Some(100.0 * (estimate.force / measured).abs())
+    }
+
+    /// The error of the field by recovery in the energy norm at a load factor in %.
+    pub fn energy_percent(&self, step: usize) -> Option<f64> {
+        let estimate = self.estimates.get(step)?.as_ref()?;
+        Some(estimate.energy.percent())
+    }
+
+    /// The error of the displacement at the nodes of a lattice by the coarser meshes, in relative L2 in %; `None` where no
+    /// coarser mesh has the load factor.
+    ///
+    /// ```text
+    /// e = ‖u₃ − u₂‖/(r − 1),   r = ‖u₂ − u₁‖/‖u₃ − u₂‖        ‖u₃ − u₂‖ where r ≤ 1
+    /// ```
+    pub fn displacement_percent(&self, step: usize, lattice: &Mesh) -> Option<f64> {
+        let on_lattice = |mesh: &Mesh, solved: &Solved| {
+            let state = solved.states.get(step)?;
+            Some(mesh.displacement_on(&state.displacement, lattice))
+        };
+        let fine = on_lattice(&self.mesh, &self.solved)?;
+        let coarser = self.coarser.iter();
+        let coarser: Vec<_> = coarser
+            .filter_map(|own| on_lattice(&own.mesh, &own.solved))
+            .collect();
+        let distance = |u: &[f64], v: &[f64]| area_weighted_percent(lattice, u, v);
+        match &coarser[..] {
+            [] => None,
+            [only] => Some(distance(only, &fine)),
+            [.., first, second] => {
+                let (before, last) = (distance(first, second), distance(second, &fine));
+                let ratio = before / last;
+                let converges = ratio > 1.0 && ratio.is_finite();
+                Some(if converges {
+                    last / (ratio - 1.0)
+                } else {
+                    last
+                })
+            }
+        }
     }
 
     /// Whether local refinement has come as far as the study wants.
     pub fn goal_check(&self, specimen: &Specimen) -> Option<Check> {
-        let (Some(goal), History::Adaptive(rounds)) = (specimen.refinement, &self.history) else {
-            return None;
-        };
-        let last = &rounds[rounds.len() - 1];
+        let (goal, last) = (specimen.refinement?, self.rounds.last()?);
         let mut quantity = "finite elements' own error of the field, energy norm".to_owned();
         if last.energy_percent > goal.error_percent {
             quantity += &format!(
@@ -194,18 +297,17 @@ impl Reference {
     }
 
     /// The outline's share of the error, and the rounds of local refinement.
-    pub fn history(&self, specimen: &Specimen) -> Vec<Block> {
-        let outline = self.outline_told(specimen);
-        let History::Adaptive(rounds) = &self.history else {
+    pub fn history(&self) -> Vec<Block> {
+        let outline = self.outline_told();
+        if self.rounds.is_empty() {
             return outline.into_iter().collect();
-        };
-        let what = specimen.measured().name();
+        }
         let head = [
             "round",
             "cells",
             "nodes",
             "error of the field by recovery, energy norm [%]",
-            &format!("error of the {what} by recovery [%]"),
+            &format!("error of the {} by recovery [%]", self.measured.name()),
         ];
         let row = |(number, round): (usize, &Round)| {
             vec![
@@ -218,47 +320,105 @@ impl Reference {
         };
         let text = "Local refinement: in every round the cells with half of the squared error are cut into four. Errors \
                     are those of the worst load factor.";
-        let rounds = rounds.iter().enumerate().map(row);
+        let rounds = self.rounds.iter().enumerate().map(row);
         let history = [Block::Paragraph(text.into()), Block::table(&head, rounds)];
         outline.into_iter().chain(history).collect()
     }
 }
 
 /// The finest finite elements alone: without the coarser meshes that an error by three of them takes.
-pub fn finest(specimen: &Specimen, ends: &mut Vec<End>) -> Result<(Mesh, Solved), Error> {
+pub fn finest(specimen: &Specimen, ends: &mut Vec<End>) -> Result<OnMesh, Error> {
     if let Some(goal) = specimen.refinement {
-        let reference = Reference::adaptive(specimen, goal, ends)?;
-        return Ok((reference.mesh, reference.solved));
+        let Reference { mesh, solved, .. } = Reference::adaptive(specimen, goal, ends)?;
+        return Ok(OnMesh { mesh, solved });
     }
-    let [_, _, mesh] = specimen.reference_meshes();
-    let solved = on_mesh(specimen, &mesh, FILE, ends)?;
-    Ok((mesh, solved))
+    let [_, _, mesh] = specimen.outline.reference_meshes();
+    OnMesh::solve(specimen, mesh, FILE, ends)
+}
+
+impl OnMesh {
+    fn solve(
+        specimen: &Specimen,
+        mesh: Mesh,
+        file: &str,
+        ends: &mut Vec<End>,
+    ) -> Result<Self, Error> {
+        let energy = specimen.problem.finite_elements(&mesh);
+        let model = specimen.on(&mesh, &energy)?;
+        let name = format!("finite elements ({})", mesh.describe());
+        let solved = solve(specimen, &model, [&name, file], &mesh, ends);
+        drop(model);
+        Ok(Self { mesh, solved })
+    }
 }
 
 impl Round {
-    fn of(mesh: &Mesh, solved: &Solved, estimates: &[ErrorEstimate]) -> Self {
+    fn of(
+        mesh: &Mesh,
+        solved: &Solved,
+        measured: &Measured,
+        estimates: &[Option<ErrorEstimate>],
+    ) -> Self {
         let worst = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        let pairs = estimates.iter().zip(&solved.measured);
-        let mut measured = pairs.map(|(estimate, own)| 100.0 * (estimate.force / own).abs());
-        let mut energies = estimates.iter().map(|estimate| estimate.energy.percent());
+        let known = || estimates.iter().enumerate();
+        let known = || known().filter_map(|(step, estimate)| Some((step, estimate.as_ref()?)));
+        let mut errors = known().filter_map(|(step, estimate)| {
+            let own = solved.measured(measured, step)?;
+            Some(100.0 * (estimate.force / own).abs())
+        });
+        let mut energies = known().map(|(_, estimate)| estimate.energy.percent());
         Self {
             cells: mesh.cell_count(),
             nodes: mesh.nodes.len(),
             energy_percent: worst(&mut energies),
-            measured_percent: worst(&mut measured),
+            measured_percent: worst(&mut errors),
         }
     }
 }
 
+/// What is measured, by the last state on a mesh; where it has none, by that of another path.
+fn measured(specimen: &Specimen, mesh: &Mesh, solved: &Solved, ends: &[End]) -> Measured {
+    match (solved.last(), last_groups(ends)) {
+        (Some(groups), _) => specimen.measured(mesh, groups),
+        (None, Some((mesh, groups))) => specimen.measured(mesh, groups),
+        (None, None) => specimen.measured_at_rest(),
+    }
+}
+
+/// What the curves that a file's edges stand for change in what is measured at each load factor; `None` where there are
+/// no such edges.
+fn outline_errors(
+    specimen: &Specimen,
+    what: &Measured,
+    middle: Option<&OnMesh>,
+) -> Result<Option<Vec<f64>>, Error> {
+    let Some((rounded, whole)) = specimen.outline.rounded_mesh() else {
+        return Ok(None);
+    };
+    // Where a path ends is told of the meshes whose results are given.
+    let mut untold = Vec::new();
+    let measured = |own: &OnMesh| -> Vec<f64> {
+        let steps = 0..own.solved.reached();
+        steps
+            .filter_map(|step| own.solved.measured(what, step))
+            .collect()
+    };
+    let rounded = measured(&OnMesh::solve(specimen, rounded, FILE, &mut untold)?);
+    let middle = match middle {
+        Some(middle) => measured(middle),
+        None => {
+            let [_, mesh, _] = specimen.outline.reference_meshes();
+            measured(&OnMesh::solve(specimen, mesh, FILE, &mut untold)?)
+        }
+    };
+    let pairs = rounded.iter().zip(&middle);
+    Ok(Some(pairs.map(|(r, m)| whole * (r - m)).collect()))
+}
+
 /// The squared relative error of each cell, summed over the load factors.
-fn indicators(estimates: &[ErrorEstimate]) -> Vec<f64> {
-    let mut sums = vec![
-        0.0;
-        estimates
-            .first()
-            .map_or(0, |first| first.energy.cells.len())
-    ];
-    for estimate in estimates {
+fn indicators(cells: usize, estimates: &[Option<ErrorEstimate>]) -> Vec<f64> {
+    let mut sums = vec![0.0; cells];
+    for estimate in estimates.iter().flatten() {
         for (sum, cell) in sums.iter_mut().zip(&estimate.energy.cells) {
             *sum += cell / estimate.energy.norm_squared;
         }
@@ -266,72 +426,24 @@ fn indicators(estimates: &[ErrorEstimate]) -> Vec<f64> {
     sums
 }
 
-/// What the curves that a file's edges stand for change in what is measured at each load factor; `None` where there are
-/// no such edges.
-fn outline_errors(specimen: &Specimen, middle: Option<&[f64]>) -> Result<Option<Vec<f64>>, Error> {
-    let Some((rounded, whole)) = specimen.rounded_mesh() else {
-        return Ok(None);
-    };
-    // Where a path ends is told of the meshes whose results are given.
-    let mut untold = Vec::new();
-    let mut measured = |mesh: &Mesh| Ok(on_mesh(specimen, mesh, FILE, &mut untold)?.measured);
-    let rounded = measured(&rounded)?;
-    let middle = match middle {
-        Some(middle) => middle.to_vec(),
-        None => measured(&specimen.reference_meshes()[1])?,
-    };
-    let pairs = rounded.iter().zip(&middle);
-    Ok(Some(pairs.map(|(r, m)| whole * (r - m)).collect()))
-}
-
-fn on_mesh(
-    specimen: &Specimen,
-    mesh: &Mesh,
-    file: &str,
-    ends: &mut Vec<End>,
-) -> Result<Solved, Error> {
-    let energy = specimen.problem.finite_elements(mesh);
-    let model = specimen.on(&specimen.problem, mesh, &energy)?;
-    Ok(solve(specimen, &model, [&name(mesh), file], mesh, ends))
-}
-
-fn name(mesh: &Mesh) -> String {
-    format!("finite elements ({})", mesh.describe())
-}
-
-fn estimated(specimen: &Specimen, mesh: Mesh, ends: &mut Vec<End>) -> Result<Estimated, Error> {
-    let solved = on_mesh(specimen, &mesh, FILE, ends)?;
-    let problem = &specimen.problem;
-    let energy = problem.finite_elements(&mesh);
-    let model = specimen.on(problem, &mesh, &energy)?;
-    let estimates = estimate_all(specimen, &model, &mesh, &solved)?;
-    drop(model);
-    Ok((mesh, solved, estimates))
-}
-
 fn estimate_all(
     specimen: &Specimen,
-    model: &Discretised,
     mesh: &Mesh,
     solved: &Solved,
-) -> Result<Vec<ErrorEstimate>, Error> {
-    let states = solved.states.iter();
+    measured: &Measured,
+) -> Result<Vec<Option<ErrorEstimate>>, Error> {
+    let energy = specimen.problem.finite_elements(mesh);
+    let model: Discretised = specimen.on(mesh, &energy)?;
     let recovery = Recovery::new(mesh);
     let estimate = |state| {
-        let (axis, _) = specimen.component(model, state);
-        let influence = model.influence(state, &specimen.measured, axis);
-        let influence = influence.map_err(|fault| Error::Solve {
-            model: name(mesh),
-            step: format!("load factor {}", state.factor),
-            fault,
-        })?;
+        let influence = model.influence(state, &measured.group, measured.axis);
         let solved = error_estimate::Solved {
             law: &*specimen.problem.law,
             thickness: specimen.problem.thickness,
             mesh,
             displacement: &state.displacement,
         };
-        Ok(solved.estimate(&recovery, &influence))
+        Some(solved.estimate(&recovery, &influence.ok()?))
     };
-    states.map(estimate).collect()
+    Ok(solved.states.iter().map(estimate).collect())
 }

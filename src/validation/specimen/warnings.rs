@@ -1,0 +1,93 @@
+//! What deserves attention in the finite elements' states: compression, loss of stability, the range of the card.
+
+use nalgebra::{Matrix2, Vector4};
+
+use super::{Models, Specimen};
+use crate::material::Card;
+use crate::material::sheet::Kinematics;
+use crate::material::stability::is_stable;
+use crate::mesh::Mesh;
+use crate::output::wrinkling;
+
+/// All warnings, each in a sentence.
+pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
+    let (mesh, solved) = (&models.reference.mesh, &models.reference.solved);
+    let loads = || {
+        let states = solved.states.iter();
+        states.map(|state| {
+            (
+                format!("load factor {}", state.factor),
+                &*state.displacement,
+            )
+        })
+    };
+    let compression = wrinkling::warning(&*specimen.problem.law, mesh, loads());
+    let strained = loads().map(|(load, u)| (load, Strained::new(&specimen.card, mesh, u)));
+    let strained: Vec<_> = strained.collect();
+    let mut all: Vec<String> = compression.into_iter().collect();
+    all.extend(beyond(&specimen.card, &strained));
+    all.extend(unstable(&specimen.card, &strained));
+    all
+}
+
+/// The principal stretches of a sheet at the centres of its cells, and whether its material is stable there.
+struct Strained {
+    smallest: f64,
+    largest: f64,
+    /// A cell whose state is not stable, if there is one.
+    unstable: Option<String>,
+}
+
+impl Strained {
+    fn new(card: &Card, mesh: &Mesh, displacement: &[f64]) -> Self {
+        let (mut smallest, mut largest, mut unstable) = (f64::INFINITY, 0.0_f64, None);
+        for cell in 0..mesh.cell_count() {
+            let gradient = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
+            let [xx, xy, yx, yy] = gradient;
+            let stretches = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy).singular_values();
+            smallest = smallest.min(stretches.min());
+            largest = largest.max(stretches.max());
+            let kinematics = Kinematics::new(&Vector4::from(gradient));
+            let stable = kinematics.is_ok_and(|kinematics| is_stable(&*card.law, &kinematics));
+            if !stable && unstable.is_none() {
+                unstable = Some(mesh.describe_cell(cell));
+            }
+        }
+        Self {
+            smallest,
+            largest,
+            unstable,
+        }
+    }
+}
+
+/// The warning about stretches beyond the card's range, at the worst load factor.
+///
+/// A card of tests from λ₁ to λ₂ has seen principal stretches in the plane between the smaller of λ₁ and λ₂^−½ and the
+/// larger of λ₂ and λ₁^−½: an incompressible sample contracts across.
+fn beyond(card: &Card, strained: &[(String, Strained)]) -> Option<String> {
+    let [low, high] = card.stretch_range;
+    let (least, most) = (low.min(high.powf(-0.5)), high.max(low.powf(-0.5)));
+    let outside = |own: &Strained| (own.largest / most).max(least / own.smallest);
+    let worst = strained
+        .iter()
+        .max_by(|a, b| outside(&a.1).total_cmp(&outside(&b.1)));
+    let (load, worst) = worst.filter(|(_, own)| outside(own) > 1.0 + 1e-3)?;
+    Some(format!(
+        "Warning: principal stretches in the plane reach {:.3} … {:.3} at {load}, outside the range of the card `{}`, \
+         which was calibrated from λ = {low} to {high} ({} test).",
+        worst.smallest, worst.largest, card.name, card.test
+    ))
+}
+
+/// The warning about a material that is not stable, at the first load factor.
+fn unstable(card: &Card, strained: &[(String, Strained)]) -> Option<String> {
+    let mut found = strained.iter();
+    found.find_map(|(load, own)| {
+        let cell = own.unstable.as_ref()?;
+        Some(format!(
+            "Warning: the material of the card `{}` is not stable (Drucker) in {cell} of the finite elements at {load}.",
+            card.name
+        ))
+    })
+}
