@@ -188,7 +188,7 @@ impl<'a> Boundary<'a> {
             let own = other.ends();
             own.contains(&node) && own.iter().any(|end| ends.contains(end))
         };
-        side.middle == Some(node) || self.all.iter().any(|other| leads(other))
+        side.middle == Some(node) || self.all.iter().any(leads)
     }
 
     /// Sides of the boundary that lie on each other.
