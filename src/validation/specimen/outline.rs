@@ -183,7 +183,11 @@ impl Outline {
                 element,
                 ..
             } => {
-                let coarsest = if element.degree() == 2 { cells / 2 } else { *cells };
+                let coarsest = if element.degree() == 2 {
+                    cells / 2
+                } else {
+                    *cells
+                };
                 shape.mesh(coarsest << level, *element)
             }
             Self::File { mesh, .. } => {
