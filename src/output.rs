@@ -9,6 +9,7 @@ use crate::study::Study;
 
 mod figures;
 mod fit;
+pub mod folder;
 pub mod hand_over;
 mod html;
 mod identification;

@@ -14,6 +14,7 @@ mod frd;
 mod gmsh;
 mod pvd;
 mod vtk;
+mod vtu;
 
 pub use field::{ImportedField, ImportedSeries, ImportedStep, import_field, import_series};
 
@@ -122,10 +123,29 @@ fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Dia
     groups.iter().filter_map(told).collect()
 }
 
+/// Bytes of a file that is read.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// The bytes of a file.
+fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+    let unreadable = |cause| format!("cannot be read: {cause}");
+    let about = std::fs::metadata(path).map_err(unreadable)?;
+    if !about.is_file() {
+        return Err("is no file".into());
+    }
+    if about.len() > MOST_BYTES {
+        let size = about.len() >> 30;
+        return Err(format!(
+            "has {size} GiB; at most {} are read",
+            MOST_BYTES >> 30
+        ));
+    }
+    std::fs::read(path).map_err(unreadable)
+}
+
 /// The text of a file.
 fn read_text(path: &Path) -> Result<String, String> {
-    let bytes = std::fs::read(path).map_err(|cause| format!("cannot be read: {cause}"))?;
-    String::from_utf8(bytes).map_err(|_| BINARY.to_owned())
+    String::from_utf8(read_bytes(path)?).map_err(|_| BINARY.to_owned())
 }
 
 const BINARY: &str = "is a binary file; save it as ASCII (Mesh.Binary = 0 in Gmsh) or as .vtu";

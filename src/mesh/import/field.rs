@@ -142,7 +142,10 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
     for (time, file) in pvd::read(&read_text(path)?)? {
         let name = file.clone();
         let file = path.parent().unwrap_or(Path::new("")).join(file);
-        if file.extension().is_some_and(|ending| ending == "pvd") {
+        if file
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
+        {
             return Err(format!("names the collection {name} as one of its files"));
         }
         let mut part = import_series(&file, unit, array)

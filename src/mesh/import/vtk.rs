@@ -1,134 +1,195 @@
-//! VTK's unstructured grids.
+//! VTK's unstructured grids, and its legacy files (`.vtk`); those as XML are read by [`super::vtu`].
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use vtkio::model::{
-    Attribute, CellType, DataSet, IOBuffer, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
+    Attribute, DataSet, IOBuffer, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
 };
 
-use super::Raw;
+use super::vtu::{self, CUT_OFF};
+use super::{Raw, read_bytes};
 use crate::mesh::CellShape;
 
 /// Cell arrays in which meshio and Gmsh keep the numbers of physical groups.
 const GROUPS: [&str; 3] = ["gmsh:physical", "physical", "CellEntityIds"];
+
+/// VTK's numbers of the kinds of cells that are no faces.
+const VERTICES: [u8; 2] = [1, 2];
+const LINES: [u8; 3] = [3, 21, 68];
+
+/// An unstructured grid as it stands in a file.
+pub struct UnstructuredGrid {
+    /// Three coordinates of point after point.
+    pub points: Vec<f64>,
+    /// VTK's number of each cell's kind, and its points.
+    pub cells: Vec<(u8, Vec<u64>)>,
+    /// Arrays of numbers at the points, by name.
+    pub point_arrays: Arrays,
+    /// Arrays of numbers at the cells, by name.
+    pub cell_arrays: Arrays,
+}
+
+/// Arrays of numbers by name: all components of point after point, or of cell after cell.
+pub type Arrays = Vec<(String, Vec<f64>)>;
 
 /// Reads a `.vtu` or `.vtk` file.
 ///
 /// # Errors
 /// Says what is wrong or cannot be read.
 pub fn read(path: &Path) -> Result<Raw, String> {
-    grid(&piece(path)?)
+    grid(path)?.raw()
 }
-
-/// Arrays of vectors by name: two or three components of point after point.
-pub type Arrays = Vec<(String, Vec<f64>)>;
 
 /// Reads a file with its arrays of vectors at the points.
 ///
 /// # Errors
 /// Says what is wrong or cannot be read.
 pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), String> {
-    let piece = piece(path)?;
-    let raw = grid(&piece)?;
+    let grid = grid(path)?;
+    let raw = grid.raw()?;
     let points = raw.places.len();
-    let all = piece
-        .data
-        .point
-        .iter()
-        .flat_map(|attribute| match attribute {
-            Attribute::DataArray(array) => vec![(&array.name, &array.data)],
-            Attribute::Field { data_array, .. } => {
-                let arrays = data_array.iter();
-                arrays.map(|array| (&array.name, &array.data)).collect()
-            }
-        });
-    let vectors = all.filter(|(_, data)| [2 * points, 3 * points].contains(&data.len()));
-    let arrays = vectors.filter_map(|(name, data)| Some((name.clone(), numbers(data)?)));
-    let arrays = arrays.collect();
-    Ok((raw, arrays))
+    let is_vector =
+        |(_, values): &(String, Vec<f64>)| [2 * points, 3 * points].contains(&values.len());
+    let arrays = grid.point_arrays.into_iter().filter(is_vector);
+    Ok((raw, arrays.collect()))
 }
 
-/// The only piece of a file.
-fn piece(path: &Path) -> Result<UnstructuredGridPiece, String> {
-    refuse_legacy_5(path)?;
-    let file = Vtk::import(path).map_err(|cause| format!("cannot be read as VTK: {cause}"))?;
+fn grid(path: &Path) -> Result<UnstructuredGrid, String> {
+    let bytes = read_bytes(path)?;
+    let is_legacy = bytes.starts_with(b"# vtk DataFile");
+    if is_legacy {
+        legacy(&bytes)
+    } else {
+        vtu::read(&bytes)
+    }
+}
+
+/// A legacy file.
+fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, String> {
+    check_legacy(bytes)?;
+    // The library panics on some files that are cut off.
+    let parsed = catch_unwind(AssertUnwindSafe(|| Vtk::parse_legacy_be(bytes)));
+    let file = match parsed {
+        Ok(Ok(file)) => file,
+        Ok(Err(cause)) => return Err(format!("cannot be read as VTK: {cause}")),
+        Err(_) => return Err("cannot be read as VTK: it is cut off or damaged".into()),
+    };
     let DataSet::UnstructuredGrid { pieces, .. } = file.data else {
         return Err("is no unstructured grid".into());
     };
-    let mut pieces = pieces.into_iter();
-    let (Some(piece), None) = (pieces.next(), pieces.next()) else {
-        return Err("has several pieces; merge them into one".into());
-    };
-    match piece {
-        Piece::Inline(piece) => Ok(*piece),
+    match pieces.into_iter().next() {
+        Some(Piece::Inline(piece)) => of_piece(&piece),
         _ => Err("refers to other files; save it as one".into()),
     }
 }
 
-/// Legacy files of the version 5 list their cells in another way, which the library does not know.
-fn refuse_legacy_5(path: &Path) -> Result<(), String> {
-    let mut first = String::new();
-    let file = File::open(path).map_err(|cause| format!("cannot be read: {cause}"))?;
-    // A file that is no text has no such line.
-    let _ = BufReader::new(file).take(100).read_line(&mut first);
-    match first.trim().strip_prefix("# vtk DataFile Version 5") {
-        Some(_) => {
-            Err("is a legacy VTK file of the version 5; save it as .vtu or in version 4.2".into())
-        }
-        None => Ok(()),
+/// Refuses legacy files of the version 5, which list their cells in another way, and numbers of points or cells that
+/// the file cannot hold.
+fn check_legacy(bytes: &[u8]) -> Result<(), String> {
+    if bytes.starts_with(b"# vtk DataFile Version 5") {
+        return Err(
+            "is a legacy VTK file of the version 5; save it as .vtu or in version 4.2".into(),
+        );
     }
+    for line in bytes.split(|byte| *byte == b'\n') {
+        let Ok(line) = std::str::from_utf8(line) else {
+            continue;
+        };
+        let mut words = line.split_ascii_whitespace();
+        let counted = [
+            "POINTS",
+            "CELLS",
+            "CELL_TYPES",
+            "POINT_DATA",
+            "CELL_DATA",
+            "FIELD",
+        ];
+        if !words.next().is_some_and(|word| counted.contains(&word)) {
+            continue;
+        }
+        // A value takes a byte at least.
+        let mut numbers = words.filter_map(|word| word.parse::<u64>().ok());
+        if let Some(number) = numbers.find(|number| *number > bytes.len() as u64) {
+            return Err(format!(
+                "says `{}`, and is too short for {number}",
+                line.trim()
+            ));
+        }
+    }
+    Ok(())
 }
 
-fn grid(piece: &UnstructuredGridPiece) -> Result<Raw, String> {
-    let mut raw = Raw::default();
-    let places = numbers(&piece.points).ok_or("has points that are no numbers")?;
-    for (name, place) in places.chunks_exact(3).enumerate() {
-        raw.places
-            .insert(name as u64, [place[0], place[1], place[2]]);
-    }
-    let groups = piece
-        .data
-        .cell
-        .iter()
-        .find_map(|attribute| match attribute {
-            Attribute::DataArray(array) if GROUPS.contains(&&*array.name) => numbers(&array.data),
-            _ => None,
-        });
-    let cells = cells(&piece.cells.cell_verts)?;
-    for (index, (kind, nodes)) in piece.cells.types.iter().zip(cells).enumerate() {
-        let shape = match kind {
-            CellType::Triangle => CellShape::Triangle3,
-            CellType::QuadraticTriangle => CellShape::Triangle6,
-            CellType::Quad => CellShape::Quad4,
-            CellType::QuadraticQuad => CellShape::Quad8,
-            CellType::BiquadraticQuad => CellShape::Quad9,
-            CellType::Vertex => continue,
-            CellType::Line | CellType::QuadraticEdge => {
-                let tag = groups.as_ref().and_then(|groups| groups.get(index));
+fn of_piece(piece: &UnstructuredGridPiece) -> Result<UnstructuredGrid, String> {
+    let points = numbers(&piece.points).ok_or("has points that are no numbers")?;
+    let kinds = piece.cells.types.iter().map(|kind| *kind as u8);
+    Ok(UnstructuredGrid {
+        points,
+        cells: kinds.zip(cells(&piece.cells.cell_verts)?).collect(),
+        point_arrays: arrays(&piece.data.point),
+        cell_arrays: arrays(&piece.data.cell),
+    })
+}
+
+fn arrays(attributes: &[Attribute]) -> Arrays {
+    let arrays = attributes.iter().flat_map(|attribute| match attribute {
+        Attribute::DataArray(array) => vec![(&array.name, &array.data)],
+        Attribute::Field { data_array, .. } => {
+            let arrays = data_array.iter();
+            arrays.map(|array| (&array.name, &array.data)).collect()
+        }
+    });
+    arrays
+        .filter_map(|(name, data)| Some((name.clone(), numbers(data)?)))
+        .collect()
+}
+
+impl UnstructuredGrid {
+    fn raw(&self) -> Result<Raw, String> {
+        let mut raw = Raw::default();
+        for (name, place) in (0..).zip(self.points.chunks_exact(3)) {
+            raw.places.insert(name, [place[0], place[1], place[2]]);
+        }
+        let mut named = self.cell_arrays.iter();
+        let groups = named.find(|(name, _)| GROUPS.contains(&&**name));
+        for (index, (kind, nodes)) in self.cells.iter().enumerate() {
+            if VERTICES.contains(kind) {
+                continue;
+            }
+            if LINES.contains(kind) {
+                let tag = groups.and_then(|(_, tags)| tags.get(index));
                 if let (Some(tag), [a, b, ..]) = (tag, &nodes[..]) {
                     let group = format!("physical-{tag}");
                     raw.lines.entry(group).or_default().push([*a, *b]);
                 }
                 continue;
             }
-            other => {
-                return Err(format!(
-                    "has cells of the kind {other:?}, which is not flat"
-                ));
-            }
-        };
-        if nodes.len() != shape.nodes() {
+            raw.cells.push((shape(*kind, nodes.len())?, nodes.clone()));
+        }
+        Ok(raw)
+    }
+}
+
+/// The kind of a face by VTK's number.
+fn shape(kind: u8, nodes: usize) -> Result<CellShape, String> {
+    let shape = match (kind, nodes) {
+        (5, _) | (69, 3) => CellShape::Triangle3,
+        (22, _) | (69, 6) => CellShape::Triangle6,
+        (9, _) | (70, 4) => CellShape::Quad4,
+        (23, _) => CellShape::Quad8,
+        (28, _) | (70, 9) => CellShape::Quad9,
+        _ => {
             return Err(format!(
-                "has a cell of {} nodes where {} belong",
-                nodes.len(),
-                shape.nodes()
+                "has cells of VTK's kind {kind} with {nodes} nodes; triangles of three and six nodes and \
+                 quadrilaterals of four, eight and nine can be read"
             ));
         }
-        raw.cells.push((shape, nodes));
+    };
+    if nodes != shape.nodes() {
+        let belong = shape.nodes();
+        return Err(format!("has a cell of {nodes} nodes where {belong} belong"));
     }
-    Ok(raw)
+    Ok(shape)
 }
 
 fn numbers(buffer: &IOBuffer) -> Option<Vec<f64>> {
@@ -148,7 +209,7 @@ fn cells(vertices: &VertexNumbers) -> Result<Vec<Vec<u64>>, String> {
                 let nodes = usize::try_from(*end)
                     .ok()
                     .and_then(|end| connectivity.get(start..end));
-                let nodes = nodes.ok_or("has a list of cells that is cut off")?;
+                let nodes = nodes.ok_or(CUT_OFF)?;
                 cells.push(nodes.to_vec());
                 start = *end as usize;
             }
@@ -157,9 +218,7 @@ fn cells(vertices: &VertexNumbers) -> Result<Vec<Vec<u64>>, String> {
             let mut rest = &vertices[..];
             while let Some((count, more)) = rest.split_first() {
                 let count = *count as usize;
-                let nodes = more
-                    .get(..count)
-                    .ok_or("has a list of cells that is cut off")?;
+                let nodes = more.get(..count).ok_or(CUT_OFF)?;
                 cells.push(nodes.iter().map(|node| u64::from(*node)).collect());
                 rest = &more[count..];
             }

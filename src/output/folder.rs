@@ -1,0 +1,367 @@
+//! A folder of results: written aside first, then moved into place.
+//!
+//! ```text
+//! open      the folder is made, locked and swept of what a killed run has left
+//! add       a file is written into a folder of its own beside the results that are there
+//! finish    all files are moved into place; what the run before has written and this one has not is removed
+//! ```
+//!
+//! `.gelbench-manifest.json` lists what gelbench has written into a folder. Nothing else is ever removed. It is also what
+//! a run locks, and it says whether the set of files is complete: between the first file that is moved and the last one
+//! it is not.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File, TryLockError};
+use std::io::{Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use tempfile::TempDir;
+
+use crate::error::Error;
+
+/// The list of what was written into a folder.
+const MANIFEST: &str = ".gelbench-manifest.json";
+
+/// Begin of the names of folders whose files are not in place yet.
+const PARTIAL: &str = ".gelbench-partial-";
+
+/// What gelbench has written into a folder.
+#[derive(Debug, Default, Deserialize, Serialize)]
+struct Manifest {
+    /// The version that wrote it.
+    gelbench: String,
+    /// Whether all files are in place.
+    complete: bool,
+    /// The files, relative to the folder, with `/` between the parts.
+    files: BTreeSet<String>,
+}
+
+/// A folder that is being written into.
+#[derive(Debug)]
+pub struct ResultFolder {
+    path: PathBuf,
+    /// The files that the results follow from, which they must not replace.
+    inputs: Vec<PathBuf>,
+    manifest: File,
+    before: Manifest,
+    partial: Option<TempDir>,
+    names: Vec<String>,
+}
+
+impl ResultFolder {
+    /// Makes and locks a folder for results that follow from `inputs`.
+    ///
+    /// # Errors
+    /// [`Error::Write`] when the folder cannot be made or does not take files, or when another process is writing
+    /// into it.
+    pub fn open(path: &Path, inputs: &[&Path]) -> Result<Self, Error> {
+        let fault = |cause: std::io::Error| Error::write(path, cause);
+        fs::create_dir_all(path).map_err(fault)?;
+        let file = path.join(MANIFEST);
+        let mut options = File::options();
+        let options = options.read(true).write(true).create(true).truncate(false);
+        let manifest = options
+            .open(&file)
+            .map_err(|cause| Error::write(&file, cause))?;
+        match manifest.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let cause = "another run is writing into this folder; wait for its end, or choose another with --output";
+                return Err(Error::write(path, cause));
+            }
+            // Some file systems know no locks; two runs at once are then the user's own care.
+            Err(TryLockError::Error(_)) => {}
+        }
+        let before = read_manifest(&manifest);
+        sweep(path);
+        for folder in folders(path, &before) {
+            let writable = tempfile::tempfile_in(&folder);
+            writable.map_err(|cause| Error::write(&folder, cause))?;
+        }
+        let mut builder = tempfile::Builder::new();
+        let partial = builder.prefix(PARTIAL).tempdir_in(path).map_err(fault)?;
+        Ok(Self {
+            path: path.to_owned(),
+            inputs: inputs
+                .iter()
+                .filter_map(|input| fs::canonicalize(input).ok())
+                .collect(),
+            manifest,
+            before,
+            partial: Some(partial),
+            names: Vec::new(),
+        })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a file aside; `name` is relative to the folder, with `/` between its parts.
+    ///
+    /// # Errors
+    /// [`Error::Write`] when it would replace an input, or when it cannot be written.
+    pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Error> {
+        let target = self.path.join(name);
+        refuse_input(&target, &self.inputs)?;
+        let fault = |cause: std::io::Error| Error::write(&target, cause);
+        let aside = self.aside().join(name);
+        let folder = aside.parent().unwrap_or(&self.path);
+        // The folder may have been taken away while the results were computed.
+        fs::create_dir_all(folder).map_err(fault)?;
+        let mut file = File::create(&aside).map_err(fault)?;
+        file.write_all(bytes).map_err(fault)?;
+        file.sync_all().map_err(fault)?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Moves all files into place and removes those that the run before has written and this one has not. Returns
+    /// the files in the order in which they were added.
+    ///
+    /// # Errors
+    /// [`Error::Write`] with the file that could not be moved, removed or written.
+    pub fn finish(mut self) -> Result<Vec<PathBuf>, Error> {
+        let new: BTreeSet<String> = self.names.iter().cloned().collect();
+        let old = std::mem::take(&mut self.before.files);
+        self.note(false, old.union(&new).cloned().collect())?;
+        let mut written = Vec::new();
+        for name in &self.names {
+            let target = self.path.join(name);
+            let fault = |cause: std::io::Error| Error::write(&target, cause);
+            fs::create_dir_all(target.parent().unwrap_or(&self.path)).map_err(fault)?;
+            fs::rename(self.aside().join(name), &target).map_err(fault)?;
+            written.push(target);
+        }
+        for name in old.difference(&new).filter(|name| is_inside(name)) {
+            let target = self.path.join(name);
+            if refuse_input(&target, &self.inputs).is_ok() && target.exists() {
+                fs::remove_file(&target).map_err(|cause| Error::write(&target, cause))?;
+            }
+        }
+        self.note(true, new)?;
+        Ok(written)
+    }
+
+    /// Where the files are before they are in place.
+    fn aside(&self) -> &Path {
+        self.partial
+            .as_ref()
+            .map_or(&self.path, |folder| folder.path())
+    }
+
+    /// Writes the manifest.
+    fn note(&mut self, complete: bool, files: BTreeSet<String>) -> Result<(), Error> {
+        let manifest = Manifest {
+            gelbench: env!("CARGO_PKG_VERSION").to_owned(),
+            complete,
+            files,
+        };
+        let file = self.path.join(MANIFEST);
+        let fault = |cause: std::io::Error| Error::write(&file, cause);
+        let mut text =
+            serde_json::to_string_pretty(&manifest).map_err(|cause| Error::write(&file, cause))?;
+        text.push('\n');
+        if !file.exists() {
+            // The folder was taken away and is made anew.
+            fs::create_dir_all(&self.path).map_err(fault)?;
+            self.manifest = File::create(&file).map_err(fault)?;
+        }
+        self.manifest.set_len(0).map_err(fault)?;
+        self.manifest.rewind().map_err(fault)?;
+        self.manifest.write_all(text.as_bytes()).map_err(fault)?;
+        self.manifest.sync_all().map_err(fault)
+    }
+}
+
+impl Drop for ResultFolder {
+    /// Takes away what is not in place, and a folder into which nothing came to be written.
+    fn drop(&mut self) {
+        drop(self.partial.take());
+        let empty = self.manifest.metadata().is_ok_and(|file| file.len() == 0);
+        if empty {
+            let _ = fs::remove_file(self.path.join(MANIFEST));
+        }
+        // It stays where it holds anything.
+        let _ = fs::remove_dir(&self.path);
+    }
+}
+
+/// Says that a file is one from which the results follow.
+fn refuse_input(target: &Path, inputs: &[PathBuf]) -> Result<(), Error> {
+    let same = fs::canonicalize(target).is_ok_and(|target| inputs.contains(&target));
+    if same {
+        let cause = "it is an input of this command; choose another place with --output";
+        return Err(Error::write(target, cause));
+    }
+    Ok(())
+}
+
+/// What a manifest lists; nothing where it cannot be read, so that nothing is removed then.
+fn read_manifest(mut file: &File) -> Manifest {
+    let mut text = String::new();
+    match file.read_to_string(&mut text) {
+        Ok(_) => serde_json::from_str(&text).unwrap_or_default(),
+        Err(_) => Manifest::default(),
+    }
+}
+
+/// Whether a name leads to a file below its folder.
+fn is_inside(name: &str) -> bool {
+    use std::path::Component;
+    let mut parts = Path::new(name).components();
+    parts.all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// The folder and those below it that hold files of the run before.
+fn folders(path: &Path, before: &Manifest) -> BTreeSet<PathBuf> {
+    let inside = before.files.iter().filter(|name| is_inside(name));
+    let parents = inside.filter_map(|name| Some(path.join(name).parent()?.to_owned()));
+    parents
+        .chain([path.to_owned(), path.join("vtk")])
+        .filter(|folder| folder.is_dir())
+        .collect()
+}
+
+/// Removes what runs that were killed have left.
+fn sweep(path: &Path) {
+    let entries = fs::read_dir(path).into_iter().flatten().flatten();
+    let left = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(PARTIAL));
+    for entry in left {
+        // What cannot be removed does no harm.
+        let _ = fs::remove_dir_all(entry.path());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(folder: &Path, inputs: &[&Path], files: &[(&str, &str)]) -> Result<Vec<PathBuf>, Error> {
+        let mut results = ResultFolder::open(folder, inputs)?;
+        for (name, text) in files {
+            results.add(name, text.as_bytes())?;
+        }
+        results.finish()
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut open = vec![folder.to_owned()];
+        while let Some(next) = open.pop() {
+            for entry in fs::read_dir(next).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    open.push(path);
+                } else {
+                    let name = path.strip_prefix(folder).unwrap().to_string_lossy();
+                    found.push(name.replace('\\', "/"));
+                }
+            }
+        }
+        found.sort();
+        found
+    }
+
+    #[test]
+    fn only_what_an_earlier_run_has_written_is_removed() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path();
+        fs::write(path.join("plates_2024.png"), "mine").unwrap();
+        fs::write(path.join("markers_7.csv"), "mine").unwrap();
+        let first = [
+            ("report.md", "1"),
+            ("vtk/a_001.vtu", "1"),
+            ("vtk/a_002.vtu", "1"),
+        ];
+        run(path, &[], &first).unwrap();
+        let written = run(path, &[], &[("report.md", "2"), ("vtk/a_001.vtu", "2")]).unwrap();
+        assert_eq!(
+            written,
+            [path.join("report.md"), path.join("vtk/a_001.vtu")]
+        );
+        let expected = [
+            MANIFEST,
+            "markers_7.csv",
+            "plates_2024.png",
+            "report.md",
+            "vtk/a_001.vtu",
+        ];
+        assert_eq!(names(path), expected);
+        assert_eq!(fs::read_to_string(path.join("report.md")).unwrap(), "2");
+    }
+
+    #[test]
+    fn an_input_is_neither_replaced_nor_removed() {
+        let folder = TempDir::new().unwrap();
+        let input = folder.path().join("a.toml");
+        fs::write(&input, "study").unwrap();
+        let refused = run(folder.path(), &[&input], &[("b.md", ""), ("a.toml", "law")]);
+        assert!(refused.unwrap_err().to_string().contains("is an input"));
+        assert_eq!(fs::read_to_string(&input).unwrap(), "study");
+        assert_eq!(names(folder.path()), ["a.toml"]);
+        // A table that one run has written may be what the next one reads.
+        run(folder.path(), &[], &[("nodes.csv", "1")]).unwrap();
+        let table = folder.path().join("nodes.csv");
+        run(folder.path(), &[&table], &[("report.md", "2")]).unwrap();
+        assert_eq!(fs::read_to_string(&table).unwrap(), "1");
+    }
+
+    #[test]
+    fn a_run_that_does_not_end_leaves_the_results_before_it_as_they_were() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("results");
+        drop(ResultFolder::open(&path, &[]).unwrap());
+        assert!(!path.exists(), "nothing was written");
+        run(&path, &[], &[("report.md", "1")]).unwrap();
+        let mut second = ResultFolder::open(&path, &[]).unwrap();
+        second.add("report.md", b"2").unwrap();
+        assert_eq!(fs::read_to_string(path.join("report.md")).unwrap(), "1");
+        // As a kill leaves it: the partial folder stays until the next run.
+        let partial = second.partial.take().unwrap().keep();
+        drop(second);
+        assert!(partial.exists());
+        run(&path, &[], &[("report.md", "3")]).unwrap();
+        assert_eq!(names(&path), [MANIFEST, "report.md"]);
+        assert_eq!(fs::read_to_string(path.join("report.md")).unwrap(), "3");
+    }
+
+    #[test]
+    fn two_runs_do_not_write_into_one_folder_at_once() {
+        let folder = TempDir::new().unwrap();
+        let first = ResultFolder::open(folder.path(), &[]).unwrap();
+        let second = ResultFolder::open(folder.path(), &[]).unwrap_err();
+        assert!(second.to_string().contains("another run"), "{second}");
+        drop(first);
+        ResultFolder::open(folder.path(), &[]).unwrap();
+    }
+
+    #[test]
+    fn a_folder_that_is_taken_away_meanwhile_is_made_anew() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("results");
+        let mut results = ResultFolder::open(&path, &[]).unwrap();
+        results.add("a.md", b"1").unwrap();
+        fs::remove_dir_all(&path).unwrap();
+        results.add("b.md", b"2").unwrap();
+        let fault = results.finish().unwrap_err();
+        assert!(fault.to_string().contains("a.md"), "{fault}");
+    }
+
+    #[test]
+    fn a_manifest_that_leads_out_of_its_folder_removes_nothing() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("results");
+        fs::create_dir(&path).unwrap();
+        fs::write(folder.path().join("mine.txt"), "mine").unwrap();
+        let forged = r#"{"gelbench":"0","complete":true,"files":["../mine.txt","/etc/none"]}"#;
+        fs::write(path.join(MANIFEST), forged).unwrap();
+        run(&path, &[], &[("report.md", "1")]).unwrap();
+        assert!(folder.path().join("mine.txt").exists());
+        fs::write(path.join(MANIFEST), "{ half").unwrap();
+        run(&path, &[], &[("other.md", "1")]).unwrap();
+        assert!(path.join("report.md").exists());
+    }
+}
