@@ -16,6 +16,7 @@ use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::error::{Diagnostic, Error};
+use crate::output::ResultFolder;
 use crate::problem::Problem;
 use crate::study::{self, DEFAULT, Study};
 use crate::validation::{self, Case, Computed};
@@ -161,7 +162,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
     let study = Study::of_file(path, text)?;
     warn(&study.warnings);
     let folder = folder.unwrap_or_else(|| study.output.folder.clone());
-    output::prepare(&folder)?;
+    let mut results_folder = ResultFolder::open(&folder, "run", &[path])?;
 
     let bar = progress_bar(run::progress_steps(&study) as u64);
     let progress = |model: &str, stretch: f64| {
@@ -170,9 +171,10 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
     };
     let results = run::run(&study, &progress);
     bar.finish_and_clear();
-    let results = results.inspect_err(|_| output::abandon(&folder))?;
+    let results = results?;
 
-    let files = output::write(&study, &results, &folder)?;
+    output::write(&study, &results, &mut results_folder)?;
+    let files = results_folder.finish()?;
     let requirements = results.requirements(&study);
     let warnings = output::warnings(&study, &results).into_iter();
     let warnings: String = warnings.map(|warning| warning + "\n").collect();
@@ -196,31 +198,27 @@ fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Ou
     warn(&ready.warnings);
     let stem = path.file_stem().map_or_else(PathBuf::new, PathBuf::from);
     let folder = folder.unwrap_or_else(|| Path::new("output").join(stem));
-    output::prepare(&folder)?;
+    let mut results = ResultFolder::open(&folder, "run", &[path])?;
     let bar = progress_bar(0);
     let computed = ready.compute(&|what| {
         bar.set_message(what.to_owned());
         bar.tick();
     });
     bar.finish_and_clear();
-    let computed = computed.inspect_err(|_| output::abandon(&folder))?;
+    let computed = computed?;
     let (title, json) = (computed.title.clone(), computed.json());
-    let mut written = Vec::new();
     for (name, bytes) in &computed.outcome.vtk {
-        written.push(output::save(&folder.join("vtk").join(name), bytes)?);
+        results.add(&format!("vtk/{name}"), bytes)?;
     }
-    output::remove_stale(&folder, &written)?;
     for (name, bytes) in &computed.outcome.files {
-        output::save(&folder.join(name), bytes)?;
+        results.add(name, bytes)?;
     }
+    results.add("report.json", format!("{json:#}\n").as_bytes())?;
     let cases = [computed];
     let (blocks, figures) = validation::report::report(&title, &cases);
-    output::write_pictures(&folder, &figures)?;
-    output::save(
-        &folder.join("report.json"),
-        format!("{json:#}\n").as_bytes(),
-    )?;
-    output::write_document(&folder, "report", &blocks, &figures)?;
+    output::write_pictures(&mut results, &figures)?;
+    output::write_document(&mut results, "report", &blocks, &figures)?;
+    results.finish()?;
     conclude(&cases, &folder.join("report.html"))
 }
 
@@ -234,7 +232,7 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
         "output/validation"
     };
     let folder = &folder.unwrap_or_else(|| PathBuf::from(usual));
-    output::prepare(folder)?;
+    let mut results = ResultFolder::open(folder, "validate", &[])?;
     let bar = progress_bar(chosen.len() as u64);
     let mut cases = Vec::new();
     for case in chosen {
@@ -248,8 +246,9 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     }
     bar.finish_and_clear();
     let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
-    output::write_pictures(folder, &figures)?;
-    output::write_document(folder, "REPORT", &blocks, &figures)?;
+    output::write_pictures(&mut results, &figures)?;
+    output::write_document(&mut results, "REPORT", &blocks, &figures)?;
+    results.finish()?;
     conclude(&cases, &folder.join("REPORT.md"))
 }
 

@@ -10,7 +10,7 @@ use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField,
 use crate::error::{Error, suggestion};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
-use crate::output::{self, Block, vtk};
+use crate::output::{self, Block, ResultFolder, vtk};
 use crate::run;
 use crate::study::{self, Study};
 use crate::units::{self, Dimension};
@@ -66,7 +66,10 @@ pub fn run(options: Options) -> Outcome {
     })?;
     print(&summary(&compared, &differences))?;
     if let Some(folder) = &options.output {
-        write(&compared, &differences, &options.field, folder)?;
+        let inputs = [&*options.study, &*options.field];
+        let mut results = ResultFolder::open(folder, "compare", &inputs)?;
+        write(&compared, &differences, &options.field, &mut results)?;
+        results.finish()?;
         print(&format!("report: {}\n", folder.join("report.md").display()))?;
     }
     Ok(0)
@@ -179,9 +182,8 @@ fn write(
     compared: &Compared,
     differences: &[Difference],
     file: &Path,
-    folder: &Path,
+    folder: &mut ResultFolder,
 ) -> Result<(), Error> {
-    output::prepare(folder)?;
     let sheet = vtk::Sheet {
         law: &*compared.law,
         thickness: compared.thickness,
@@ -211,10 +213,9 @@ fn write(
             ),
         };
         let name = format!("{}.vtu", field.model.replace([' ', '-'], "_"));
-        output::save(&folder.join("vtk").join(name), &bytes)?;
+        folder.add(&format!("vtk/{name}"), &bytes)?;
     }
-    output::write_document(folder, "report", &report(compared, differences, file), &[])?;
-    Ok(())
+    output::write_document(folder, "report", &report(compared, differences, file), &[])
 }
 
 fn report(compared: &Compared, differences: &[Difference], file: &Path) -> Vec<Block> {

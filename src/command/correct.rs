@@ -1,6 +1,6 @@
 //! `gelbench correct`: a measured displacement field made to satisfy the physics.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::measured_field::{Conditions, MeasuredField, MeshSource, Request, measured_force};
 use crate::measurement::Reading;
 use crate::mesh::{Allowed, CellShape, MeshReading};
-use crate::output;
+use crate::output::{self, ResultFolder};
 use crate::units::{self, Dimension};
 
 /// What the command line says about a correction.
@@ -135,17 +135,20 @@ pub enum Holds {
 /// Corrects, prints, and writes.
 pub fn run(options: Options) -> Outcome {
     let folder = options.output.clone();
+    let inputs = inputs(&options);
     let field = MeasuredField::prepare(request(options)?)?;
     warn(&field.warnings);
-    output::prepare(&folder)?;
+    let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+    let mut results = ResultFolder::open(&folder, "correct", &inputs)?;
     let bar = progress_bar(field.measurement.frames.len() as u64);
     let estimates = field.estimate(&|frame| {
         bar.set_message(format!("frame {}", frame.number));
         bar.inc(1);
     });
     bar.finish_and_clear();
-    let estimates = estimates.inspect_err(|_| output::abandon(&folder))?;
-    let files = output::measured::write(&field, &estimates, &folder)?;
+    let estimates = estimates?;
+    output::measured::write(&field, &estimates, &mut results)?;
+    let files = results.finish()?;
     print(&format!(
         "{}{} files in {}\n",
         output::measured::summary(&field, &estimates),
@@ -153,6 +156,20 @@ pub fn run(options: Options) -> Outcome {
         folder.display()
     ))?;
     Ok(0)
+}
+
+/// The files that the results follow from.
+fn inputs(options: &Options) -> Vec<PathBuf> {
+    let others = [&options.study, &options.mesh, &options.outline];
+    let named = others.into_iter().flatten().cloned();
+    let card = PathBuf::from(&options.material);
+    options
+        .fields
+        .iter()
+        .cloned()
+        .chain(named)
+        .chain([card])
+        .collect()
 }
 
 fn request(options: Options) -> Result<Request, Error> {

@@ -71,6 +71,7 @@ pub fn run(options: &Options) -> Outcome {
     let name = format!("{stem}_{}.{}", code.key(), code.ending());
     let usual = || Path::new("output").join(&stem).join(name);
     let target = options.output.clone().unwrap_or_else(usual);
+    output::refuse_inputs(&target, &[path])?;
     output::save(&target, written.text.as_bytes())?;
     for remark in written.remarks {
         warn(&[Diagnostic::warning("", remark)]);

@@ -11,7 +11,7 @@ use crate::identification::{
     Argument, Form, Function, Identification, IdentificationSettings, Recording, Said, Sample,
     Shape, identify, law_text,
 };
-use crate::output;
+use crate::output::{self, ResultFolder};
 use crate::validation::number;
 
 pub const HELP: &str = "\
@@ -154,19 +154,16 @@ fn write(
     folder: &Path,
     stem: &str,
 ) -> Result<PathBuf, Error> {
-    output::prepare(folder)?;
     let file = path.file_name().unwrap_or_default().to_string_lossy();
-    let target = |ending: &str| folder.join(format!("{stem}.{ending}"));
+    let mut results = ResultFolder::open(folder, &format!("identify {stem}"), &[path])?;
     let json = output::identification_json(found, recording, &file);
-    output::save(&target("json"), format!("{json:#}\n").as_bytes())?;
-    output::save(
-        &target("png"),
-        &output::identification_picture(found, recording),
-    )?;
-    output::save(
-        &target("toml"),
-        law_text(found, recording, &file).as_bytes(),
-    )
+    let law = format!("{stem}.toml");
+    results.add(&law, law_text(found, recording, &file).as_bytes())?;
+    results.add(&format!("{stem}.json"), format!("{json:#}\n").as_bytes())?;
+    let picture = output::identification_picture(found, recording);
+    results.add(&format!("{stem}.png"), &picture)?;
+    results.finish()?;
+    Ok(folder.join(law))
 }
 
 fn message(found: &Identification, recording: &Recording, path: &Path) -> String {

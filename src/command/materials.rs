@@ -223,6 +223,7 @@ fn plot(name: &str, file: Option<PathBuf>) -> Outcome {
     let stem = Path::new(name.strip_suffix(".toml").unwrap_or(name)).file_name();
     let stem = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let file = file.unwrap_or_else(|| PathBuf::from(format!("{stem}_curves.png")));
+    output::refuse_inputs(&file, &[Path::new(name)])?;
     output::save(&file, &output::material_chart(&card).png())?;
     print(&format!("{} written\n", file.display()))?;
     Ok(0)
@@ -247,6 +248,8 @@ fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>
 
 fn compare(names: &[String], file: &Path) -> Outcome {
     let cards = together(names.iter().map(|name| load(name)))?;
+    let inputs: Vec<&Path> = names.iter().map(Path::new).collect();
+    output::refuse_inputs(file, &inputs)?;
     output::save(file, &output::comparison_chart(&cards).png())?;
     let lines: String = cards.iter().map(message::moduli_line).collect();
     print(&format!("{lines}{} written\n", file.display()))?;
@@ -289,7 +292,6 @@ fn fit(arguments: FitArguments) -> Outcome {
         files: arguments.data.iter().map(relative).collect(),
         reading,
     };
-    output::prepare(folder)?;
     let text = calibration::card_text(&fit, &tests, &provenance);
     output::save(&card, text.as_bytes())?;
     output::save(&target("png"), &output::fit_picture(&fit, &tests))?;
@@ -427,13 +429,8 @@ fn convert(arguments: ConvertArguments) -> Outcome {
     .table(&data)?;
     match arguments.output {
         None => print(&text)?,
-        Some(file) if file.canonicalize().ok() == arguments.data.canonicalize().ok() => {
-            return Err(Error::write(
-                file,
-                "it holds the data that are read; choose another file",
-            ));
-        }
         Some(file) => {
+            output::refuse_inputs(&file, &[&arguments.data])?;
             output::save(&file, text.as_bytes())?;
             print(&format!("{} written\n", file.display()))?;
         }

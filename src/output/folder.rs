@@ -6,11 +6,11 @@
 //! finish    all files are moved into place; what the run before has written and this one has not is removed
 //! ```
 //!
-//! `.gelbench-manifest.json` lists what gelbench has written into a folder. Nothing else is ever removed. It is also what
-//! a run locks, and it says whether the set of files is complete: between the first file that is moved and the last one
-//! it is not.
+//! `.gelbench-manifest.json` lists what gelbench has written into a folder, and which command wrote it. Nothing else is
+//! ever removed. It is also what a run locks, and it says whether the set of files is complete: between the first file that
+//! is moved and the last one it is not.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -33,14 +33,15 @@ struct Manifest {
     gelbench: String,
     /// Whether all files are in place.
     complete: bool,
-    /// The files, relative to the folder, with `/` between the parts.
-    files: BTreeSet<String>,
+    /// What wrote each file; files by their names relative to the folder, with `/` between the parts.
+    files: BTreeMap<String, String>,
 }
 
 /// A folder that is being written into.
 #[derive(Debug)]
 pub struct ResultFolder {
     path: PathBuf,
+    writer: String,
     /// The files that the results follow from, which they must not replace.
     inputs: Vec<PathBuf>,
     manifest: File,
@@ -50,12 +51,12 @@ pub struct ResultFolder {
 }
 
 impl ResultFolder {
-    /// Makes and locks a folder for results that follow from `inputs`.
+    /// Makes and locks a folder for results of the command `writer`, such as `run`, that follow from `inputs`.
     ///
     /// # Errors
     /// [`Error::Write`] when the folder cannot be made or does not take files, or when another process is writing
     /// into it.
-    pub fn open(path: &Path, inputs: &[&Path]) -> Result<Self, Error> {
+    pub fn open(path: &Path, writer: &str, inputs: &[&Path]) -> Result<Self, Error> {
         let fault = |cause: std::io::Error| Error::write(path, cause);
         fs::create_dir_all(path).map_err(fault)?;
         let file = path.join(MANIFEST);
@@ -83,10 +84,8 @@ impl ResultFolder {
         let partial = builder.prefix(PARTIAL).tempdir_in(path).map_err(fault)?;
         Ok(Self {
             path: path.to_owned(),
-            inputs: inputs
-                .iter()
-                .filter_map(|input| fs::canonicalize(input).ok())
-                .collect(),
+            writer: writer.to_owned(),
+            inputs: places(inputs),
             manifest,
             before,
             partial: Some(partial),
@@ -118,15 +117,21 @@ impl ResultFolder {
         Ok(())
     }
 
-    /// Moves all files into place and removes those that the run before has written and this one has not. Returns
-    /// the files in the order in which they were added.
+    /// Moves all files into place and removes those that the same command has written before and has not now. Returns the
+    /// files in the order in which they were added.
     ///
     /// # Errors
     /// [`Error::Write`] with the file that could not be moved, removed or written.
     pub fn finish(mut self) -> Result<Vec<PathBuf>, Error> {
-        let new: BTreeSet<String> = self.names.iter().cloned().collect();
-        let old = std::mem::take(&mut self.before.files);
-        self.note(false, old.union(&new).cloned().collect())?;
+        let own = self.names.iter().cloned();
+        let new: BTreeMap<String, String> = own.map(|name| (name, self.writer.clone())).collect();
+        let mut files = std::mem::take(&mut self.before.files);
+        let ours = |(name, writer): (&String, &String)| {
+            (*writer == self.writer && !new.contains_key(name)).then(|| name.clone())
+        };
+        let stale: Vec<String> = files.iter().filter_map(ours).collect();
+        files.extend(new);
+        self.note(false, &files)?;
         let mut written = Vec::new();
         for name in &self.names {
             let target = self.path.join(name);
@@ -135,13 +140,15 @@ impl ResultFolder {
             fs::rename(self.aside().join(name), &target).map_err(fault)?;
             written.push(target);
         }
-        for name in old.difference(&new).filter(|name| is_inside(name)) {
-            let target = self.path.join(name);
-            if refuse_input(&target, &self.inputs).is_ok() && target.exists() {
+        for name in stale {
+            let target = self.path.join(&name);
+            let removable = is_inside(&name) && refuse_input(&target, &self.inputs).is_ok();
+            if removable && target.exists() {
                 fs::remove_file(&target).map_err(|cause| Error::write(&target, cause))?;
             }
+            files.remove(&name);
         }
-        self.note(true, new)?;
+        self.note(true, &files)?;
         Ok(written)
     }
 
@@ -153,11 +160,11 @@ impl ResultFolder {
     }
 
     /// Writes the manifest.
-    fn note(&mut self, complete: bool, files: BTreeSet<String>) -> Result<(), Error> {
+    fn note(&mut self, complete: bool, files: &BTreeMap<String, String>) -> Result<(), Error> {
         let manifest = Manifest {
             gelbench: env!("CARGO_PKG_VERSION").to_owned(),
             complete,
-            files,
+            files: files.clone(),
         };
         let file = self.path.join(MANIFEST);
         let fault = |cause: std::io::Error| Error::write(&file, cause);
@@ -189,7 +196,21 @@ impl Drop for ResultFolder {
     }
 }
 
-/// Says that a file is one from which the results follow.
+/// Refuses to write a file over an input of the same command.
+///
+/// # Errors
+/// [`Error::Write`] where the file is one of the inputs, by whatever names both are called.
+pub fn refuse_inputs(target: &Path, inputs: &[&Path]) -> Result<(), Error> {
+    refuse_input(target, &places(inputs))
+}
+
+fn places(inputs: &[&Path]) -> Vec<PathBuf> {
+    let inputs = inputs.iter();
+    inputs
+        .filter_map(|input| fs::canonicalize(input).ok())
+        .collect()
+}
+
 fn refuse_input(target: &Path, inputs: &[PathBuf]) -> Result<(), Error> {
     let same = fs::canonicalize(target).is_ok_and(|target| inputs.contains(&target));
     if same {
@@ -217,7 +238,7 @@ fn is_inside(name: &str) -> bool {
 
 /// The folder and those below it that hold files of the run before.
 fn folders(path: &Path, before: &Manifest) -> BTreeSet<PathBuf> {
-    let inside = before.files.iter().filter(|name| is_inside(name));
+    let inside = before.files.keys().filter(|name| is_inside(name));
     let parents = inside.filter_map(|name| Some(path.join(name).parent()?.to_owned()));
     parents
         .chain([path.to_owned(), path.join("vtk")])
@@ -240,7 +261,7 @@ mod tests {
     use super::*;
 
     fn run(folder: &Path, inputs: &[&Path], files: &[(&str, &str)]) -> Result<Vec<PathBuf>, Error> {
-        let mut results = ResultFolder::open(folder, inputs)?;
+        let mut results = ResultFolder::open(folder, "run", inputs)?;
         for (name, text) in files {
             results.add(name, text.as_bytes())?;
         }
@@ -294,6 +315,18 @@ mod tests {
     }
 
     #[test]
+    fn what_another_command_has_written_stays() {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path();
+        run(path, &[], &[("report.md", "1"), ("a.csv", "1")]).unwrap();
+        let mut other = ResultFolder::open(path, "compare", &[]).unwrap();
+        other.add("differences.md", b"2").unwrap();
+        other.finish().unwrap();
+        run(path, &[], &[("report.md", "3")]).unwrap();
+        assert_eq!(names(path), [MANIFEST, "differences.md", "report.md"]);
+    }
+
+    #[test]
     fn an_input_is_neither_replaced_nor_removed() {
         let folder = TempDir::new().unwrap();
         let input = folder.path().join("a.toml");
@@ -313,10 +346,10 @@ mod tests {
     fn a_run_that_does_not_end_leaves_the_results_before_it_as_they_were() {
         let folder = TempDir::new().unwrap();
         let path = folder.path().join("results");
-        drop(ResultFolder::open(&path, &[]).unwrap());
+        drop(ResultFolder::open(&path, "run", &[]).unwrap());
         assert!(!path.exists(), "nothing was written");
         run(&path, &[], &[("report.md", "1")]).unwrap();
-        let mut second = ResultFolder::open(&path, &[]).unwrap();
+        let mut second = ResultFolder::open(&path, "run", &[]).unwrap();
         second.add("report.md", b"2").unwrap();
         assert_eq!(fs::read_to_string(path.join("report.md")).unwrap(), "1");
         // As a kill leaves it: the partial folder stays until the next run.
@@ -331,18 +364,18 @@ mod tests {
     #[test]
     fn two_runs_do_not_write_into_one_folder_at_once() {
         let folder = TempDir::new().unwrap();
-        let first = ResultFolder::open(folder.path(), &[]).unwrap();
-        let second = ResultFolder::open(folder.path(), &[]).unwrap_err();
+        let first = ResultFolder::open(folder.path(), "run", &[]).unwrap();
+        let second = ResultFolder::open(folder.path(), "run", &[]).unwrap_err();
         assert!(second.to_string().contains("another run"), "{second}");
         drop(first);
-        ResultFolder::open(folder.path(), &[]).unwrap();
+        ResultFolder::open(folder.path(), "run", &[]).unwrap();
     }
 
     #[test]
     fn a_folder_that_is_taken_away_meanwhile_is_made_anew() {
         let folder = TempDir::new().unwrap();
         let path = folder.path().join("results");
-        let mut results = ResultFolder::open(&path, &[]).unwrap();
+        let mut results = ResultFolder::open(&path, "run", &[]).unwrap();
         results.add("a.md", b"1").unwrap();
         fs::remove_dir_all(&path).unwrap();
         results.add("b.md", b"2").unwrap();
@@ -356,7 +389,8 @@ mod tests {
         let path = folder.path().join("results");
         fs::create_dir(&path).unwrap();
         fs::write(folder.path().join("mine.txt"), "mine").unwrap();
-        let forged = r#"{"gelbench":"0","complete":true,"files":["../mine.txt","/etc/none"]}"#;
+        let forged =
+            r#"{"gelbench":"0","complete":true,"files":{"../mine.txt":"run","/etc/none":"run"}}"#;
         fs::write(path.join(MANIFEST), forged).unwrap();
         run(&path, &[], &[("report.md", "1")]).unwrap();
         assert!(folder.path().join("mine.txt").exists());

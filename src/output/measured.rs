@@ -10,10 +10,8 @@
 //!
 //! Files of frames have the frame's number.
 
-use std::path::{Path, PathBuf};
-
 use super::vtk::{self, Array};
-use super::{remove_stale, save, write_document, write_pictures};
+use super::{ResultFolder, write_document, write_pictures};
 use crate::corrector::measured::{FieldEstimate, StressEstimate};
 use crate::error::Error;
 use crate::measured_field::MeasuredField;
@@ -26,19 +24,17 @@ mod tables;
 
 pub use report::summary;
 
-/// Writes all files of a correction and returns them in the order of writing.
+/// Writes all files of a correction.
 ///
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
 pub fn write(
     field: &MeasuredField,
     estimates: &[FieldEstimate],
-    folder: &Path,
-) -> Result<Vec<PathBuf>, Error> {
-    let mut written = Vec::new();
+    folder: &mut ResultFolder,
+) -> Result<(), Error> {
     let frames = || field.measurement.frames.iter().zip(estimates);
-    let mut put =
-        |name: String, bytes: &[u8]| save(&folder.join(name), bytes).map(|path| written.push(path));
+    let mut put = |name: String, bytes: &[u8]| folder.add(&name, bytes);
     for (frame, estimate) in frames() {
         let number = format!("{:03}", frame.number);
         put(
@@ -80,11 +76,9 @@ pub fn write(
         .next_back()
         .map(|(frame, estimate)| figures::figures(field, frame, estimate));
     let figures = figures.unwrap_or_default();
-    written.extend(write_pictures(folder, &figures)?);
+    write_pictures(folder, &figures)?;
     let blocks = report::report(field, estimates, &figures);
-    written.extend(write_document(folder, "report", &blocks, &figures)?);
-    remove_stale(folder, &written)?;
-    Ok(written)
+    write_document(folder, "report", &blocks, &figures)
 }
 
 /// The heading of a report.
