@@ -178,6 +178,9 @@ struct XmlFile<'a> {
 impl<'a> XmlFile<'a> {
     fn new(layout: &'a Layout, appended: &'a [u8]) -> Result<Self, String> {
         let file = |name: &str| layout.file.get(name).map_or("", String::as_str);
+        if layout.file.is_empty() {
+            return Err("cannot be read as VTK: it has no VTKFile".into());
+        }
         if file("type") != "UnstructuredGrid" {
             return Err("is no unstructured grid".into());
         }
