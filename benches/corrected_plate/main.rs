@@ -85,7 +85,6 @@ fn main() -> ExitCode {
 
 /// Measures everything; the number of aims that are not met.
 fn bench(quick: bool) -> Result<usize, Error> {
-    output::prepare(Path::new(FOLDER))?;
     let problem = Problem {
         size: [150.0, 50.0],
         thickness: 2.0,
