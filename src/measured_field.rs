@@ -12,10 +12,13 @@ use std::sync::Arc;
 use crate::corrector::measured::{FieldEstimate, RegressedLaw, Specimen, estimate, transfer};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::material::{Card, HyperelasticLaw};
-use crate::measurement::{Frame, Measurement, Read, Reading, place_on, read, read_lines};
+use crate::measurement::{
+    Frame, Measurement, Read, Reading, check_thickness, place_on, read, read_lines,
+};
 use crate::mesh::{Allowed, CellShape, Mesh, MeshReading, Outline, import};
 
 mod conditions;
+mod doubts;
 
 pub use conditions::{Conditions, EdgesByName, measured_force};
 
@@ -86,6 +89,33 @@ pub struct MeasuredField {
     pub regressed: Option<RegressedLaw>,
     /// What deserves attention.
     pub warnings: Vec<Diagnostic>,
+    /// What makes the figures of all frames doubtful.
+    pub doubts: Vec<Diagnostic>,
+    /// Where the specimen's edge is nobody's knowledge but the markers': how far outside of them it may lie, in mm. The
+    /// intervals of forces hold that.
+    pub unknown_gap: Option<f64>,
+}
+
+/// A mesh and what it was made from.
+struct Made {
+    mesh: Mesh,
+    origin: String,
+    warnings: Vec<Diagnostic>,
+    doubts: Vec<Diagnostic>,
+    unknown_gap: Option<f64>,
+}
+
+impl Made {
+    /// A mesh whose edge is known.
+    fn known(mesh: Mesh, origin: String) -> Self {
+        Self {
+            mesh,
+            origin,
+            warnings: Vec::new(),
+            doubts: Vec::new(),
+            unknown_gap: None,
+        }
+    }
 }
 
 impl MeasuredField {
@@ -96,7 +126,13 @@ impl MeasuredField {
     pub fn prepare(request: Request) -> Result<Self, Error> {
         let card = Card::load(&request.material, Path::new("."))?;
         let field = read(&request.files, &request.reading)?;
-        let (mesh, mesh_origin, mut warnings) = mesh(&request, &field)?;
+        let Made {
+            mesh,
+            origin,
+            mut warnings,
+            mut doubts,
+            unknown_gap,
+        } = mesh(&request, &field)?;
         request.conditions.check(&mesh)?;
         request.conditions.check_frames(&field.measurement)?;
         let regressed = request.conditions.regressed_law(&card)?;
@@ -116,18 +152,21 @@ impl MeasuredField {
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
         let mut all = field.warnings;
+        doubts.extend(check_thickness(&mesh, request.thickness));
         all.extend(warnings);
         Ok(Self {
             card,
             thickness: request.thickness,
             mesh,
-            mesh_origin,
+            mesh_origin: origin,
             coarse,
             measurement: placed.measurement,
             layout: field.layout,
             conditions: request.conditions,
             regressed,
             warnings: all,
+            doubts,
+            unknown_gap,
         })
     }
 
@@ -165,21 +204,23 @@ impl MeasuredField {
                     transfer(&specimen, (coarse, &field), &knowledge)
                 }
             };
-            found.map_err(|error| match error {
-                Error::Solve { model, fault, .. } => Error::Solve {
-                    model,
-                    step: format!("frame {}", frame.number),
-                    fault,
-                },
-                Error::Input(faults) if frames.len() > 1 => {
-                    let named = |fault: Diagnostic| Diagnostic {
-                        message: format!("frame {}: {}", frame.number, fault.message),
-                        ..fault
-                    };
-                    Error::Input(faults.into_iter().map(named).collect())
-                }
-                other => other,
-            })
+            found
+                .map(|found| self.with_unknown_edge(found))
+                .map_err(|error| match error {
+                    Error::Solve { model, fault, .. } => Error::Solve {
+                        model,
+                        step: format!("frame {}", frame.number),
+                        fault,
+                    },
+                    Error::Input(faults) if frames.len() > 1 => {
+                        let named = |fault: Diagnostic| Diagnostic {
+                            message: format!("frame {}: {}", frame.number, fault.message),
+                            ..fault
+                        };
+                        Error::Input(faults.into_iter().map(named).collect())
+                    }
+                    other => other,
+                })
         };
         frames.iter().map(of_frame).collect()
     }
@@ -202,12 +243,24 @@ fn whole(mesh: &Mesh, measurement: &Measurement) -> Result<(), Error> {
     }
 }
 
-/// The mesh that a request wants, where it comes from, and what deserves attention.
-fn mesh(request: &Request, field: &Read) -> Result<(Mesh, String, Vec<Diagnostic>), Error> {
+/// The mesh that a request wants.
+fn mesh(request: &Request, field: &Read) -> Result<Made, Error> {
+    if request.conditions.edge_gap.is_some()
+        && (field.mesh.is_some() || !matches!(request.mesh, MeshSource::Data))
+    {
+        return Err(Error::input(
+            "an edge gap is given, but the specimen's edge is not made of markers",
+            "leave out --edge-gap (edge_gap), or the mesh and the outline",
+        ));
+    }
     match (&request.mesh, &field.mesh) {
         (MeshSource::File(path, reading), _) => {
             let (mesh, warnings) = import(path, *reading).map_err(Error::Input)?;
-            Ok((mesh, format!("from {}", path.display()), warnings))
+            let origin = format!("from {}", path.display());
+            Ok(Made {
+                warnings,
+                ..Made::known(mesh, origin)
+            })
         }
         (MeshSource::Outline(path), _) => {
             let lines = read_lines(path, request.reading.unit)?;
@@ -218,11 +271,8 @@ fn mesh(request: &Request, field: &Read) -> Result<(Mesh, String, Vec<Diagnostic
             let markers = field.measurement.places().len() as f64;
             let spacing = (outline.area() / markers).sqrt();
             let mesh = made(request, &outline, spacing)?;
-            Ok((
-                mesh,
-                format!("made inside the outline of {}", path.display()),
-                Vec::new(),
-            ))
+            let origin = format!("made inside the outline of {}", path.display());
+            Ok(Made::known(mesh, origin))
         }
         (MeshSource::Data, Some(mesh)) => {
             let told = mesh.faults(Allowed::default());
@@ -232,31 +282,68 @@ fn mesh(request: &Request, field: &Read) -> Result<(Mesh, String, Vec<Diagnostic
                 hint: Some("correct it on a sound mesh: --mesh or --outline".into()),
                 ..fault
             });
-            Ok((mesh.clone(), "that of the field".into(), warnings.collect()))
+            Ok(Made {
+                warnings: warnings.collect(),
+                ..Made::known(mesh.clone(), "that of the field".into())
+            })
         }
-        (MeshSource::Data, None) => {
-            let found = Outline::of_points(&field.measurement.places()).map_err(|reason| {
-                let hint = "give the specimen's edge with --outline, or its mesh with --mesh";
-                Error::input(format!("a mesh cannot be made: {reason}"), hint)
-            })?;
-            let mut outline = found.outline;
-            let mut warnings = Vec::new();
-            match (outline.holes.len(), request.holes) {
-                (0, _) => {}
-                (_, false) => outline.holes.clear(),
-                (count, true) => warnings.push(
-                    Diagnostic::warning("", format!("gaps among the markers taken for holes: {count}"))
-                        .hint("--holes closed if markers were only lost there; --outline gives their true edges"),
-                ),
-            }
-            let mesh = made(request, &outline, found.spacing)?;
-            let origin = format!(
-                "made inside the outline of the markers, which are about {:.4} mm apart",
-                found.spacing
-            );
-            Ok((mesh, origin, warnings))
-        }
+        (MeshSource::Data, None) => of_markers(request, field),
     }
+}
+
+/// A mesh inside the outline of the markers.
+fn of_markers(request: &Request, field: &Read) -> Result<Made, Error> {
+    let refuse = |reason: String| {
+        let hint = "give the specimen's edge with --outline, or its mesh with --mesh";
+        Error::input(format!("a mesh cannot be made: {reason}"), hint)
+    };
+    let measurement = &field.measurement;
+    let found = Outline::of_points(&measurement.places()).map_err(refuse)?;
+    let mut outline = found.outline;
+    let mut warnings = Vec::new();
+    let mut warn = |message: String, hint: &str| {
+        warnings.push(Diagnostic::warning("", message).hint(hint));
+    };
+    match (outline.holes.len(), request.holes) {
+        (0, _) => {}
+        (_, false) => outline.holes.clear(),
+        (count, true) => warn(
+            format!("gaps among the markers taken for holes: {count}"),
+            "--holes closed if markers were only lost there; --outline gives their true edges",
+        ),
+    }
+    let gap = request.conditions.edge_gap;
+    if let Some(gap) = gap {
+        outline = outline.widened(gap).map_err(refuse)?;
+    }
+    let mesh = made(request, &outline, found.spacing)?;
+    let spacing = found.spacing;
+    let mut origin =
+        format!("made inside the outline of the markers, which are about {spacing:.4} mm apart");
+    match gap {
+        Some(gap) if gap > 0.0 => origin += &format!(", {gap} mm farther out"),
+        Some(_) => {}
+        None => warn(
+            "the specimen's edge is not known: the outline is that of the markers, which usually end inside of it".into(),
+            "forces grow with the width: their intervals hold an edge up to a spacing farther out; say where it is with \
+             --edge-gap LENGTH (\"0 mm\" where markers lie on it), --outline or --mesh",
+        ),
+    }
+    let doubt = |reason: String| {
+        let hint = "give the specimen's edge with --outline, or its mesh with --mesh";
+        Diagnostic::warning(
+            "",
+            format!("the outline of the markers is uncertain: {reason}"),
+        )
+        .hint(hint)
+    };
+    Ok(Made {
+        mesh,
+        origin,
+        warnings,
+        doubts: found.doubts.into_iter().map(doubt).collect(),
+        unknown_gap: gap.is_none().then_some(spacing),
+    })
 }
 
 /// A mesh inside an outline. Without a wish its cells are as long as the markers' spacing, but at least 12 go across

@@ -8,13 +8,14 @@
 //!
 //! All lengths are in mm. A marker that was not found in a frame is absent from it.
 
+pub mod columns;
 mod matrices;
 mod on_mesh;
 mod plausible;
 mod read;
 mod table;
 
-pub use plausible::{Placed, place_on};
+pub use plausible::{Placed, check_thickness, place_on, unit_ratio};
 pub use read::{Read, Reading, read};
 pub use table::read_lines;
 
@@ -23,6 +24,8 @@ pub use table::read_lines;
 pub struct Measurement {
     /// The frames, ascending by number.
     pub frames: Vec<Frame>,
+    /// Places at rest in mm of markers that were found in no frame.
+    pub lost: Vec<[f64; 2]>,
 }
 
 /// The markers at one instant.
@@ -50,13 +53,13 @@ pub struct Marker {
 }
 
 impl Measurement {
-    /// The places of all markers of all frames, each once, in the order of their first frame.
+    /// The places of all markers of all frames, each once, in the order of their first frame; those that were found in none
+    /// come last.
     pub fn places(&self) -> Vec<[f64; 2]> {
         let mut seen = std::collections::HashSet::new();
         let markers = self.frames.iter().flat_map(|frame| &frame.markers);
-        markers
-            .filter(|marker| seen.insert(marker.number))
-            .map(|marker| marker.place)
-            .collect()
+        let found = markers.filter(|marker| seen.insert(marker.number));
+        let places = found.map(|marker| marker.place);
+        places.chain(self.lost.iter().copied()).collect()
     }
 }

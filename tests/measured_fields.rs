@@ -146,10 +146,17 @@ fn a_homogeneous_field_keeps_its_stress_and_force() {
                       [[edges]]\nnames = [\"left\", \"right\"]\ncondition = \"unknown\"\n";
     fs::write(folder.path().join("known.toml"), conditions).unwrap();
     let arguments = [&PLATE[..], &["--study", "known.toml", "--noise", "0.01 mm"]].concat();
-    let done = gelbench(folder.path(), &arguments).code(0);
+    // The field has no noise: what was stated is contradicted, with a word and exit code 1.
+    let done = gelbench(folder.path(), &arguments).code(1);
     let printed = words(&done.get_output().stdout);
     assert!(
         printed.contains("force on right in frame 1: x"),
+        "{printed}"
+    );
+    assert!(
+        printed.contains(
+            "doubtful: frame 1: the markers scatter 0.00 times as much as their stated noise"
+        ),
         "{printed}"
     );
     let found = report(folder.path());
@@ -193,7 +200,7 @@ fn a_homogeneous_field_keeps_its_stress_and_force() {
         );
     }
     let again = fs::read(folder.path().join("output/correct/vtk/corrected_001.vtu")).unwrap();
-    gelbench(folder.path(), &arguments).code(0);
+    gelbench(folder.path(), &arguments).code(1);
     let bytes = fs::read(folder.path().join("output/correct/vtk/corrected_001.vtu")).unwrap();
     assert!(bytes == again, "same input, same bytes");
 }
@@ -219,6 +226,14 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
         "x [mm],y [mm],ux [mm],uy [mm]\n1,2,NaN,NaN\n2,2,NaN,NaN\n",
     );
     put("text.csv", "x [mm],y [mm],ux [mm],uy [mm]\n1,2,3,four\n");
+    put(
+        "lifted.csv",
+        "x [mm],y [mm],ux [mm],uy [mm],uz [mm]\n1,2,3,4,5\n",
+    );
+    put(
+        "hot.csv",
+        "x [mm],y [mm],ux [mm],uy [mm],temperature\n1,2,3,4,5\n",
+    );
     let apart = uniaxial(1.0)
         .lines()
         .skip(1)
@@ -259,6 +274,21 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
             &["text.csv"],
             "\"four\" is not a number",
             "empty where nothing was found",
+        ),
+        (
+            &["lifted.csv"],
+            "leave their plane: `uz`",
+            "--ignore-columns uz",
+        ),
+        (
+            &["hot.csv"],
+            "the column `temperature` is not known here",
+            "--ignore-columns temperature",
+        ),
+        (
+            &["plate.csv", "--edge-gap", "1 mm", "--outline", "bow.csv"],
+            "cannot be used with",
+            "--outline",
         ),
         (
             &["plain.msh"],
@@ -398,4 +428,174 @@ fn a_coarse_field_is_brought_onto_a_finer_mesh() {
     let before = displacement_percent(&finer, &interpolated, &truth);
     let after = displacement_percent(&finer, &corrected, &truth);
     assert!(before > 0.1 && after < 0.1 * before, "{before} % {after} %");
+}
+
+/// Frame 2 of the example's markers, those that `keep` holds of.
+fn second_frame(keep: impl Fn([f64; 2]) -> bool) -> String {
+    let text = fs::read_to_string(root().join("examples/measured_plate.csv")).unwrap();
+    let mut kept = String::from("x [mm],y [mm],ux [mm],uy [mm]\n");
+    for line in text.lines().filter(|line| line.starts_with("2,")) {
+        let place: Vec<f64> = line
+            .split(',')
+            .skip(1)
+            .take(2)
+            .map(|x| x.parse().unwrap())
+            .collect();
+        if keep([place[0], place[1]]) {
+            kept += &format!("{}\n", &line[2..]);
+        }
+    }
+    kept
+}
+
+/// Corrects markers of the plate with rigid grips and free long edges; what is printed and the report.
+fn corrected(text: &str, more: &[&str], code: i32) -> (String, Value) {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("plate.csv"), text).unwrap();
+    let thickness = if more.contains(&"--thickness") {
+        vec![]
+    } else {
+        vec!["--thickness", "2 mm"]
+    };
+    let usual = ["correct", "plate.csv", "--material", "pva-10"];
+    let robust = if more.contains(&"--robust") {
+        vec![]
+    } else {
+        vec!["--robust", "tukey"]
+    };
+    let edges = ["--rigid", "left,right", "--free", "top,bottom"];
+    let arguments = [&usual[..], &thickness[..], &robust[..], &edges[..], more].concat();
+    let done = gelbench(folder.path(), &arguments).code(code);
+    let printed = words(&done.get_output().stdout) + &words(&done.get_output().stderr);
+    (printed, report(folder.path()))
+}
+
+/// The force on the right edge along x with its interval.
+fn right_force(report: &Value) -> [f64; 3] {
+    let forces = report["frames"][0]["forces"].as_array().unwrap();
+    let force = forces
+        .iter()
+        .find(|force| force["edge"] == "right")
+        .unwrap();
+    let end = |index: usize| force["x_N"]["interval"][index].as_f64().unwrap();
+    [number(force, &["x_N", "value"]), end(0), end(1)]
+}
+
+/// The plate's force in frame 2 in N, by converged finite elements.
+const FORCE: f64 = 12.875;
+
+#[test]
+fn markers_that_end_inside_the_edge_leave_the_force_open() {
+    let inner = second_frame(|[x, y]| (1.0..149.0).contains(&x) && (1.0..49.0).contains(&y));
+    // The outermost markers are no grips then: that they moved as rigid ones is contradicted.
+    let (printed, found) = corrected(&inner, &[], 1);
+    assert!(
+        printed.contains("the data contradict what is said of right, left")
+            || printed.contains("the data contradict what is said of left, right"),
+        "{printed}"
+    );
+    assert!(
+        printed.contains("the specimen's edge is not known"),
+        "{printed}"
+    );
+    let [force, low, high] = right_force(&found);
+    assert!(
+        force < 0.85 * FORCE && low < force && high > FORCE,
+        "{force} {low} {high}"
+    );
+    // Said, the force is right and sure.
+    let (_, found) = corrected(&inner, &["--edge-gap", "5 mm"], 0);
+    let [force, low, high] = right_force(&found);
+    assert!((force / FORCE - 1.0).abs() < 0.01, "{force}");
+    assert!(
+        low < FORCE && high > FORCE && high - low < 0.03 * FORCE,
+        "{low} {high}"
+    );
+}
+
+#[test]
+fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
+    let gap = ["--edge-gap", "0 mm"];
+    let whole = second_frame(|_| true);
+    let (printed, found) = corrected(&whole, &gap, 0);
+    assert!(!printed.contains("doubtful"), "{printed}");
+    let [_, low, high] = right_force(&found);
+    assert!(low < FORCE && high > FORCE, "{low} {high}");
+    let cut = second_frame(|[x, _]| x < 101.0);
+    for (text, more, told) in [
+        (
+            &whole,
+            vec!["--force", "right x 6.4 N ± 0.1 N"],
+            "contradicts the field's",
+        ),
+        (
+            &whole,
+            vec!["--thickness", "1 mm", "--force", "right x 12.9 N ± 0.1 N"],
+            "contradicts the field's",
+        ),
+        (
+            &whole,
+            vec!["--noise", "0.0005 mm"],
+            "times as much as their stated noise",
+        ),
+        (
+            &whole,
+            vec!["--noise", "0.0005 mm", "--robust", "no"],
+            "markers are outliers",
+        ),
+        (&cut, vec![], "the data contradict what is said of"),
+    ] {
+        let (printed, found) = corrected(text, &[&gap[..], &more].concat(), 1);
+        assert!(
+            printed.contains("doubtful") && printed.contains(told),
+            "{more:?}: {printed}"
+        );
+        let doubts = found["doubts"].as_array().unwrap();
+        let beside = |doubt: &Value| doubt.as_str().unwrap().contains(told);
+        assert!(doubts.iter().any(beside), "{doubts:?}");
+    }
+}
+
+#[test]
+fn half_of_the_markers_lost_leaves_the_force_in_its_interval() {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let kept: Vec<bool> = (0..341).map(|_| random.random::<f64>() < 0.5).collect();
+    let index = |[x, y]: [f64; 2]| 11 * (x / 5.0).round() as usize + (y / 5.0).round() as usize;
+    let half = second_frame(|place| kept[index(place)]);
+    let (printed, found) = corrected(&half, &[], 1);
+    assert!(
+        printed.contains("the outline of the markers is uncertain"),
+        "{printed}"
+    );
+    let [_, low, high] = right_force(&found);
+    assert!(low < FORCE && high > FORCE, "{low} {high}");
+    // Where lost markers still have rows, their places are the outline.
+    let mut rows = second_frame(|_| true);
+    rows = rows
+        .lines()
+        .enumerate()
+        .map(|(line, row)| match row.split(',').collect::<Vec<_>>()[..] {
+            [x, y, ..] if line > 0 && !kept[line - 1] => format!("{x},{y},,\n"),
+            _ => format!("{row}\n"),
+        })
+        .collect();
+    let (_, found) = corrected(&rows, &["--edge-gap", "0 mm"], 0);
+    let [_, low, high] = right_force(&found);
+    assert!(
+        low < FORCE && high > FORCE && high - low < 0.03 * FORCE,
+        "{low} {high}"
+    );
+}
+
+#[test]
+fn a_field_in_metres_labelled_mm_is_told() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("plate.csv"), uniaxial(0.001)).unwrap();
+    let arguments = [&PLATE[..], &["--free", "top,bottom"]].concat();
+    let done = gelbench(folder.path(), &arguments).code(1);
+    let told = words(&done.get_output().stderr);
+    assert!(
+        told.contains("no thin sheet") && told.contains("--unit"),
+        "{told}"
+    );
 }

@@ -143,7 +143,7 @@ fn note(fit: &Fit) -> String {
     let mut note = if fit.parameters.is_empty() {
         format!("the curve of {} points as it was measured", quality.points)
     } else {
-        let residuals = fit.settings.weighting.name();
+        let residuals = fit.settings.weighting.describe();
         format!(
             "least squares of {residuals} residuals over {} points: RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.5}",
             quality.points, quality.rmse, quality.nmad_percent, quality.r_squared

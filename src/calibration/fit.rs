@@ -32,7 +32,8 @@ use crate::material::registry::{LAWS, Law, MARLOW_TABLE};
 pub enum Weighting {
     /// All differences of stress count alike.
     Absolute,
-    /// All relative differences count alike.
+    /// All relative differences count alike: a residual is divided by the measured stress, but by no less than
+    /// [`SMALLEST_SHARE`] of the largest one of its test, so that a stress near zero does not outweigh all others.
     Relative,
 }
 
@@ -44,6 +45,18 @@ impl Weighting {
     /// The name that cards use.
     pub fn name(self) -> &'static str {
         name_of(&Self::NAMES, self)
+    }
+
+    /// The name, and the floor of what relative residuals are divided by.
+    pub fn describe(self) -> String {
+        match self {
+            Self::Absolute => self.name().into(),
+            Self::Relative => format!(
+                "{} (to {} % of its test's largest stress where a stress is smaller)",
+                self.name(),
+                100.0 * SMALLEST_SHARE
+            ),
+        }
     }
 
     /// The weight of an observation.

@@ -59,7 +59,8 @@ pub struct Quality {
     pub sum_of_squares: f64,
     /// √(Σ (σᵢ − σ)²/n) in MPa.
     pub rmse: f64,
-    /// Normalised mean absolute deviation, 100 Σ |σᵢ − σ| / Σ |σᵢ|.
+    /// Normalised mean absolute difference of all observations, 100 Σ |σᵢ − σ| / max(Σ |σᵢ|, Σ |σ|): the larger of the means of
+    /// data and law normalises it (J. Bergström, Mechanics of Solid Polymers, 2015, chapter 9).
     pub nmad_percent: f64,
     /// 1 − Σ (σᵢ − σ)² / Σ (σᵢ − mean)².
     pub r_squared: f64,
@@ -172,7 +173,7 @@ pub(super) fn assess(
         points,
         sum_of_squares: deviations.squares,
         rmse: (deviations.squares / n).sqrt(),
-        nmad_percent: 100.0 * deviations.absolute / deviations.stresses,
+        nmad_percent: 100.0 * deviations.absolute / deviations.measured.max(deviations.predicted),
         r_squared: 1.0 - deviations.squares / deviations.spread,
         aicc: n * (weighted / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0),
         largest_relative_error_percent: 100.0 * deviations.largest_relative,
@@ -197,7 +198,10 @@ struct Deviations {
     squares: f64,
     weighted: f64,
     absolute: f64,
-    stresses: f64,
+    /// Σ |σᵢ|.
+    measured: f64,
+    /// Σ |σ|.
+    predicted: f64,
     spread: f64,
     largest_relative: f64,
 }
@@ -208,7 +212,8 @@ impl Deviations {
             squares: 0.0,
             weighted: 0.0,
             absolute: 0.0,
-            stresses: 0.0,
+            measured: 0.0,
+            predicted: 0.0,
             spread: 0.0,
             largest_relative: 0.0,
         };
@@ -217,11 +222,13 @@ impl Deviations {
         for test in tests {
             let least = SMALLEST_SHARE * test.largest_stress;
             for one in &test.observations {
-                let difference = (one.stress - test.stress_of(law, one)).abs();
+                let predicted = test.stress_of(law, one);
+                let difference = (one.stress - predicted).abs();
                 sums.squares += difference * difference;
                 sums.weighted += (weighting.weight(test, one) * difference).powi(2);
                 sums.absolute += difference;
-                sums.stresses += one.stress.abs();
+                sums.measured += one.stress.abs();
+                sums.predicted += predicted.abs();
                 sums.spread += (one.stress - mean).powi(2);
                 if one.stress.abs() > least {
                     sums.largest_relative =

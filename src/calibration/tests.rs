@@ -229,6 +229,15 @@ fn bounds_weights_and_few_points_are_respected() {
     let absolute = fitted("gent", &tests).quality;
     assert!(relative.largest_relative_error_percent < absolute.largest_relative_error_percent);
     assert!(relative.rmse > absolute.rmse);
+    // The floor of the relative residuals is said, and holds.
+    let told = Weighting::Relative.describe();
+    assert!(told.contains("1 % of its test's largest stress"), "{told}");
+    let small = Observation {
+        stress: 1e-6 * tests[0].largest_stress,
+        ..tests[0].observations[0]
+    };
+    let weight = Weighting::Relative.weight(&tests[0], &small) * tests[0].largest_stress;
+    assert!((weight - 100.0).abs() < 1e-9, "{weight}");
 
     let text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.1,0.1\n1.2,0.2\n";
     let few = [TestData::parse("a.csv", text, &Reading::new()).unwrap()];
@@ -245,6 +254,27 @@ fn bounds_weights_and_few_points_are_respected() {
     };
     let refused = fit(gent, &tests, &settings).unwrap_err().to_string();
     assert!(refused.contains("did you mean `jm`"), "{refused}");
+}
+
+#[test]
+fn the_deviation_is_normalised_by_the_larger_mean() {
+    // A bound makes the law twice as stiff as the data, or half as stiff: both are 50 % of the larger mean.
+    let row = |i: i32| {
+        let stretch = 1.0 + 0.02 * f64::from(i);
+        format!("{stretch},{}\n", 0.2 * (stretch - stretch.powi(-2)))
+    };
+    let rows: String = (1..=20).map(row).collect();
+    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
+    let tests = [TestData::parse("a.csv", &text, &Reading::new()).unwrap()];
+    for c10 in [0.2, 0.05] {
+        let settings = FitSettings {
+            bounds: vec![("c10".into(), [c10, c10 * (1.0 + 1e-12)])],
+            ..FitSettings::default()
+        };
+        let law = Law::named("neo-hooke").unwrap();
+        let found = fit(law, &tests, &settings).unwrap().quality.nmad_percent;
+        assert!((found - 50.0).abs() < 1e-6, "{c10}: {found}");
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::{Outcome, export::not_for_other_codes, print, progress_bar, warn};
 use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField, Sites};
-use crate::error::{Error, suggestion};
+use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
 use crate::output::{self, Block, ResultFolder, vtk};
@@ -26,13 +26,17 @@ pub struct Options {
     /// The load factor or stretch, such as 0.5 or "50 %"; the last one of the study where it is not given
     #[arg(long, visible_alias = "stretch", value_name = "FACTOR", value_parser = ratio, allow_hyphen_values = true)]
     pub factor: Option<f64>,
-    /// The file's unit of length, where the file does not say it
-    #[arg(long, value_name = "UNIT", default_value = "mm", value_parser = length)]
-    pub unit: f64,
+    /// The file's unit of length: mm where neither the file nor this says it. It corrects the head of a table whose columns
+    /// all name one other unit
+    #[arg(long, value_name = "UNIT", value_parser = length)]
+    pub unit: Option<f64>,
+    /// Columns of a table that are to be passed over; those that are not known are refused else
+    #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
+    pub ignore_columns: Vec<String>,
     /// The array of a VTK file
     #[arg(long, value_name = "NAME")]
     pub array: Option<String>,
-    /// The time of the step in a .frd file, where it is not the load factor
+    /// The time of the step in a .frd file or of the rows in a column `time`, where it is not the load factor
     #[arg(long, value_name = "TIME")]
     pub time: Option<f64>,
     /// Write a report and VTU files with the differences into this folder
@@ -65,14 +69,35 @@ pub fn run(options: Options) -> Outcome {
         )
     })?;
     print(&summary(&compared, &differences))?;
+    let doubts = doubts(&differences);
+    warn(&doubts);
     if let Some(folder) = &options.output {
         let inputs = [&*options.study, &*options.field];
         let mut results = ResultFolder::open(folder, "compare", &inputs)?;
-        write(&compared, &differences, &options.field, &mut results)?;
+        let judged = (&*differences, &*doubts);
+        write(&compared, judged, &options.field, &mut results)?;
         results.finish()?;
         print(&format!("report: {}\n", folder.join("report.md").display()))?;
     }
-    Ok(0)
+    Ok(u8::from(!doubts.is_empty()))
+}
+
+/// What makes the figures doubtful: displacements that all models find larger or smaller by the ratio of two units.
+fn doubts(differences: &[Difference]) -> Vec<Diagnostic> {
+    let ratios: Option<Vec<f64>> = differences.iter().map(Difference::other_unit).collect();
+    let ratio = ratios.filter(|ratios| ratios.iter().all(|ratio| *ratio == ratios[0]));
+    let doubt = ratio.map(|ratios| {
+        let relation = match differences[0].factor.abs() > 1.0 {
+            true => "small",
+            false => "large",
+        };
+        let message = format!(
+            "the imported displacements are about {} times too {relation}, as in another unit of length",
+            ratios[0]
+        );
+        Diagnostic::warning("", message).hint("say the file's unit with --unit")
+    });
+    doubt.into_iter().collect()
 }
 
 /// Computes what is compared.
@@ -149,6 +174,7 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(Imported, S
         array: options.array.clone(),
         factor,
         time: options.time,
+        ignored_columns: options.ignore_columns.clone(),
     };
     let imported = Imported::read(&options.field, &settings)?;
     let sites = imported.sites(lattice).map_err(|reason| {
@@ -180,7 +206,7 @@ fn summary(compared: &Compared, differences: &[Difference]) -> String {
 
 fn write(
     compared: &Compared,
-    differences: &[Difference],
+    (differences, doubts): (&[Difference], &[Diagnostic]),
     file: &Path,
     folder: &mut ResultFolder,
 ) -> Result<(), Error> {
@@ -215,7 +241,13 @@ fn write(
         let name = format!("{}.vtu", field.model.replace([' ', '-'], "_"));
         folder.add(&format!("vtk/{name}"), &bytes)?;
     }
-    output::write_document(folder, "report", &report(compared, differences, file), &[])
+    let mut blocks = report(compared, differences, file);
+    blocks.extend(
+        doubts
+            .iter()
+            .map(|doubt| Block::Paragraph(doubt.to_string())),
+    );
+    output::write_document(folder, "report", &blocks, &[])
 }
 
 fn report(compared: &Compared, differences: &[Difference], file: &Path) -> Vec<Block> {

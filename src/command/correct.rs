@@ -57,9 +57,17 @@ pub struct Options {
     /// The specimen's edge as a table: x [mm], y [mm], and line where there are holes
     #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
     pub outline: Option<PathBuf>,
-    /// The field's unit or the length of a pixel, such as mm or "0.05 mm", where the file does not say it
+    /// How far inside of the specimen's edge the outermost markers lie, such as "1.5 mm" or "0 mm": an outline that is made of
+    /// markers is widened by it
+    #[arg(long, value_name = "LENGTH", value_parser = gap, conflicts_with_all = ["mesh", "outline"])]
+    pub edge_gap: Option<f64>,
+    /// The field's unit or the length of a pixel, such as mm or "0.05 mm", where the file does not say it. It corrects the head
+    /// of a table whose columns all name one other unit
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     pub unit: Option<f64>,
+    /// Columns of a table that are to be passed over; those that are not known are refused else
+    #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
+    pub ignore_columns: Vec<String>,
     /// The distance of the points of Ncorr's matrices, such as "0.5 mm"
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub grid: Option<f64>,
@@ -147,6 +155,7 @@ pub fn run(options: Options) -> Outcome {
     });
     bar.finish_and_clear();
     let estimates = estimates?;
+    let doubts = field.all_doubts(&estimates);
     output::measured::write(&field, &estimates, &mut results)?;
     let files = results.finish()?;
     print(&format!(
@@ -155,7 +164,8 @@ pub fn run(options: Options) -> Outcome {
         files.len(),
         folder.display()
     ))?;
-    Ok(0)
+    warn(&doubts);
+    Ok(u8::from(!doubts.is_empty()))
 }
 
 /// The files that the results follow from.
@@ -189,6 +199,7 @@ fn request(options: Options) -> Result<Request, Error> {
     conditions.forces.extend(forces);
     conditions.fit.extend(options.fit);
     conditions.noise = options.noise.or(conditions.noise);
+    conditions.edge_gap = options.edge_gap.or(conditions.edge_gap);
     if let Some(robust) = options.robust {
         conditions.robust = match robust {
             Weights::No => Robust::No,
@@ -221,6 +232,7 @@ fn request(options: Options) -> Result<Request, Error> {
             unit: options.unit,
             array: options.array,
             grid: options.grid,
+            ignored_columns: options.ignore_columns,
         },
         material: options.material,
         thickness: options.thickness,
@@ -259,6 +271,15 @@ fn force(text: &str) -> Result<MeasuredForce, String> {
             let deviation = newtons(deviation)?;
             Ok(measured_force(edge, axis, newtons(force)?, Some(deviation)))
         }
+    }
+}
+
+/// A length of zero or more in mm.
+fn gap(text: &str) -> Result<f64, String> {
+    match units::parse(text, Dimension::Length) {
+        Ok(length) if length >= 0.0 => Ok(length),
+        Ok(_) => Err("it must not be negative".into()),
+        Err(fault) => Err(format!("it {fault}; write it as in \"1.5 mm\"")),
     }
 }
 

@@ -19,7 +19,7 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
         );
     }
     if !fit.parameters.is_empty() {
-        text += &format!("  residuals    {}\n", fit.settings.weighting.name());
+        text += &format!("  residuals    {}\n", fit.settings.weighting.describe());
     }
     for (parameter, estimate) in fit.parameters.iter().zip(&quality.estimates) {
         let (key, value, unit) = (parameter.key, parameter.value, parameter.unit());

@@ -91,7 +91,8 @@ pub struct FitArguments {
     /// Fit all laws, rank them, and write the best one that is stable over the data
     #[arg(long, group = "laws")]
     all: bool,
-    /// absolute: differences of stress count alike; relative: relative differences do
+    /// absolute: differences of stress count alike; relative: relative differences do, where a stress below 1 % of its test's
+    /// largest counts as that 1 %
     #[arg(long, default_value = "absolute")]
     weighting: String,
     /// Keep a parameter within limits, in MPa, rad or as a ratio

@@ -11,22 +11,25 @@
 use std::path::Path;
 
 use super::{corner_areas, distance};
-use crate::calibration::Table;
-use crate::error::{Diagnostic, Error};
+use crate::error::Error;
+use crate::measurement::{columns, unit_ratio};
 use crate::mesh::{ImportedField, Mesh, import_field};
-use crate::units::{self, Dimension};
+
+mod table;
 
 /// How a file is to be understood.
 #[derive(Clone, Debug)]
 pub struct ImportSettings {
-    /// The length of the file's unit in mm, where the file does not say it.
-    pub unit: f64,
+    /// The length of the file's unit in mm; mm where neither this nor the file says it.
+    pub unit: Option<f64>,
     /// The array of a VTK file, where it must be named.
     pub array: Option<String>,
     /// The load factor.
     pub factor: f64,
     /// The time of a step, where it is not the load factor.
     pub time: Option<f64>,
+    /// Columns of a table that are passed over.
+    pub ignored_columns: Vec<String>,
 }
 
 /// A displacement field of another program.
@@ -73,6 +76,16 @@ pub struct Difference {
     pub largest: f64,
     /// Where it is, in mm.
     pub place: [f64; 2],
+    /// The factor by which the imported displacements come nearest to the model's: Σ A u·v / Σ A v².
+    pub factor: f64,
+}
+
+impl Difference {
+    /// The ratio of two units of length that would make most of the difference.
+    pub fn other_unit(&self) -> Option<f64> {
+        const LARGE: f64 = 50.0;
+        unit_ratio(self.factor).filter(|_| self.percent > LARGE)
+    }
 }
 
 /// Shapes of the same specimen may differ by so much of a cell: a circle and its polygon.
@@ -90,11 +103,11 @@ impl Imported {
             .extension()
             .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
         if is_table {
-            return read_table(&Table::read(path)?, settings);
+            return table::read(&columns::read_table(path)?, settings);
         }
         let field = import_field(
             path,
-            settings.unit,
+            settings.unit.unwrap_or(1.0),
             settings.array.as_deref(),
             settings.time.unwrap_or(settings.factor),
         );
@@ -141,6 +154,7 @@ impl Imported {
                 displacement,
             } => {
                 covers(lattice, places, "the specimen does not reach the point")?;
+                near_in_size(places, lattice)?;
                 Ok(Sites {
                     places: places.clone(),
                     weights: vec![1.0; places.len()],
@@ -177,7 +191,14 @@ impl Sites {
                 (0, -1.0),
                 |most, next| if next.1 > most.1 { next } else { most },
             );
+        let product = |a: &[f64], b: &[f64]| -> f64 {
+            let terms = a.iter().zip(b).zip(0..);
+            terms
+                .map(|((a, b), index)| self.weights[index / 2] * a * b)
+                .sum()
+        };
         Ok(Difference {
+            factor: product(&found, &self.expected) / product(&self.expected, &self.expected),
             percent: 100.0 * distance(&self.weights, &found, &self.expected) / size,
             largest,
             place: self.places[place],
@@ -201,6 +222,29 @@ fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), String> {
     ))
 }
 
+/// Whether points and specimen are in one unit of length: no factor of a hundred or more lies between their sizes. A field of a
+/// small window is no fault.
+fn near_in_size(places: &[[f64; 2]], specimen: &Mesh) -> Result<(), String> {
+    let size = |places: &[[f64; 2]]| {
+        let sides = [0, 1].map(|axis| {
+            let along = places.iter().map(|place| place[axis]);
+            let ends = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+                [low.min(x), high.max(x)]
+            });
+            ends[1] - ends[0]
+        });
+        sides[0].hypot(sides[1])
+    };
+    let (found, expected) = (size(places), size(&specimen.nodes));
+    match unit_ratio(expected / found).filter(|ratio| *ratio >= 100.0) {
+        Some(ratio) => Err(format!(
+            "the points span {found:.4} mm and the specimen {expected:.4} mm: about a factor of {ratio}, as between two \
+             units of length"
+        )),
+        None => Ok(()),
+    }
+}
+
 /// Whether all places lie in a mesh.
 fn covers(mesh: &Mesh, places: &[[f64; 2]], what: &str) -> Result<(), String> {
     match places
@@ -210,76 +254,6 @@ fn covers(mesh: &Mesh, places: &[[f64; 2]], what: &str) -> Result<(), String> {
         Some([x, y]) => Err(format!("{what} at ({x:.4}, {y:.4}) mm")),
         None => Ok(()),
     }
-}
-
-/// Points from columns `X_mm`, `Y_mm`, `ux_mm`, `uy_mm`, their units in the name or in brackets. Of a table with a
-/// column `stretch`, `load_factor`, `factor` or `time` the rows with the factor are taken.
-fn read_table(table: &Table, settings: &ImportSettings) -> Result<Imported, Error> {
-    let column = |name: &str| {
-        let found = table
-            .columns
-            .iter()
-            .enumerate()
-            .find_map(|(index, column)| {
-                let unit = match column.name.strip_prefix(name)? {
-                    "" => column.unit.clone(),
-                    rest => Some(rest.strip_prefix('_')?.to_owned()),
-                };
-                Some((index, unit))
-            });
-        let refuse = |message: String, hint: &str| {
-            let fault = Diagnostic::error("", message).hint(hint);
-            Error::Input(vec![fault.at(&table.source, table.columns_place.clone())])
-        };
-        let Some((index, unit)) = found else {
-            let hint = "name the columns X_mm, Y_mm, ux_mm and uy_mm, with the unit of your own";
-            return Err(refuse(format!("there is no column `{name}`"), hint));
-        };
-        if let Some((reason, place)) = table.fault(index) {
-            let fault = Diagnostic::error("", reason).hint("every field of a column is a number");
-            return Err(Error::Input(vec![fault.at(&table.source, place)]));
-        }
-        match unit {
-            None => Ok((index, settings.unit)),
-            Some(unit) => units::parse(&format!("1 {unit}"), Dimension::Length)
-                .map(|unit| (index, unit))
-                .map_err(|_| {
-                    refuse(
-                        format!("`{unit}` is no unit of length"),
-                        "mm, cm, m, um or in",
-                    )
-                }),
-        }
-    };
-    let columns = [column("x")?, column("y")?, column("ux")?, column("uy")?];
-    let factor = table
-        .columns
-        .iter()
-        .position(|column| ["stretch", "load_factor", "factor", "time"].contains(&&*column.name));
-    let chosen = |row: &&Vec<f64>| {
-        factor.is_none_or(|column| (row[column] - settings.factor).abs() <= 1e-6 * settings.factor)
-    };
-    let rows: Vec<&Vec<f64>> = table
-        .rows
-        .iter()
-        .map(|(row, _)| row)
-        .filter(chosen)
-        .collect();
-    if rows.is_empty() {
-        let message = format!(
-            "{} has no rows for the load factor {}",
-            table.source.name, settings.factor
-        );
-        return Err(Error::input(
-            message,
-            "choose one that it has with --factor",
-        ));
-    }
-    let values = |row: &&Vec<f64>, pair: [usize; 2]| pair.map(|i| row[columns[i].0] * columns[i].1);
-    Ok(Imported::AtPoints {
-        places: rows.iter().map(|row| values(row, [0, 1])).collect(),
-        displacement: rows.iter().flat_map(|row| values(row, [2, 3])).collect(),
-    })
 }
 
 #[cfg(test)]

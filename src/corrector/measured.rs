@@ -32,9 +32,12 @@ use crate::mesh::Mesh;
 
 mod approach;
 mod body_force;
+mod contradiction;
 mod edge_motion;
+mod forces;
 mod free_edges;
 mod linearise;
+mod mesh_error;
 mod observations;
 mod outline;
 mod regressed_law;
@@ -45,15 +48,18 @@ mod search;
 mod spline;
 mod start;
 mod transfer;
+mod whiteness;
 
+pub use contradiction::Contradiction;
 pub use edge_motion::EdgeCondition;
 pub use regressed_law::RegressedLaw;
 pub use result::{
-    EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE,
-    TRADE_WEIGHTED,
+    EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, MarkerEstimate, Smoothing, StressEstimate,
+    TRADE, TRADE_WEIGHTED,
 };
 pub use robust::Robust;
 pub use transfer::transfer;
+pub use whiteness::Whiteness;
 
 use observations::Observations;
 use outline::{Segment, segments};
@@ -170,7 +176,9 @@ pub fn estimate(
         knowledge,
     };
     let (found, edges) = free_edges::search(&task, edges)?;
-    found.into_estimate(&edges)
+    let own = found.mesh_error(&edges);
+    let contradiction = contradiction::contradiction(&task, &found, &edges, own.as_ref());
+    found.into_estimate(&edges, own.as_ref(), contradiction)
 }
 
 /// A part of the boundary with its condition.
@@ -248,5 +256,7 @@ fn check(knowledge: &Knowledge) -> Result<(), Diagnostic> {
     Ok(())
 }
 
+#[cfg(test)]
+mod coverage;
 #[cfg(test)]
 mod tests;

@@ -6,6 +6,7 @@
 //! robust = "tukey"           # "no", "huber" or "tukey"
 //! physics = "exact"          # or "weighted" against the data, for a law that is not exactly right
 //! unnamed = "tested"         # outer edges that are not named: the data tell which are free, "loaded" or "free"
+//! edge_gap = "1.5 mm"        # how far inside of the specimen's edge the outermost markers lie, if the outline is theirs
 //! fit = ["c10"]              # one or two parameters of the law that are found with the field
 //!
 //! [[edges]]                  # holes that are not named are free
@@ -61,6 +62,8 @@ pub struct Conditions {
     pub forces: Vec<(Option<usize>, MeasuredForce)>,
     /// Parameters of the law that are found with the field.
     pub fit: Vec<String>,
+    /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
+    pub edge_gap: Option<f64>,
 }
 
 /// Standard deviation of a force over the force where it is not given.
@@ -195,6 +198,10 @@ fn read(root: &Section) -> Conditions {
     }
     if root.has("noise") {
         conditions.noise = Some(root.quantity("noise", Dimension::Length, Bound::Positive));
+    }
+    if root.has("edge_gap") {
+        conditions.edge_gap =
+            Some(root.quantity("edge_gap", Dimension::Length, Bound::NonNegative));
     }
     if root.has("robust") {
         conditions.robust = root.choice("robust", &Robust::NAMES).unwrap_or_default();

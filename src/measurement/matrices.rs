@@ -111,6 +111,7 @@ pub fn read(u: &Path, v: &Path, reading: &Reading) -> Result<Rows, Error> {
         rows,
         mesh: None,
         layout: "Ncorr",
+        warnings: Vec::new(),
     })
 }
 

@@ -35,5 +35,6 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
         rows: rows.collect(),
         mesh: Some(series.mesh),
         layout: "field on a mesh",
+        warnings: Vec::new(),
     })
 }

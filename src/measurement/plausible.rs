@@ -19,6 +19,23 @@ const MARGIN: f64 = 0.5;
 /// Ratios of the units of length that are in use.
 const RATIOS: [f64; 6] = [10.0, 25.4, 100.0, 254.0, 1e3, 1e6];
 
+/// A sheet thicker than this share of its smaller extent is told.
+const THICK: f64 = 0.5;
+
+/// Whether a sheet is thin: where it is not, one of the lengths is in another unit.
+pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
+    let extent = extent(mesh.nodes.iter().copied());
+    let across = extent[0].min(extent[1]);
+    (thickness > THICK * across).then(|| {
+        let message = format!(
+            "the specimen measures {:.4} × {:.4} mm and is {thickness} mm thick: no thin sheet",
+            extent[0], extent[1]
+        );
+        let hint = "look at the units: of the thickness, and of the field, which --unit corrects (such as --unit m)";
+        Diagnostic::warning("", message).hint(hint)
+    })
+}
+
 /// Whether the data hold a displacement that fits the places.
 ///
 /// # Errors
@@ -89,6 +106,7 @@ pub fn place_on(mesh: &Mesh, measurement: &Measurement) -> Result<Placed, Error>
     };
     let kept = Measurement {
         frames: measurement.frames.iter().map(frame).collect(),
+        lost: measurement.lost.clone(),
     };
     let count = |measurement: &Measurement| -> usize {
         let frames = measurement.frames.iter();
@@ -99,10 +117,7 @@ pub fn place_on(mesh: &Mesh, measurement: &Measurement) -> Result<Placed, Error>
     let spanned = extent(places().map(|marker| marker.place));
     let measures = extent(mesh.nodes.iter().copied());
     let ratio = measures[0].hypot(measures[1]) / spanned[0].hypot(spanned[1]);
-    let unit = RATIOS.iter().copied().find(|unit| {
-        let ratio = ratio.max(1.0 / ratio);
-        (0.8..1.3).contains(&(ratio / unit))
-    });
+    let unit = unit_ratio(ratio);
     if 2 * inside >= all && (ratio < 8.0 || unit.is_none()) {
         return Ok(Placed {
             measurement: kept,
@@ -126,6 +141,13 @@ pub fn place_on(mesh: &Mesh, measurement: &Measurement) -> Result<Placed, Error>
             "give both in the same axes, at rest",
         ),
     })
+}
+
+/// The ratio of two units of length that a ratio of two lengths, or its inverse, is near.
+pub fn unit_ratio(ratio: f64) -> Option<f64> {
+    let ratio = ratio.max(1.0 / ratio);
+    let near = |unit: &f64| (0.8..1.3).contains(&(ratio / unit));
+    RATIOS.iter().copied().find(near)
 }
 
 /// Length and width of the box around places.

@@ -16,6 +16,8 @@ pub struct Reading {
     pub array: Option<String>,
     /// The distance of the points of a matrix in mm.
     pub grid: Option<f64>,
+    /// Columns of a table that are passed over.
+    pub ignored_columns: Vec<String>,
 }
 
 /// What files hold.
@@ -50,6 +52,8 @@ pub(super) struct Rows {
     pub rows: Vec<Row>,
     pub mesh: Option<Mesh>,
     pub layout: &'static str,
+    /// What deserves attention.
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// Reads one or several files. Several tables or fields are frames: the number at the end of a file's name is its
@@ -77,11 +81,16 @@ pub fn read(files: &[PathBuf], reading: &Reading) -> Result<Read, Error> {
             Some(whole) => append(whole, found, group[0])?,
         }
     }
-    let Some(Rows { rows, mesh, layout }) = whole else {
+    let Some(whole) = whole else {
         return Err(Error::input("no field is given", "name a file"));
     };
-    let mut warnings = Vec::new();
-    let measurement = measurement(rows, &mut warnings);
+    let Rows {
+        rows,
+        mesh,
+        layout,
+        mut warnings,
+    } = whole;
+    let measurement = measurement(rows, mesh.is_some(), &mut warnings);
     plausible::check(&measurement, &mut warnings)?;
     Ok(Read {
         measurement,
@@ -108,6 +117,7 @@ fn append(whole: &mut Rows, found: Rows, file: &Path) -> Result<(), Error> {
         () if meshes[0] != meshes[1] => "has another mesh than the files before it",
         () => {
             whole.rows.extend(found.rows);
+            whole.warnings.extend(found.warnings);
             return Ok(());
         }
     };
@@ -136,27 +146,40 @@ fn frame_numbers(groups: &[Vec<&Path>]) -> Vec<usize> {
     numbers.filter(different).unwrap_or_else(counted)
 }
 
-/// Gathers rows into frames; a point has the number that the files give it, else one by its place.
-fn measurement(rows: Vec<Row>, warnings: &mut Vec<Diagnostic>) -> Measurement {
+/// Gathers rows into frames; a point has the number that the files give it, else one by its place. Rows of a table that stand
+/// twice, with the same place and displacement in the same frame, count once: they are one measurement, and its weight must
+/// not grow by writing it down again. Rows that differ at one place are measurements of their own.
+fn measurement(rows: Vec<Row>, mesh: bool, warnings: &mut Vec<Diagnostic>) -> Measurement {
     let named = rows.iter().all(|row| row.name.is_some());
+    let key = |place: [f64; 2]| place.map(|x| (x + 0.0).to_bits());
     let mut by_place: HashMap<[u64; 2], usize> = HashMap::new();
     let mut frames: BTreeMap<usize, Frame> = BTreeMap::new();
-    let mut holes = 0;
+    let mut seen: HashMap<(usize, [u64; 2]), Vec<[f64; 2]>> = HashMap::new();
+    let mut lost: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+    let (mut holes, mut twice, mut again) = (0, 0, 0);
     for row in rows {
         let next = by_place.len();
         let number = match row.name {
             Some(name) if named => name as usize,
-            _ => {
-                let key = row.place.map(|x| (x + 0.0).to_bits());
-                *by_place.entry(key).or_insert(next)
-            }
+            _ => *by_place.entry(key(row.place)).or_insert(next),
         };
-        let frame = frames.entry(row.frame.unwrap_or(1)).or_default();
+        let frame_number = row.frame.unwrap_or(1);
+        let frame = frames.entry(frame_number).or_default();
         frame.time = frame.time.or(row.time);
         if row.displacement.iter().any(|u| !u.is_finite()) {
             holes += 1;
+            if row.place.iter().all(|x| x.is_finite()) {
+                lost.insert(number, row.place);
+            }
             continue;
         }
+        let there = seen.entry((frame_number, key(row.place))).or_default();
+        if !mesh && there.contains(&row.displacement) {
+            twice += 1;
+            continue;
+        }
+        again += usize::from(!mesh && !there.is_empty());
+        there.push(row.displacement);
         frame.markers.push(Marker {
             number,
             place: row.place,
@@ -164,15 +187,41 @@ fn measurement(rows: Vec<Row>, warnings: &mut Vec<Diagnostic>) -> Measurement {
             standard_deviation: row.standard_deviation,
         });
     }
+    for marker in frames.values().flat_map(|frame| &frame.markers) {
+        lost.remove(&marker.number);
+    }
+    let mut warn = |count: usize, what: &str, hint: &str| {
+        if count > 0 {
+            let message = format!("{what}: {count}");
+            warnings.push(Diagnostic::warning("", message).hint(hint));
+        }
+    };
+    warn(
+        holes,
+        "points without a displacement",
+        "they are left out; their places still count for the outline",
+    );
+    warn(
+        twice,
+        "rows that stand twice, with one place and displacement in one frame",
+        "each counts once: writing a measurement down again makes it no surer",
+    );
+    warn(
+        again,
+        "markers measured again at the same place in one frame, with another displacement",
+        "each counts as a measurement of its own; give one row a marker if they are not independent",
+    );
+    Measurement {
+        frames: with_markers(frames, warnings),
+        lost: lost.into_values().collect(),
+    }
+}
+
+/// The frames that have markers, with a word about those that have none or are missing.
+fn with_markers(frames: BTreeMap<usize, Frame>, warnings: &mut Vec<Diagnostic>) -> Vec<Frame> {
     let mut warn = |message: String, hint: &str| {
         warnings.push(Diagnostic::warning("", message).hint(hint));
     };
-    if holes > 0 {
-        warn(
-            format!("points without a displacement: {holes}"),
-            "they are left out",
-        );
-    }
     let mut kept = Vec::new();
     for (number, frame) in frames {
         if frame.markers.is_empty() {
@@ -186,7 +235,7 @@ fn measurement(rows: Vec<Row>, warnings: &mut Vec<Diagnostic>) -> Measurement {
         let message = format!("frames are missing: {gaps}");
         warn(message, "the others are corrected one by one");
     }
-    Measurement { frames: kept }
+    kept
 }
 
 /// The numbers that are missing between the first and the last frame; none where frames stand at regular numbers,

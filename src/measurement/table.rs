@@ -19,13 +19,10 @@
 
 use std::path::Path;
 
+use super::columns::{self, Length, Names, Units, length, plain, read_table};
 use super::read::{Reading, Row, Rows};
 use crate::calibration::Table;
-use crate::error::{Diagnostic, Error, suggestion};
-use crate::units::{self, Dimension};
-
-/// Names that a column may have.
-type Names = &'static [&'static str];
+use crate::error::{Diagnostic, Error};
 
 /// Where a layout keeps what.
 struct Layout {
@@ -86,14 +83,15 @@ const MUDIC: Layout = Layout {
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
 pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
-    let table = Table::parse(&path.display().to_string(), &plain_text(path)?)?;
+    let table = read_table(path)?;
     let layout = layout(&table);
-    let columns = Columns::find(&table, layout, reading.unit)?;
+    let (columns, warning) = Columns::find(&table, layout, reading)?;
     let rows = (0..table.rows.len()).map(|row| columns.row(&table, layout, row));
     Ok(Rows {
         rows: rows.collect::<Result<_, _>>()?,
         mesh: None,
         layout: layout.name,
+        warnings: warning.into_iter().collect(),
     })
 }
 
@@ -103,16 +101,18 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
 pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, Error> {
-    let table = Table::parse(&path.display().to_string(), &plain_text(path)?)?;
+    let table = read_table(path)?;
+    let units = Units {
+        given: unit,
+        ..Units::default()
+    };
     let [x, y] = [
-        length(&table, &["x"], &COLUMNS, unit)?,
-        length(&table, &["y"], &COLUMNS, unit)?,
+        length(&table, &["x"], units)?,
+        length(&table, &["y"], units)?,
     ];
-    let number = table
-        .columns
-        .iter()
-        .position(|column| column.name == "line");
-    let read = [x.0, y.0].into_iter().chain(number);
+    let number = plain(&table, &["line"]);
+    let read: Vec<usize> = [x.0, y.0].into_iter().chain(number).collect();
+    columns::check_all(&table, &read, &["x", "y", "line"], &[])?;
     if let Some((reason, place)) = read.into_iter().find_map(|column| table.fault(column)) {
         let fault = Diagnostic::error("", reason).hint("an outline has numbers x, y alone");
         return Err(Error::Input(vec![fault.at(&table.source, place)]));
@@ -162,9 +162,6 @@ fn layout(table: &Table) -> &'static Layout {
     }
 }
 
-/// A column of lengths and its unit in mm.
-type Length = (usize, f64);
-
 /// The columns that are read.
 struct Columns {
     places: [Length; 2],
@@ -176,37 +173,77 @@ struct Columns {
     mismatch: Option<usize>,
 }
 
+/// Columns that are not lengths.
+const FRAME: Names = &["frame", "frame_number", "image"];
+const TIME: Names = &["time", "t"];
+const NAME: Names = &["id", "subset_id", "marker", "point", "node", "node_id"];
+
 impl Columns {
-    fn find(table: &Table, layout: &Layout, unit: Option<f64>) -> Result<Self, Error> {
-        let length = |names: Names| length(table, names, layout, unit);
-        let plain = |names: Names| {
-            let of_name = |name: &&str| table.columns.iter().position(|c| c.name == **name);
-            names.iter().find_map(of_name)
+    /// The columns, and a word where a given unit corrects those of the file.
+    fn find(
+        table: &Table,
+        layout: &Layout,
+        reading: &Reading,
+    ) -> Result<(Self, Option<Diagnostic>), Error> {
+        let [places, displacements] = [layout.places, layout.displacements];
+        let head = columns::common_unit(table, [places, displacements].as_flattened());
+        let units = Units {
+            given: reading.unit,
+            corrected: head.as_deref(),
+            pixels: layout.pixels,
         };
-        let has_deviation = column(table, layout.deviation).is_some();
+        let length = |names: Names| length(table, names, units);
+        let has_deviation = columns::find(table, layout.deviation).is_some();
         let columns = Self {
-            places: [length(layout.places[0])?, length(layout.places[1])?],
-            displacements: [
-                length(layout.displacements[0])?,
-                length(layout.displacements[1])?,
-            ],
+            places: [length(places[0])?, length(places[1])?],
+            displacements: [length(displacements[0])?, length(displacements[1])?],
             deviation: has_deviation
                 .then(|| length(layout.deviation))
                 .transpose()?,
-            frame: plain(&["frame", "frame_number", "image"]),
-            time: plain(&["time", "t"]),
-            name: plain(&["id", "subset_id", "marker", "point", "node"]),
-            mismatch: plain(&["match"]),
+            frame: plain(table, FRAME),
+            time: plain(table, TIME),
+            name: plain(table, NAME),
+            mismatch: plain(table, &["match"]),
         };
         let fault = columns.read().find_map(|column| table.nonsense(column));
-        match fault {
-            None => Ok(columns),
-            Some((reason, place)) => {
-                let hint = "a field of this column is a number, or empty where nothing was found";
-                let fault = Diagnostic::error("", reason).hint(hint);
-                Err(Error::Input(vec![fault.at(&table.source, place)]))
-            }
+        if let Some((reason, place)) = fault {
+            let hint = "a field of this column is a number, or empty where nothing was found";
+            let fault = Diagnostic::error("", reason).hint(hint);
+            return Err(Error::Input(vec![fault.at(&table.source, place)]));
         }
+        columns.overlooks_none(table, layout, &reading.ignored_columns)?;
+        let word = columns::correction(table, head.as_deref(), reading.unit);
+        Ok((columns, word))
+    }
+
+    /// Refuses columns that nobody reads, and points that leave their plane.
+    fn overlooks_none(
+        &self,
+        table: &Table,
+        layout: &Layout,
+        ignored: &[String],
+    ) -> Result<(), Error> {
+        let used = self.read().chain(self.name).chain(self.mismatch);
+        let used = used.chain(columns::out_of_plane(table, ignored));
+        // The same in pixels of one camera.
+        let pixels: Vec<Names> = match layout.name == DICE_STEREO.name {
+            true => [DICE.places, DICE.displacements].concat(),
+            false => Vec::new(),
+        };
+        let used = used.chain(pixels.into_iter().filter_map(|names| plain(table, names)));
+        let lengths = [layout.places, layout.displacements];
+        let lengths = lengths.as_flattened().iter().chain([&layout.deviation]);
+        let others = [FRAME, TIME, NAME, columns::HEIGHT, columns::LIFT];
+        let known = lengths.chain(&others).flat_map(|names| names.first());
+        let known: Vec<&str> = known.copied().collect();
+        columns::check_all(table, &used.collect::<Vec<_>>(), &known, ignored)?;
+        let columns = |pair: [Length; 2]| pair.map(|(column, _)| column);
+        columns::check_flat(
+            table,
+            columns(self.places),
+            columns(self.displacements),
+            ignored,
+        )
     }
 
     /// The columns whose fields are numbers.
@@ -241,6 +278,10 @@ impl Columns {
             let hint = "give x and y, or leave out the line";
             return Err(refuse("a marker has no place", hint));
         }
+        if layout.deformed && displacement.iter().any(|u| !u.is_finite()) {
+            // Where it was at rest nobody knows.
+            place = [f64::NAN; 2];
+        }
         let whole = |column: Option<usize>| {
             let value = values[column?];
             (value >= 0.0 && value.fract() == 0.0).then_some(value)
@@ -258,71 +299,6 @@ impl Columns {
             displacement,
             standard_deviation: deviation.filter(|deviation| *deviation > 0.0),
         })
-    }
-}
-
-/// The first column of one of the names, and its unit: in brackets, or at the end of the name as in `ux_mm`.
-fn column(table: &Table, names: Names) -> Option<(usize, Option<String>)> {
-    names.iter().find_map(|name| {
-        let mut columns = table.columns.iter().enumerate();
-        columns.find_map(|(index, column)| match column.name.strip_prefix(name)? {
-            "" => Some((index, column.unit.clone())),
-            rest => {
-                let unit = rest.strip_prefix('_')?;
-                (column.unit.is_none() && millimetres(unit).is_some())
-                    .then(|| (index, Some(unit.to_owned())))
-            }
-        })
-    })
-}
-
-/// The length of a unit in mm.
-fn millimetres(unit: &str) -> Option<f64> {
-    units::parse(&format!("1 {unit}"), Dimension::Length).ok()
-}
-
-/// A column of lengths and its unit: that of its head, else the one that was given.
-fn length(
-    table: &Table,
-    names: Names,
-    layout: &Layout,
-    given: Option<f64>,
-) -> Result<Length, Error> {
-    let refuse = |message: String, hint: &str| {
-        let fault = Diagnostic::error("", message).hint(hint);
-        Error::Input(vec![fault.at(&table.source, table.columns_place.clone())])
-    };
-    let Some((index, unit)) = column(table, names) else {
-        let found: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
-        let found = match found.iter().all(|name| name.is_empty()) {
-            true => "the columns have no names".to_owned(),
-            false => format!("the file has {}", found.join(", ")),
-        };
-        let message = format!("there is no column `{}`: {found}", names[0]);
-        let hint =
-            "name the columns x [mm], y [mm], ux [mm] and uy [mm], with the unit of your own";
-        return Err(refuse(message, hint));
-    };
-    let pixels = match unit.as_deref() {
-        Some(unit) => ["px", "pixel", "pixels"].contains(&unit),
-        None => layout.pixels,
-    };
-    let known = unit.as_deref().filter(|_| !pixels);
-    match (known, given) {
-        (Some(unit), _) => millimetres(unit).map(|unit| (index, unit)).ok_or_else(|| {
-            let known: Vec<_> = Dimension::Length.units().collect();
-            let hint = suggestion(unit, &known, "known units:");
-            refuse(format!("`{unit}` is no unit of length"), &hint)
-        }),
-        (None, Some(unit)) => Ok((index, unit)),
-        (None, None) if pixels => Err(refuse(
-            format!("the column `{}` is in pixels", names[0]),
-            "say how long a pixel is, such as --unit \"0.05 mm\"",
-        )),
-        (None, None) => Err(refuse(
-            format!("the column `{}` has no unit", names[0]),
-            "write it in brackets, as in x [mm], or give --unit mm",
-        )),
     }
 }
 

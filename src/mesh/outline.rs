@@ -3,7 +3,9 @@
 //! The outline of scattered points is the boundary of those Delaunay triangles whose circumscribed circle has a
 //! radius below 1.9 s, where the spacing s is the median length of all Delaunay edges (an α-shape). Gaps of up to
 //! two by two points of a grid are closed so; a wider one inside is a hole. The lines are then straightened where
-//! this moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge.
+//! this moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge. Where points
+//! are scattered, as where many of a grid are lost, gaps at the edge are wider: the outer line is that of circles 1.6 times as
+//! large. Scattered points, and steps of the outer line shorter than 2.5 spacings, are told as doubts.
 //!
 //! Meshes have nodes in a triangular lattice inside and evenly along the lines; where an angle would be below 25°,
 //! nodes are added (Ruppert's refinement).
@@ -42,7 +44,20 @@ pub struct Found {
     pub outline: Outline,
     /// The spacing of the points in mm.
     pub spacing: f64,
+    /// Why the lines may not be the specimen's, in words.
+    pub doubts: Vec<String>,
 }
+
+/// Points whose distance to the nearest other one, over the side of the square that each has, is less than this are scattered:
+/// 1 on a square grid, 1.07 on a triangular one, 0.87 where a quarter of a grid is lost, 0.5 where they lie at random.
+const SCATTERED: f64 = 0.87;
+
+/// The outer line of scattered points is taken this much wider.
+const WIDER: f64 = 1.6;
+
+/// A step of the outer line turns by more than this one way and then the other, within so many spacings.
+const STEP_TURN: f64 = 20.0 * std::f64::consts::PI / 180.0;
+const STEP_LENGTH: f64 = 2.5;
 
 impl Outline {
     /// The lines around points.
@@ -56,7 +71,44 @@ impl Outline {
         if points.len() < 6 {
             return Err(format!("{} points have no outline", points.len()));
         }
-        let (lines, spacing) = alpha_shape::lines(&points)?;
+        let (lines, spacing) = alpha_shape::lines(&points, 1.0)?;
+        let mut outline = Self::straightened(&lines, spacing)?;
+        let mut doubts = Vec::new();
+        let regular = regularity(&points, outline.area());
+        if regular < SCATTERED {
+            doubts.push(format!(
+                "the markers lie irregularly, as where many are lost (distance to the nearest one over the side of each one's \
+                 square: {regular:.2}, on a grid 1)"
+            ));
+            // Gaps at the edge are wider then; holes are judged as ever.
+            let (wide, _) = alpha_shape::lines(&points, WIDER)?;
+            let wide = Self::straightened(&wide, spacing)?;
+            let wider = Self {
+                outer: wide.outer,
+                holes: outline.holes.clone(),
+            };
+            if wider.check().is_ok() {
+                outline = wider;
+            }
+        }
+        let steps = polygon::steps(&outline.outer, STEP_TURN, STEP_LENGTH * spacing);
+        if let Some([x, y]) = steps.first() {
+            let count = steps.len();
+            doubts.push(format!(
+                "the outline has {count} steps of less than {STEP_LENGTH} spacings, one near ({x:.2}, {y:.2}) mm: markers that \
+                 were lost at the edge, or the specimen's shape"
+            ));
+        }
+        outline.check()?;
+        Ok(Found {
+            outline,
+            spacing,
+            doubts,
+        })
+    }
+
+    /// The lines without the steps of a grid.
+    fn straightened(lines: &[Vec<[f64; 2]>], spacing: f64) -> Result<Self, String> {
         let straightened = lines
             .iter()
             .map(|line| polygon::straightened(line, STRAIGHT * spacing));
@@ -75,8 +127,25 @@ impl Outline {
         if outline.outer.is_empty() {
             return Err("the points are too far apart to have an outline".into());
         }
+        Ok(outline)
+    }
+
+    /// The lines a distance farther out: the outer one wider, holes narrower.
+    ///
+    /// # Errors
+    /// Says that the lines cross then.
+    pub fn widened(&self, gap: f64) -> Result<Self, String> {
+        let outline = Self {
+            outer: polygon::shifted(&self.outer, gap),
+            holes: self
+                .holes
+                .iter()
+                .map(|hole| polygon::shifted(hole, gap))
+                .filter(|hole| area(hole) < 0.0)
+                .collect(),
+        };
         outline.check()?;
-        Ok(Found { outline, spacing })
+        Ok(outline)
     }
 
     /// Lines in any direction and order: the one around the largest area is the outer one.
@@ -200,6 +269,29 @@ impl Outline {
         }
         mesh.name_boundary("boundary", |_| true);
     }
+}
+
+/// The median distance of points to their nearest neighbour over √(area/points).
+fn regularity(points: &[[f64; 2]], area: f64) -> f64 {
+    let side = (area / points.len() as f64).sqrt();
+    let square = |[x, y]: [f64; 2]| [(x / side).floor() as i64, (y / side).floor() as i64];
+    let mut squares: HashMap<[i64; 2], Vec<[f64; 2]>> = HashMap::new();
+    for point in points {
+        squares.entry(square(*point)).or_default().push(*point);
+    }
+    // Farther away than two squares no point is nearer than 2 sides; that is enough to know.
+    let nearest = |point: &[f64; 2]| {
+        let [i, j] = square(*point);
+        let around = (-2..=2).flat_map(|di| (-2..=2).map(move |dj| [i + di, j + dj]));
+        let near = around.filter_map(|key| squares.get(&key)).flatten();
+        let others = near.filter(|other| *other != point);
+        others.fold(2.0 * side, |least: f64, other| {
+            least.min(polygon::length(*point, *other))
+        })
+    };
+    let mut distances: Vec<f64> = points.iter().map(nearest).collect();
+    let middle = distances.len() / 2;
+    *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / side
 }
 
 /// Three quadrilaterals for each triangle, about its centre.

@@ -228,6 +228,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "points": test.observations.len(),
         })).collect::<Vec<_>>(),
         "weighting": fit.settings.weighting.name(),
+        "residuals": fit.settings.weighting.describe(),
         "parameters": parameters.map(|(parameter, estimate)| json!({
             "key": parameter.key,
             "value": parameter.value,

@@ -2,10 +2,11 @@ use super::*;
 use crate::mesh::CellShape;
 
 const SETTINGS: ImportSettings = ImportSettings {
-    unit: 1.0,
+    unit: None,
     array: None,
     factor: 0.5,
     time: None,
+    ignored_columns: Vec::new(),
 };
 
 /// ux = 0.1 X + 0.02 Y, uy = −0.05 Y.
@@ -132,7 +133,7 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
     }
     // The same in metres.
     let metres = ImportSettings {
-        unit: 1000.0,
+        unit: Some(1000.0),
         ..SETTINGS
     };
     let imported = Imported::read(&written(".frd", &frd(1e-3, "")), &metres).unwrap();
@@ -195,12 +196,42 @@ fn fields_that_do_not_fit_are_refused_with_the_reason() {
         (
             ".csv",
             "X_mm,Y_mm,ux_MPa,uy_mm\n3,2,1,1\n".into(),
-            "no unit of length",
+            "no column `ux`: the file has x_mm, y_mm, ux_mpa",
         ),
         (
             ".csv",
             "stretch,X_mm,Y_mm,ux_mm,uy_mm\n0.7,3,2,1,1\n".into(),
             "no rows for the load factor 0.5",
+        ),
+        (
+            ".csv",
+            format!("{}3,2,1,1,0.3\n", head.replace('\n', ",uz_mm\n")),
+            "leave their plane: `uz_mm` reaches 0.3000 beside 1.0000",
+        ),
+        (
+            ".csv",
+            format!("{}3,2,1,1,0.5\n", head.replace('\n', ",strech\n")),
+            "column `strech` is not known here (did you mean `stretch`?",
+        ),
+        (
+            ".csv",
+            format!("{}3,2,1,1,7\n", head.replace('\n', ",temperature\n")),
+            "known columns: x, y, ux, uy, stretch, load_factor, factor, time, node, z, uz; --ignore-columns temperature",
+        ),
+        (
+            ".csv",
+            format!("{}3,2,1,1,7\n", head.replace('\n', ",ux\n")),
+            "`ux` says what another column says already",
+        ),
+        (
+            ".csv",
+            format!("{head}0.003,0.002,0.001,0\n0.03,0.01,0.001,0\n"),
+            "about a factor of 1000",
+        ),
+        (
+            ".csv",
+            format!("{}3,2,1,1,0.7\n", head.replace('\n', ",time\n")),
+            "no rows for the time 0.5 (choose one that it has with --time: 0.7",
         ),
         (
             ".txt",
@@ -214,4 +245,52 @@ fn fields_that_do_not_fit_are_refused_with_the_reason() {
             "{told}: {found}"
         );
     }
+}
+
+#[test]
+fn columns_choose_rows_and_are_passed_over_by_wish() {
+    let table = "stretch [%],time,X_mm,Y_mm,ux_mm,uy_mm,uz_mm,note\n\
+                 50,2,10,5,1.1,-0.25,0.9,3\n50,1,10,5,9,9,0,3\n25,2,10,5,9,9,0,3\n";
+    let settings = ImportSettings {
+        time: Some(2.0),
+        ignored_columns: vec!["uz".into(), "note".into()],
+        ..SETTINGS
+    };
+    let imported = Imported::read(&written(".csv", table), &settings).unwrap();
+    let sites = imported.sites(&model([6, 2]).mesh).unwrap();
+    assert_eq!(sites.places, [[10.0, 5.0]]);
+    assert!(sites.difference(&model([6, 2])).unwrap().percent < 1e-10);
+    let told = Imported::read(&written(".csv", "x,y,ux,uy\n1,2,3,4\n"), &settings).unwrap_err();
+    assert!(told.to_string().contains("no column `time`"), "{told}");
+}
+
+#[test]
+fn displacements_in_another_unit_are_told_by_their_magnitude() {
+    let table = "X_mm,Y_mm,ux_mm,uy_mm\n10,5,0.0011,-0.00025\n20,5,0.0021,-0.00025\n";
+    let model = model([6, 2]);
+    let difference = |settings: &ImportSettings| {
+        let imported = Imported::read(&written(".csv", table), settings).unwrap();
+        imported
+            .sites(&model.mesh)
+            .unwrap()
+            .difference(&model)
+            .unwrap()
+    };
+    assert_eq!(difference(&SETTINGS).other_unit(), Some(1000.0));
+    // In metres as a whole, and labelled mm: --unit corrects the head.
+    let metres = "X_mm,Y_mm,ux_mm,uy_mm\n0.01,0.005,0.0011,-0.00025\n0.02,0.005,0.0021,-0.00025\n";
+    let settings = ImportSettings {
+        unit: Some(1000.0),
+        ..SETTINGS
+    };
+    let imported = Imported::read(&written(".csv", metres), &settings).unwrap();
+    let right = imported
+        .sites(&model.mesh)
+        .unwrap()
+        .difference(&model)
+        .unwrap();
+    assert!(
+        right.percent < 1e-10 && right.other_unit().is_none(),
+        "{right:?}"
+    );
 }

@@ -76,7 +76,7 @@ impl Found<'_> {
     fn is_pulled(&self, edges: &[Edge], index: usize) -> Result<bool, Error> {
         const LARGE: f64 = 1.0 / 3.0;
         const SURE: f64 = 10.0;
-        let forces = self.forces(edges, 1.0)?;
+        let forces = self.forces(edges, 1.0, None)?;
         let held = edges
             .iter()
             .filter(|edge| edge.condition != EdgeCondition::Free);

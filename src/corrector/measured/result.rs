@@ -4,22 +4,25 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
-use super::Edge;
+use super::contradiction::Contradiction;
 use super::edge_motion::EdgeCondition;
-use super::linearise::{Neighbours, dot};
+use super::linearise::Neighbours;
+use super::mesh_error::MeshError;
 use super::observations::Observations;
 use super::robust::Robust;
 use super::search::{Found, Search};
+use super::whiteness::Whiteness;
+use super::{Edge, MeasuredForce};
 use crate::corrector::estimate::Estimate;
 use crate::error::{Error, SolveFault};
 use crate::finite_element::recovery::{RecoveredGradient, Recovery};
-use crate::material::parameters::Parameter;
 use crate::material::sheet::{Gradient, Kinematics, cofactor};
 
 /// The field nearest to the markers.
 ///
-/// Standard errors come from the noise of the markers, to first order; those of stress and thickness hold the mesh's own
-/// error too, as far as the recovered gradient tells it. They know nothing of a wrong material or a wrong thickness.
+/// Standard errors come from the noise of the markers, to first order, and from the mesh's own error: √(s² + e²). Of
+/// displacements, forces and parameters e comes from the same equations on cells half as large, of stress and thickness from the
+/// recovered gradient. They know nothing of a wrong material or a wrong thickness.
 /// `± reach · standard error` is the 95 % interval.
 #[derive(Clone, Debug)]
 pub struct FieldEstimate {
@@ -42,6 +45,8 @@ pub struct FieldEstimate {
     pub noise: f64,
     /// Whether the noise was given; else it is estimated from what is left of the markers.
     pub known_noise: bool,
+    /// `noise` over the given one: 1 but where markers that scatter far more are judged by their own level.
+    pub noise_scale: f64,
     /// How many parameters the data have determined: the trace of the matrix that makes the fitted displacements of the
     /// measured ones.
     pub effective_parameters: f64,
@@ -61,6 +66,30 @@ pub struct FieldEstimate {
     pub parameters: Vec<(&'static str, &'static str, Estimate)>,
     /// Steps of the search.
     pub steps: usize,
+    /// Whether the standard errors of displacements, forces and parameters hold the mesh's own error: of meshes with too many
+    /// cells it is not known.
+    pub holds_mesh_error: bool,
+    /// By how much, relative to itself, the force grows with the distance in mm that all free edges lie farther out:
+    /// ∮ Ψ ds/∫ Ψ dA over free edges and sheet, the derivative of its energy by that distance, in 1/mm.
+    pub growth: f64,
+    /// The measured forces beside those of the field.
+    pub force_checks: Vec<ForceCheck>,
+    /// What the data contradict of what is said of the edges.
+    pub contradiction: Option<Contradiction>,
+    /// How what is left of neighbouring markers correlates, where there is enough of it to tell.
+    pub whiteness: Option<Whiteness>,
+}
+
+/// A measured force beside that of the field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceCheck {
+    /// What was measured.
+    pub measured: MeasuredForce,
+    /// The force of the field in N.
+    pub found: f64,
+    /// The difference in units of its own standard deviation, √(σ² − s² + e²): σ of the measured force, s of the field's by the
+    /// noise, e by the mesh.
+    pub standardised: f64,
 }
 
 /// The rule by which data and smoothness are traded.
@@ -137,7 +166,12 @@ const FALSE_ALARMS: f64 = 1e-3;
 
 impl Found<'_> {
     /// The field with all that follows from it.
-    pub fn into_estimate(self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
+    pub fn into_estimate(
+        self,
+        edges: &[Edge],
+        own: Option<&MeshError>,
+        contradiction: Option<Contradiction>,
+    ) -> Result<FieldEstimate, Error> {
         let rows = self.linear.design.nrows() as f64;
         let known_noise = self.observations().known_noise;
         let robust = self.search.task.knowledge.robust != Robust::No;
@@ -161,6 +195,7 @@ impl Found<'_> {
             weight: *weight,
             freedom: *freedom,
         });
+        let markers = self.markers();
         let outcome = |edge: &Edge| EdgeOutcome {
             edge: edge.segment.name.clone(),
             length: edge.segment.length(),
@@ -168,13 +203,23 @@ impl Found<'_> {
             probability: edge.probability,
         };
         Ok(FieldEstimate {
-            displacement_error: self.displacement_error(),
+            displacement_error: self.displacement_error(own),
             cells: self.cells()?,
-            forces: self.forces(edges, reach)?,
-            parameters: self.law_parameters(reach),
-            markers: self.markers(),
+            forces: self.forces(edges, reach, own)?,
+            parameters: self.law_parameters(reach, own),
+            holds_mesh_error: own.is_some(),
+            growth: self.growth(edges),
+            force_checks: self.force_checks(edges, own)?,
+            contradiction,
+            whiteness: self.whiteness(&markers, own),
+            markers,
             noise: (self.trade.sound / mean).sqrt(),
             known_noise,
+            noise_scale: if known_noise {
+                self.trade.sound.sqrt()
+            } else {
+                1.0
+            },
             effective_parameters: self.fit.effective,
             degrees_of_freedom: freedom,
             reach,
@@ -197,7 +242,7 @@ impl Found<'_> {
     }
 
     /// √(s C sᵀ) of a row s of sensitivities.
-    fn error(&self, row: &[f64]) -> f64 {
+    pub(super) fn error(&self, row: &[f64]) -> f64 {
         let covariance = &self.fit.covariance;
         let product = |j: usize| -> f64 {
             let column = covariance.column(j);
@@ -206,7 +251,7 @@ impl Found<'_> {
         (0..row.len()).map(product).sum::<f64>().max(0.0).sqrt()
     }
 
-    fn displacement_error(&self) -> Vec<f64> {
+    fn displacement_error(&self, own: Option<&MeshError>) -> Vec<f64> {
         let unknowns = (0..self.field.len()).into_par_iter();
         let error = |unknown: usize| {
             let row: Vec<f64> = self
@@ -215,7 +260,8 @@ impl Found<'_> {
                 .iter()
                 .map(|column| column[unknown])
                 .collect();
-            self.error(&row)
+            let mesh = own.map_or(0.0, |own| own.displacement[unknown]);
+            self.error(&row).hypot(mesh)
         };
         unknowns.map(error).collect()
     }
@@ -288,47 +334,12 @@ impl Found<'_> {
     }
 
     /// Reactions where edges are held.
-    fn reactions(&self) -> Vec<f64> {
+    pub(super) fn reactions(&self) -> Vec<f64> {
         let mut reactions = self.residual.clone();
         for unknown in self.search.newton.free() {
             reactions[*unknown] = 0.0;
         }
         reactions
-    }
-
-    pub fn forces(&self, edges: &[Edge], reach: f64) -> Result<Vec<EdgeForce>, Error> {
-        let reactions = self.reactions();
-        let slopes = self.search.law_slopes(&self.parameters, &self.field)?;
-        let first = self.search.motion.parameters();
-        let along = |edge: &Edge, axis: usize| -> Result<Estimate, Error> {
-            let grip = self.search.grip(&edge.segment.nodes, axis, &self.field)?;
-            let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
-            let force = dot(&grip.marks, &reactions);
-            Ok(interval(force, self.error(&row), reach))
-        };
-        let held = edges
-            .iter()
-            .filter(|edge| edge.condition != EdgeCondition::Free);
-        let force = |edge: &Edge| {
-            Ok(EdgeForce {
-                edge: edge.segment.name.clone(),
-                force: [along(edge, 0)?, along(edge, 1)?],
-            })
-        };
-        held.map(force).collect()
-    }
-
-    fn law_parameters(&self, reach: f64) -> Vec<(&'static str, &'static str, Estimate)> {
-        let first = self.search.motion.parameters();
-        let regressed = self.search.task.knowledge.law.iter();
-        let parameters = regressed.flat_map(|law| law.parameters()).enumerate();
-        let estimate = |(index, parameter): (usize, &Parameter)| {
-            let place = first + index;
-            let error = self.fit.covariance[(place, place)].max(0.0).sqrt();
-            let value = interval(self.parameters[place], error, reach);
-            (parameter.key, parameter.unit(), value)
-        };
-        parameters.map(estimate).collect()
     }
 
     fn markers(&self) -> Vec<Option<MarkerEstimate>> {
@@ -368,7 +379,7 @@ impl Found<'_> {
 }
 
 /// A value with its standard error.
-fn interval(value: f64, standard_error: f64, reach: f64) -> Estimate {
+pub(super) fn interval(value: f64, standard_error: f64, reach: f64) -> Estimate {
     let half = reach * standard_error;
     Estimate {
         value,

@@ -33,6 +33,8 @@ pub enum Robust {
 const HUBER: f64 = 1.5;
 /// Where Tukey's weight is nothing.
 const TUKEY: f64 = 5.1227;
+/// Known noise is not believed where the markers scatter by more than so many times as much.
+const CONTRADICTED: f64 = 2.0;
 /// The median of χ² with two degrees of freedom: 2 ln 2.
 const MEDIAN: f64 = 2.0 * std::f64::consts::LN_2;
 
@@ -68,7 +70,8 @@ impl Robust {
         }
     }
 
-    /// v and ω from s d of all markers, where `effective` parameters were fitted; with known noise s is 1.
+    /// v and ω from s d of all markers, where `effective` parameters were fitted; with known noise s is 1, unless the markers
+    /// scatter twice as much: then they are judged by their own level, as no marker would have a say else.
     pub fn noise(self, distances: &[f64], effective: f64, known: bool) -> Noise {
         let count = distances.len() as f64;
         let freedom = (2.0 * count - effective).max(1.0);
@@ -82,9 +85,10 @@ impl Robust {
                 trust: vec![1.0; distances.len()],
             };
         }
-        let scale = match known {
+        let own = spread(distances) * (2.0 * count / freedom).sqrt();
+        let scale = match known && own <= CONTRADICTED {
             true => 1.0,
-            false => spread(distances) * (2.0 * count / freedom).sqrt(),
+            false => own,
         };
         let scale = scale.max(f64::MIN_POSITIVE);
         let (mut trust, mut slope, mut squares) = (Vec::new(), 0.0, 0.0);

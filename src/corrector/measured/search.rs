@@ -177,6 +177,28 @@ impl<'a> Search<'a> {
         }))
     }
 
+    /// One linearised regression from the field of another search, with its trust of the markers.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn score(mut self, found: &Found) -> Result<(Fit, Trade), Error> {
+        let mut parameters = self.nearest_parameters(&found.field);
+        let others = &found.parameters[found.search.motion.parameters()..];
+        parameters.extend_from_slice(others);
+        let mut place = Place {
+            parameters,
+            field: found.field.clone(),
+        };
+        self.settle(&mut place, ON_THE_WAY)?;
+        let mut trade = Trade {
+            smoothing: Vec::new(),
+            ..found.trade.clone()
+        };
+        let linear = self.linearise(&place)?;
+        let fit = self.regress((&place, 1), &linear, &mut trade)?;
+        Ok((fit, trade))
+    }
+
     /// The largest move that does not matter, in mm.
     fn close(&self, trade: &Trade, field: &[f64]) -> f64 {
         let Observations {

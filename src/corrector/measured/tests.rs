@@ -11,25 +11,29 @@ use crate::material::{Card, NeoHooke};
 use crate::mesh::{CellShape, Mesh};
 use crate::solve::NewtonSettings;
 
-const SIZE: [f64; 2] = [60.0, 30.0];
+pub(super) const SIZE: [f64; 2] = [60.0, 30.0];
 const THICKNESS: f64 = 2.0;
 const C10: f64 = 0.05;
-const STRETCH: f64 = 0.3;
+pub(super) const STRETCH: f64 = 0.3;
 
-fn law() -> Arc<dyn HyperelasticLaw> {
+pub(super) fn law() -> Arc<dyn HyperelasticLaw> {
     Arc::new(NeoHooke { c10: C10 })
 }
 
 /// A clamped plate pulled by 30 %, on a mesh that no estimate uses: the field, and the force in N.
-struct Truth {
-    mesh: Mesh,
+pub(super) struct Truth {
+    pub(super) mesh: Mesh,
     displacement: Vec<f64>,
-    force: f64,
+    pub(super) force: f64,
 }
 
 impl Truth {
-    fn new() -> Self {
-        let mesh = Mesh::plate(SIZE, [26, 14], CellShape::Quad9);
+    pub(super) fn new() -> Self {
+        Self::on(Mesh::plate(SIZE, [26, 14], CellShape::Quad9))
+    }
+
+    /// The same on any mesh.
+    pub(super) fn on(mesh: Mesh) -> Self {
         let clamp = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
         let problem = BoundaryProblem {
             thickness: THICKNESS,
@@ -59,12 +63,17 @@ impl Truth {
         }
     }
 
-    fn at(&self, place: [f64; 2]) -> [f64; 2] {
+    /// ux, uy of node after node in mm.
+    pub(super) fn field(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    pub(super) fn at(&self, place: [f64; 2]) -> [f64; 2] {
         self.mesh.displacement_at(&self.displacement, place)
     }
 
     /// 21 × 11 markers with normal noise.
-    fn markers(&self, noise: f64, seed: u64) -> Vec<Marker> {
+    pub(super) fn markers(&self, noise: f64, seed: u64) -> Vec<Marker> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         let places =
@@ -89,7 +98,7 @@ fn estimate_mesh() -> Mesh {
     Mesh::plate(SIZE, [20, 10], CellShape::Quad9)
 }
 
-fn specimen(mesh: &Mesh) -> Specimen<'_> {
+pub(super) fn specimen(mesh: &Mesh) -> Specimen<'_> {
     Specimen {
         mesh,
         law: law(),
@@ -97,7 +106,7 @@ fn specimen(mesh: &Mesh) -> Specimen<'_> {
     }
 }
 
-fn with_grips(condition: EdgeCondition) -> Knowledge {
+pub(super) fn with_grips(condition: EdgeCondition) -> Knowledge {
     let edge = |(name, condition): (&str, EdgeCondition)| (name.to_owned(), condition);
     let edges = [
         ("left", condition),

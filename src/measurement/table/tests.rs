@@ -222,6 +222,22 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
             "a frame has no whole number",
         ),
         (
+            "x [mm],y [mm],ux [mm],uy [mm],uy [mm]\n1,2,3,4,5\n",
+            "the column `uy` says what another column says already",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],standard_devation [mm]\n1,2,3,4,5\n",
+            "did you mean `standard_deviation`?",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],temperature\n1,2,3,4,5\n",
+            "the column `temperature` is not known here",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],uz [mm]\n1,2,3,4,1\n",
+            "the points leave their plane: `uz` reaches 1.0000",
+        ),
+        (
             "x [mm],y [mm],ux [mm],uy [mm],sigma [mm]\n1,2,3,4,-1\n",
             "deviation is negative",
         ),
@@ -230,4 +246,68 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
         assert!(told.to_string().contains(reason), "{text:?}: {told}");
         assert!(told.to_string().contains('('), "a remedy: {told}");
     }
+}
+
+#[test]
+fn columns_are_passed_over_by_wish_and_harmless_ones_without() {
+    let text = "x [mm],y [mm],ux [mm],uy [mm],uz [mm],exx,Strain YY,temperature [C]\n1,2,3,4,9,0,0,20\n5,2,3,4,9,0,0,20\n";
+    let reading = Reading {
+        ignored_columns: vec!["temperature".into(), "uz".into()],
+        ..Reading::default()
+    };
+    let found = read_texts(&[("a.csv", text)], &reading).unwrap();
+    assert_eq!(found.measurement.frames[0].markers.len(), 2);
+}
+
+#[test]
+fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
+    let text = "x [mm],y [mm],ux [mm],uy [mm]\n0.01,0.02,0.001,0\n0.03,0.02,0.001,0\n";
+    let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
+    near(
+        &found.measurement.frames[0].markers,
+        &[
+            marker(0, [10.0, 20.0], [1.0, 0.0]),
+            marker(1, [30.0, 20.0], [1.0, 0.0]),
+        ],
+    );
+    let told = found.warnings[0].to_string();
+    assert!(told.contains("says mm, --unit says 1000 mm"), "{told}");
+    // Of different units each stands.
+    let text = "x [mm],y [mm],ux [um],uy [um]\n10,20,1000,0\n30,20,1000,0\n";
+    let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
+    assert_eq!(
+        found.measurement.frames[0].markers[1],
+        marker(1, [30.0, 20.0], [1.0, 0.0])
+    );
+}
+
+#[test]
+fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
+    let text = "x [mm],y [mm],ux [mm],uy [mm]\n0,0,1,2\n0,0,1,2\n0,0,1,2.5\n9,0,1,2\n9,9,,\n";
+    let found = read_texts(&[("a.csv", text)], &Reading::default()).unwrap();
+    near(
+        &found.measurement.frames[0].markers,
+        &[
+            marker(0, [0.0, 0.0], [1.0, 2.0]),
+            marker(0, [0.0, 0.0], [1.0, 2.5]),
+            marker(1, [9.0, 0.0], [1.0, 2.0]),
+        ],
+    );
+    assert_eq!(
+        found.measurement.places(),
+        [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]
+    );
+    let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
+    assert!(
+        told[1].contains("rows that stand twice") && told[1].contains(": 1"),
+        "{told:?}"
+    );
+    assert!(
+        told[2].contains("measured again at the same place"),
+        "{told:?}"
+    );
+    // What is found in one frame is not lost.
+    let text = "frame,x [mm],y [mm],ux [mm],uy [mm]\n1,0,0,1,2\n1,9,0,1,2\n2,0,0,,\n2,9,0,1,2\n";
+    let found = read_texts(&[("a.csv", text)], &Reading::default()).unwrap();
+    assert!(found.measurement.lost.is_empty());
 }

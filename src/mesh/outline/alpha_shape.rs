@@ -14,17 +14,18 @@ const STRAY: f64 = 0.02;
 /// The points of a closed line.
 type Line = Vec<[f64; 2]>;
 
-/// The closed lines around different points, those around holes clockwise, and the points' spacing.
+/// The closed lines around different points, those around holes clockwise, and the points' spacing. Circles are larger than
+/// usual by the factor `wider`.
 ///
 /// # Errors
 /// Says why there is no such line, or that there are several parts.
-pub fn lines(points: &[[f64; 2]]) -> Result<(Vec<Line>, f64), String> {
+pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), String> {
     let triangles = delaunay(points);
     if triangles.is_empty() {
         return Err("the points lie on one line".into());
     }
     let spacing = median_edge(points, &triangles);
-    let small = |triangle: &[usize; 3]| radius(points, triangle) < RADIUS * spacing;
+    let small = |triangle: &[usize; 3]| radius(points, triangle) < wider * RADIUS * spacing;
     let mut inside: Vec<bool> = triangles.iter().map(small).collect();
     mend_touching(&triangles, &mut inside);
     largest_part(points, &triangles, &mut inside)?;

@@ -98,6 +98,46 @@ fn keep(line: &[[f64; 2]], near: f64, kept: &mut Vec<[f64; 2]>) {
     }
 }
 
+/// The middles of edges no longer than `most` at whose ends a line turns by more than `turn` one way and then the other.
+pub fn steps(line: &[[f64; 2]], turn: f64, most: f64) -> Vec<[f64; 2]> {
+    let edges: Vec<[[f64; 2]; 2]> = Polygon(line).edges().collect();
+    let count = edges.len();
+    let direction = |[a, b]: &[[f64; 2]; 2]| (b[1] - a[1]).atan2(b[0] - a[0]);
+    let turn_at = |i: usize| {
+        let change = direction(&edges[i]) - direction(&edges[(i + count - 1) % count]);
+        change.sin().atan2(change.cos())
+    };
+    let is_step = |i: &usize| {
+        let [first, second] = [turn_at(*i), turn_at((i + 1) % count)];
+        let sharp = first.abs() > turn && second.abs() > turn && first * second < 0.0;
+        sharp && length(edges[*i][0], edges[*i][1]) <= most
+    };
+    let middle = |i: usize| {
+        let [a, b] = edges[i];
+        [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]
+    };
+    (0..count).filter(is_step).map(middle).collect()
+}
+
+/// A line with every edge moved by a distance to its right; at sharp corners no point moves by more than three distances.
+pub fn shifted(line: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
+    const SHARPEST: f64 = 2.0 / 9.0;
+    let normals: Vec<[f64; 2]> = Polygon(line)
+        .edges()
+        .map(|[a, b]| {
+            let size = length(a, b).max(f64::MIN_POSITIVE);
+            [(b[1] - a[1]) / size, (a[0] - b[0]) / size]
+        })
+        .collect();
+    let count = line.len();
+    let moved = |i: usize| {
+        let [m, n] = [normals[(i + count - 1) % count], normals[i]];
+        let share = distance / (1.0 + m[0] * n[0] + m[1] * n[1]).max(SHARPEST);
+        [0, 1].map(|axis| line[i][axis] + share * (m[axis] + n[axis]))
+    };
+    (0..count).map(moved).collect()
+}
+
 /// The points of a line with more between them, so that no edge is longer than `size`.
 pub fn divided(line: &[[f64; 2]], size: f64) -> Vec<[f64; 2]> {
     let edges = Polygon(line).edges();

@@ -163,3 +163,63 @@ fn bad_outlines_are_refused_in_words() {
             .contains("on one line")
     );
 }
+
+#[test]
+fn lost_markers_at_an_edge_are_told() {
+    let whole = Outline::of_points(&grid(|_| true)).unwrap();
+    assert!(whole.doubts.is_empty(), "{:?}", whole.doubts);
+    // A row of ten lost at the lower edge.
+    let notched = grid(|[x, y]| y > 0.0 || !(50.0..100.0).contains(&x));
+    let found = Outline::of_points(&notched).unwrap();
+    assert!(
+        found.doubts[0].contains("steps of less than"),
+        "{:?}",
+        found.doubts
+    );
+    // Shoulders of four spacings are the specimen's own shape.
+    let tested = grid(|[x, y]| !(25.0..125.0).contains(&x) || (20.0..=30.0).contains(&y));
+    let found = Outline::of_points(&tested).unwrap();
+    assert!(found.doubts.is_empty(), "{:?}", found.doubts);
+}
+
+#[test]
+fn half_of_a_grid_keeps_its_outline_with_a_word() {
+    use rand::{RngExt, SeedableRng};
+    for seed in 0..12 {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let kept: Vec<bool> = (0..341).map(|_| random.random::<f64>() < 0.5).collect();
+        let all = grid(|_| true).into_iter().zip(kept);
+        let points: Vec<[f64; 2]> = all
+            .filter(|(_, kept)| *kept)
+            .map(|(point, _)| point)
+            .collect();
+        let found = Outline::of_points(&points).unwrap();
+        assert!(
+            found.doubts[0].contains("lie irregularly"),
+            "{seed}: {:?}",
+            found.doubts
+        );
+        assert!(
+            found.outline.area() > 0.9 * 7500.0,
+            "{seed}: {}",
+            found.outline.area()
+        );
+        let margin = found.outline.widened(found.spacing).unwrap();
+        assert!(margin.area() > 7500.0, "{seed}: {}", margin.area());
+    }
+}
+
+#[test]
+fn an_outline_moves_out_by_a_gap_and_its_holes_narrow() {
+    let square = |low: f64, high: f64| vec![[low, low], [high, low], [high, high], [low, high]];
+    let outline = Outline::of_lines(vec![square(0.0, 10.0), square(4.0, 6.0)]).unwrap();
+    let wider = outline.widened(0.5).unwrap();
+    assert!(
+        (wider.area() - (121.0 - 1.0)).abs() < 1e-9,
+        "{}",
+        wider.area()
+    );
+    assert_eq!(wider.outer.len(), 4);
+    // A hole narrower than twice the gap is closed.
+    assert!(outline.widened(1.0).unwrap().holes.is_empty());
+}

@@ -25,6 +25,8 @@ pub fn json(field: &MeasuredField, estimates: &[FieldEstimate]) -> Value {
         "trade": estimates.first().map(|estimate| estimate.rule),
         "brought_onto_another_mesh": field.coarse.is_some(),
         "frames": frames.map(|(frame, estimate)| of_frame(frame, estimate)).collect::<Vec<_>>(),
+        "edge_may_lie_farther_out_by_mm": field.unknown_gap,
+        "doubts": field.all_doubts(estimates).iter().map(ToString::to_string).collect::<Vec<_>>(),
         "warnings": field.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "gelbench": env!("CARGO_PKG_VERSION"),
     })
@@ -41,6 +43,15 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
     let parameters = estimate.parameters.iter();
     let parameters = parameters
         .map(|(key, unit, found)| json!({ "key": key, "unit": unit, "found": of_estimate(found) }));
+    let checks = estimate.force_checks.iter().map(|check| {
+        json!({
+            "edge": check.measured.edge,
+            "axis": (["x", "y"][check.measured.axis]),
+            "measured_N": check.measured.force,
+            "found_N": check.found,
+            "standardised_difference": check.standardised,
+        })
+    });
     let free = estimate
         .edges
         .iter()
@@ -57,6 +68,15 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
         "effective_parameters": estimate.effective_parameters,
         "largest_standard_error_mm": largest_error(estimate),
         "steps": estimate.steps,
+        "errors_hold_the_mesh": estimate.holds_mesh_error,
+        "residual_correlation": estimate.whiteness.map(|found| json!({
+            "of_neighbours": found.correlation,
+            "of_components": found.of_components,
+            "of_white_noise": found.expected,
+            "standard_deviation": found.deviation,
+            "is_white": found.is_white(),
+        })),
+        "measured_forces": checks.collect::<Vec<_>>(),
         "forces": forces.collect::<Vec<_>>(),
         "parameters": parameters.collect::<Vec<_>>(),
         "free_edges": free.map(|edge| edge.edge.as_str()).collect::<Vec<_>>(),

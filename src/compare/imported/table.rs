@@ -1,0 +1,133 @@
+//! Fields at scattered points, from tables.
+//!
+//! | column | meaning |
+//! |---|---|
+//! | `x`, `y` | place at rest |
+//! | `ux`, `uy` | displacement |
+//! | `stretch`, `load_factor`, `factor` | the load factor of a row; a stretch in % is one too |
+//! | `time` | the time of a row, the load factor unless `--time` says another one |
+//! | `z`, `uz` | of a sheet that stays flat |
+//!
+//! Units stand in the names (`ux_mm`) or in brackets. Other columns are refused, see [`crate::measurement::columns`].
+
+use super::{ImportSettings, Imported};
+use crate::calibration::Table;
+use crate::error::{Diagnostic, Error};
+use crate::measurement::columns::{self, Names, Units, length, plain, refuse};
+use crate::units::{self, Dimension};
+
+const LENGTHS: [Names; 4] = [&["x"], &["y"], &["ux"], &["uy"]];
+const FACTOR: Names = &["stretch", "load_factor", "factor"];
+const TIME: Names = &["time"];
+const NAMES: Names = &["node", "node_id", "marker", "id", "point"];
+const KNOWN: [&str; 11] = [
+    "x",
+    "y",
+    "ux",
+    "uy",
+    "stretch",
+    "load_factor",
+    "factor",
+    "time",
+    "node",
+    "z",
+    "uz",
+];
+
+/// A column that chooses rows, the scale of its numbers, and the number that is chosen.
+type Choice = (usize, f64, f64);
+
+/// The points of the rows with the load factor.
+///
+/// # Errors
+/// [`Error::Input`] with what is wrong.
+pub fn read(table: &Table, settings: &ImportSettings) -> Result<Imported, Error> {
+    let head = columns::common_unit(table, &LENGTHS);
+    let units = Units {
+        given: settings.unit.or(Some(1.0)),
+        corrected: head.as_deref().filter(|_| settings.unit.is_some()),
+        pixels: false,
+    };
+    let mut lengths = Vec::new();
+    for names in LENGTHS {
+        lengths.push(length(table, names, units)?);
+    }
+    let choices = choices(table, settings)?;
+    let read = lengths.iter().map(|(column, _)| *column);
+    let read: Vec<usize> = read.chain(choices.iter().map(|choice| choice.0)).collect();
+    if let Some((reason, place)) = read.iter().find_map(|column| table.fault(*column)) {
+        let fault = Diagnostic::error("", reason).hint("every field of a column is a number");
+        return Err(Error::Input(vec![fault.at(&table.source, place)]));
+    }
+    let ignored = &settings.ignored_columns;
+    let flat = columns::out_of_plane(table, ignored);
+    let used = read.iter().copied().chain(flat).chain(plain(table, NAMES));
+    columns::check_all(table, &used.collect::<Vec<_>>(), &KNOWN, ignored)?;
+    columns::check_flat(table, [read[0], read[1]], [read[2], read[3]], ignored)?;
+    let rows = chosen(table, &choices)?;
+    let pair = |row: &&Vec<f64>, first: usize| {
+        [0, 1].map(|axis| {
+            let (column, unit) = lengths[first + axis];
+            row[column] * unit
+        })
+    };
+    Ok(Imported::AtPoints {
+        places: rows.iter().map(|row| pair(row, 0)).collect(),
+        displacement: rows.iter().flat_map(|row| pair(row, 2)).collect(),
+    })
+}
+
+/// The columns that choose rows.
+fn choices(table: &Table, settings: &ImportSettings) -> Result<Vec<Choice>, Error> {
+    let mut choices = Vec::new();
+    if let Some((index, scale)) = factor_column(table)? {
+        choices.push((index, scale, settings.factor));
+    }
+    if let Some(index) = plain(table, TIME) {
+        let wanted = settings.time.unwrap_or(settings.factor);
+        choices.push((index, 1.0, wanted));
+    } else if let Some(time) = settings.time {
+        let message = format!("--time {time} is given, but there is no column `time`");
+        return Err(refuse(table, message, "leave it out, or name the column"));
+    }
+    Ok(choices)
+}
+
+/// The column with the load factor, a number or in %.
+fn factor_column(table: &Table) -> Result<Option<(usize, f64)>, Error> {
+    let Some(index) = plain(table, FACTOR) else {
+        return Ok(None);
+    };
+    let scale = match table.columns[index].unit.as_deref() {
+        None | Some("-" | "" | "1") => 1.0,
+        Some(unit) => units::parse(&format!("1 {unit}"), Dimension::Ratio).map_err(|_| {
+            let message = format!("`{unit}` is no unit of a load factor");
+            refuse(table, message, "%, or none")
+        })?,
+    };
+    Ok(Some((index, scale)))
+}
+
+/// The rows that are chosen.
+fn chosen<'a>(table: &'a Table, choices: &[Choice]) -> Result<Vec<&'a Vec<f64>>, Error> {
+    const NEAR: f64 = 1e-6;
+    let mut rows: Vec<&Vec<f64>> = table.rows.iter().map(|(row, _)| row).collect();
+    for (column, scale, wanted) in choices {
+        let there = |row: &&Vec<f64>| scale * row[*column];
+        let mut all: Vec<f64> = rows.iter().map(there).collect();
+        rows.retain(|row| (there(row) - wanted).abs() <= NEAR * wanted.abs());
+        if rows.is_empty() {
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            let all: Vec<String> = all.iter().take(12).map(f64::to_string).collect();
+            let (what, option) = match TIME.contains(&&*table.columns[*column].name) {
+                true => ("time", "--time"),
+                false => ("load factor", "--factor"),
+            };
+            let message = format!("{} has no rows for the {what} {wanted}", table.source.name);
+            let hint = format!("choose one that it has with {option}: {}", all.join(", "));
+            return Err(Error::input(message, hint));
+        }
+    }
+    Ok(rows)
+}

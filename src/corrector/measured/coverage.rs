@@ -1,0 +1,208 @@
+//! Whether standard errors and levels are what they say, over seeds of noise.
+//!
+//! Bounds are those of χ², the normal or Poisson's distribution at some four standard deviations: what is tested holds by
+//! far on sound code, and fails where an error is a fifth too small.
+
+use rayon::prelude::*;
+
+use super::tests::{SIZE, STRETCH, Truth, law, specimen, with_grips};
+use super::*;
+use crate::material::sheet::{Gradient, Kinematics};
+use crate::mesh::CellShape;
+
+const SEEDS: u64 = 40;
+
+/// Estimates of markers with noise on a mesh whose own error is far below it.
+fn estimates(truth: &Truth, knowledge: &Knowledge, noise: f64) -> (Mesh, Vec<FieldEstimate>) {
+    let mesh = Mesh::plate(SIZE, [10, 6], CellShape::Quad9);
+    let one = |seed| {
+        let markers = truth.markers(noise, 100 + seed);
+        estimate(&specimen(&mesh), &markers, knowledge).unwrap()
+    };
+    let all = (0..SEEDS).into_par_iter().map(one).collect();
+    (mesh, all)
+}
+
+#[test]
+fn standard_errors_are_the_scatter_over_seeds() {
+    let truth = Truth::new();
+    let (mesh, all) = estimates(&truth, &with_grips(EdgeCondition::Rigid), 0.5);
+    let exact: Vec<f64> = mesh.nodes.iter().flat_map(|node| truth.at(*node)).collect();
+    let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
+    // Six parameters of the grips for each seed: the mean of z² has a standard deviation of about 0.1.
+    let displacement = mean(
+        all.iter()
+            .flat_map(|found| {
+                let pairs = found
+                    .displacement
+                    .iter()
+                    .zip(&exact)
+                    .zip(&found.displacement_error);
+                pairs.map(|((u, exact), error)| ((u - exact) / error).powi(2))
+            })
+            .collect(),
+    );
+    assert!((displacement - 1.0).abs() < 0.33, "{displacement}");
+    let right = |found: &FieldEstimate| {
+        let force = found.forces.iter().find(|force| force.edge == "right");
+        force.unwrap().force[0]
+    };
+    // One force for each seed: √(2/40) = 0.22.
+    let force = mean(
+        all.iter()
+            .map(|found| {
+                let force = right(found);
+                ((force.value - truth.force) / force.standard_error).powi(2)
+            })
+            .collect(),
+    );
+    assert!(force > 0.4 && force < 1.9, "{force}");
+    for found in &all {
+        let force = right(found);
+        let [low, high] = force.interval;
+        let half = found.reach * force.standard_error;
+        assert!(
+            (high - force.value - half).abs() < 1e-12 && (force.value - low - half).abs() < 1e-12
+        );
+        assert!(found.reach > 1.95 && found.reach < 1.98);
+        assert!(found.contradiction.is_none(), "{:?}", found.contradiction);
+    }
+    let held = all.iter().filter(|found| {
+        let [low, high] = right(found).interval;
+        (low..high).contains(&truth.force)
+    });
+    let held = held.count();
+    assert!(held >= 34, "{held} of 40 intervals of the force hold it");
+    // Moran's I of white noise: its mean and its scatter are as its null distribution says.
+    let standardised = |found: &FieldEstimate| {
+        let white = found.whiteness.unwrap();
+        assert!(white.is_white(), "{white:?}");
+        (white.correlation - white.expected) / white.deviation
+    };
+    let standardised: Vec<f64> = all.iter().map(standardised).collect();
+    let square = mean(standardised.iter().map(|z| z * z).collect());
+    let centre = mean(standardised);
+    assert!(
+        centre.abs() < 0.63 && square > 0.4 && square < 1.9,
+        "{centre} {square}"
+    );
+    // One of a thousand sound markers is taken for an outlier: 9.2 of 9240.
+    let outliers = all.iter().flat_map(|found| found.markers.iter().flatten());
+    let outliers = outliers.filter(|marker| marker.outlier).count();
+    assert!((1..=22).contains(&outliers), "{outliers}");
+}
+
+#[test]
+fn without_noise_the_intervals_hold_the_truth() {
+    let truth = Truth::on(Mesh::of_grid(
+        crate::mesh::Grid {
+            size: SIZE,
+            cells: [48, 28],
+            grading: 3.0,
+        },
+        CellShape::Quad9,
+    ));
+    let markers = truth.markers(0.0, 1);
+    let triangles = Mesh::plate(SIZE, [14, 7], CellShape::Quad4)
+        .triangulated()
+        .quadratic();
+    for mesh in [Mesh::plate(SIZE, [14, 7], CellShape::Quad9), triangles] {
+        for condition in [EdgeCondition::Rigid, EdgeCondition::Unknown] {
+            let found = estimate(&specimen(&mesh), &markers, &with_grips(condition)).unwrap();
+            assert!(found.contradiction.is_none(), "{:?}", found.contradiction);
+            for edge in &found.forces {
+                let wanted = if edge.edge == "right" {
+                    truth.force
+                } else {
+                    -truth.force
+                };
+                let [low, high] = edge.force[0].interval;
+                assert!(
+                    low < wanted && wanted < high && high - low < 0.05 * truth.force,
+                    "{condition:?}: {wanted} {low} {high}"
+                );
+            }
+            let exact = mesh.nodes.iter().flat_map(|node| truth.at(*node));
+            let pairs = exact
+                .zip(&found.displacement)
+                .zip(&found.displacement_error);
+            let inside =
+                pairs.filter(|((exact, u), error)| (exact - *u).abs() <= found.reach * **error);
+            let cover = inside.count() as f64 / found.displacement.len() as f64;
+            assert!(cover > 0.85, "{condition:?}: {cover} of the displacements");
+            let cover = stress_cover(&truth, &mesh, &found);
+            assert!(cover > 0.85, "{condition:?}: {cover} of the stresses");
+        }
+    }
+}
+
+/// The share of stresses in the middle of cells, farther than a fifth of the width from the corners, within their intervals.
+fn stress_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
+    let (mut inside, mut count) = (0.0, 0.0);
+    for (cell, stress) in found.cells.iter().enumerate() {
+        let place = mesh.place(cell, mesh.shape(cell).centre());
+        let near = |x: f64, y: f64| (place[0] - x).hypot(place[1] - y) < 0.2 * SIZE[1];
+        if [0.0, SIZE[0]]
+            .iter()
+            .any(|x| near(*x, 0.0) || near(*x, SIZE[1]))
+        {
+            continue;
+        }
+        let (at, local) = truth.mesh.locate(place);
+        let gradient = truth.mesh.gradient_at(truth.field(), at, local);
+        let kinematics = Kinematics::new(&Gradient::from(gradient)).unwrap();
+        let exact: [f64; 4] = law().stress(&kinematics).1.into();
+        for component in 0..4 {
+            let off = (exact[component] - stress.first_piola_kirchhoff_stress[component]).abs();
+            inside += f64::from(u8::from(
+                off <= found.reach * stress.stress_error[component],
+            ));
+            count += 1.0;
+        }
+    }
+    inside / count
+}
+
+#[test]
+fn an_edge_is_free_only_where_noise_could_have_made_the_misfit() {
+    let truth = Truth::new();
+    let mesh = Mesh::plate(SIZE, [10, 6], CellShape::Quad9);
+    let knowledge = Knowledge {
+        edges: vec![("right".to_owned(), EdgeCondition::Unknown)],
+        ..Knowledge::default()
+    };
+    let mut weak = 0;
+    for (seed, share) in [(0, 0.4), (1, 0.6), (2, 0.8), (3, 1.0), (4, 1.3), (5, 1.6)] {
+        let markers = truth.markers(share * STRETCH * SIZE[0], seed);
+        let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        for edge in &found.edges {
+            let Some(probability) = edge.probability else {
+                continue;
+            };
+            let is_free = edge.condition == EdgeCondition::Free;
+            assert_eq!(is_free, probability >= 0.01, "{edge:?}");
+            weak += usize::from(!is_free && probability > 1e-11);
+        }
+    }
+    assert!(weak > 0, "no edge was refused by a small probability");
+}
+
+#[test]
+fn noise_that_correlates_between_neighbours_is_not_white() {
+    let truth = Truth::new();
+    let mesh = Mesh::plate(SIZE, [10, 6], CellShape::Quad9);
+    let mut markers = truth.markers(0.2, 5);
+    let wave = |[x, y]: [f64; 2]| 0.3 * (x / 5.0).sin() * (y / 5.0).cos();
+    for marker in &mut markers {
+        let wave = wave(marker.place);
+        marker.displacement = marker.displacement.map(|u| u + wave);
+    }
+    let found = estimate(
+        &specimen(&mesh),
+        &markers,
+        &with_grips(EdgeCondition::Rigid),
+    )
+    .unwrap();
+    let white = found.whiteness.unwrap();
+    assert!(!white.is_white() && white.correlation > 0.1, "{white:?}");
+}

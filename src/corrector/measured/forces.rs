@@ -1,0 +1,127 @@
+//! The forces on the edges of an estimated field, the parameters of its law, and how both depend on where the edges lie.
+
+use super::Edge;
+use super::edge_motion::EdgeCondition;
+use super::linearise::dot;
+use super::mesh_error::MeshError;
+use super::result::{EdgeForce, ForceCheck, interval};
+use super::search::Found;
+use crate::corrector::estimate::Estimate;
+use crate::error::Error;
+use crate::material::parameters::Parameter;
+use crate::material::sheet::{Gradient, Kinematics};
+
+impl Found<'_> {
+    /// The forces on the edges that are not free; with the mesh's own error, if it is known.
+    pub fn forces(
+        &self,
+        edges: &[Edge],
+        reach: f64,
+        own: Option<&MeshError>,
+    ) -> Result<Vec<EdgeForce>, Error> {
+        let reactions = self.reactions();
+        let slopes = self.search.law_slopes(&self.parameters, &self.field)?;
+        let first = self.search.motion.parameters();
+        let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
+            let nodes = &edges[index].segment.nodes;
+            let grip = self.search.grip(nodes, axis, &self.field)?;
+            let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
+            let force = dot(&grip.marks, &reactions);
+            let mesh = own.map_or(0.0, |own| {
+                own.forces[index][axis] + dot(&row, own.parameters.as_slice())
+            });
+            Ok(interval(force, self.error(&row).hypot(mesh), reach))
+        };
+        let held = (0..edges.len()).filter(|index| edges[*index].condition != EdgeCondition::Free);
+        let force = |index: usize| {
+            Ok(EdgeForce {
+                edge: edges[index].segment.name.clone(),
+                force: [along(index, 0)?, along(index, 1)?],
+            })
+        };
+        held.map(force).collect()
+    }
+
+    /// The parameters of the law that were found.
+    pub(super) fn law_parameters(
+        &self,
+        reach: f64,
+        own: Option<&MeshError>,
+    ) -> Vec<(&'static str, &'static str, Estimate)> {
+        let first = self.search.motion.parameters();
+        let regressed = self.search.task.knowledge.law.iter();
+        let parameters = regressed.flat_map(|law| law.parameters()).enumerate();
+        let estimate = |(index, parameter): (usize, &Parameter)| {
+            let place = first + index;
+            let error = self.fit.covariance[(place, place)].max(0.0).sqrt();
+            let mesh = own.map_or(0.0, |own| own.parameters[place]);
+            let value = interval(self.parameters[place], error.hypot(mesh), reach);
+            (parameter.key, parameter.unit(), value)
+        };
+        parameters.map(estimate).collect()
+    }
+
+    /// The measured forces beside those of the field; those that a parameter of the law follows say nothing.
+    pub(super) fn force_checks(
+        &self,
+        edges: &[Edge],
+        own: Option<&MeshError>,
+    ) -> Result<Vec<ForceCheck>, Error> {
+        const REDUNDANT: f64 = 1e-3;
+        let with_mesh = self.forces(edges, 1.0, own)?;
+        let plain = self.forces(edges, 1.0, None)?;
+        let mut checks = Vec::new();
+        for measured in &self.search.task.knowledge.forces {
+            let axis = measured.axis;
+            let sum = |forces: &[EdgeForce]| {
+                let own = forces.iter().filter(|force| force.edge == measured.edge);
+                own.fold([0.0, 0.0], |[value, square], force| {
+                    let force = &force.force[axis];
+                    [value + force.value, square + force.standard_error.powi(2)]
+                })
+            };
+            let ([found, noise], [_, whole]) = (sum(&plain), sum(&with_mesh));
+            let variance = measured.standard_deviation.powi(2);
+            let left = variance - noise;
+            if left > REDUNDANT * variance {
+                let spread = (left + (whole - noise).max(0.0)).sqrt();
+                checks.push(ForceCheck {
+                    measured: measured.clone(),
+                    found,
+                    standardised: (measured.force - found) / spread,
+                });
+            }
+        }
+        Ok(checks)
+    }
+
+    /// ∮ Ψ ds/∫ Ψ dA.
+    pub(super) fn growth(&self, edges: &[Edge]) -> f64 {
+        let mesh = self.search.task.specimen.mesh;
+        let energy = |cell: usize, local: [f64; 2]| {
+            let gradient = Gradient::from(mesh.gradient_at(&self.field, cell, local));
+            Kinematics::new(&gradient)
+                .map_or(0.0, |kinematics| self.search.law.stress(&kinematics).0)
+        };
+        let over = |cell: usize| -> f64 {
+            let points = mesh.shape(cell).quadrature().into_iter();
+            points
+                .map(|(local, weight)| weight * mesh.gradients(cell, local).1 * energy(cell, local))
+                .sum()
+        };
+        let whole: f64 = (0..mesh.cell_count()).map(over).sum();
+        let free = edges
+            .iter()
+            .filter(|edge| edge.condition == EdgeCondition::Free);
+        let along = |pair: &[usize]| {
+            let [a, b] = [mesh.nodes[pair[0]], mesh.nodes[pair[1]]];
+            let middle = [0, 1].map(|axis| (a[axis] + b[axis]) / 2.0);
+            let (cell, local) = mesh.locate(middle);
+            (b[0] - a[0]).hypot(b[1] - a[1]) * energy(cell, local)
+        };
+        let around = free
+            .flat_map(|edge| edge.segment.nodes.windows(2))
+            .map(along);
+        around.sum::<f64>() / whole.max(f64::MIN_POSITIVE)
+    }
+}

@@ -1,0 +1,297 @@
+//! The columns of a table of displacements: found by name, lengths with their units, and none of them overlooked.
+//!
+//! A reader names the columns that it takes. Columns that other programs write and that say nothing of the displacement
+//! ([`is_harmless`]) are passed over, and so are those that the user names; any other one is refused, because a column that
+//! nobody reads is a wish that nobody fulfils.
+
+use super::table::plain_text;
+use crate::calibration::Table;
+use crate::error::{Diagnostic, Error, nearest, suggestion};
+use crate::units::{self, Dimension};
+
+use std::path::Path;
+
+/// Names that a column may have.
+pub type Names = &'static [&'static str];
+
+/// A column of lengths and its unit in mm.
+pub type Length = (usize, f64);
+
+/// What is said of units besides the heads of columns.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Units<'a> {
+    /// The length of the unit in mm, or of a pixel.
+    pub given: Option<f64>,
+    /// A unit of heads that the given one corrects.
+    pub corrected: Option<&'a str>,
+    /// Whether lengths are pixels where the head says nothing.
+    pub pixels: bool,
+}
+
+/// Reads a table of displacements.
+///
+/// # Errors
+/// [`Error::Input`] with file, line and reason.
+pub fn read_table(path: &Path) -> Result<Table, Error> {
+    Table::parse(&path.display().to_string(), &plain_text(path)?)
+}
+
+/// A fault of the line that names the columns.
+pub fn refuse(table: &Table, message: String, hint: &str) -> Error {
+    let fault = Diagnostic::error("", message).hint(hint);
+    Error::Input(vec![fault.at(&table.source, table.columns_place.clone())])
+}
+
+/// The first column that has exactly one of the names.
+pub fn plain(table: &Table, names: Names) -> Option<usize> {
+    let of_name = |name: &&str| table.columns.iter().position(|c| c.name == **name);
+    names.iter().find_map(of_name)
+}
+
+/// The first column of one of the names, and its unit: in brackets, or at the end of the name as in `ux_mm`.
+pub fn find(table: &Table, names: Names) -> Option<(usize, Option<String>)> {
+    names.iter().find_map(|name| {
+        let mut columns = table.columns.iter().enumerate();
+        columns.find_map(|(index, column)| match column.name.strip_prefix(name)? {
+            "" => Some((index, column.unit.clone())),
+            rest => {
+                let unit = rest.strip_prefix('_')?;
+                (column.unit.is_none() && (millimetres(unit).is_some() || is_pixel(unit)))
+                    .then(|| (index, Some(unit.to_owned())))
+            }
+        })
+    })
+}
+
+fn is_pixel(unit: &str) -> bool {
+    ["px", "pixel", "pixels"].contains(&unit)
+}
+
+/// The length of a unit in mm.
+fn millimetres(unit: &str) -> Option<f64> {
+    units::parse(&format!("1 {unit}"), Dimension::Length).ok()
+}
+
+/// The unit that the heads of all these columns name, if it is one and the same.
+pub fn common_unit(table: &Table, columns: &[Names]) -> Option<String> {
+    let mut heads = columns.iter().map(|names| find(table, names)?.1);
+    let first = heads.next()??;
+    heads
+        .all(|head| head.as_ref() == Some(&first))
+        .then_some(first)
+        .filter(|unit| !is_pixel(unit))
+}
+
+/// A column of lengths and its unit: that of its head, else the one that was given.
+///
+/// # Errors
+/// [`Error::Input`] where there is no such column, or its unit is unknown.
+pub fn length(table: &Table, names: Names, units: Units) -> Result<Length, Error> {
+    let Some((index, unit)) = find(table, names) else {
+        let found: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
+        let found = match found.iter().all(|name| name.is_empty()) {
+            true => "the columns have no names".to_owned(),
+            false => format!("the file has {}", found.join(", ")),
+        };
+        let message = format!("there is no column `{}`: {found}", names[0]);
+        let hint =
+            "name the columns x [mm], y [mm], ux [mm] and uy [mm], with the unit of your own";
+        return Err(refuse(table, message, hint));
+    };
+    let pixels = unit.as_deref().map_or(units.pixels, is_pixel);
+    let known = unit.as_deref().filter(|_| !pixels);
+    match (known, units.given) {
+        (Some(unit), Some(given)) if units.corrected == Some(unit) => Ok((index, given)),
+        (Some(unit), _) => millimetres(unit).map(|unit| (index, unit)).ok_or_else(|| {
+            let known: Vec<_> = Dimension::Length.units().collect();
+            let hint = suggestion(unit, &known, "known units:");
+            refuse(table, format!("`{unit}` is no unit of length"), &hint)
+        }),
+        (None, Some(unit)) => Ok((index, unit)),
+        (None, None) if pixels => Err(refuse(
+            table,
+            format!("the column `{}` is in pixels", names[0]),
+            "say how long a pixel is, such as --unit \"0.05 mm\"",
+        )),
+        (None, None) => Err(refuse(
+            table,
+            format!("the column `{}` has no unit", names[0]),
+            "write it in brackets, as in x [mm], or give --unit mm",
+        )),
+    }
+}
+
+/// Where a given unit corrects the head of a file, with a word about it.
+pub fn correction(table: &Table, head: Option<&str>, given: Option<f64>) -> Option<Diagnostic> {
+    let (head, given) = (head?, given?);
+    let said = millimetres(head)?;
+    ((given / said - 1.0).abs() > 1e-12).then(|| {
+        let message = format!(
+            "{} says {head}, --unit says {given} mm: the latter is taken",
+            table.source.name
+        );
+        Diagnostic::warning("", message).hint("mend the head of the file")
+    })
+}
+
+/// Results of other programs, and of this one, that say nothing of the displacement: strains (`exx`, `e1`, all names with
+/// `strain`), DICe's figures of its correlation, stretches, rotations and coordinates of other systems, and what a correction
+/// writes beside its markers and nodes.
+pub fn is_harmless(name: &str) -> bool {
+    const NAMES: [&str; 37] = [
+        "exx",
+        "eyy",
+        "exy",
+        "e_xx",
+        "e_yy",
+        "e_xy",
+        "e1",
+        "e2",
+        "gamma",
+        "beta",
+        "sigma",
+        "contrast",
+        "match",
+        "noise_level",
+        "active_pixels",
+        "iterations",
+        "status_flag",
+        "neighbor_id",
+        "condition_number",
+        "uncertainty",
+        "uncertainty_angle",
+        "corr",
+        "correlation",
+        "zncc",
+        "standardised_residual",
+        "trust",
+        "outlier",
+        "residual_x_mm",
+        "residual_y_mm",
+        "ux_standard_error_mm",
+        "uy_standard_error_mm",
+        "reaction_x_n",
+        "reaction_y_n",
+        "multiplier_x_mm2_per_n",
+        "multiplier_y_mm2_per_n",
+        "neighbour_id",
+        "rotation_z",
+    ];
+    const BEGINNINGS: [&str; 7] = [
+        "normal_stretch_",
+        "shear_stretch_",
+        "cross_corr_",
+        "stereo_",
+        "model_",
+        "epi_",
+        "field_value_",
+    ];
+    name.contains("strain")
+        || NAMES.contains(&name)
+        || BEGINNINGS
+            .iter()
+            .any(|beginning| name.starts_with(beginning))
+}
+
+/// Whether the user passes over a column, by its name with or without its unit.
+fn is_ignored(name: &str, ignored: &[String]) -> bool {
+    let plain = |text: &String| text.trim().to_lowercase().replace([' ', '-'], "_");
+    ignored.iter().map(plain).any(|ignored| {
+        let rest = name.strip_prefix(&*ignored);
+        let unit = rest.map(|rest| rest.strip_prefix('_').unwrap_or(rest));
+        rest == Some("") || unit.is_some_and(|unit| is_pixel(unit) || millimetres(unit).is_some())
+    })
+}
+
+/// Whether every column is used, harmless, or to be passed over by the user's wish.
+///
+/// # Errors
+/// [`Error::Input`] with every column that is neither, and the `known` ones.
+pub fn check_all(
+    table: &Table,
+    used: &[usize],
+    known: &[&str],
+    ignored: &[String],
+) -> Result<(), Error> {
+    let unknown = table.columns.iter().enumerate().filter(|(index, column)| {
+        let passed = is_ignored(&column.name, ignored) || is_harmless(&column.name);
+        !used.contains(index) && !passed
+    });
+    let fault = |(_, column): (usize, &crate::calibration::Column)| {
+        let name = &column.name;
+        let twice = known.contains(&&**name);
+        let message = match (name.is_empty(), twice) {
+            (true, _) => "a column has no name".to_owned(),
+            (false, true) => format!("the column `{name}` says what another column says already"),
+            (false, false) => format!("the column `{name}` is not known here"),
+        };
+        let meant = nearest(name, known.iter().copied()).filter(|_| !twice);
+        let meant = meant.map_or(String::new(), |near| format!("did you mean `{near}`? "));
+        let hint = format!(
+            "{meant}known columns: {}; --ignore-columns {name} passes over it",
+            known.join(", ")
+        );
+        Diagnostic::error("", message)
+            .hint(hint)
+            .at(&table.source, table.columns_place.clone())
+    };
+    let faults: Vec<Diagnostic> = unknown.map(fault).collect();
+    match faults.is_empty() {
+        true => Ok(()),
+        false => Err(Error::Input(faults)),
+    }
+}
+
+/// Heights.
+pub const HEIGHT: Names = &["z"];
+/// Displacements out of the plane.
+pub const LIFT: Names = &["uz", "w", "u_z"];
+
+/// The columns out of the plane that are there and not passed over.
+pub fn out_of_plane(table: &Table, ignored: &[String]) -> Vec<usize> {
+    let found = [HEIGHT, LIFT].map(|names| find(table, names).map(|(index, _)| index));
+    let wanted = |index: &usize| !is_ignored(&table.columns[*index].name, ignored);
+    found.into_iter().flatten().filter(wanted).collect()
+}
+
+/// Whether the points stay in a plane: heights differ by less than a hundredth of the field's size, and no displacement out
+/// of the plane is more than a hundredth of the largest one.
+///
+/// # Errors
+/// [`Error::Input`] with how far they leave it.
+pub fn check_flat(
+    table: &Table,
+    places: [usize; 2],
+    displacements: [usize; 2],
+    ignored: &[String],
+) -> Result<(), Error> {
+    const FLAT: f64 = 0.01;
+    let range = |column: usize| {
+        let values = table.rows.iter().map(|(row, _)| row[column]);
+        let finite = values.filter(|value| value.is_finite());
+        finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        })
+    };
+    let span = |column: usize| range(column)[1] - range(column)[0];
+    let largest = |column: usize| range(column)[1].max(-range(column)[0]);
+    let size = places.map(span).into_iter().fold(0.0, f64::max);
+    let motion = displacements.map(largest).into_iter().fold(0.0, f64::max);
+    for column in out_of_plane(table, ignored) {
+        let name = &table.columns[column].name;
+        let [off, most, what] = match find(table, LIFT).is_some_and(|(lift, _)| lift == column) {
+            true => [largest(column) / motion, largest(column), motion],
+            false => [span(column) / size, span(column), size],
+        };
+        if off > FLAT {
+            let message = format!(
+                "the points leave their plane: `{name}` reaches {most:.4} beside {what:.4} in the plane"
+            );
+            let hint = format!(
+                "a sheet is in plane stress and stays flat; --ignore-columns {name} takes the field as if it did"
+            );
+            return Err(refuse(table, message, &hint));
+        }
+    }
+    Ok(())
+}
