@@ -88,11 +88,7 @@ impl Found<'_> {
 
     /// The same edges and law on cells half as large.
     fn refined(&self, mesh: &Mesh, edges: &[Edge]) -> Option<Fine> {
-        let linear = mesh.linear().refined();
-        let fine = match mesh.shape(0).degree() {
-            1 => linear,
-            _ => linear.quadratic(),
-        };
+        let fine = mesh.refined();
         let mut coarse = vec![true; self.field.len()];
         for unknown in self.search.newton.free() {
             coarse[*unknown] = false;
