@@ -132,7 +132,7 @@ fn faults_of_a_specimen_are_told_with_their_place() {
         (
             strip,
             PULLED.replace("group = \"right\"", "group = \"rihgt\""),
-            "the specimen has no group `rihgt` help: did you mean `right`?",
+            "the specimen has no group `rihgt`",
         ),
         (
             strip,
@@ -352,7 +352,7 @@ fn a_fault_points_to_the_entry_that_it_is_about() {
 #[test]
 fn the_end_of_the_springs_is_told_and_the_other_models_complete() {
     let shape = "shape = \"strip\"\nlength = \"40 mm\"\nwidth = \"20 mm\"\ncells = 4";
-    let rest = "[path]\nfactors = [0.25, 1.0]\nmeasured_group = \"left\"\n\
+    let rest = "[path]\nfactors = [0.2, 1.0]\nmeasured_group = \"left\"\n\
         [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
         [[load]]\ngroup = \"right\"\nkind = \"traction\"\ny = \"80 kPa\"\n";
     let study = specimen(shape, rest).replace("pva-10-yeoh", "neo-hooke");

@@ -102,9 +102,8 @@ pub fn json(specimen: &Specimen, models: &Models) -> Value {
     };
     let model = |solved: &Solved| {
         let steps = 0..specimen.factors.len();
-        steps
-            .filter_map(|own| step(solved, own))
-            .collect::<Vec<_>>()
+        let steps: Vec<_> = steps.filter_map(|own| step(solved, own)).collect();
+        json!({ "steps": steps, "balance": solved.balance })
     };
     let named = models.named().into_iter();
     let named = named.map(|(_, key, _, solved)| (key.to_owned(), json!(model(solved))));
