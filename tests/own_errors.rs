@@ -56,8 +56,8 @@ fn plate(card: &str, size: [f64; 2], stretches: &[f64]) -> Problem {
     }
 }
 
-/// Laws, aspects, tension and compression, on meshes with 2, 4 and 8 cells across: the force within a factor of two; of the
-/// displacement, whose order is not yet the final one on so few cells, a fifth at least.
+/// Laws, aspects, tension and compression, on meshes with 2, 4 and 8 cells across: the force within a factor of two; the
+/// displacement, whose order is not yet the final one on so few cells, within three, and not less than it is.
 #[test]
 fn what_the_finite_elements_state_as_their_own_error_is_of_its_size() {
     let long = [150.0, 50.0];
@@ -74,7 +74,7 @@ fn what_the_finite_elements_state_as_their_own_error_is_of_its_size() {
         println!("{card} {size:?} {stretch}: {displacement:.2} {departure:.2} {force:.2}");
         assert!((0.5..2.0).contains(&force), "{card}: {force}");
         for ratio in [displacement, departure] {
-            assert!((0.2..2.0).contains(&ratio), "{card}: {ratio}");
+            assert!((1.0..3.0).contains(&ratio), "{card}: {ratio}");
         }
     }
 }

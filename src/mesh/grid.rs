@@ -197,16 +197,6 @@ impl Mesh {
         }
     }
 
-    /// The mesh of those nodes of a plate that one of twice as many cells has too: all where cells are equal, the
-    /// corners where they are graded.
-    #[must_use]
-    pub fn common_nodes(&self) -> Self {
-        match self.grid() {
-            grid if grid.grading > 1.0 => Self::of_grid(grid, CellShape::Quad4),
-            _ => self.clone(),
-        }
-    }
-
     /// Length and width of a cell of a plate of equal cells in mm.
     pub fn cell_size(&self) -> [f64; 2] {
         let Grid { size, cells, .. } = self.grid();
