@@ -17,7 +17,7 @@ use common::{folder_with, gelbench, words};
 fn study(more: &str) -> String {
     format!(
         "kind = \"specimen\"\ntitle = \"strip\"\n[material]\ncard = \"neo-hooke\"\n\
-         [specimen]\nshape = \"mesh\"\nfile = \"strip.msh\"\nfile_unit = \"1 mm\"\nthickness = \"1 mm\"\n{more}\n\
+         [specimen]\nshape = \"mesh\"\nfile = \"strip.msh\"\nfile_unit = \"mm\"\nthickness = \"1 mm\"\n{more}\n\
          [path]\nfactors = [1.0]\nmeasured_group = \"left\"\n\
          [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
          [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"0.4 mm\"\ny = \"0 mm\"\n\

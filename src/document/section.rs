@@ -245,6 +245,18 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// The size of a unit by its name alone, such as `"mm"`, or as a quantity, such as `"0.05 mm"`.
+    pub fn unit(&self, key: &'static str, dimension: Dimension) -> f64 {
+        let Some(value) = self.value_like(key, dimension.example()) else {
+            return f64::NAN;
+        };
+        let named = match value.get_ref() {
+            DeValue::String(name) => units::parse(&format!("1 {name}"), dimension).ok(),
+            _ => None,
+        };
+        named.unwrap_or_else(|| self.quantity_of(key, value, dimension, Bound::Positive))
+    }
+
     /// A length that may be linear in the place at rest, as text such as `"2 mm + 0.1 * X"`.
     pub fn linear_length(&self, key: &'static str) -> Linear {
         const EXAMPLE: &str = "\"2 mm\" or \"0.1 * X\"";

@@ -74,7 +74,7 @@ pub fn read_outline(
 /// The mesh of a file; nothing where it cannot be used, with the faults recorded.
 fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
     let file = section.text("file");
-    let unit = section.quantity("file_unit", Dimension::Length, Bound::Positive);
+    let unit = section.unit("file_unit", Dimension::Length);
     let merge_nodes = section
         .has("merge_nodes")
         .then(|| section.quantity("merge_nodes", Dimension::Length, Bound::Positive));
