@@ -7,6 +7,7 @@
 //! | 2 | the study, a card or the command line is wrong |
 //! | 3 | a model has no solution that could be found; what the others have is written |
 //! | 4 | a file could not be written |
+//! | 70 | a fault of the program itself |
 
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -23,6 +24,7 @@ use crate::validation::{self, Case, Computed};
 use crate::{output, run};
 
 mod compare;
+mod containment;
 mod correct;
 mod export;
 mod fit_message;
@@ -44,7 +46,7 @@ Samples:
   gelbench materials show pva-10             one card with its moduli and its source
   gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the best as a card
 
-Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write.";
+Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write,\n70 a fault of gelbench itself.";
 
 #[derive(Parser)]
 #[command(version, about, after_help = SAMPLES)]
@@ -128,7 +130,12 @@ pub fn main() -> ExitCode {
             return ExitCode::from(code);
         }
     };
-    let outcome = match arguments.command {
+    ExitCode::from(containment::contained(|| perform(arguments.command)))
+}
+
+/// Performs a command and returns the exit code.
+fn perform(command: Command) -> u8 {
+    let outcome = match command {
         Command::Run { study, output } => run_study(&study, output),
         Command::Check { study } => check(&study),
         Command::Compare(options) => compare::run(options),
@@ -143,13 +150,10 @@ pub fn main() -> ExitCode {
         } => validate(&cases, quick, output),
         Command::Materials { command } => materials::run(command),
     };
-    match outcome {
-        Ok(code) => ExitCode::from(code),
-        Err(error) => {
-            complain(&error);
-            ExitCode::from(error.exit_code())
-        }
-    }
+    outcome.unwrap_or_else(|error| {
+        complain(&error);
+        error.exit_code()
+    })
 }
 
 type Outcome = Result<u8, Error>;

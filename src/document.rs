@@ -22,6 +22,9 @@ pub struct Document<'a> {
     table: DeTable<'a>,
 }
 
+/// Findings that are told of one document.
+const MOST_TOLD: usize = 50;
+
 /// Collects what is found while a document is read.
 #[derive(Debug, Default)]
 pub struct Faults {
@@ -64,6 +67,19 @@ impl Faults {
         let ok = self.none();
         let mut all = self.found.into_inner();
         all.sort_by_key(|fault| fault.place.as_ref().map_or(0, |(_, span)| span.start));
+        if all.len() > MOST_TOLD {
+            let more = all.len() - MOST_TOLD;
+            // Errors are what the author must see.
+            all.sort_by_key(|fault| fault.severity == Severity::Warning);
+            all.truncate(MOST_TOLD);
+            let severity = if ok {
+                Severity::Warning
+            } else {
+                Severity::Error
+            };
+            let rest = Diagnostic::error("", format!("and {more} more findings"));
+            all.push(Diagnostic { severity, ..rest });
+        }
         if ok { Ok(all) } else { Err(Error::Input(all)) }
     }
 }

@@ -370,6 +370,14 @@ mod tests {
     }
 
     #[test]
+    fn of_many_faults_the_first_are_told_and_the_others_counted() {
+        let keys: String = (0..3000).map(|key| format!("k{key} = 1\n")).collect();
+        let told = faults(&format!("[plate]\n{keys}"));
+        assert_eq!(told.len(), 51);
+        assert_eq!(told[50], "and 2950 more findings");
+    }
+
+    #[test]
     fn settings_that_contradict_each_other_are_refused() {
         assert!(faults("[plate]\ncells = [60, 10]\n")[0].contains("take [60, 20]"));
         assert!(faults("[plate]\ncells = [2, 2]\n")[0].contains("take [6, 2]"));

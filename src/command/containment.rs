@@ -1,0 +1,56 @@
+//! A fault of the program itself, told in one message.
+
+use std::any::Any;
+use std::io::Write;
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+
+/// The exit code of a fault of the program itself: `EX_SOFTWARE` of sysexits.
+pub const EXIT_CODE: u8 = 70;
+
+/// Performs work and returns its exit code, or [`EXIT_CODE`] where it panics. What it was writing is taken away by then: files
+/// are written aside first.
+pub fn contained(work: impl FnOnce() -> u8) -> u8 {
+    panic::set_hook(Box::new(tell));
+    panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(EXIT_CODE)
+}
+
+fn tell(fault: &PanicHookInfo) {
+    let place = fault.location();
+    // The reader of VTK's legacy files panics on damaged ones, which is told as an error of the file.
+    if place.is_some_and(|place| place.file().contains("vtkio")) {
+        return;
+    }
+    let place = place.map_or_else(String::new, |place| format!(" ({place})"));
+    let _ = write!(std::io::stderr(), "{}", message(fault.payload(), &place));
+}
+
+fn message(payload: &dyn Any, place: &str) -> String {
+    let texts = [
+        payload.downcast_ref::<&str>().copied(),
+        payload.downcast_ref::<String>().map(String::as_str),
+    ];
+    let what = texts.into_iter().flatten().next().unwrap_or("no reason");
+    format!(
+        "error: gelbench met a fault of its own: {what}{place}\n  \
+         nothing of this run was written; results of earlier runs are as they were\n  \
+         please report it with the command, its input files and the version: gelbench {}\n",
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_of_the_program_says_what_to_send() {
+        let told = message(&"index out of bounds", " (src/mesh.rs:1:2)");
+        assert!(
+            told.contains("index out of bounds (src/mesh.rs:1:2)"),
+            "{told}"
+        );
+        assert!(told.contains("please report"), "{told}");
+        let formatted: Box<dyn Any + Send> = Box::new(format!("cell {}", 3));
+        assert!(message(&*formatted, "").contains("cell 3"));
+    }
+}
