@@ -270,7 +270,7 @@ fn read(name: &str, text: &str, unit: f64) -> Mesh {
 fn shuffled(file: &MeshFile) -> MeshFile {
     let count = file.nodes.len();
     let new = |node: usize| {
-        if node % 2 == 0 {
+        if node.is_multiple_of(2) {
             node / 2
         } else {
             count - 1 - node / 2

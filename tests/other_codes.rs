@@ -117,7 +117,7 @@ fn a_field_of_ones_own_deviates_by_nothing() {
     assert!(deviation(&printed) < 1e-6, "{printed}");
     let report = fs::read_to_string(folder.path().join("compared/report.md")).unwrap();
     assert!(
-        report.contains("| finite elements | 12 × 4 cells | 0.0000 |"),
+        report.contains("| finite elements | 12 × 4 cells, graded by 2 | 0.0000 |"),
         "{report}"
     );
     for file in ["finite_elements.vtu", "mass_spring.vtu", "corrected.vtu"] {
@@ -162,7 +162,7 @@ fn fields_on_meshes_that_are_fine_where_they_must_come_in_again() {
 #[test]
 fn points_of_another_code_are_a_reference() {
     let study = "[plate]\nlength = \"150 mm\"\nwidth = \"50 mm\"\nthickness = \"2 mm\"\ncells = [24, 8]\n[material]\n\
-        card = \"neo-hooke\"\n[load]\nstretches = [\"15 %\", \"50 %\"]\n[finite_element]\ncells = [60, 20]\nelement = \"Q2\"\n";
+        card = \"neo-hooke\"\n[load]\nstretches = [\"15 %\", \"50 %\"]\n[finite_element]\ncells = [60, 20]\nelement = \"Q2\"\ngrading = 1.0\n";
     let folder = folder_with(study);
     let points = common::root().join("validation/plate/displacement_nh_60x20_Q2.csv");
     let points = points.display().to_string();

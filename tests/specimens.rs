@@ -152,7 +152,7 @@ fn faults_of_a_specimen_are_told_with_their_place() {
         (
             "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 7",
             PULLED.into(),
-            "cells must be even",
+            "specimen.cells: must be even",
         ),
         (
             "shape = \"mesh\"\nfile = \"nothing.msh\"\nfile_unit = \"1 mm\"",

@@ -4,6 +4,9 @@
 /// accident of three values, such as a change of sign of the error.
 const HIGHEST_ORDER: f64 = 4.0;
 
+/// The lowest order that is extrapolated with: below, the extrapolation goes farther than the three values do.
+const LOWEST_ORDER: f64 = 0.5;
+
 /// Richardson's extrapolation of a quantity computed with cells of size 4h, 2h and h.
 ///
 /// ```text
@@ -17,7 +20,7 @@ const HIGHEST_ORDER: f64 = 4.0;
 pub struct Richardson {
     /// Observed order p; not a number when the three values do not converge monotonically.
     pub order: f64,
-    /// Extrapolated value f*; that of the finest mesh when the order is not a number.
+    /// Extrapolated value f*; that of the finest mesh when the order is not a number or below ½.
     pub extrapolated: f64,
     /// |fₕ − f*| / |f*| in percent; see [`of_distances`] where the order is not a number or above 4.
     pub error_percent: f64,
@@ -31,9 +34,9 @@ pub fn richardson([coarse, middle, fine]: [f64; 3]) -> Richardson {
         true => (error, order),
         false => (error.max((fine - middle).abs()), f64::NAN),
     };
-    let extrapolated = match order.is_nan() {
-        true => fine,
-        false => fine + (fine - middle) / (order.exp2() - 1.0),
+    let extrapolated = match order >= LOWEST_ORDER {
+        true => fine + (fine - middle) / (order.exp2() - 1.0),
+        false => fine,
     };
     Richardson {
         order,
@@ -79,6 +82,13 @@ mod tests {
             assert!(found.error_percent > 0.003, "{fine}: {found:?}");
         }
         assert_eq!(richardson([2.0; 3]).error_percent, 0.0);
+    }
+
+    #[test]
+    fn a_sequence_that_hardly_converges_is_not_extrapolated_far_away() {
+        let found = richardson([45.8, 45.9, 45.99]);
+        assert_eq!(found.extrapolated, 45.99);
+        assert!(found.error_percent > 0.5, "{found:?}");
     }
 
     #[test]

@@ -150,11 +150,10 @@ fn stress_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
         let gradient = truth.mesh.gradient_at(truth.field(), at, local);
         let kinematics = Kinematics::new(&Gradient::from(gradient)).unwrap();
         let exact: [f64; 4] = law().stress(&kinematics).1.into();
-        for component in 0..4 {
-            let off = (exact[component] - stress.first_piola_kirchhoff_stress[component]).abs();
-            inside += f64::from(u8::from(
-                off <= found.reach * stress.stress_error[component],
-            ));
+        let own = stress.first_piola_kirchhoff_stress.iter();
+        for ((exact, own), error) in exact.iter().zip(own).zip(&stress.stress_error) {
+            let within = (exact - own).abs() <= found.reach * error;
+            inside += f64::from(u8::from(within));
             count += 1.0;
         }
     }

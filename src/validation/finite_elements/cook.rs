@@ -12,6 +12,7 @@ use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
+use crate::output;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
 
 /// Dead shear tractions in MPa: 1/30, 0.4 and 21 times Young's modulus. On a sheet 1 mm thick the last one is 100 N.
@@ -27,11 +28,19 @@ pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
 
 fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
+    let mut rows = Vec::new();
     for traction in TRACTIONS {
-        outcome
-            .checks
-            .extend(compare(coarsest, traction, progress)?);
+        let checks = compare(coarsest, traction, progress, &mut rows)?;
+        outcome.checks.extend(checks);
     }
+    let heads = [1, 2, 4].map(|finer| {
+        let cells = coarsest * finer;
+        format!("deflection, {cells} × {cells} cells [mm]")
+    });
+    let mut head = vec!["traction [MPa]".to_owned(), "element".to_owned()];
+    head.extend(heads);
+    head.extend(["order".to_owned(), "extrapolated [mm]".to_owned()]);
+    outcome.blocks.push(output::Block::Table(head, rows));
     outcome.figures.push(mesh_figure(
         "cook.png",
         "Cook's membrane; the left side is clamped, the right one pushed upward.",
@@ -41,27 +50,39 @@ fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     Ok(outcome)
 }
 
-/// The deflections of all elements under a traction in MPa beside that of Q2.
-fn compare(coarsest: usize, traction: f64, progress: Progress) -> Result<Vec<Check>, Error> {
-    let extrapolated = |shape: CellShape| -> Result<f64, Error> {
+/// The deflections of all elements under a traction in MPa beside that of Q2; a row of the table for each element.
+fn compare(
+    coarsest: usize,
+    traction: f64,
+    progress: Progress,
+    rows: &mut Vec<Vec<String>>,
+) -> Result<Vec<Check>, Error> {
+    let mut extrapolated = |name: &str, shape: CellShape| -> Result<f64, Error> {
+        progress(name);
         let mut values = [0.0; 3];
         for (finer, value) in [1, 2, 4].into_iter().zip(&mut values) {
             *value = deflection(&panel(coarsest * finer, shape), traction)?;
         }
-        Ok(richardson(values).extrapolated)
+        let found = richardson(values);
+        let mut row = vec![traction.to_string(), name.to_owned()];
+        row.extend(values.map(|value| format!("{value:.4}")));
+        row.extend([
+            format!("{:.2}", found.order),
+            format!("{:.4}", found.extrapolated),
+        ]);
+        rows.push(row);
+        Ok(found.extrapolated)
     };
-    progress("Q2");
-    let reference = extrapolated(CellShape::Quad9)?;
+    let reference = extrapolated("Q2", CellShape::Quad9)?;
     let others = CellShape::NAMES.into_iter();
     let others = others.filter(|(_, shape)| *shape != CellShape::Quad9);
     let check = |(name, shape)| {
-        progress(name);
         Ok(Check::new(
             format!("{name}: extrapolated deflection under {traction} MPa"),
             "mm",
             Wanted::Equal(reference, 0.3),
             "Q2, extrapolated from three meshes",
-            extrapolated(shape)?,
+            extrapolated(name, shape)?,
         ))
     };
     others.map(check).collect()
