@@ -74,7 +74,7 @@ enum Command {
     },
     /// Compare the models of a study with a displacement field of another program
     #[command(
-        after_help = "Sample: gelbench compare examples/strip_with_hole.toml strip.frd --factor 0.5"
+        after_help = "Sample: gelbench compare examples/dog_bone.toml dog_bone.frd --factor 0.5"
     )]
     Compare(compare::Options),
     /// Make a measured displacement field satisfy the physics; stresses, forces and their uncertainty follow
@@ -85,7 +85,7 @@ enum Command {
     Correct(Box<correct::Options>),
     /// Write a study as the input file of Abaqus, CalculiX or FEBio
     #[command(
-        after_help = "Sample: gelbench export examples/strip_with_hole.toml --to calculix --output strip.inp"
+        after_help = "Sample: gelbench export examples/dog_bone.toml --to calculix --output dog_bone.inp"
     )]
     Export(export::Options),
     /// Find the functions K(·) and D(·) of a spring and a dashpot from recorded force and motion

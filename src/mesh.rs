@@ -52,6 +52,9 @@ pub struct Mesh {
     boundary: OnceLock<Vec<Vec<usize>>>,
 }
 
+/// The distance that counts as none beside the size of a cell.
+const ROUNDING: f64 = 2e-15;
+
 impl Mesh {
     /// A mesh of cells with their nodes in the order of [`CellShape::reference_nodes`].
     ///
@@ -208,14 +211,27 @@ impl Mesh {
     /// The reference coordinates of a point in a cell, by Newton's method; nothing where it finds none.
     fn local_coordinates(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
         let shape = self.shape(cell);
+        // Relative to a node of the cell, so that a mesh far from the origin loses no digits.
+        let origin = self.nodes[self.cell(cell)[0]];
+        let from_origin = |place: [f64; 2]| [place[0] - origin[0], place[1] - origin[1]];
+        let nodes = self.cell(cell).iter();
+        let places: Vec<[f64; 2]> = nodes.map(|node| from_origin(self.nodes[*node])).collect();
+        let size = places
+            .iter()
+            .flatten()
+            .fold(0.0, |size: f64, x| size.max(x.abs()));
+        let far = origin[0].abs().max(origin[1].abs());
+        let negligible = ROUNDING * size + 2.0 * f64::EPSILON * far;
         let mut local = shape.centre();
-        for _ in 0..30 {
+        for _ in 0..60 {
             let values = shape.values(local);
-            let mut miss = point;
-            for (node, value) in self.cell(cell).iter().zip(&values) {
-                for (axis, miss) in miss.iter_mut().enumerate() {
-                    *miss -= value * self.nodes[*node][axis];
-                }
+            let mut miss = from_origin(point);
+            for (place, value) in places.iter().zip(&values) {
+                miss = [miss[0] - value * place[0], miss[1] - value * place[1]];
+            }
+            // Where the Jacobian vanishes, as at the outer sides of cells graded by two, steps do not become short.
+            if miss[0].abs().max(miss[1].abs()) <= negligible {
+                return Some(local);
             }
             let map = self.map(cell, &shape.derivatives(local));
             let jacobian = determinant(&map);
@@ -338,6 +354,31 @@ fn determinant(map: &[[f64; 2]; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Nodes of a graded plate's mesh are found in it, wherever it lies, when it is a mesh of any cells.
+    #[test]
+    fn nodes_of_graded_cells_are_found_far_from_the_origin() {
+        for (grading, far) in [(1.0, 0.0), (2.0, 0.0), (2.0, 1e3), (3.0, 1e3), (1.0, 1e5)] {
+            let grid = Grid {
+                size: [50.0, 150.0],
+                cells: [8, 20],
+                grading,
+            };
+            let plate = Mesh::of_grid(grid, CellShape::Quad9);
+            let nodes = plate
+                .nodes
+                .iter()
+                .map(|[x, y]| [x + far, y - far])
+                .collect();
+            let cells =
+                (0..plate.cell_count()).map(|cell| (CellShape::Quad9, plate.cell(cell).to_vec()));
+            let mesh = Mesh::new(nodes, cells);
+            for node in &mesh.nodes {
+                let outside = mesh.outside(*node);
+                assert!(outside < 1e-5, "{grading} {far} {node:?}: {outside}");
+            }
+        }
+    }
 
     #[test]
     fn quadratic_fields_are_interpolated_exactly_by_nine_nodes() {
