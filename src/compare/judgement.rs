@@ -76,8 +76,10 @@ pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgem
     }
     let reason = match own_error.is_finite() {
         true => format!(
-            "the reference is too coarse: its own error, {own_error:.2e} %, is more than a tenth of the deviation, \
-             {deviation:.2e} %"
+            "the reference is too coarse: its own error, {} %, is more than a tenth of the deviation, \
+             {} %",
+            percent(own_error),
+            percent(deviation)
         ),
         false => "the reference's own error is not known".to_owned(),
     };
@@ -104,6 +106,15 @@ pub fn judge_correction(
     match judge(after, own_error, f64::INFINITY, remedy) {
         Judgement::Pass if 100.0 * after / before > limit => Judgement::Fail,
         judged => judged,
+    }
+}
+
+/// A deviation in % as a sentence shows it.
+fn percent(value: f64) -> String {
+    if value.abs() < 1e-3 {
+        format!("{value:.1e}")
+    } else {
+        format!("{value:.3}")
     }
 }
 
