@@ -195,7 +195,7 @@ pub const CASES: &[Case] = &[
         kind: "cook",
         study: include_str!("../validation/cases/cook.toml"),
         file: "validation/cases/cook.toml",
-        slow: false,
+        slow: true,
         prepare: finite_elements::cook::prepare,
     },
     Case {
