@@ -15,8 +15,10 @@ use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::output;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
 
-/// Dead shear tractions in MPa: 1/30, 0.4 and 21 times Young's modulus. On a sheet 1 mm thick the last one is 100 N.
-const TRACTIONS: [f64; 3] = [0.01, 0.125, 6.25];
+/// Dead shear tractions in MPa: 1/30, 0.4 and 21 times Young's modulus, and the agreement that is wanted in %. On a sheet 1 mm
+/// thick the last one is 100 N. Under the second one most of the sheet is compressed, the more so the finer the mesh is at the
+/// clamp's corner: the orders of the elements scatter from 0 to 1.2 there, and what they tend to is known less exactly.
+const TRACTIONS: [(f64, f64); 3] = [(0.01, 0.3), (0.125, 0.5), (6.25, 0.3)];
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
@@ -29,8 +31,8 @@ pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
 fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     let mut rows = Vec::new();
-    for traction in TRACTIONS {
-        let checks = compare(coarsest, traction, progress, &mut rows)?;
+    for (traction, tolerance) in TRACTIONS {
+        let checks = compare(coarsest, (traction, tolerance), progress, &mut rows)?;
         outcome.checks.extend(checks);
     }
     let heads = [1, 2, 4].map(|finer| {
@@ -50,10 +52,10 @@ fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     Ok(outcome)
 }
 
-/// The deflections of all elements under a traction in MPa beside that of Q2; a row of the table for each element.
+/// The deflections of all elements under a traction in MPa beside that of Q2, with the agreement wanted in %; a row of the table for each element.
 fn compare(
     coarsest: usize,
-    traction: f64,
+    (traction, tolerance): (f64, f64),
     progress: Progress,
     rows: &mut Vec<Vec<String>>,
 ) -> Result<Vec<Check>, Error> {
@@ -80,7 +82,7 @@ fn compare(
         Ok(Check::new(
             format!("{name}: extrapolated deflection under {traction} MPa"),
             "mm",
-            Wanted::Equal(reference, 0.3),
+            Wanted::Equal(reference, tolerance),
             "Q2, extrapolated from three meshes",
             extrapolated(name, shape)?,
         ))
