@@ -33,7 +33,7 @@ pub enum Weighting {
     /// All differences of stress count alike.
     Absolute,
     /// All relative differences count alike: a residual is divided by the measured stress, but by no less than
-    /// [`SMALLEST_SHARE`] of the largest one of its test, so that a stress near zero does not outweigh all others.
+    /// a hundredth of the largest one of its test, so that a stress near zero does not outweigh all others.
     Relative,
 }
 

@@ -22,7 +22,7 @@ pub enum Start {
     SpringsWithAreaTerm,
     /// Springs at the first of so many equal load steps.
     LoadSteps(usize),
-    /// The affine stretch, contracted across away from the grips: see [`contracted_stretch`].
+    /// The affine stretch, contracted across away from the grips.
     ContractedStretch,
     /// Newton's method with a sparse factor along a path of load steps.
     LoadPath,
