@@ -373,9 +373,11 @@ mod tests {
             let cells =
                 (0..plate.cell_count()).map(|cell| (CellShape::Quad9, plate.cell(cell).to_vec()));
             let mesh = Mesh::new(nodes, cells);
-            for node in &mesh.nodes {
-                let outside = mesh.outside(*node);
-                assert!(outside < 1e-5, "{grading} {far} {node:?}: {outside}");
+            // The map of the cells at the sides is singular there where they are graded by two.
+            let on_top = (0..=37).map(|k| [50.0 * f64::from(k) / 37.0 + far, 150.0 - far]);
+            for place in mesh.nodes.iter().copied().chain(on_top) {
+                let outside = mesh.outside(place);
+                assert!(outside < 1e-5, "{grading} {far} {place:?}: {outside}");
             }
         }
     }
