@@ -135,7 +135,7 @@ impl Results {
         let own = self.comparison[step].reference?.force;
         let doubted = self
             .recovered_force_percent(step)
-            .filter(|_| own.order.is_nan());
+            .filter(|_| own.order.is_none());
         Some(doubted.map_or(own.error_percent, |recovered| {
             own.error_percent.max(recovered)
         }))

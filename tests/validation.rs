@@ -50,6 +50,7 @@ fn compare(arguments: &[&str]) -> usize {
     let found = read(&folder.path().join("REPORT.md"));
     let found = lines(&found);
     for line in &found {
+        assert!(!line.contains("NaN"), "not a number in the report: {line}");
         let said = committed.iter().any(|committed| agree(line, committed));
         assert!(said, "the committed report does not say: {line}");
     }

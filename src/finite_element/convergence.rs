@@ -18,11 +18,11 @@ const LOWEST_ORDER: f64 = 0.5;
 /// P. J. Roache, Annu. Rev. Fluid Mech. 29, 123 (1997), doi:10.1146/annurev.fluid.29.1.123
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Richardson {
-    /// Observed order p; not a number when the three values do not converge monotonically.
-    pub order: f64,
-    /// Extrapolated value f*; that of the finest mesh when the order is not a number or below ½.
+    /// Observed order p; `None` where the three values do not converge monotonically.
+    pub order: Option<f64>,
+    /// Extrapolated value f*; that of the finest mesh where there is no order or one below ½.
     pub extrapolated: f64,
-    /// |fₕ − f*| / |f*| in percent; see [`of_distances`] where the order is not a number or above 4.
+    /// |fₕ − f*| / |f*| in percent; see [`of_distances`] where there is no order or one above 4.
     pub error_percent: f64,
 }
 
@@ -32,12 +32,10 @@ pub fn richardson([coarse, middle, fine]: [f64; 3]) -> Richardson {
     let monotone = (coarse - middle) * (middle - fine) > 0.0;
     let (error, order) = match monotone {
         true => (error, order),
-        false => (error.max((fine - middle).abs()), f64::NAN),
+        false => (error.max((fine - middle).abs()), None),
     };
-    let extrapolated = match order >= LOWEST_ORDER {
-        true => fine + (fine - middle) / (order.exp2() - 1.0),
-        false => fine,
-    };
+    let believed = order.filter(|order| *order >= LOWEST_ORDER);
+    let extrapolated = believed.map_or(fine, |order| fine + (fine - middle) / (order.exp2() - 1.0));
     Richardson {
         order,
         extrapolated,
@@ -51,13 +49,13 @@ pub fn richardson([coarse, middle, fine]: [f64; 3]) -> Richardson {
 /// e = |f₂ₕ − fₕ| / (2ᵖ − 1),   |f₂ₕ − fₕ| where p is no positive number, and |f₄ₕ − f₂ₕ| / (2⁴ (2⁴ − 1)) at least:
 /// no order above 4 is believed
 /// ```
-pub fn of_distances(before: f64, last: f64) -> (f64, f64) {
+pub fn of_distances(before: f64, last: f64) -> (f64, Option<f64>) {
     let ratio = before / last;
     let highest = HIGHEST_ORDER.exp2();
     let least = before / (highest * (highest - 1.0));
     match ratio > 1.0 && ratio.is_finite() {
-        true => ((last / (ratio - 1.0)).max(least), ratio.log2()),
-        false => (last.max(least), f64::NAN),
+        true => ((last / (ratio - 1.0)).max(least), Some(ratio.log2())),
+        false => (last.max(least), None),
     }
 }
 
@@ -69,7 +67,7 @@ mod tests {
     fn a_power_law_is_extrapolated_exactly() {
         let value = |h: f64| 3.0 + 0.2 * h.powf(1.7);
         let found = richardson([value(4.0), value(2.0), value(1.0)]);
-        assert!((found.order - 1.7).abs() < 1e-12);
+        assert!((found.order.unwrap() - 1.7).abs() < 1e-12);
         assert!((found.extrapolated - 3.0).abs() < 1e-12);
         assert!((found.error_percent - 20.0 / 3.0).abs() < 1e-10);
     }
@@ -94,11 +92,11 @@ mod tests {
     #[test]
     fn a_sequence_that_does_not_converge_gets_no_order() {
         let found = richardson([1.0, 1.1, 1.0]);
-        assert!(found.order.is_nan());
+        assert_eq!(found.order, None);
         assert_eq!(found.extrapolated, 1.0);
         // The last difference is all that is known of its error.
         assert!((found.error_percent - 10.0).abs() < 1e-12);
         let apart = richardson([1.0, 1.1, 1.3]);
-        assert!(apart.order.is_nan() && apart.extrapolated == 1.3);
+        assert!(apart.order.is_none() && apart.extrapolated == 1.3);
     }
 }

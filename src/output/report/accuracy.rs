@@ -65,7 +65,7 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
     let quantity = |value: Option<Richardson>| {
         [
             figure(value.map(|value| value.extrapolated), 5),
-            figure(value.map(|value| value.order), 2),
+            figure(value.and_then(|value| value.order), 2),
             figure(value.map(|value| value.error_percent), 6),
         ]
     };
@@ -76,7 +76,7 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
         cells.extend(quantity(own.map(|own| own.force)));
         cells.extend(quantity(own.map(|own| own.width)));
         cells.extend([
-            figure(own.map(|own| own.displacement_order), 2),
+            figure(own.and_then(|own| own.displacement_order), 2),
             figure(own.map(|own| own.displacement_percent), 6),
             figure(own.map(|own| own.departure_percent), 6),
             figure(energy.map(|estimate| estimate.energy.percent()), 4),

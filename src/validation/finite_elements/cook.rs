@@ -69,7 +69,9 @@ fn compare(
         let mut row = vec![traction.to_string(), name.to_owned()];
         row.extend(values.map(|value| format!("{value:.4}")));
         row.extend([
-            format!("{:.2}", found.order),
+            found
+                .order
+                .map_or("none".to_owned(), |order| format!("{order:.2}")),
             format!("{:.4}", found.extrapolated),
         ]);
         rows.push(row);

@@ -208,7 +208,7 @@ fn graded_plates(
             "–",
             wanted,
             source,
-            force(plates).order,
+            force(plates).order.unwrap_or(f64::NAN),
         ));
     }
     outcome.blocks.extend(table(&series, exact));
