@@ -23,7 +23,7 @@ use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
 use gelbench::material::Card;
 use gelbench::mesh::Side;
-use gelbench::problem::{Model, Problem};
+use gelbench::problem::plate::{Model, Problem};
 use gelbench::solve::NewtonSettings;
 
 /// SOFA's time of an implicit step over its nodes, in ms.

@@ -17,11 +17,14 @@ use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::error::{Diagnostic, Error};
+use crate::output;
 use crate::output::ResultFolder;
-use crate::problem::Problem;
-use crate::study::{self, DEFAULT, Study};
-use crate::validation::{self, Case, Computed};
-use crate::{output, run};
+use crate::problem::plate::Problem;
+use crate::results::Computed;
+use crate::studies::Kind;
+use crate::studies::plate::study::{self, DEFAULT, Study};
+use crate::studies::plate::{self, run};
+use crate::validation;
 
 mod compare;
 mod containment;
@@ -177,10 +180,10 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
     bar.finish_and_clear();
     let results = results?;
 
-    output::write(&study, &results, &mut results_folder)?;
+    plate::write(&study, &results, &mut results_folder)?;
     let files = results_folder.finish()?;
     let requirements = results.requirements(&study);
-    let warnings = output::warnings(&study, &results).into_iter();
+    let warnings = plate::warnings(&study, &results).into_iter();
     let warnings: String = warnings.map(|warning| warning + "\n").collect();
     print(&format!(
         "{}{warnings}\n{} files in {}\n",
@@ -197,7 +200,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
 }
 
 /// Computes a study of one of the validation cases.
-fn run_case(case: &Case, path: &Path, text: &str, folder: Option<PathBuf>) -> Outcome {
+fn run_case(case: &Kind, path: &Path, text: &str, folder: Option<PathBuf>) -> Outcome {
     let ready = case.read(path, text)?;
     warn(&ready.warnings);
     let stem = path.file_stem().map_or_else(PathBuf::new, PathBuf::from);
@@ -245,7 +248,7 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
             bar.tick();
         };
         told("begins");
-        cases.push(case.compute_or_fail(&told)?);
+        cases.push(validation::compute_or_fail(case, &told)?);
         bar.inc(1);
     }
     bar.finish_and_clear();

@@ -21,7 +21,7 @@ use crate::finite_element::FiniteElements;
 use crate::finite_element::convergence::{Richardson, of_distances, richardson};
 use crate::material::sheet::Kinematics;
 use crate::mesh::Mesh;
-use crate::problem::{Problem, Solution};
+use crate::problem::plate::{Problem, Solution};
 
 pub mod imported;
 pub mod judgement;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use crate::error::Error;
 use crate::mesh::{CellShape, Grid, Mesh};
-use crate::problem::{Model, Problem, Solution};
-use crate::sheet_energy::SheetEnergy;
+use crate::problem::plate::{Model, Problem, Solution};
+use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::NewtonSettings;
 
 use error_estimate::{ErrorEstimate, Solved};

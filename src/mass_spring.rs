@@ -26,7 +26,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::{Model, Problem, Solution};
+use crate::problem::plate::{Model, Problem, Solution};
 use crate::solve::{Inadmissible, Local, NewtonSettings, Potential};
 
 /// One spring.

@@ -4,63 +4,29 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::results::Results;
-use crate::study::Study;
+use crate::results::{Block, Figure};
 
+pub mod export;
 mod figures;
 mod fit;
 mod folder;
-pub mod hand_over;
 mod html;
 mod identification;
-mod json;
 mod markdown;
 mod material;
-pub mod measured;
 pub mod picture;
-mod report;
 pub mod series;
 pub mod vtk;
-mod warnings;
 pub mod wrinkling;
 
 pub use figures::{
-    Field, Figure, cell_figure, comparison_chart, field_animation, field_figure, material_chart,
-    mesh_picture,
+    Field, cell_figure, cells, comparison_chart, deformed, field_animation, field_figure,
+    material_chart, mesh_picture,
 };
 pub use fit::{fit_json, fit_picture};
 pub use folder::{ResultFolder, refuse_inputs};
 pub use identification::{identification_json, identification_picture};
 pub use material::material_json;
-pub use report::{Block, material_statement};
-pub use warnings::warnings;
-
-/// Writes everything a study asks for into its folder.
-///
-/// # Errors
-/// [`Error::Write`] with the file that could not be written.
-pub fn write(study: &Study, results: &Results, folder: &mut ResultFolder) -> Result<(), Error> {
-    if study.output.vtk {
-        for (name, bytes) in vtk::files(study, results) {
-            folder.add(&format!("vtk/{name}"), &bytes)?;
-        }
-    }
-    if study.output.report {
-        let json = json::json(study, results);
-        folder.add("report.json", format!("{json:#}\n").as_bytes())?;
-    }
-    let figures = if study.output.plots {
-        figures::figures(study, results)
-    } else {
-        Vec::new()
-    };
-    write_pictures(folder, &figures)?;
-    if study.output.report {
-        let blocks = report::report(study, results, &figures);
-        write_document(folder, "report", &blocks, &figures)?;
-    }
-    Ok(())
-}
 
 /// Writes pictures into a folder.
 ///

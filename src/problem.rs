@@ -1,227 +1,250 @@
-//! The mechanical problem: a sheet, its material, how it is held and how far it is stretched.
+//! The boundary value problem of a sheet of any shape: supports and loads on the named groups of its mesh.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
-use crate::error::Error;
+use crate::error::Diagnostic;
 use crate::material::HyperelasticLaw;
-use crate::mesh::{Mesh, Side};
-use crate::solve::{Convergence, Loading, NewtonSettings, Potential, State, follow, influence};
+use crate::mesh::{Group, Mesh};
+use crate::problem::sheet_energy::SheetEnergy;
+use crate::solve::Potential;
+use crate::units::Linear;
 
-/// A rectangular plate between two rigid grips that clamp its short sides.
-///
-/// The left grip rests, the right one moves along X; the long sides are free. Free of any
-/// discretisation: every model meshes it for itself.
+mod balance;
+mod contradictions;
+mod discretised;
+mod groups;
+mod loads;
+pub mod plate;
+mod pressure;
+mod rigid;
+pub mod sheet_energy;
+mod supports;
+mod ties;
+
+pub use balance::{Balance, Resultant};
+pub use discretised::Discretised;
+
+use contradictions::contradictions;
+use loads::Loaded;
+use rigid::free_motions;
+use supports::Supported;
+
+/// What holds a group; everything grows with the load factor and is complete at 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Support {
+    /// Displacements ux, uy in mm; one that is not given is free. Both zero: a clamp; one zero: a roller or
+    /// an axis of symmetry.
+    Displacement([Option<f64>; 2]),
+    /// Displacements ux, uy in mm that are linear in the place at rest; one that is not given is free.
+    LinearDisplacement([Option<Linear>; 2]),
+    /// A displacement in mm along the line from a point in mm through the place at rest, away from the point; none
+    /// across it.
+    Radial {
+        /// The point.
+        centre: [f64; 2],
+        /// The displacement away from it.
+        displacement: f64,
+    },
+    /// Free to slide along the straight line on which the group lies, parallel to an axis: a roller, or an axis of
+    /// symmetry.
+    Roller,
+    /// A rigid turn about a point in mm by an angle in rad, counter-clockwise.
+    Rotation {
+        /// The point.
+        centre: [f64; 2],
+        /// The angle.
+        angle: f64,
+    },
+    /// A rigid grip that does not turn: all nodes have the same displacement along each axis.
+    Grip([Drive; 2]),
+}
+
+/// What moves a rigid grip along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// A displacement in mm.
+    Displacement(f64),
+    /// A total force in N of constant direction (dead).
+    Force(f64),
+}
+
+/// What loads a group; everything grows with the load factor and is complete at 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Load {
+    /// A traction in MPa on the reference area of the group's edges, of constant direction (dead).
+    Traction([f64; 2]),
+    /// A pressure in MPa on the group's edges that follows them: p t times the deformed length, t the thickness
+    /// at rest, against the outward normal. The forces are p t ∫ Nₐ n ds over the deformed edges at every node. Edges may
+    /// end anywhere.
+    ///
+    /// A fluid presses on the deformed thickness λ₃ t: its pressure q is p = λ₃ q here, less than q where
+    /// the edge is stretched.
+    Pressure(f64),
+    /// A force in N, shared equally by the group's nodes.
+    Force([f64; 2]),
+}
+
+/// A sheet between its supports under its loads.
 #[derive(Clone, Debug)]
-pub struct Problem {
-    /// Length between the grips and width in mm.
-    pub size: [f64; 2],
+pub struct BoundaryProblem {
     /// Thickness in mm.
     pub thickness: f64,
     /// The material.
     pub law: Arc<dyn HyperelasticLaw>,
-    /// Grip displacements divided by the length, all of one sign, from small to large: 0.5 is a stretch to 150 %, −0.1 a
-    /// compression to 90 %.
-    pub stretches: Vec<f64>,
+    /// Supports by group; those that share nodes must agree there.
+    pub supports: Vec<(String, Support)>,
+    /// Loads by group.
+    pub loads: Vec<(String, Load)>,
 }
 
-/// A discretised plate, as the solver sees it.
-pub struct Model<'a> {
-    /// The model's name for messages, such as `mass-spring (60 × 20 cells)`.
-    pub name: String,
-    /// Its mesh.
-    pub mesh: &'a Mesh,
-    /// Its strain energy.
-    pub potential: &'a dyn Potential,
-    /// Names an element of the potential with its place, for messages.
-    pub describe: Box<dyn Fn(usize) -> String + Sync + 'a>,
-}
-
-/// A model's equilibrium at one stretch.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
-    /// Grip displacement divided by the length.
-    pub stretch: f64,
-    /// ux, uy of node after node in mm.
-    pub displacement: Vec<f64>,
-    /// Residual ∂Π/∂u in N: reactions at held unknowns.
-    pub residual: Vec<f64>,
-    /// Force on the moving grip in N.
-    pub force: f64,
-    /// Strain energy in mJ.
-    pub energy: f64,
-    /// Width at mid length in mm.
-    pub mid_width: f64,
-    /// Equilibria on the way from the stretch before, this one included; 1 when it was reached in one go.
-    pub load_steps: usize,
-    /// How the last of them was reached.
-    pub convergence: Convergence,
-}
-
-/// A model of the plate between its grips; the load factor is the stretch.
-struct PlateLoading<'a> {
-    problem: &'a Problem,
-    model: &'a Model<'a>,
-}
-
-impl Loading for PlateLoading<'_> {
-    fn held(&self) -> Vec<bool> {
-        self.problem.held(self.model.mesh)
+impl BoundaryProblem {
+    /// The finite-element energy of a mesh.
+    pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
+        SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
     }
 
-    fn impose(&self, stretch: f64, displacement: &mut [f64]) {
-        let mesh = self.model.mesh;
-        for node in 0..mesh.nodes.len() {
-            if let Some(held) = self.problem.grip_displacement(mesh, node, stretch) {
-                displacement[2 * node..2 * node + 2].copy_from_slice(&held);
-            }
-        }
-    }
-
-    fn potential(&self, _: f64) -> Box<dyn Potential + '_> {
-        Box::new(self.model.potential)
-    }
-
-    /// The state before, scaled with the grips' motion, or the affine stretch.
-    fn guess(&self, stretch: f64, previous: Option<&State>) -> Option<Vec<f64>> {
-        Some(match previous {
-            Some(previous) => {
-                let ratio = stretch / previous.factor;
-                previous.displacement.iter().map(|u| ratio * u).collect()
-            }
-            None => self.problem.affine(self.model.mesh, stretch),
-        })
-    }
-
-    fn describe(&self, element: usize) -> String {
-        (self.model.describe)(element)
-    }
-
-    fn describe_unknown(&self, unknown: usize) -> String {
-        self.model.mesh.describe_unknown(unknown)
-    }
-}
-
-impl Problem {
-    /// Marks the unknowns of `mesh` that the grips hold.
-    pub fn held(&self, mesh: &Mesh) -> Vec<bool> {
-        (0..2 * mesh.nodes.len())
-            .map(|unknown| mesh.on_grip(unknown / 2))
-            .collect()
-    }
-
-    /// The displacement that the grips impose on a node, if they hold it.
-    pub fn grip_displacement(&self, mesh: &Mesh, node: usize, stretch: f64) -> Option<[f64; 2]> {
-        if mesh.on(Side::Left, node) {
-            Some([0.0, 0.0])
-        } else {
-            mesh.on(Side::Right, node)
-                .then_some([stretch * self.size[0], 0.0])
-        }
-    }
-
-    /// The affine stretch: ux = stretch · X, uy = 0.
-    pub fn affine(&self, mesh: &Mesh, stretch: f64) -> Vec<f64> {
-        mesh.nodes
-            .iter()
-            .flat_map(|[x, _]| [stretch * x, 0.0])
-            .collect()
-    }
-
-    /// Force on the moving grip: the sum of its reactions along X, in N.
-    pub fn grip_force(&self, mesh: &Mesh, residual: &[f64]) -> f64 {
-        let on_right = (0..mesh.nodes.len()).filter(|node| mesh.on(Side::Right, *node));
-        on_right.map(|node| residual[2 * node]).sum()
-    }
-
-    /// Solves all stretches, one after the other, with any model of the plate. A stretch that cannot be
-    /// reached from the one before in one go is approached by halves.
+    /// Everything that keeps the problem from being solved on a mesh: supports and loads on groups that it does not have or
+    /// that cannot carry them, supports that contradict each other, parts that can move without strain.
     ///
     /// # Errors
-    /// [`Error::Solve`] with the stretch at which no solution was found.
-    pub fn follow(
-        &self,
-        model: &Model,
-        settings: NewtonSettings,
-        progress: &dyn Fn(f64),
-    ) -> Result<Vec<Solution>, Error> {
-        match self.follow_as_far(model, settings, progress) {
-            (solutions, None) => Ok(solutions),
-            (_, Some(end)) => Err(end),
+    /// All faults, each with its place and a remedy.
+    pub fn check(&self, mesh: &Mesh) -> Result<(), Vec<Diagnostic>> {
+        let supports = (0..self.supports.len()).map(|n| self.supported(mesh, n..n + 1).err());
+        let unknowns = 2 * mesh.nodes.len();
+        let loads = self.loads.iter().map(|(name, load)| {
+            let mut loaded = Loaded::new(unknowns);
+            self.load(mesh, name, load, &mut loaded).err()
+        });
+        let mut faults: Vec<Diagnostic> = supports.chain(loads).flatten().collect();
+        if faults.is_empty() {
+            faults = contradictions(self, mesh).unwrap_or_else(|fault| vec![fault]);
+        }
+        if faults.is_empty() {
+            let supported = self.supported(mesh, 0..self.supports.len());
+            faults = supported.map_or_else(|fault| vec![fault], |all| free_motions(mesh, &all));
+        }
+        match faults.is_empty() {
+            true => Ok(()),
+            false => Err(faults),
         }
     }
 
-    /// The same as far as there are solutions: those that were found, and why there are no more of them.
-    pub fn follow_as_far(
-        &self,
-        model: &Model,
-        settings: NewtonSettings,
-        progress: &dyn Fn(f64),
-    ) -> (Vec<Solution>, Option<Error>) {
-        let plate = PlateLoading {
-            problem: self,
-            model,
-        };
-        let (states, end) = match follow(&plate, &self.stretches, settings, progress) {
-            Ok(states) => (states, None),
-            Err(end) => {
-                let error = Error::Solve {
-                    model: model.name.clone(),
-                    step: format!(
-                        "{} (reached {} %)",
-                        Problem::describe_step(end.factor),
-                        Self::percent(end.reached())
-                    ),
-                    fault: end.fault,
-                };
-                (end.states, Some(error))
-            }
-        };
-        let solutions = states.into_iter();
-        let solutions = solutions.map(|state| self.solution(model.mesh, state));
-        (solutions.collect(), end)
-    }
-
-    /// The field in mm/mm that a motion of the right grip along X brings about, by the tangent at a solution.
+    /// The unknowns of a mesh that are held, each with the number of the support that holds it: the first one of
+    /// several, which agree.
     ///
     /// # Errors
-    /// [`Error::Solve`] when the tangent cannot be factorised.
-    pub fn influence(&self, model: &Model, solution: &Solution) -> Result<Vec<f64>, Error> {
-        let plate = PlateLoading {
-            problem: self,
-            model,
-        };
-        let nodes = 0..model.mesh.nodes.len();
-        let moves = |node| [f64::from(u8::from(model.mesh.on(Side::Right, node))), 0.0];
-        let motion: Vec<f64> = nodes.flat_map(moves).collect();
-        let state = (solution.stretch, &*solution.displacement);
-        influence(&plate, state, &motion).map_err(|fault| Error::Solve {
-            model: model.name.clone(),
-            step: Problem::describe_step(solution.stretch),
-            fault,
-        })
+    /// A [`Diagnostic`] when a support names no group of the mesh, or when supports contradict each other.
+    pub fn held_by(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+        self.all_supported(mesh)?;
+        let mut by = BTreeMap::new();
+        for number in (0..self.supports.len()).rev() {
+            let own = self.supported(mesh, number..number + 1)?;
+            by.extend(own.held.into_keys().map(|unknown| (unknown, number)));
+        }
+        Ok(by)
     }
 
-    fn solution(&self, mesh: &Mesh, state: State) -> Solution {
-        Solution {
-            stretch: state.factor,
-            force: self.grip_force(mesh, &state.residual),
-            energy: state.convergence.energy,
-            mid_width: mesh.mid_width(&state.displacement),
-            displacement: state.displacement,
-            residual: state.residual,
-            load_steps: state.load_steps,
-            convergence: state.convergence,
+    /// The unknowns of a mesh that follow others, each with the one that it follows: those of grips with a given force.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support names no group of the mesh, when a group cannot be held so, or when supports contradict
+    /// each other.
+    pub fn ties(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+        Ok(self.all_supported(mesh)?.ties)
+    }
+
+    /// What all supports do to the unknowns of a mesh, once they agree.
+    fn all_supported(&self, mesh: &Mesh) -> Result<Supported, Diagnostic> {
+        match contradictions(self, mesh)?.into_iter().next() {
+            Some(fault) => Err(fault),
+            None => self.supported(mesh, 0..self.supports.len()),
         }
     }
 
-    /// `50 % stretch`, for messages.
-    pub fn describe_step(stretch: f64) -> String {
-        format!("{} % stretch", Self::percent(stretch))
+    /// Adds a load on a group of a mesh.
+    fn load(
+        &self,
+        mesh: &Mesh,
+        name: &str,
+        load: &Load,
+        loaded: &mut Loaded,
+    ) -> Result<(), Diagnostic> {
+        let group = group("load", mesh, name)?;
+        let added = loaded.add(mesh, group, load, self.thickness);
+        added.map_err(|reason| refused("load", name, &reason))
     }
 
-    /// A ratio in percent, as short as it can be written.
-    pub fn percent(ratio: f64) -> String {
-        let text = format!("{:.4}", 100.0 * ratio);
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    /// What some of the supports do to the unknowns of a mesh.
+    fn supported(&self, mesh: &Mesh, which: Range<usize>) -> Result<Supported, Diagnostic> {
+        let mut supported = Supported::default();
+        for (name, support) in &self.supports[which] {
+            let added = supported.add(mesh, group("support", mesh, name)?, support);
+            added.map_err(|reason| refused("support", name, &reason))?;
+        }
+        Ok(supported)
+    }
+
+    /// The dead forces on the unknowns of a mesh in N at load factor 1: all loads but pressures, and the forces of grips.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a load names no group of the mesh, or when a group cannot carry it.
+    pub fn dead_forces(&self, mesh: &Mesh) -> Result<Vec<f64>, Diagnostic> {
+        let mut sum = vec![0.0; 2 * mesh.nodes.len()];
+        for (name, load) in &self.loads {
+            let forces = loads::dead_forces(mesh, group("load", mesh, name)?, load, self.thickness)
+                .map_err(|reason| refused("load", name, &reason))?;
+            for (sum, force) in sum.iter_mut().zip(forces) {
+                *sum += force;
+            }
+        }
+        let supported = self.all_supported(mesh)?;
+        for (unknown, force) in supported.forces {
+            sum[unknown] += force;
+        }
+        Ok(sum)
+    }
+
+    /// The problem on the nodes of a mesh with an energy of them.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support or a load names no group of the mesh, or when a group cannot carry it.
+    pub fn on<'a>(
+        &self,
+        mesh: &'a Mesh,
+        energy: &'a dyn Potential,
+    ) -> Result<Discretised<'a>, Diagnostic> {
+        let supported = self.all_supported(mesh)?;
+        let mut loaded = Loaded::new(2 * mesh.nodes.len());
+        for (name, load) in &self.loads {
+            self.load(mesh, name, load, &mut loaded)?;
+        }
+        loaded.close(&supported);
+        Ok(Discretised {
+            mesh,
+            energy,
+            supported,
+            loaded,
+            stiffness: self.law.youngs_modulus() * self.thickness,
+            names: Box::new(|cell| mesh.describe_cell(cell)),
+        })
     }
 }
+
+/// A support or a load that does not suit a group.
+fn refused(what: &str, group: &str, reason: &str) -> Diagnostic {
+    Diagnostic::error(what, format!("the group `{group}` {reason}"))
+}
+
+fn group<'a>(what: &str, mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
+    let groups = mesh.groups();
+    groups.get(name).ok_or_else(|| {
+        let known: Vec<_> = groups.keys().map(String::as_str).collect();
+        let fault = Diagnostic::error(what, format!("the mesh has no group `{name}`"));
+        fault.hint(format!("its groups are {}", known.join(", ")))
+    })
+}
+
+#[cfg(test)]
+mod tests;

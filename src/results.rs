@@ -1,157 +1,240 @@
-//! Everything that a run has computed.
+//! What a study or a case finds: checks, explanations, tables, pictures.
 
-use crate::boundary::Balance;
-use crate::compare::StepComparison;
-use crate::corrector::plate::CorrectedState;
-use crate::error::Error;
-use crate::finite_element::FiniteElements;
-use crate::finite_element::error_estimate::ErrorEstimate;
-use crate::mass_spring::MassSpring;
-use crate::mesh::Mesh;
-use crate::problem::Solution;
+use serde_json::{Map, Value, json};
 
-mod requirement;
+use crate::compare::judgement::Judgement;
 
-pub use requirement::{Requirement, verdict};
+mod block;
 
-/// The names of the models, in the order of [`Results::models`].
-pub const MODELS: [&str; 3] = ["mass-spring", "corrected", "finite elements"];
+pub use block::{Block, Figure};
 
-/// One finite-element mesh and its solutions.
-#[derive(Debug)]
-pub struct ReferenceMesh {
-    /// The model.
-    pub model: FiniteElements,
-    /// One solution a stretch, as far as the path goes.
-    pub solutions: Vec<Solution>,
+/// What a computed value has to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// A value, within a tolerance in percent of it.
+    Equal(f64, f64),
+    /// At most so much.
+    AtMost(f64),
+    /// At least so much.
+    AtLeast(f64),
 }
 
-/// All fields and figures of a study. A model that has ended early has fewer states than the study has stretches; the
-/// others go on without it.
-#[derive(Debug)]
-pub struct Results {
-    /// The lattice; its mesh is that of the corrected fields too.
-    pub springs: MassSpring,
-    /// The lattice in equilibrium, one solution a stretch, as far as the path goes.
-    pub uncorrected: Vec<Solution>,
-    /// The corrected field at every stretch; nothing where none was found.
-    pub corrected: Vec<Option<CorrectedState>>,
-    /// The finite elements on three meshes, coarse to fine; the last is the reference.
-    pub reference: [ReferenceMesh; 3],
-    /// The estimated errors of the finest of them; nothing where its tangent cannot be factorised.
-    pub estimates: Vec<Option<ErrorEstimate>>,
-    /// The reference field at the nodes of the lattice in mm, as far as the path goes.
-    pub reference_on_lattice: Vec<Vec<f64>>,
-    /// Deviations from the reference, one entry a stretch.
-    pub comparison: Vec<StepComparison>,
-    /// Why models have no solution at stretches of the study, in the order in which they were solved.
-    pub ends: Vec<Error>,
-    /// Wall-clock times: what, and seconds.
-    pub times: Vec<(&'static str, f64)>,
+/// One checked figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// What is checked.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it has to be.
+    pub wanted: Wanted,
+    /// Where that comes from.
+    pub source: &'static str,
+    /// What gelbench computed.
+    pub computed: f64,
+    /// The own error of what it was compared with, in the check's unit, where that is known.
+    pub own_error: Option<f64>,
+    judgement: Option<Judgement>,
 }
 
-impl Results {
-    /// The finest finite-element mesh and its solutions.
-    pub fn finest(&self) -> &ReferenceMesh {
-        &self.reference[2]
-    }
-
-    /// The mass-spring model, the corrected field and the finest finite elements at a stretch, each where it exists.
-    pub fn models(&self, step: usize) -> [Option<&Solution>; 3] {
-        let corrected = self.corrected[step].as_ref();
-        [
-            self.uncorrected.get(step),
-            corrected.map(|state| &state.solution),
-            self.finest().solutions.get(step),
-        ]
-    }
-
-    /// The mesh of each of them.
-    pub fn meshes(&self) -> [&Mesh; 3] {
-        let lattice = &self.springs.mesh;
-        [lattice, lattice, &self.finest().model.mesh]
-    }
-
-    /// The stretches at which a model of [`MODELS`] has a solution.
-    pub fn reached(&self, model: usize) -> Vec<f64> {
-        let steps = 0..self.comparison.len();
-        let stretch = |step: usize| Some(self.models(step)[model]?.stretch);
-        steps.filter_map(stretch).collect()
-    }
-
-    /// The stretches with a corrected field and without one of the springs.
-    pub fn stretches_without_springs(&self) -> Vec<f64> {
-        let steps = 0..self.comparison.len();
-        let stretch = |step: usize| match self.models(step) {
-            [None, Some(corrected), _] => Some(corrected.stretch),
-            _ => None,
-        };
-        steps.filter_map(stretch).collect()
-    }
-
-    /// The worst balance of the grips' reactions of a model of [`MODELS`], and the stretch of it; nothing where the model
-    /// has no solution.
-    pub fn worst_balance(&self, model: usize) -> Option<(f64, f64)> {
-        let mesh = self.meshes()[model];
-        let steps = 0..self.comparison.len();
-        let of_step = |step: usize| {
-            let solution = self.models(step)[model]?;
-            Some((balance(mesh, solution).relative(), solution.stretch))
-        };
-        let all = steps.filter_map(of_step);
-        all.max_by(|(a, _), (b, _)| a.total_cmp(b))
-    }
-
-    /// The largest residual force at a node that no grip holds over the force on a grip, the worst of all stretches, of a
-    /// model of [`MODELS`]; nothing where it has no solution.
-    pub fn worst_residual(&self, model: usize) -> Option<f64> {
-        let mesh = self.meshes()[model];
-        let of_step = |step: usize| {
-            let solution = self.models(step)[model]?;
-            let residual = solution.residual.iter().enumerate();
-            let free = residual.filter(|(unknown, _)| !mesh.on_grip(unknown / 2));
-            let largest = free.fold(0.0, |most: f64, (_, force)| most.max(force.abs()));
-            Some(largest / solution.force.abs())
-        };
-        let steps = 0..self.comparison.len();
-        steps.filter_map(of_step).reduce(f64::max)
-    }
-
-    /// The last stretch at which one of the models has a solution.
-    pub fn last_step(&self) -> Option<usize> {
-        let any = |step: &usize| self.models(*step).iter().any(Option::is_some);
-        (0..self.comparison.len()).rev().find(any)
-    }
-
-    /// The estimated error of the finest mesh's force at a stretch in %, by recovery, without its sign.
-    pub fn recovered_force_percent(&self, step: usize) -> Option<f64> {
-        let estimate = self.estimates.get(step)?.as_ref()?;
-        Some(100.0 * (estimate.force / self.finest().solutions[step].force).abs())
-    }
-
-    /// The finite elements' own error of the force at a stretch in %: that of three meshes, or the larger one of that and of
-    /// the recovery on the finest where the three do not converge monotonically.
-    pub fn own_force_percent(&self, step: usize) -> Option<f64> {
-        let own = self.comparison[step].reference?.force;
-        let doubted = self
-            .recovered_force_percent(step)
-            .filter(|_| own.order.is_none());
-        Some(doubted.map_or(own.error_percent, |recovered| {
-            own.error_percent.max(recovered)
-        }))
-    }
-}
-
-/// The balance of the reactions of both grips.
-fn balance(mesh: &Mesh, solution: &Solution) -> Balance {
-    let displacements = solution.displacement.chunks_exact(2);
-    let places = mesh.nodes.iter().zip(displacements);
-    let places: Vec<[f64; 2]> = places.map(|([x, y], u)| [x + u[0], y + u[1]]).collect();
-    let mut reactions = solution.residual.clone();
-    for (unknown, reaction) in reactions.iter_mut().enumerate() {
-        if !mesh.on_grip(unknown / 2) {
-            *reaction = 0.0;
+impl Check {
+    /// A check of a computed value.
+    pub fn new(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        wanted: Wanted,
+        source: &'static str,
+        computed: f64,
+    ) -> Self {
+        Self {
+            quantity: quantity.into(),
+            unit,
+            wanted,
+            source,
+            computed,
+            own_error: None,
+            judgement: None,
         }
     }
-    Balance::of_supports(&places, &reactions)
+
+    /// A fault that leaves nothing to be checked.
+    pub fn fault(quantity: impl Into<String>, source: &'static str) -> Self {
+        Self::new(quantity, "–", Wanted::AtMost(0.0), source, f64::NAN)
+    }
+
+    /// With what the comparison with something that has an error of its own comes to.
+    #[must_use]
+    pub fn judged(self, judgement: Judgement, own_error: f64) -> Self {
+        Self {
+            judgement: Some(judgement),
+            own_error: own_error.is_finite().then_some(own_error),
+            ..self
+        }
+    }
+
+    /// Deviation from the wanted value in %, where there is one.
+    pub fn error_percent(&self) -> Option<f64> {
+        match self.wanted {
+            Wanted::Equal(expected, _) => Some(100.0 * (self.computed / expected - 1.0).abs()),
+            _ => None,
+        }
+    }
+
+    /// What the check comes to.
+    pub fn judgement(&self) -> Judgement {
+        match &self.judgement {
+            Some(judgement) => judgement.clone(),
+            None if self.is_met() => Judgement::Pass,
+            None => Judgement::Fail,
+        }
+    }
+
+    /// Whether the check passed; one that cannot be judged did not.
+    pub fn passed(&self) -> bool {
+        self.judgement().passed()
+    }
+
+    /// `pass`, `FAIL` or `cannot be judged`, with the reason where there is one.
+    pub fn result(&self) -> String {
+        let judgement = self.judgement();
+        match judgement.remark() {
+            Some(remark) => format!("{}: {remark}", judgement.word()),
+            None => judgement.word().to_owned(),
+        }
+    }
+
+    /// Whether the value is what it has to be; one that is not a number is not.
+    fn is_met(&self) -> bool {
+        match self.wanted {
+            Wanted::Equal(_, tolerance) => {
+                self.error_percent().is_some_and(|error| error <= tolerance)
+            }
+            Wanted::AtMost(limit) => self.computed <= limit,
+            Wanted::AtLeast(limit) => self.computed >= limit,
+        }
+    }
+}
+
+/// What the publication claims, and what came out here.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Claim {
+    /// The publication's words, shortened.
+    pub claim: &'static str,
+    /// What came out here.
+    pub reproduced: String,
+}
+
+/// The result of a case.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// The checks.
+    pub checks: Vec<Check>,
+    /// Claims of the publication.
+    pub claims: Vec<Claim>,
+    /// Explanations and tables.
+    pub blocks: Vec<Block>,
+    /// Pictures.
+    pub figures: Vec<Figure>,
+    /// VTK files: name and content.
+    pub vtk: Vec<(String, Vec<u8>)>,
+    /// Tables and other files beside the report: name and content.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// Times that were measured: what, and seconds.
+    pub times: Vec<(String, f64)>,
+    /// What deserves attention in the results, each in a sentence.
+    pub warnings: Vec<String>,
+    /// The worst balance of forces and moments of all boundary value problems that were solved, relative to the largest
+    /// force or moment; `None` where none was solved.
+    pub balance: Option<f64>,
+    /// More for machines than checks and times: key and value.
+    pub json: Map<String, Value>,
+}
+
+/// A case that was computed.
+#[derive(Clone, Debug)]
+pub struct Computed {
+    /// The study's title.
+    pub title: String,
+    /// The case's kind.
+    pub kind: &'static str,
+    /// The study's text; empty where there is none.
+    pub text: String,
+    /// The keys that it does not hold, with the defaults that they took.
+    pub defaults: Vec<String>,
+    /// Its result.
+    pub outcome: Outcome,
+    /// Computing time in s.
+    pub seconds: f64,
+}
+
+impl Computed {
+    /// Whether all checks passed.
+    pub fn passed(&self) -> bool {
+        self.outcome.checks.iter().all(Check::passed)
+    }
+
+    /// The figures for machines.
+    pub fn json(&self) -> Value {
+        let check = |check: &Check| {
+            let (expected, tolerance) = match check.wanted {
+                Wanted::Equal(value, tolerance) => (json!(value), json!(tolerance)),
+                Wanted::AtMost(limit) => (json!({ "at_most": limit }), Value::Null),
+                Wanted::AtLeast(limit) => (json!({ "at_least": limit }), Value::Null),
+            };
+            json!({
+                "quantity": check.quantity,
+                "unit": check.unit,
+                "expected": expected,
+                "source": check.source,
+                "computed": check.computed,
+                "error_percent": check.error_percent(),
+                "tolerance_percent": tolerance,
+                "own_error": check.own_error,
+                "result": check.judgement().word(),
+                "remark": check.judgement().remark(),
+                "passed": check.passed(),
+            })
+        };
+        let times = self
+            .outcome
+            .times
+            .iter()
+            .map(|(what, seconds)| (what.clone(), json!(seconds)));
+        let mut all = json!({
+            "gelbench": env!("CARGO_PKG_VERSION"),
+            "case": self.kind,
+            "title": self.title,
+            "study": { "text": self.text, "defaults": self.defaults },
+            "warnings": self.outcome.warnings,
+            "checks": self.outcome.checks.iter().map(check).collect::<Vec<_>>(),
+            "passed": self.passed(),
+            "balance": self.outcome.balance,
+            "times_s": times.collect::<Map<_, _>>(),
+        });
+        for (key, value) in &self.outcome.json {
+            all[key] = value.clone();
+        }
+        all
+    }
+}
+
+/// A number as a table shows it: five significant digits, or powers of ten where it is far from one.
+pub fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor();
+    if (-3.0..5.0).contains(&exponent) {
+        let digits = (4.0 - exponent).max(0.0) as usize;
+        return format!("{value:.digits$}");
+    }
+    format!("{value:.2e}")
+}
+
+/// A limit as a person would write it.
+pub fn limit(value: f64) -> String {
+    match value.abs() {
+        small if small > 0.0 && small < 1e-3 => format!("{value:e}"),
+        _ => value.to_string(),
+    }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::material::{Card, HyperelasticLaw};
-use gelbench::problem::Problem;
+use gelbench::problem::plate::Problem;
 use gelbench::solve::NewtonSettings;
 
 const SETTINGS: NewtonSettings = NewtonSettings {

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use gelbench::boundary::{BoundaryProblem, Drive, Load, Support};
 use gelbench::error::SolveFault;
 use gelbench::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 use gelbench::mesh::{CellShape, Shape};
+use gelbench::problem::{BoundaryProblem, Drive, Load, Support};
 use gelbench::solve::{NewtonSettings, PathEnd, State};
 
 const NEWTON: NewtonSettings = NewtonSettings {

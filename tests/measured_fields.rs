@@ -4,11 +4,11 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use gelbench::boundary::{BoundaryProblem, Support};
 use gelbench::compare::displacement_percent;
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, Mesh};
 use gelbench::output::vtk;
+use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

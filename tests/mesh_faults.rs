@@ -3,9 +3,9 @@
 use std::fs;
 use std::sync::Arc;
 
-use gelbench::boundary::{BoundaryProblem, Support};
 use gelbench::material::NeoHooke;
 use gelbench::mesh::{CellShape, Mesh, MeshReading, Shape, import};
+use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
 
 mod common;

@@ -6,7 +6,7 @@ use gelbench::compare::{Reference, departure_percent, displacement_percent};
 use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, Mesh};
-use gelbench::problem::{Problem, Solution};
+use gelbench::problem::plate::{Problem, Solution};
 use gelbench::solve::NewtonSettings;
 
 const SETTINGS: NewtonSettings = NewtonSettings {

@@ -5,7 +5,7 @@ use std::path::Path;
 use gelbench::calibration::{FitSettings, Reading, TestData, fit};
 use gelbench::material::Card;
 use gelbench::material::registry::{CARDS, DATA, Law};
-use gelbench::study::{DEFAULT, Study};
+use gelbench::studies::plate::study::{DEFAULT, Study};
 use gelbench::validation::{CASES, case_of};
 use proptest::prelude::*;
 

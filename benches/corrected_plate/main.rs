@@ -28,7 +28,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::error::Error;
 use gelbench::material::Card;
 use gelbench::output;
-use gelbench::problem::Problem;
+use gelbench::problem::plate::Problem;
 use peak_alloc::PeakAlloc;
 use rayon::ThreadPoolBuilder;
 

@@ -6,7 +6,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::Field;
 use gelbench::error::Error;
 use gelbench::finite_element::Element;
-use gelbench::problem::Problem;
+use gelbench::problem::plate::Problem;
 use rayon::ThreadPool;
 
 use super::MEMORY;

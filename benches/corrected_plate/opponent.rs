@@ -16,7 +16,7 @@
 
 use gelbench::corrector::climb::{Field, Grid};
 use gelbench::finite_element::{Element, FiniteElements};
-use gelbench::problem::Problem;
+use gelbench::problem::plate::Problem;
 use gelbench::solve::{Assembly, Cholesky};
 
 /// Where the iteration begins.

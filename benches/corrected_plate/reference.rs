@@ -3,7 +3,7 @@
 use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Climb, ClimbSettings, Field, Grid};
 use gelbench::error::Error;
-use gelbench::problem::Problem;
+use gelbench::problem::plate::Problem;
 
 /// The published converged force at 100 % in N, with five digits after the point: Richardson's extrapolation of
 /// finite elements by dolfinx and scikit-fem.

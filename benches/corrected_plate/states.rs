@@ -6,7 +6,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Climb, ClimbSettings, Grips, Interactive, RigidMotion};
 use gelbench::error::Error;
 use gelbench::finite_element::FiniteElements;
-use gelbench::problem::Problem;
+use gelbench::problem::plate::Problem;
 use gelbench::solve::NewtonSettings;
 
 use super::opponent::Opponent;

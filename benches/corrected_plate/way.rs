@@ -6,7 +6,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Climb, ClimbSettings, Field, Grid};
 use gelbench::error::Error;
 use gelbench::finite_element::Element;
-use gelbench::problem::Problem;
+use gelbench::problem::plate::Problem;
 
 use super::opponent::{Guess, Opponent};
 

@@ -10,11 +10,13 @@ use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField,
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
-use crate::output::{self, Block, ResultFolder, vtk};
-use crate::run;
-use crate::study::{self, Study};
+use crate::output::{self, ResultFolder, vtk};
+use crate::results::Block;
+use crate::studies::plate::run;
+use crate::studies::plate::study::{self, Study};
+use crate::studies::{Kind, specimen};
 use crate::units::{self, Dimension};
-use crate::validation::{self, Case, specimen};
+use crate::validation;
 
 /// What the command line says about a comparison.
 #[derive(Args)]
@@ -139,7 +141,7 @@ fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Compare
 
 fn shape(
     options: &Options,
-    case: &Case,
+    case: &Kind,
     text: &str,
     told: &dyn Fn(&str),
 ) -> Result<Compared, Error> {

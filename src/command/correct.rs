@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::{Outcome, print, progress_bar, warn};
-use crate::corrector::measured::{EdgeCondition, MeasuredForce, Physics, Robust};
+use crate::corrector::estimation::{EdgeCondition, MeasuredForce, Physics, Robust};
 use crate::error::Error;
-use crate::measured_field::{Conditions, MeasuredField, MeshSource, Request, measured_force};
-use crate::measurement::Reading;
+use crate::markers::Reading;
 use crate::mesh::{Allowed, CellShape, MeshReading};
-use crate::output::{self, ResultFolder};
+use crate::output::ResultFolder;
+use crate::studies::markers::written;
+use crate::studies::markers::{Conditions, MeasuredField, MeshSource, Request, measured_force};
 use crate::units::{self, Dimension};
 
 /// What the command line says about a correction.
@@ -156,11 +157,11 @@ pub fn run(options: Options) -> Outcome {
     bar.finish_and_clear();
     let estimates = estimates?;
     let doubts = field.all_doubts(&estimates);
-    output::measured::write(&field, &estimates, &mut results)?;
+    written::write(&field, &estimates, &mut results)?;
     let files = results.finish()?;
     print(&format!(
         "{}{} files in {}\n",
-        output::measured::summary(&field, &estimates),
+        written::summary(&field, &estimates),
         files.len(),
         folder.display()
     ))?;

@@ -5,14 +5,16 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::{Outcome, print, warn};
-use crate::boundary::{BoundaryProblem, Support};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::finite_element::FiniteElements;
 use crate::mesh::Side;
-use crate::output::hand_over::{Code, HandOver, Written, hand_over};
-use crate::study::{self, Study};
-use crate::validation::{self, Case, specimen};
-use crate::{output, validation::specimen::Specimen};
+use crate::output;
+use crate::output::export::{Code, HandOver, Written, hand_over};
+use crate::problem::{BoundaryProblem, Support};
+use crate::studies::plate::study::{self, Study};
+use crate::studies::specimen::Specimen;
+use crate::studies::{Kind, specimen};
+use crate::validation;
 
 /// Which of the three finite-element meshes of a study goes out.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -80,7 +82,7 @@ pub fn run(options: &Options) -> Outcome {
     Ok(0)
 }
 
-pub fn not_for_other_codes(case: &Case) -> Error {
+pub fn not_for_other_codes(case: &Kind) -> Error {
     Error::input(
         format!(
             "a study of the kind `{}` is no boundary value problem of one sheet",

@@ -12,7 +12,7 @@ use crate::identification::{
     Shape, identify, law_text,
 };
 use crate::output::{self, ResultFolder};
-use crate::validation::number;
+use crate::results::number;
 
 pub const HELP: &str = "\
 The file is a table of instants with units in the heads; what it does not say can be given by options:

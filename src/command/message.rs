@@ -13,10 +13,10 @@ use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::problem::Problem;
-use crate::results::{Requirement, Results};
-use crate::study::Study;
-use crate::validation::{Computed, Wanted, limit, number};
+use crate::problem::plate::Problem;
+use crate::results::{Computed, Wanted, limit, number};
+use crate::studies::plate::results::{Requirement, Results};
+use crate::studies::plate::study::Study;
 
 /// A finding with the lines of the file that it is about.
 pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {

@@ -12,7 +12,7 @@ use std::path::Path;
 
 use super::{corner_areas, distance};
 use crate::error::Error;
-use crate::measurement::{columns, unit_ratio};
+use crate::markers::{columns, unit_ratio};
 use crate::mesh::{ImportedField, Mesh, import_field};
 
 mod table;

@@ -14,7 +14,7 @@
 use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};
 use crate::multigrid::{Multigrid, NotPositiveDefinite};
-use crate::problem::Problem;
+use crate::problem::plate::Problem;
 
 mod ascent;
 mod fall;

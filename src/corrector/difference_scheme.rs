@@ -26,8 +26,8 @@
 use std::sync::Arc;
 
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::Problem;
-use crate::sheet_energy::{SamplingPoint, SheetEnergy};
+use crate::problem::plate::Problem;
+use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
 
 /// Where in a cell the differences are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

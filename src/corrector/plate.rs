@@ -13,8 +13,8 @@ use super::{
 };
 use crate::error::Error;
 use crate::mesh::{Mesh, Side};
-use crate::problem::{Problem, Solution};
-use crate::sheet_energy::SheetEnergy;
+use crate::problem::plate::{Problem, Solution};
+use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::sparse::largest;
 use crate::solve::{Assembly, Convergence, SparseRows};
 

@@ -6,7 +6,7 @@ use super::*;
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::Card;
 use crate::mesh::Mesh;
-use crate::problem::{Problem, Solution};
+use crate::problem::plate::{Problem, Solution};
 use crate::solve::{Newton, NewtonSettings};
 
 use plate::KnownConditions;

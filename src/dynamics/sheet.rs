@@ -5,7 +5,7 @@ use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::viscosity::{
     ViscousMaterial, first_piola_kirchhoff, geometric_tangent, second_piola_kirchhoff,
 };
-use crate::sheet_energy::{SamplingPoint, SheetEnergy, add_stiffness};
+use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy, add_stiffness};
 use crate::solve::Inadmissible;
 
 /// The viscous part of a material at the sampling points of an energy. A point remembers S∞ and the stress Qᵢ of every

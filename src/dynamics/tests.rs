@@ -9,7 +9,7 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::Card;
 use crate::mesh::{Mesh, Side};
-use crate::problem::{Model, Problem};
+use crate::problem::plate::{Model, Problem};
 use crate::solve::{NewtonSettings, Potential};
 
 fn motion(spring: &Spring, start: f64) -> Motion<'_> {

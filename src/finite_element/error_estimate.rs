@@ -215,7 +215,7 @@ mod tests {
     use crate::finite_element::{Element, FiniteElements};
     use crate::material::NeoHooke;
     use crate::mesh::{CellShape, Shape};
-    use crate::problem::Problem;
+    use crate::problem::plate::Problem;
     use crate::solve::NewtonSettings;
     use std::sync::Arc;
 

@@ -1,7 +1,6 @@
 //! A report as Markdown.
 
-use super::figures::Figure;
-use super::report::Block;
+use crate::results::{Block, Figure};
 
 /// Markdown with pictures beside it.
 pub fn markdown(blocks: &[Block], figures: &[Figure]) -> String {

@@ -13,111 +13,14 @@ use vtkio::model::{
 };
 
 use super::wrinkling::Wrinkling;
-use crate::corrector::Multipliers;
-use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
 use crate::finite_element::error_estimate::EnergyError;
 use crate::mass_spring::{MassSpring, SpringState};
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::Problem;
-use crate::results::Results;
-use crate::study::Study;
 
 /// η_c/‖u_h‖ of each cell: the root of the sum of their squares is the error of the field in %.
 const ESTIMATED_ERROR: &str = "estimated_error_percent_of_energy_norm";
-
-/// All VTK files of a run: name and content, one after the other; those of a model as far as it has solutions.
-pub fn files(study: &Study, results: &Results) -> impl Iterator<Item = (String, Vec<u8>)> {
-    let model = move |model: Model| {
-        let steps = 0..study.problem.stretches.len();
-        let steps: Vec<usize> = steps.filter(|step| model.has(results, *step)).collect();
-        let stretch = |step: &usize| (study.problem.stretches[*step], model.file_name(*step));
-        let named: Vec<_> = steps.iter().map(stretch).collect();
-        let collection =
-            (!named.is_empty()).then(|| (format!("{}.pvd", model.name()), collection(&named)));
-        let grids = steps.into_iter().filter_map(move |step| {
-            let grid = model.grid(study, results, step)?;
-            Some((model.file_name(step), encode(&study.title, grid)))
-        });
-        grids.chain(collection)
-    };
-    Model::ALL.into_iter().flat_map(model)
-}
-
-#[derive(Clone, Copy)]
-enum Model {
-    MassSpring,
-    Springs,
-    Corrected,
-    FiniteElement,
-}
-
-impl Model {
-    const ALL: [Self; 4] = [
-        Self::MassSpring,
-        Self::Springs,
-        Self::Corrected,
-        Self::FiniteElement,
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::MassSpring => "mass_spring",
-            Self::Springs => "springs",
-            Self::Corrected => "corrected",
-            Self::FiniteElement => "finite_element",
-        }
-    }
-
-    fn file_name(self, step: usize) -> String {
-        format!("{}_{:03}.vtu", self.name(), step + 1)
-    }
-
-    fn has(self, results: &Results, step: usize) -> bool {
-        let [springs, corrected, elements] = results.models(step).map(|model| model.is_some());
-        match self {
-            Self::MassSpring | Self::Springs => springs,
-            Self::Corrected => corrected,
-            Self::FiniteElement => elements,
-        }
-    }
-
-    /// The grid at a stretch at which the model has a solution.
-    fn grid(self, study: &Study, results: &Results, step: usize) -> Option<UnstructuredGridPiece> {
-        let sheet = &(&study.problem).into();
-        let lattice = &results.springs.mesh;
-        let reference = results.reference_on_lattice.get(step);
-        let difference =
-            |u: &[f64]| reference.map(|reference| difference(TO_FINITE_ELEMENTS, u, reference));
-        let [springs, _, elements] = results.models(step);
-        Some(match self {
-            Self::MassSpring => {
-                let u = &springs?.displacement;
-                plate(sheet, lattice, u, difference(u).into_iter().collect(), None)
-            }
-            Self::Corrected => {
-                let state = results.corrected[step].as_ref()?;
-                let u = &state.solution.displacement;
-                let multipliers = state.multipliers.iter();
-                let arrays = multipliers.filter_map(|group| multiplier_array(group, u.len()));
-                let all = difference(u).into_iter().chain(arrays).collect();
-                plate(sheet, lattice, u, all, None)
-            }
-            Self::FiniteElement => {
-                let estimate = results.estimates[step].as_ref();
-                plate(
-                    sheet,
-                    &results.finest().model.mesh,
-                    &elements?.displacement,
-                    Vec::new(),
-                    estimate.map(|estimate| &estimate.energy),
-                )
-            }
-            Self::Springs => self::springs(&results.springs, &springs?.displacement),
-        })
-    }
-}
 
 /// What the stresses of a sheet follow from.
 pub struct Sheet<'a> {
@@ -125,15 +28,6 @@ pub struct Sheet<'a> {
     pub law: &'a dyn HyperelasticLaw,
     /// Thickness in mm.
     pub thickness: f64,
-}
-
-impl<'a> From<&'a Problem> for Sheet<'a> {
-    fn from(problem: &'a Problem) -> Self {
-        Self {
-            law: &*problem.law,
-            thickness: problem.thickness,
-        }
-    }
 }
 
 /// The `.vtu` file of a displacement field on a mesh, with the stresses that follow and the difference to a reference
@@ -205,6 +99,18 @@ pub struct Array {
     pub values: Vec<f64>,
     /// How many belong to one point or cell: 1, 2 (x, y) or 4 (xx, xy, yx, yy).
     pub components: usize,
+}
+
+impl Array {
+    /// The difference of a displacement field to the finite elements' at the same nodes.
+    pub fn difference(displacement: &[f64], reference: &[f64]) -> Self {
+        let pairs = displacement.iter().zip(reference);
+        Self {
+            name: TO_FINITE_ELEMENTS,
+            values: pairs.map(|(u, v)| u - v).collect(),
+            components: 2,
+        }
+    }
 }
 
 impl From<Array> for Attribute {
@@ -370,21 +276,6 @@ fn springs(model: &MassSpring, displacement: &[f64]) -> UnstructuredGridPiece {
             ],
         },
     }
-}
-
-/// The multipliers of a condition at the nodes; zero where the condition does not hold.
-fn multiplier_array(group: &Multipliers, size: usize) -> Option<Attribute> {
-    let name = match group.name.as_str() {
-        EQUILIBRIUM => "multiplier_zeta_equilibrium_mm2_per_N",
-        GRIPS => "multiplier_eta_grips_mm",
-        FREE_EDGES => "multiplier_eta_free_edges_mm2_per_N",
-        _ => return None,
-    };
-    let mut values = vec![0.0; size];
-    for (unknown, value) in group.unknowns.iter().flatten().zip(&group.values) {
-        values[*unknown] = *value;
-    }
-    Some(planar_vectors(name, &values))
 }
 
 fn points(mesh: &Mesh) -> IOBuffer {

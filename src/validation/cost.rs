@@ -16,7 +16,7 @@ use crate::corrector::climb::{Climb, ClimbSettings};
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::Element;
-use crate::output::Block;
+use crate::results::Block;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::boundary::{BoundaryProblem, Discretised, Support};
 use crate::error::{Diagnostic, Error};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
+use crate::problem::{BoundaryProblem, Discretised, Support};
 use crate::solve::{NewtonSettings, PathEnd, State};
 
 pub mod cantilever;

@@ -15,8 +15,8 @@ use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::material::{HyperelasticLaw, samples};
 use crate::mesh::{CellShape, Mesh};
-use crate::output::Block;
-use crate::problem::{Model, Problem, Solution};
+use crate::problem::plate::{Model, Problem, Solution};
+use crate::results::Block;
 use crate::units::Dimension;
 
 /// Reads a study of this case.

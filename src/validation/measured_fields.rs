@@ -13,15 +13,15 @@ use rayon::prelude::*;
 
 use super::plate::Plate;
 use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, marked_line, number};
-use crate::corrector::measured::{
+use crate::corrector::estimation::{
     EdgeCondition, Knowledge, MeasuredForce, RegressedLaw, Robust, Specimen, Unnamed, estimate,
 };
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, Grid, Mesh, Shape};
-use crate::output::Block;
 use crate::output::picture::lines::{Axis, LineChart};
-use crate::study;
+use crate::results::Block;
+use crate::studies::plate::study;
 use crate::units::Dimension;
 use trial::Trial;
 use truth::Truth;

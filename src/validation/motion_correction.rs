@@ -19,10 +19,10 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::viscosity::ViscousMaterial;
 use crate::mesh::{Mesh, Side};
-use crate::output::Block;
 use crate::output::picture::PALETTE;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::problem::{Model, Problem};
+use crate::problem::plate::{Model, Problem};
+use crate::results::Block;
 use crate::solve::Potential;
 use crate::units::Dimension;
 
@@ -177,7 +177,10 @@ fn every<T: Clone>(fields: &[T], stride: usize) -> Vec<T> {
     fields.iter().step_by(stride).cloned().collect()
 }
 
-fn corrected_energy(problem: &Problem, lattice: &MassSpring) -> crate::sheet_energy::SheetEnergy {
+fn corrected_energy(
+    problem: &Problem,
+    lattice: &MassSpring,
+) -> crate::problem::sheet_energy::SheetEnergy {
     DifferenceScheme::Biquadratic.energy(problem, &lattice.mesh)
 }
 
@@ -291,7 +294,7 @@ fn figures(
     mesh: &Mesh,
     times: &[f64],
     [exact, before, after]: [&[Vec<f64>]; 3],
-) -> Vec<crate::output::Figure> {
+) -> Vec<crate::results::Figure> {
     const INK: [u8; 3] = [60, 60, 60];
     // The node in the middle of the free end.
     let [length, width] = mesh.grid().size;

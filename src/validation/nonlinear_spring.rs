@@ -10,7 +10,7 @@ use crate::corrector::{Corrector, CorrectorSettings, Function, Linearised, Solve
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::output::{Block, Figure};
+use crate::results::{Block, Figure};
 use crate::solve::SparseRows;
 use crate::units::Dimension;
 

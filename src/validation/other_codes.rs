@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::finite_element::convergence::richardson;
 use crate::finite_element::{Element, FiniteElements};
 use crate::material::Card;
-use crate::problem::{Problem, Solution};
+use crate::problem::plate::{Problem, Solution};
 
 /// Converged force in N and width at mid length in mm at the stretches, by Richardson's extrapolation of the same codes.
 const CONVERGED: &str = include_str!("../../validation/plate/converged.csv");

@@ -8,9 +8,9 @@ use crate::document::Section;
 use crate::error::{Error, SolveFault};
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
-use crate::problem::{Problem, Solution};
+use crate::problem::plate::{Problem, Solution};
 use crate::solve::NewtonSettings;
-use crate::study;
+use crate::studies::plate::study;
 
 /// The plate of a case, read from its `[plate]` section.
 #[derive(Clone, Debug)]

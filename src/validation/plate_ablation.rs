@@ -14,8 +14,8 @@ use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mass_spring::{MassSpring, Spring};
-use crate::output::Block;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::results::Block;
 use crate::solve::Newton;
 use crate::units::Dimension;
 

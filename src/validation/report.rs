@@ -1,7 +1,7 @@
 //! The validation report: all checks in one table, the publication's claims, the cases.
 
 use super::{Check, Computed, Wanted, limit, number};
-use crate::output::{Block, Figure};
+use crate::results::{Block, Figure};
 
 /// The report of one or several cases, and its pictures.
 pub fn report(title: &str, cases: &[Computed]) -> (Vec<Block>, Vec<Figure>) {

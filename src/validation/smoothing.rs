@@ -19,8 +19,8 @@ use crate::error::{Error, SolveFault};
 use crate::finite_element::Element;
 use crate::mass_spring::MassSpring;
 use crate::mesh::{Mesh, Side};
-use crate::output::Block;
 use crate::output::picture::lines::{Axis, LineChart};
+use crate::results::Block;
 use crate::units::Dimension;
 
 struct Settings {

@@ -11,7 +11,8 @@ use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, limit, number};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::identification::{Function, Identification, IdentificationSettings, Sample, identify};
-use crate::output::{Block, Figure, identification_picture};
+use crate::output::identification_picture;
+use crate::results::{Block, Figure};
 use crate::units::Dimension;
 
 #[derive(Clone, Copy)]

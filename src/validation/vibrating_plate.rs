@@ -15,7 +15,6 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::boundary::{BoundaryProblem, Load};
 use crate::document::{Bound, Section};
 use crate::dynamics::frequency::{Mode, slowest, strongest};
 use crate::dynamics::{
@@ -28,8 +27,9 @@ use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::viscosity::{Relaxation, ViscousMaterial};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::Mesh;
-use crate::output::Block;
-use crate::problem::{Model, Problem};
+use crate::problem::plate::{Model, Problem};
+use crate::problem::{BoundaryProblem, Load};
+use crate::results::Block;
 use crate::solve::{Inadmissible, Local, Newton, Potential};
 use crate::units::Dimension;
 use crate::validation::plate::NEWTON;

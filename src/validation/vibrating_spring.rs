@@ -17,7 +17,7 @@ use crate::corrector::{CorrectorSettings, Solver};
 use crate::document::{Bound, Section};
 use crate::error::{Error, SolveFault};
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::output::{Block, Figure};
+use crate::results::{Block, Figure};
 use crate::units::Dimension;
 
 #[derive(Clone, Debug)]

@@ -8,12 +8,12 @@
 //! | `time` | the time of a row, the load factor unless `--time` says another one |
 //! | `z`, `uz` | of a sheet that stays flat |
 //!
-//! Units stand in the names (`ux_mm`) or in brackets. Other columns are refused, see [`crate::measurement::columns`].
+//! Units stand in the names (`ux_mm`) or in brackets. Other columns are refused, see [`crate::markers::columns`].
 
 use super::{ImportSettings, Imported};
 use crate::calibration::Table;
 use crate::error::{Diagnostic, Error};
-use crate::measurement::columns::{self, Names, Units, length, plain, refuse};
+use crate::markers::columns::{self, Names, Units, length, plain, refuse};
 use crate::units::{self, Dimension};
 
 const LENGTHS: [Names; 4] = [&["x"], &["y"], &["ux"], &["uy"]];

@@ -9,8 +9,8 @@ use super::grid::{Field, Grid, Rule};
 use super::start::contracted_stretch;
 use super::{Climb, DifferenceScheme};
 use crate::error::{Error, SolveFault};
-use crate::problem::Problem;
-use crate::sheet_energy::{SamplingPoint, SheetEnergy};
+use crate::problem::plate::Problem;
+use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
 use crate::solve::{
     Assembly, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow,
 };

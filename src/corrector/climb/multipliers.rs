@@ -2,7 +2,7 @@
 
 use super::{Climb, Climbed, Field};
 use crate::error::{Error, SolveFault};
-use crate::problem::Problem;
+use crate::problem::plate::Problem;
 
 /// The multipliers' iteration ends at this share of its first correction.
 const TOLERANCE: f64 = 1e-7;

@@ -2,7 +2,7 @@
 
 use super::{Climb, Climbed, Field, Inverted, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};
-use crate::problem::Problem;
+use crate::problem::plate::Problem;
 
 /// Newton steps allowed.
 const STEPS: usize = 30;

@@ -10,7 +10,7 @@ use super::ascent::Ascent;
 use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE, Work};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings, MassSpring};
-use crate::problem::Problem;
+use crate::problem::plate::Problem;
 use crate::solve::NewtonSettings;
 
 /// What a corrected field was first made from, in the order in which it is tried.

@@ -188,7 +188,8 @@ fn graded_grids_have_the_equations_of_finite_elements_on_them() {
         })
     });
     let mesh = Mesh::new(nodes, cells);
-    let energy = crate::sheet_energy::SheetEnergy::of_mesh(Arc::clone(&problem.law), &mesh, 2.0);
+    let energy =
+        crate::problem::sheet_energy::SheetEnergy::of_mesh(Arc::clone(&problem.law), &mesh, 2.0);
     let u = climbed.field.to_nodes();
     let mut residual = vec![0.0; u.len()];
     crate::solve::Assembly::residual(&energy, &u, &mut residual).unwrap();

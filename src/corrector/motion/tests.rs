@@ -10,8 +10,8 @@ use crate::dynamics::{
 };
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Side};
-use crate::problem::Problem;
-use crate::sheet_energy::SheetEnergy;
+use crate::problem::plate::Problem;
+use crate::problem::sheet_energy::SheetEnergy;
 
 fn motion<'a>(
     energy: &'a dyn Potential,

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::boundary::{BoundaryProblem, Drive, Load, Support};
 use crate::corrector::climb::{Climb, ClimbSettings};
 use crate::finite_element::{Element, FiniteElements};
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{CellShape, Shape};
+use crate::problem::{BoundaryProblem, Drive, Load, Support};
 use crate::solve::{Assembly, Loading};
 
 const TIGHT: NewtonSettings = NewtonSettings {

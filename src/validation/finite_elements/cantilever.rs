@@ -13,10 +13,10 @@
 use std::path::Path;
 
 use super::{distorted, misfit, sheet, solve};
-use crate::boundary::Load;
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::CellShape;
+use crate::problem::Load;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
 
 const LENGTH: f64 = 100.0;

@@ -7,12 +7,12 @@
 use std::path::Path;
 
 use super::{held, misfit, solve};
-use crate::boundary::Load;
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
-use crate::output;
+use crate::problem::Load;
+use crate::results;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
 
 /// Dead shear tractions in MPa: 1/30, 0.4 and 21 times Young's modulus, and the agreement that is wanted in %. On a sheet 1 mm
@@ -42,7 +42,7 @@ fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut head = vec!["traction [MPa]".to_owned(), "element".to_owned()];
     head.extend(heads);
     head.extend(["order".to_owned(), "extrapolated [mm]".to_owned()]);
-    outcome.blocks.push(output::Block::Table(head, rows));
+    outcome.blocks.push(results::Block::Table(head, rows));
     outcome.figures.push(mesh_figure(
         "cook.png",
         "Cook's membrane; the left side is clamped, the right one pushed upward.",

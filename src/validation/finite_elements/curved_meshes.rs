@@ -8,14 +8,14 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use super::{held, hole, misfit, solve};
-use crate::boundary::BoundaryProblem;
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Shape};
-use crate::output::Block;
-use crate::validation::specimen::{self, Specimen};
+use crate::problem::BoundaryProblem;
+use crate::results::Block;
+use crate::studies::specimen::{self, Specimen};
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure, number};
 
 /// Kinds of cells with curved sides.

@@ -9,12 +9,12 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use super::{distorted, misfit, sheet, solve, stress};
-use crate::boundary::{BoundaryProblem, Support};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, GAUSS_5, Mesh};
 use crate::output::picture::PALETTE;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+use crate::problem::{BoundaryProblem, Support};
 use crate::solve::State;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, figure};
 

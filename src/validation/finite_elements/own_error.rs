@@ -11,10 +11,11 @@ use crate::finite_element::error_estimate::{EnergyError, ErrorEstimate, Solved, 
 use crate::finite_element::recovery::Recovery;
 use crate::finite_element::{Element, FiniteElements};
 use crate::mesh::{CellShape, Mesh, Shape};
+use crate::output::mesh_picture;
 use crate::output::picture::PALETTE;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::output::{Block, Figure, mesh_picture};
-use crate::problem::{Problem, Solution};
+use crate::problem::plate::{Problem, Solution};
+use crate::results::{Block, Figure};
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, figure, number};
 
 const SIZE: [f64; 2] = [150.0, 50.0];

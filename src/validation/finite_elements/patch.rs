@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::{distorted, held, largest_error, misfit, sheet, solve, stress};
-use crate::boundary::Support;
 use crate::document::Section;
 use crate::error::Error;
 use crate::material::curve::Mode;
 use crate::mesh::CellShape;
+use crate::problem::Support;
 use crate::solve::potential::derivative_errors;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
 
@@ -141,7 +141,7 @@ fn simple_shear(shape: CellShape, cells: [usize; 2], amount: f64) -> Result<f64,
 /// P₁₂ averaged over the area.
 fn mean_shear_stress(
     mesh: &crate::mesh::Mesh,
-    problem: &crate::boundary::BoundaryProblem,
+    problem: &crate::problem::BoundaryProblem,
     displacement: &[f64],
 ) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);

@@ -13,10 +13,10 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 use super::{held, misfit, sheet, solve};
-use crate::boundary::Load;
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
+use crate::problem::Load;
 use crate::solve::State;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
 

@@ -1,7 +1,7 @@
 //! One estimate beside the truth.
 
 use super::truth::{Markers, Truth};
-use crate::corrector::measured::FieldEstimate;
+use crate::corrector::estimation::FieldEstimate;
 use crate::mesh::Mesh;
 
 /// What one seed comes to. Deviations are root mean squares.

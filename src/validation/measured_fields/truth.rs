@@ -6,12 +6,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::boundary::{BoundaryProblem, Support};
 use crate::error::Error;
+use crate::markers::Marker;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
-use crate::measurement::Marker;
 use crate::mesh::Mesh;
+use crate::problem::{BoundaryProblem, Support};
 use crate::validation::plate::NEWTON;
 
 /// A specimen pulled between clamps at its sides `left` and `right`.

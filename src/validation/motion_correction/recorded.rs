@@ -13,7 +13,7 @@ use crate::dynamics::{Dashpots, SheetViscosity};
 use crate::error::Error;
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::DashpotLaw;
-use crate::output::Block;
+use crate::results::Block;
 use crate::units::Dimension;
 use crate::validation::plate::Plate;
 use crate::validation::{Check, Outcome, Progress, Wanted, limit, number};

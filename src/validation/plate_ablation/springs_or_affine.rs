@@ -5,7 +5,7 @@ use crate::compare::{departure_percent, displacement_percent};
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
-use crate::output::Block;
+use crate::results::Block;
 use crate::validation::plate::Plate;
 use crate::validation::{Check, Outcome, Wanted, number};
 

@@ -8,7 +8,7 @@ use crate::corrector::DifferenceScheme;
 use crate::corrector::climb::{ClimbSettings, Climbed};
 use crate::material::samples;
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::Model;
+use crate::problem::plate::Model;
 
 fn problem(card: &str, size: [f64; 2], stretch: f64) -> Problem {
     let mut laws = samples::all().into_iter();

@@ -1,0 +1,107 @@
+//! Edges moved to where they belong without folding the cells beside them.
+//!
+//! On a fine mesh an edge cannot jump by more than the size of a cell. Then the inside is moved along by the tangent,
+//! Δu = −K⁻¹ K_B Δu_B, as far in one go as all cells stay admissible.
+
+use crate::error::SolveFault;
+use crate::solve::{Assembly, Newton, Potential};
+
+/// Moves allowed, and the shortest one.
+const MOST_MOVES: usize = 40;
+const SHORTEST: f64 = 1.0 / 256.0;
+
+/// Gives the held unknowns of a field the values that they have in `wanted`.
+///
+/// # Errors
+/// A [`SolveFault`] where even the shortest move folds a cell, or the tangent cannot be factorised.
+pub fn approach(
+    newton: &mut Newton,
+    potential: &dyn Potential,
+    field: &mut Vec<f64>,
+    wanted: &[f64],
+    describe: &dyn Fn(usize) -> String,
+) -> Result<(), SolveFault> {
+    let mut held = vec![true; field.len()];
+    for unknown in newton.free() {
+        held[*unknown] = false;
+    }
+    let mut residual = vec![0.0; field.len()];
+    let jump = |field: &[f64]| -> Vec<f64> {
+        let pairs = field.iter().zip(wanted).zip(&held);
+        pairs
+            .map(|((u, wanted), held)| if *held { wanted - u } else { 0.0 })
+            .collect()
+    };
+    let there: Vec<f64> = field.iter().zip(jump(field)).map(|(u, d)| u + d).collect();
+    if Assembly::residual(potential, &there, &mut residual).is_ok() {
+        *field = there;
+        return Ok(());
+    }
+    for _ in 0..MOST_MOVES {
+        let motion = jump(field);
+        let inside = newton.predict(potential, field, &motion, describe)?;
+        let mut length = 1.0;
+        loop {
+            let moves = motion.iter().zip(&inside);
+            let moved = field
+                .iter()
+                .zip(moves)
+                .map(|(u, (m, i))| u + length * (m + i));
+            let moved: Vec<f64> = moved.collect();
+            match Assembly::residual(potential, &moved, &mut residual) {
+                Ok(_) => {
+                    *field = moved;
+                    break;
+                }
+                Err(fault) if length <= SHORTEST => {
+                    return Err(SolveFault::Inverted {
+                        element: describe(fault.element),
+                    });
+                }
+                Err(_) => length *= 0.5,
+            }
+        }
+        if length == 1.0 {
+            return Ok(());
+        }
+    }
+    Err(SolveFault::Singular)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::material::Card;
+    use crate::mesh::{CellShape, Mesh};
+    use crate::problem::sheet_energy::SheetEnergy;
+
+    #[test]
+    fn an_edge_moves_by_more_than_a_cell_and_folds_none() {
+        let mesh = Mesh::plate([10.0, 10.0], [40, 40], CellShape::Quad4);
+        let law = Card::load("neo-hooke", Path::new(".")).unwrap().law;
+        let energy = SheetEnergy::of_mesh(law, &mesh, 1.0);
+        let held: Vec<bool> = mesh
+            .nodes
+            .iter()
+            .flat_map(|[x, _]| [*x == 0.0 || *x == 10.0; 2])
+            .collect();
+        let mut newton = Newton::new(&energy, &held).unwrap();
+        let pressed = |[x, _]: [f64; 2]| if x == 10.0 { [-1.5, 0.3] } else { [0.0; 2] };
+        let wanted: Vec<f64> = mesh.nodes.iter().flat_map(|node| pressed(*node)).collect();
+        let (mut field, mut residual) = (vec![0.0; wanted.len()], vec![0.0; wanted.len()]);
+        assert!(Assembly::residual(&energy, &wanted, &mut residual).is_err());
+        let describe = |cell: usize| mesh.describe_cell(cell);
+        approach(&mut newton, &energy, &mut field, &wanted, &describe).unwrap();
+        assert!(Assembly::residual(&energy, &field, &mut residual).is_ok());
+        let pairs = field
+            .iter()
+            .zip(&wanted)
+            .zip(&held)
+            .filter(|(_, held)| **held);
+        for ((u, wanted), _) in pairs {
+            assert!((u - wanted).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The mesh's own error of an estimated field, from the same equations on cells half as large.
+//!
+//! ```text
+//! d = u_{h/2}(p) − u_h(p)                      at the motion p of the edges that was found
+//! M δp = −AᵀWHd/v − Gᵀd_F/σ                    what the regression makes of d, as if it were in the data
+//! e = d + S δp                                                                            [mm]
+//! ```
+//!
+//! with A, W, v, G, M of [`super::regression`], S = ∂u/∂p, d_F the same difference of the measured forces. The difference of two
+//! meshes is at least half of the coarser one's error where the order is one, as beside a singular corner, and more of it
+//! elsewhere: ± 1.96 e holds the error.
+
+use nalgebra::DVector;
+
+use super::body_force::Pushed;
+use super::linearise::dot;
+use super::search::Found;
+use super::{Edge, EdgeCondition};
+use crate::mesh::Mesh;
+use crate::problem::sheet_energy::SheetEnergy;
+use crate::solve::{Newton, NewtonSettings};
+
+/// Meshes with more cells are not refined.
+pub const MOST_CELLS: usize = 25_000;
+
+const SETTINGS: NewtonSettings = NewtonSettings {
+    tolerance: 1e-8,
+    max_iterations: 20,
+};
+
+/// The mesh's own error.
+#[derive(Clone, Debug)]
+pub struct MeshError {
+    /// e of node after node in mm.
+    pub displacement: Vec<f64>,
+    /// δp.
+    pub parameters: DVector<f64>,
+    /// H e, two numbers a marker.
+    pub markers: Vec<f64>,
+    /// Of the force on each edge in N, in the order of the edges.
+    pub forces: Vec<[f64; 2]>,
+}
+
+/// The equilibrium on the refined mesh.
+struct Fine {
+    mesh: Mesh,
+    displacement: Vec<f64>,
+    residual: Vec<f64>,
+    /// The held unknowns of each edge along each axis.
+    held: Vec<[Vec<usize>; 2]>,
+}
+
+impl Found<'_> {
+    /// The mesh's own error; nothing where the mesh is too large to be refined, or the refined one has no equilibrium.
+    pub fn mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
+        let mesh = self.search.task.specimen.mesh;
+        if mesh.cell_count() > MOST_CELLS {
+            return None;
+        }
+        let fine = self.refined(mesh, edges)?;
+        let there = fine.mesh.displacement_on(&fine.displacement, mesh);
+        let difference: Vec<f64> = there.iter().zip(&self.field).map(|(a, b)| a - b).collect();
+        let observations = self.search.task.observations;
+        let nearby = observations.interpolation.multiply(&self.field);
+        let places = observations.places.iter();
+        let markers =
+            places.flat_map(|place| fine.mesh.displacement_at(&fine.displacement, *place));
+        let at_markers: Vec<f64> = markers.zip(nearby).map(|(a, b)| a - b).collect();
+        let forces = self.force_differences(edges, &fine);
+        let change = self.regressed(&at_markers, edges, &forces);
+        let along = |values: &[f64], slopes: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let whole = values.iter().enumerate();
+            whole.map(|(row, value)| value + slopes(row)).collect()
+        };
+        let sensitivities = &self.linear.sensitivities;
+        let displacement = along(&difference, &|row| {
+            let columns = sensitivities.iter().zip(change.iter());
+            columns.map(|(column, change)| column[row] * change).sum()
+        });
+        let moved = &self.linear.design * &change;
+        Some(MeshError {
+            displacement,
+            markers: along(&at_markers, &|row| moved[row]),
+            forces,
+            parameters: change,
+        })
+    }
+
+    /// The same edges and law on cells half as large.
+    fn refined(&self, mesh: &Mesh, edges: &[Edge]) -> Option<Fine> {
+        let fine = mesh.refined();
+        let mut coarse = vec![true; self.field.len()];
+        for unknown in self.search.newton.free() {
+            coarse[*unknown] = false;
+        }
+        let held: Vec<_> = edges
+            .iter()
+            .map(|edge| held_unknowns(mesh, &fine, edge, &coarse))
+            .collect();
+        let mut fixed = vec![false; 2 * fine.nodes.len()];
+        for unknown in held.iter().flatten().flatten() {
+            fixed[*unknown] = true;
+        }
+        let thickness = self.search.task.specimen.thickness;
+        let energy = SheetEnergy::of_mesh(self.search.law.clone(), &fine, thickness);
+        let forces = match &self.search.body {
+            Some(_) => super::body_force::BodyForce::new(&fine, &fixed)
+                .forces(self.body_coefficients(), fixed.len()),
+            None => vec![0.0; fixed.len()],
+        };
+        let pushed = Pushed::new(&energy, &forces);
+        let mut displacement = mesh.displacement_on(&self.field, &fine);
+        let mut residual = vec![0.0; displacement.len()];
+        let describe = |cell: usize| fine.describe_cell(cell);
+        let solved = Newton::new(&pushed, &fixed).and_then(|mut newton| {
+            newton.solve(
+                &pushed,
+                &mut displacement,
+                &mut residual,
+                SETTINGS,
+                &describe,
+            )
+        });
+        solved.ok()?;
+        Some(Fine {
+            mesh: fine,
+            displacement,
+            residual,
+            held,
+        })
+    }
+
+    fn body_coefficients(&self) -> &[f64] {
+        let count = self
+            .search
+            .body
+            .as_ref()
+            .map_or(0, |body| body.columns().len());
+        &self.parameters[self.parameters.len() - count..]
+    }
+
+    /// d_F of each edge.
+    fn force_differences(&self, edges: &[Edge], fine: &Fine) -> Vec<[f64; 2]> {
+        let reactions = self.reactions();
+        let along = |(edge, held): (&Edge, &[Vec<usize>; 2])| {
+            [0, 1].map(|axis| {
+                let mut nodes = edge.segment.nodes.clone();
+                nodes.sort_unstable();
+                nodes.dedup();
+                let before: f64 = nodes.iter().map(|node| reactions[2 * node + axis]).sum();
+                let after: f64 = held[axis]
+                    .iter()
+                    .map(|unknown| fine.residual[*unknown])
+                    .sum();
+                match edge.condition {
+                    EdgeCondition::Free => 0.0,
+                    _ => after - before,
+                }
+            })
+        };
+        edges.iter().zip(&fine.held).map(along).collect()
+    }
+
+    /// δp.
+    fn regressed(&self, at_markers: &[f64], edges: &[Edge], forces: &[[f64; 2]]) -> DVector<f64> {
+        let weights = &self.search.task.observations.weights;
+        let weight = |row: usize| weights[row / 2] * self.trade.trust[row / 2];
+        let weighted = at_markers.iter().enumerate();
+        let weighted = weighted.map(|(row, d)| -weight(row) * d / self.trade.variance);
+        let weighted = DVector::from_iterator(at_markers.len(), weighted);
+        let mut target = self.linear.design.tr_mul(&weighted);
+        let measured = self.search.task.knowledge.forces.iter().enumerate();
+        for (row, measured) in measured {
+            let own = edges.iter().zip(forces);
+            let own = own.filter(|(edge, _)| edge.segment.name == measured.edge);
+            let off: f64 = own.map(|(_, force)| force[measured.axis]).sum();
+            let slopes = self.linear.facts.0.row(row).transpose();
+            target -= slopes * (off / measured.standard_deviation);
+        }
+        &self.fit.covariance * target
+    }
+}
+
+/// The unknowns of a refined mesh that an edge holds: those between nodes of the edge whose unknowns are held.
+fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<usize>; 2] {
+    const NEAR: f64 = 0.1;
+    let mut boundary: Vec<usize> = fine.boundary().iter().flatten().copied().collect();
+    boundary.sort_unstable();
+    boundary.dedup();
+    let pairs: Vec<[usize; 2]> = edge
+        .segment
+        .nodes
+        .windows(2)
+        .map(|pair| [pair[0], pair[1]])
+        .collect();
+    let on = |node: usize, [a, b]: [usize; 2]| {
+        let [p, q, x] = [mesh.nodes[a], mesh.nodes[b], fine.nodes[node]];
+        let side = [q[0] - p[0], q[1] - p[1]];
+        let square = dot(&side, &side);
+        let share = (dot(&[x[0] - p[0], x[1] - p[1]], &side) / square).clamp(0.0, 1.0);
+        let off = [0, 1].map(|axis| x[axis] - p[axis] - share * side[axis]);
+        dot(&off, &off) <= NEAR * NEAR * square
+    };
+    [0, 1].map(|axis| {
+        let both = |pair: &[usize; 2]| pair.iter().all(|node| held[2 * node + axis]);
+        let holds = |node: &&usize| pairs.iter().any(|pair| both(pair) && on(**node, *pair));
+        let nodes = boundary.iter().filter(holds);
+        match edge.condition {
+            EdgeCondition::Free => Vec::new(),
+            _ => nodes.map(|node| 2 * node + axis).collect(),
+        }
+    })
+}

@@ -1,0 +1,143 @@
+//! The markers of a frame on a mesh.
+
+use nalgebra::DVector;
+
+use super::start::Points;
+use crate::error::Diagnostic;
+use crate::markers::Marker;
+use crate::mesh::Mesh;
+use crate::solve::SparseRows;
+
+/// A marker farther outside of the mesh than this share of a cell's size is left out.
+const OUTSIDE: f64 = 0.25;
+
+/// The markers on the mesh.
+#[derive(Clone, Debug)]
+pub struct Observations {
+    /// Number of all markers.
+    pub markers: usize,
+    /// Index of each marker that lies on the mesh.
+    pub chosen: Vec<usize>,
+    /// Their places in mm.
+    pub places: Vec<[f64; 2]>,
+    /// Their displacements in mm.
+    pub displacements: Vec<[f64; 2]>,
+    /// Their weights: 1/variance in 1/mm² where the noise is known, else 1.
+    pub weights: Vec<f64>,
+    /// Whether the noise is known.
+    pub known_noise: bool,
+    /// H: two rows a marker.
+    pub interpolation: SparseRows,
+}
+
+impl Observations {
+    /// Finds the markers on a mesh; `noise` is the standard deviation in mm of those that have none.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a number is not finite, a standard deviation is not positive or known for some markers
+    /// only, or fewer than three markers lie on the mesh.
+    pub fn new(mesh: &Mesh, markers: &[Marker], noise: Option<f64>) -> Result<Self, Diagnostic> {
+        let deviation = |marker: &Marker| marker.standard_deviation.or(noise);
+        let known = markers
+            .iter()
+            .filter(|marker| deviation(marker).is_some())
+            .count();
+        if known > 0 && known < markers.len() {
+            let fault = format!(
+                "{known} of {} markers have a standard deviation",
+                markers.len()
+            );
+            return Err(Diagnostic::error("", fault).hint("give all of them one, or none"));
+        }
+        let mut all = Self {
+            markers: markers.len(),
+            chosen: Vec::new(),
+            places: Vec::new(),
+            displacements: Vec::new(),
+            weights: Vec::new(),
+            known_noise: known > 0,
+            interpolation: SparseRows::new(2 * mesh.nodes.len()),
+        };
+        for (index, marker) in markers.iter().enumerate() {
+            all.add(mesh, index, marker, deviation(marker))?;
+        }
+        if all.chosen.len() < 3 {
+            let fault = format!(
+                "{} of {} markers lie on the mesh",
+                all.chosen.len(),
+                markers.len()
+            );
+            return Err(Diagnostic::error("", fault)
+                .hint("look at the units and the origins of markers and mesh"));
+        }
+        Ok(all)
+    }
+
+    fn add(
+        &mut self,
+        mesh: &Mesh,
+        index: usize,
+        marker: &Marker,
+        deviation: Option<f64>,
+    ) -> Result<(), Diagnostic> {
+        let Marker {
+            number,
+            place,
+            displacement,
+            ..
+        } = *marker;
+        let numbers = place.iter().chain(&displacement);
+        if numbers.chain(&deviation).any(|value| !value.is_finite()) {
+            let fault = format!("marker {number} has a value that is not a number");
+            return Err(Diagnostic::error("", fault).hint("leave the marker out of the frame"));
+        }
+        let deviation = deviation.unwrap_or(1.0);
+        if deviation <= 0.0 {
+            let fault = format!("marker {number} has the standard deviation {deviation} mm");
+            return Err(Diagnostic::error("", fault).hint("give a positive one, or none"));
+        }
+        let (cell, local) = mesh.locate(place);
+        let shape = mesh.shape(cell);
+        let size = if shape.is_triangle() { 1.0 } else { 2.0 };
+        if shape.outside(local) / size > OUTSIDE {
+            return Ok(());
+        }
+        let values = shape.values(local);
+        for axis in [0, 1] {
+            let nodes = mesh.cell(cell).iter().zip(&values);
+            self.interpolation
+                .push(nodes.map(|(node, value)| (2 * node + axis, *value)));
+        }
+        self.chosen.push(index);
+        self.places.push(place);
+        self.displacements.push(displacement);
+        self.weights.push(deviation.powi(-2));
+        Ok(())
+    }
+
+    /// The mean distance of neighbouring markers in mm, from the area of the mesh.
+    pub fn spacing(&self, mesh: &Mesh) -> f64 {
+        let area = |cell: usize| -> f64 {
+            let points = mesh.shape(cell).quadrature().into_iter();
+            points
+                .map(|(local, weight)| weight * mesh.gradients(cell, local).1)
+                .sum()
+        };
+        let area: f64 = (0..mesh.cell_count()).map(area).sum();
+        (area / self.chosen.len() as f64).sqrt()
+    }
+
+    /// d − H u, two numbers a marker.
+    pub fn residual(&self, field: &[f64]) -> DVector<f64> {
+        let there = self.interpolation.multiply(field);
+        let data = self.displacements.iter().flatten();
+        DVector::from_iterator(there.len(), data.zip(there).map(|(d, u)| d - u))
+    }
+
+    pub fn points(&self) -> Points<'_> {
+        Points {
+            places: &self.places,
+            displacements: &self.displacements,
+        }
+    }
+}

@@ -1,0 +1,423 @@
+use std::sync::Arc;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::*;
+use crate::error::Error;
+use crate::material::{Card, NeoHooke};
+use crate::mesh::{CellShape, Mesh};
+use crate::problem::{BoundaryProblem, Support};
+use crate::solve::NewtonSettings;
+
+pub(super) const SIZE: [f64; 2] = [60.0, 30.0];
+const THICKNESS: f64 = 2.0;
+const C10: f64 = 0.05;
+pub(super) const STRETCH: f64 = 0.3;
+
+pub(super) fn law() -> Arc<dyn HyperelasticLaw> {
+    Arc::new(NeoHooke { c10: C10 })
+}
+
+/// A clamped plate pulled by 30 %, on a mesh that no estimate uses: the field, and the force in N.
+pub(super) struct Truth {
+    pub(super) mesh: Mesh,
+    displacement: Vec<f64>,
+    pub(super) force: f64,
+}
+
+impl Truth {
+    pub(super) fn new() -> Self {
+        Self::on(Mesh::plate(SIZE, [26, 14], CellShape::Quad9))
+    }
+
+    /// The same on any mesh.
+    pub(super) fn on(mesh: Mesh) -> Self {
+        let clamp = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
+        let problem = BoundaryProblem {
+            thickness: THICKNESS,
+            law: law(),
+            supports: vec![
+                ("left".into(), clamp(0.0)),
+                ("right".into(), clamp(STRETCH * SIZE[0])),
+            ],
+            loads: Vec::new(),
+        };
+        let energy = problem.finite_elements(&mesh);
+        let newton = NewtonSettings {
+            tolerance: 1e-10,
+            max_iterations: 30,
+        };
+        let discretised = problem.on(&mesh, &energy).unwrap();
+        let state = discretised
+            .solve(&[1.0], newton, &|_| ())
+            .unwrap()
+            .remove(0);
+        let force = discretised.reaction(&state, "right")[0];
+        drop(discretised);
+        Self {
+            mesh,
+            displacement: state.displacement,
+            force,
+        }
+    }
+
+    /// ux, uy of node after node in mm.
+    pub(super) fn field(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    pub(super) fn at(&self, place: [f64; 2]) -> [f64; 2] {
+        self.mesh.displacement_at(&self.displacement, place)
+    }
+
+    /// 21 × 11 markers with normal noise.
+    pub(super) fn markers(&self, noise: f64, seed: u64) -> Vec<Marker> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let places =
+            (0..21).flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
+        let marker = |(number, place): (usize, [f64; 2])| Marker {
+            number,
+            place,
+            displacement: self.at(place).map(|u| u + noise * draw()),
+            standard_deviation: None,
+        };
+        places.enumerate().map(marker).collect()
+    }
+
+    fn error(&self, mesh: &Mesh, field: &[f64]) -> f64 {
+        let exact = self.mesh.displacement_on(&self.displacement, mesh);
+        let sum: f64 = exact.iter().zip(field).map(|(a, b)| (a - b).powi(2)).sum();
+        (sum / field.len() as f64).sqrt()
+    }
+}
+
+fn estimate_mesh() -> Mesh {
+    Mesh::plate(SIZE, [20, 10], CellShape::Quad9)
+}
+
+pub(super) fn specimen(mesh: &Mesh) -> Specimen<'_> {
+    Specimen {
+        mesh,
+        law: law(),
+        thickness: THICKNESS,
+    }
+}
+
+pub(super) fn with_grips(condition: EdgeCondition) -> Knowledge {
+    let edge = |(name, condition): (&str, EdgeCondition)| (name.to_owned(), condition);
+    let edges = [
+        ("left", condition),
+        ("right", condition),
+        ("bottom", EdgeCondition::Free),
+        ("top", EdgeCondition::Free),
+    ];
+    Knowledge {
+        edges: edges.map(edge).to_vec(),
+        ..Knowledge::default()
+    }
+}
+
+#[test]
+fn noise_on_unknown_and_rigid_grips_falls_by_four_fifths() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let markers = truth.markers(0.3, 1);
+    for (condition, most) in [(EdgeCondition::Unknown, 0.06), (EdgeCondition::Rigid, 0.05)] {
+        let found = estimate(&specimen(&mesh), &markers, &with_grips(condition)).unwrap();
+        let error = truth.error(&mesh, &found.displacement);
+        assert!(error < most, "{condition:?}: {error}");
+        assert!((found.noise / 0.3 - 1.0).abs() < 0.1, "{}", found.noise);
+        let force = &found
+            .forces
+            .iter()
+            .find(|force| force.edge == "right")
+            .unwrap()
+            .force[0];
+        let wrong = (force.value - truth.force).abs();
+        assert!(
+            wrong < 3.0 * force.standard_error && wrong < 0.05 * truth.force,
+            "{force:?}"
+        );
+    }
+}
+
+#[test]
+fn known_grips_leave_the_markers_to_be_judged() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let mut knowledge = with_grips(EdgeCondition::Known([Some(0.0), Some(0.0)]));
+    knowledge.edges[1].1 = EdgeCondition::Known([Some(STRETCH * SIZE[0]), Some(0.0)]);
+    knowledge.noise = Some(0.3);
+    let found = estimate(&specimen(&mesh), &truth.markers(0.3, 1), &knowledge).unwrap();
+    assert!(truth.error(&mesh, &found.displacement) < 2e-3);
+    assert!(
+        found.known_noise && (found.noise - 0.3).abs() < 1e-12 && found.effective_parameters == 0.0
+    );
+    let far = found
+        .markers
+        .iter()
+        .flatten()
+        .filter(|marker| marker.standardised_residual > 2.4477);
+    let share = far.count() as f64 / found.markers.len() as f64;
+    assert!((share - 0.05).abs() < 0.03, "{share}");
+}
+
+#[test]
+fn multipliers_are_derivatives_of_the_misfit_by_forces() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let markers = truth.markers(0.3, 4);
+    let mut knowledge = with_grips(EdgeCondition::Known([Some(0.0), Some(0.0)]));
+    knowledge.edges[1].1 = EdgeCondition::Known([Some(STRETCH * SIZE[0]), Some(0.0)]);
+    let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+    let node = mesh
+        .nodes
+        .iter()
+        .position(|node| *node == [30.0, 15.0])
+        .unwrap();
+    let misfit = |force: f64| {
+        let problem = BoundaryProblem {
+            thickness: THICKNESS,
+            law: law(),
+            supports: vec![
+                ("left".into(), Support::Displacement([Some(0.0), Some(0.0)])),
+                (
+                    "right".into(),
+                    Support::Displacement([Some(STRETCH * SIZE[0]), Some(0.0)]),
+                ),
+            ],
+            loads: Vec::new(),
+        };
+        let energy = problem.finite_elements(&mesh);
+        let mut forces = vec![0.0; 2 * mesh.nodes.len()];
+        forces[2 * node] = force;
+        let mut discretised = problem.on(&mesh, &energy).unwrap();
+        discretised.add_forces(&forces);
+        let newton = NewtonSettings {
+            tolerance: 1e-12,
+            max_iterations: 30,
+        };
+        let state = discretised
+            .solve(&[1.0], newton, &|_| ())
+            .unwrap()
+            .remove(0);
+        let square = |marker: &Marker| {
+            let there = mesh.displacement_at(&state.displacement, marker.place);
+            let [x, y] = [0, 1].map(|axis| there[axis] - marker.displacement[axis]);
+            0.5 * (x * x + y * y)
+        };
+        markers.iter().map(square).sum::<f64>()
+    };
+    let slope = (misfit(1e-3) - misfit(-1e-3)) / 2e-3;
+    let multiplier = found.multipliers[2 * node];
+    assert!(
+        (slope + multiplier).abs() < 1e-4 * slope.abs(),
+        "{slope} {multiplier}"
+    );
+}
+
+#[test]
+fn without_noise_the_truth_comes_back() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let found = estimate(
+        &specimen(&mesh),
+        &truth.markers(0.0, 1),
+        &with_grips(EdgeCondition::Rigid),
+    )
+    .unwrap();
+    assert!(truth.error(&mesh, &found.displacement) < 2e-3);
+    assert!(found.noise < 2e-3);
+}
+
+#[test]
+fn wrong_input_is_told() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let good = truth.markers(0.1, 1);
+    let told = |markers: &[Marker], knowledge: &Knowledge| match estimate(
+        &specimen(&mesh),
+        markers,
+        knowledge,
+    ) {
+        Err(fault @ Error::Input(_)) => fault.to_string(),
+        other => panic!("{:?}", other.map(|_| ())),
+    };
+    let grips = with_grips(EdgeCondition::Unknown);
+    let change = |change: &dyn Fn(&mut Marker)| {
+        let mut markers = good.clone();
+        change(&mut markers[7]);
+        markers
+    };
+    let nan = change(&|marker| marker.displacement[1] = f64::NAN);
+    assert!(told(&nan, &grips).contains("marker 7"));
+    let one = change(&|marker| marker.standard_deviation = Some(0.1));
+    assert!(told(&one, &grips).contains("1 of 231 markers"));
+    let far: Vec<Marker> = good
+        .iter()
+        .map(|marker| Marker {
+            place: marker.place.map(|x| x + 1000.0),
+            ..*marker
+        })
+        .collect();
+    assert!(told(&far, &grips).contains("0 of 231 markers lie on the mesh"));
+    assert!(told(&good, &with_grips(EdgeCondition::Free)).contains("nothing loads"));
+    assert!(told(&good[..2], &grips).contains("2 of 2"));
+    let line: Vec<Marker> = good
+        .iter()
+        .filter(|marker| marker.place[1] == 0.0)
+        .copied()
+        .collect();
+    assert!(told(&line, &grips).contains("affine"));
+}
+
+/// A strip whose sides are not named: the long ones are free, the short ones are pulled.
+#[test]
+fn the_data_tell_which_edges_are_free() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    for noise in [0.02, 0.3] {
+        let markers = truth.markers(noise, 3);
+        let found = estimate(&specimen(&mesh), &markers, &Knowledge::default()).unwrap();
+        let condition = |name: &str| {
+            let edge = found
+                .edges
+                .iter()
+                .find(|edge| edge.edge.starts_with(name))
+                .unwrap();
+            (edge.condition, edge.probability)
+        };
+        for free in ["edge (0.0, 0.0)", "edge (60.0, 30.0)"] {
+            assert_eq!(
+                condition(free).0,
+                EdgeCondition::Free,
+                "{noise} {:?}",
+                found.edges
+            );
+        }
+        for loaded in ["edge (60.0, 0.0)", "edge (0.0, 30.0)"] {
+            let (condition, probability) = condition(loaded);
+            assert_eq!(condition, EdgeCondition::Unknown);
+            assert!(probability.unwrap() < 1e-6);
+        }
+        assert!(truth.error(&mesh, &found.displacement) < 0.2 * noise);
+        let loaded = Knowledge {
+            unnamed: Unnamed::Loaded,
+            ..Knowledge::default()
+        };
+        let inside = estimate(&specimen(&mesh), &markers, &loaded).unwrap();
+        assert!(
+            inside
+                .edges
+                .iter()
+                .all(|edge| edge.condition == EdgeCondition::Unknown)
+        );
+        assert!(truth.error(&mesh, &inside.displacement) < 0.5 * noise);
+    }
+}
+
+#[test]
+fn a_modulus_is_found_with_the_field() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let card = Card::load("neo-hooke", std::path::Path::new(".")).unwrap();
+    let knowledge = Knowledge {
+        forces: vec![MeasuredForce {
+            edge: "right".into(),
+            axis: 0,
+            force: truth.force * 1.01,
+            standard_deviation: truth.force * 0.01,
+        }],
+        law: Some(RegressedLaw::of_card(&card, &["c10"]).unwrap()),
+        ..with_grips(EdgeCondition::Unknown)
+    };
+    let found = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &knowledge).unwrap();
+    let (key, unit, modulus) = found.parameters[0];
+    assert_eq!((key, unit), ("c10", "MPa"));
+    assert!(modulus.standard_error > 0.008 * C10 && modulus.standard_error < 0.03 * C10);
+    assert!(
+        (modulus.value - C10).abs() < 3.0 * modulus.standard_error,
+        "{modulus:?}"
+    );
+    let without = Knowledge {
+        forces: Vec::new(),
+        ..knowledge
+    };
+    let told = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &without).unwrap_err();
+    assert!(told.to_string().contains("without a measured force"));
+}
+
+#[test]
+fn gross_errors_are_found() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let mut markers = truth.markers(0.3, 9);
+    let wrong = |index: &usize| index % 20 == 3;
+    let count = markers.len();
+    for index in (0..count).filter(wrong) {
+        markers[index].displacement[index / 20 % 2] += 2.4 + 0.05 * index as f64;
+    }
+    for robust in [Robust::Huber, Robust::Tukey] {
+        let knowledge = Knowledge {
+            robust,
+            ..with_grips(EdgeCondition::Unknown)
+        };
+        let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        for (index, marker) in found.markers.iter().enumerate() {
+            let marker = marker.unwrap();
+            let alarm = marker.outlier && !wrong(&index);
+            assert!(
+                !alarm && (marker.outlier || !wrong(&index)),
+                "{robust:?} {index} {marker:?}"
+            );
+        }
+        assert!(truth.error(&mesh, &found.displacement) < 0.08);
+        assert!((found.noise / 0.3 - 1.0).abs() < 0.12, "{}", found.noise);
+    }
+    let plain = estimate(
+        &specimen(&mesh),
+        &markers,
+        &with_grips(EdgeCondition::Unknown),
+    )
+    .unwrap();
+    assert!(truth.error(&mesh, &plain.displacement) > 0.1);
+}
+
+#[test]
+fn forces_on_the_interior_make_up_for_a_wrong_law_and_vanish_with_the_right_one() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let markers = truth.markers(0.02, 2);
+    let pva = Card::load("pva-10", std::path::Path::new(".")).unwrap();
+    let run = |law: Arc<dyn HyperelasticLaw>, physics: Physics| {
+        let wrong = Specimen {
+            law,
+            ..specimen(&mesh)
+        };
+        let knowledge = Knowledge {
+            physics,
+            ..with_grips(EdgeCondition::Rigid)
+        };
+        let found = estimate(&wrong, &markers, &knowledge).unwrap();
+        (truth.error(&mesh, &found.displacement), found)
+    };
+    let (exact, plain) = run(Arc::clone(&pva.law), Physics::Exact);
+    let (weighted, forced) = run(Arc::clone(&pva.law), Physics::Weighted);
+    assert!(weighted < 0.5 * exact, "{weighted} {exact}");
+    let noises = (plain.noise, forced.noise);
+    assert!(
+        plain.noise > 1.02 * forced.noise && (forced.noise / 0.02 - 1.0).abs() < 0.15,
+        "{noises:?}"
+    );
+    let (exact, _) = run(law(), Physics::Exact);
+    let (weighted, right) = run(law(), Physics::Weighted);
+    assert!(weighted < 1.5 * exact, "{weighted} {exact}");
+    let size = |found: &FieldEstimate| {
+        found
+            .interior_forces
+            .iter()
+            .map(|f| f * f)
+            .sum::<f64>()
+            .sqrt()
+    };
+    assert!(
+        size(&right) < 0.05 * size(&forced),
+        "{} {}",
+        size(&right),
+        size(&forced)
+    );
+}

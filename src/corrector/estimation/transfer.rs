@@ -1,0 +1,280 @@
+//! A field of another mesh and method, without noise, brought onto a finer mesh and into equilibrium.
+//!
+//! ```text
+//! minimise ½ ‖u − ū‖²   subject to   F(u) = 0 at inner nodes and free edges,   u = ū at the other edges
+//! ```
+//!
+//! ū is the given field interpolated at the nodes. As many equations as unknowns are left, so that the field does not
+//! depend on the norm; the multipliers ζ, K ζ = ū − u, tell where the given field contradicts the physics. An edge
+//! that is known has its known displacement instead of ū, a rigid one the rigid motion nearest to ū.
+
+use std::sync::Arc;
+
+use super::approach::approach;
+use super::outline::{Segment, segments};
+use super::search::solve;
+use super::{
+    Edge, EdgeCondition, EdgeForce, EdgeOutcome, FieldEstimate, Knowledge, MarkerEstimate,
+    Specimen, StressEstimate,
+};
+use crate::corrector::estimate::Estimate;
+use crate::error::{Error, SolveFault};
+use crate::material::sheet::{Gradient, Kinematics};
+use crate::mesh::Mesh;
+use crate::problem::sheet_energy::SheetEnergy;
+use crate::solve::{Newton, NewtonSettings};
+
+const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
+    max_iterations: 40,
+};
+
+/// The rule by which data and physics are traded.
+const RULE: &str =
+    "equilibrium holds exactly; edges that are not free keep the displacements of the given field";
+
+/// Parts of the given field that are solved one after the other where it is too far from equilibrium.
+const PARTS: [&[f64]; 3] = [
+    &[1.0],
+    &[0.5, 1.0],
+    &[0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0],
+];
+
+/// Brings the field `displacement` of the mesh `given` onto the specimen's mesh. Nothing is uncertain in the result: all
+/// standard errors are zero, and what is left of each node of the given mesh is no noise.
+///
+/// # Errors
+/// [`Error::Input`] when the mesh and the conditions do not go together, [`Error::Solve`] when no equilibrium is found.
+pub fn transfer(
+    specimen: &Specimen,
+    (given, displacement): (&Mesh, &[f64]),
+    knowledge: &Knowledge,
+) -> Result<FieldEstimate, Error> {
+    let mesh = specimen.mesh;
+    let edges = conditions(mesh, knowledge)?;
+    let start = given.displacement_on(displacement, mesh);
+    let imposed = imposed(mesh, &edges, &start);
+    if imposed.iter().all(Option::is_none) {
+        return Err(Error::input(
+            "all edges are free, so that nothing loads the specimen",
+            "say which edges are held, or leave their conditions open",
+        ));
+    }
+    let energy = SheetEnergy::of_mesh(Arc::clone(&specimen.law), mesh, specimen.thickness);
+    let held: Vec<bool> = imposed.iter().map(Option::is_some).collect();
+    let mut newton = Newton::new(&energy, &held).map_err(solve)?;
+    let (field, residual, steps) = equilibrium(&mut newton, &energy, mesh, (&start, &imposed))?;
+    let describe = |cell: usize| mesh.describe_cell(cell);
+    newton.tangent(&energy, &field, &describe).map_err(solve)?;
+    let pull = field
+        .iter()
+        .zip(&start)
+        .map(|(u, given)| u - given)
+        .collect();
+    let multipliers = newton.changes(&[pull]).map_err(solve)?.remove(0);
+    let mut reactions = residual;
+    for unknown in newton.free() {
+        reactions[*unknown] = 0.0;
+    }
+    let cells = (0..mesh.cell_count()).map(|cell| state(specimen, &field, cell));
+    Ok(FieldEstimate {
+        displacement_error: vec![0.0; field.len()],
+        cells: cells.collect::<Result<_, _>>()?,
+        forces: forces(&edges, &reactions),
+        markers: differences(mesh, &field, (given, displacement)),
+        noise: 0.0,
+        known_noise: true,
+        noise_scale: 1.0,
+        effective_parameters: 0.0,
+        degrees_of_freedom: 0.0,
+        reach: 0.0,
+        interior_forces: Vec::new(),
+        rule: RULE,
+        smoothing: Vec::new(),
+        edges: edges.iter().map(outcome).collect(),
+        parameters: Vec::new(),
+        steps,
+        holds_mesh_error: false,
+        growth: 0.0,
+        force_checks: Vec::new(),
+        contradiction: None,
+        whiteness: None,
+        reactions,
+        multipliers,
+        displacement: field,
+    })
+}
+
+/// The segments of the boundary, each with its condition.
+fn conditions(mesh: &Mesh, knowledge: &Knowledge) -> Result<Vec<(Segment, EdgeCondition)>, Error> {
+    let names: Vec<&str> = knowledge
+        .edges
+        .iter()
+        .map(|(name, _)| name.as_str())
+        .collect();
+    let segments = segments(mesh, &names).map_err(|fault| Error::Input(vec![fault]))?;
+    let with = |segment: Segment| {
+        let condition = Edge::new(&segment, knowledge).condition;
+        (segment, condition)
+    };
+    Ok(segments.into_iter().map(with).collect())
+}
+
+fn outcome((segment, condition): &(Segment, EdgeCondition)) -> EdgeOutcome {
+    EdgeOutcome {
+        edge: segment.name.clone(),
+        length: segment.length(),
+        condition: *condition,
+        probability: None,
+    }
+}
+
+/// The values of the unknowns that are held.
+fn imposed(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], start: &[f64]) -> Vec<Option<f64>> {
+    let mut imposed = vec![None; start.len()];
+    for (segment, condition) in edges {
+        let nodes = &segment.nodes;
+        let mut put = |node: usize, values: [Option<f64>; 2]| {
+            for (axis, value) in values.into_iter().enumerate() {
+                imposed[2 * node + axis] = value.or(imposed[2 * node + axis]);
+            }
+        };
+        match condition {
+            EdgeCondition::Free => {}
+            EdgeCondition::Known(values) => nodes.iter().for_each(|node| put(*node, *values)),
+            EdgeCondition::Unknown => {
+                for node in nodes {
+                    put(*node, [Some(start[2 * node]), Some(start[2 * node + 1])]);
+                }
+            }
+            EdgeCondition::Rigid => {
+                for (node, u) in nodes.iter().zip(rigid(mesh, nodes, start)) {
+                    put(*node, u.map(Some));
+                }
+            }
+        }
+    }
+    imposed
+}
+
+/// The rigid motion of nodes that is nearest to a field, in the sense of least squares.
+fn rigid(mesh: &Mesh, nodes: &[usize], field: &[f64]) -> Vec<[f64; 2]> {
+    let count = nodes.len() as f64;
+    let moved = |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + field[2 * node + axis]);
+    let mean = |place: &dyn Fn(usize) -> [f64; 2]| {
+        [0, 1].map(|axis| nodes.iter().map(|node| place(*node)[axis]).sum::<f64>() / count)
+    };
+    let (rest, end) = (mean(&|node| mesh.nodes[node]), mean(&moved));
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for node in nodes {
+        let (from, to) = (mesh.nodes[*node], moved(*node));
+        let [a, b] = [from[0] - rest[0], from[1] - rest[1]];
+        let [c, d] = [to[0] - end[0], to[1] - end[1]];
+        cosine += a * c + b * d;
+        sine += a * d - b * c;
+    }
+    let (sine, cosine) = sine.atan2(cosine).sin_cos();
+    let turned = |node: &usize| {
+        let [x, y] = mesh.nodes[*node];
+        let [a, b] = [x - rest[0], y - rest[1]];
+        [
+            end[0] + cosine * a - sine * b - x,
+            end[1] + sine * a + cosine * b - y,
+        ]
+    };
+    nodes.iter().map(turned).collect()
+}
+
+/// The equilibrium with the imposed values, its residual, and how many parts it took.
+fn equilibrium(
+    newton: &mut Newton,
+    energy: &SheetEnergy,
+    mesh: &Mesh,
+    (start, imposed): (&[f64], &[Option<f64>]),
+) -> Result<(Vec<f64>, Vec<f64>, usize), Error> {
+    let describe = |cell: usize| mesh.describe_cell(cell);
+    let mut fault = SolveFault::Singular;
+    for parts in PARTS {
+        let mut field: Vec<f64> = start.iter().map(|u| parts[0] * u).collect();
+        let mut residual = vec![0.0; field.len()];
+        let mut before = parts[0];
+        let solved = parts.iter().try_for_each(|part| {
+            field.iter_mut().for_each(|u| *u *= part / before);
+            let wanted = field.iter().zip(imposed);
+            let wanted: Vec<f64> = wanted
+                .map(|(u, imposed)| imposed.map_or(*u, |value| part * value))
+                .collect();
+            before = *part;
+            approach(newton, energy, &mut field, &wanted, &describe)?;
+            newton
+                .solve(energy, &mut field, &mut residual, NEWTON, &describe)
+                .map(|_| ())
+        });
+        match solved {
+            Ok(()) => return Ok((field, residual, parts.len())),
+            Err(found) => fault = found,
+        }
+    }
+    Err(solve(fault))
+}
+
+fn state(specimen: &Specimen, field: &[f64], cell: usize) -> Result<StressEstimate, Error> {
+    let mesh = specimen.mesh;
+    let gradient = mesh.gradient_at(field, cell, mesh.shape(cell).centre());
+    let kinematics = Kinematics::new(&Gradient::from(gradient)).map_err(|_| {
+        solve(SolveFault::Inverted {
+            element: mesh.describe_cell(cell),
+        })
+    })?;
+    let (_, stress) = specimen.law.stress(&kinematics);
+    Ok(StressEstimate {
+        first_piola_kirchhoff_stress: stress.into(),
+        stress_error: [0.0; 4],
+        thickness: specimen.thickness / kinematics.area_ratio(),
+        thickness_error: 0.0,
+    })
+}
+
+/// The forces on the edges that are not free.
+fn forces(edges: &[(Segment, EdgeCondition)], reactions: &[f64]) -> Vec<EdgeForce> {
+    let held = edges
+        .iter()
+        .filter(|(_, condition)| *condition != EdgeCondition::Free);
+    let force = |(segment, _): &(Segment, EdgeCondition)| {
+        let mut nodes = segment.nodes.clone();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let along = |axis: usize| {
+            let value = nodes.iter().map(|node| reactions[2 * node + axis]).sum();
+            Estimate {
+                value,
+                standard_error: 0.0,
+                interval: [value; 2],
+            }
+        };
+        EdgeForce {
+            edge: segment.name.clone(),
+            force: [along(0), along(1)],
+        }
+    };
+    held.map(force).collect()
+}
+
+/// The given field at its nodes less the corrected one.
+fn differences(
+    mesh: &Mesh,
+    field: &[f64],
+    (given, displacement): (&Mesh, &[f64]),
+) -> Vec<Option<MarkerEstimate>> {
+    let pairs = given.nodes.iter().zip(displacement.chunks_exact(2));
+    let difference = |(place, u): (&[f64; 2], &[f64])| {
+        let there = mesh.displacement_at(field, *place);
+        Some(MarkerEstimate {
+            residual: [u[0] - there[0], u[1] - there[1]],
+            standardised_residual: 0.0,
+            trust: 1.0,
+            outlier: false,
+        })
+    };
+    pairs.map(difference).collect()
+}

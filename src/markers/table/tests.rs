@@ -1,0 +1,313 @@
+use std::fs;
+use std::path::PathBuf;
+
+use crate::error::Error;
+use crate::markers::{Marker, Read, Reading, read};
+
+/// Reads texts as files of these names.
+fn read_texts(files: &[(&str, &str)], reading: &Reading) -> Result<Read, Error> {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |(name, text): &(&str, &str)| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    };
+    let paths: Vec<PathBuf> = files.iter().map(write).collect();
+    read(&paths, reading)
+}
+
+fn unit(unit: f64) -> Reading {
+    Reading {
+        unit: Some(unit),
+        ..Reading::default()
+    }
+}
+
+fn marker(number: usize, place: [f64; 2], displacement: [f64; 2]) -> Marker {
+    Marker {
+        number,
+        place,
+        displacement,
+        standard_deviation: None,
+    }
+}
+
+fn near(found: &[Marker], expected: &[Marker]) {
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert_eq!(found.number, expected.number);
+        for axis in 0..2 {
+            assert!(
+                (found.place[axis] - expected.place[axis]).abs() < 1e-12,
+                "{found:?}"
+            );
+            let miss = found.displacement[axis] - expected.displacement[axis];
+            assert!(miss.abs() < 1e-12, "{found:?}");
+        }
+        match (found.standard_deviation, expected.standard_deviation) {
+            (Some(a), Some(b)) => assert!((a - b).abs() < 1e-12),
+            (a, b) => assert_eq!(a, b),
+        }
+    }
+}
+
+#[test]
+fn columns_are_read_with_units_frames_and_holes() {
+    let text = "frame,x [cm],y [mm],ux [um],uy_mm,standard deviation [mm],time [s]\n\
+                1,1,2,500,0.25,0.1,0.5\n1,2,2,NaN,0.25,0.1,0.5\n3,1,2,1000,0.5,,1.5\n3,2,2,-1000,,,1.5\n";
+    let found = read_texts(&[("a.csv", text)], &Reading::default()).unwrap();
+    let [first, second] = &found.measurement.frames[..] else {
+        panic!("two frames");
+    };
+    assert_eq!((first.number, first.time), (1, Some(0.5)));
+    assert_eq!((second.number, second.time), (3, Some(1.5)));
+    let with = Marker {
+        standard_deviation: Some(0.1),
+        ..marker(0, [10.0, 2.0], [0.5, 0.25])
+    };
+    near(&first.markers, &[with]);
+    near(&second.markers, &[marker(0, [10.0, 2.0], [1.0, 0.5])]);
+    let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
+    assert!(
+        told[0].contains("points without a displacement: 2"),
+        "{told:?}"
+    );
+    assert!(told[1].contains("frames are missing: 2"), "{told:?}");
+}
+
+/// The first lines of a file among DICe's regression tests, shortened, and one point that was lost.
+const DICE: &str = "***\n*** Digital Image Correlation Engine (DICe)\n*** Step size: x 35 y 35 (-1 implies not regular grid)\n\
+*** Coordinates given with (0,0) as upper left corner of image, x positive right, y positive down\n***\n\
+SUBSET_ID,COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,SIGMA,GAMMA,BETA,STATUS_FLAG\n\
+0,6.1000E+01,9.7100E+02,-6.2872E-02,-7.8897E-01,2.0E-02,2.7021E-03,0,4\n\
+1,6.1000E+01,9.3600E+02,0,0,-1.0000E+00,-1,0,11\n\
+2,6.1000E+01,9.0100E+02,-7.3856E-02,-8.5842E-01,3.0E-02,3.4787E-03,0,4\n";
+
+#[test]
+fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
+    let found = read_texts(&[("DICe_solution_07.txt", DICE)], &unit(0.5)).unwrap();
+    assert_eq!(found.layout, "DICe");
+    let with = |deviation, marker| Marker {
+        standard_deviation: Some(deviation),
+        ..marker
+    };
+    near(
+        &found.measurement.frames[0].markers,
+        &[
+            with(0.01, marker(0, [30.5, -485.5], [-0.031436, 0.394485])),
+            with(0.015, marker(2, [30.5, -450.5], [-0.036928, 0.42921])),
+        ],
+    );
+    let told = read_texts(&[("a.txt", DICE)], &Reading::default()).unwrap_err();
+    assert!(told.to_string().contains("is in pixels"), "{told}");
+}
+
+#[test]
+fn early_versions_of_dice_say_match_and_stereo_has_its_own_columns() {
+    let early = "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,GAMMA,MATCH\n1,2,3,4,0,0\n2,2,3,4,0,-1\n";
+    let found = read_texts(&[("a.txt", early)], &unit(1.0)).unwrap();
+    near(
+        &found.measurement.frames[0].markers,
+        &[marker(0, [1.0, -2.0], [3.0, -4.0])],
+    );
+    let stereo = "COORDINATE_X,COORDINATE_Y,MODEL_COORDINATES_X,MODEL_COORDINATES_Y,DISPLACEMENT_X,DISPLACEMENT_Y,\
+                  MODEL_DISPLACEMENT_X,MODEL_DISPLACEMENT_Y,SIGMA\n61,971,5,7,1,1,0.5,0.25,0.02\n";
+    let found = read_texts(&[("a.txt", stereo)], &unit(1.0)).unwrap();
+    assert_eq!(found.layout, "DICe, stereo");
+    near(
+        &found.measurement.frames[0].markers,
+        &[marker(0, [5.0, 7.0], [0.5, 0.25])],
+    );
+}
+
+#[test]
+fn mudic_gives_places_in_the_frame() {
+    let text = "id,x,y,ux,uy,true_strain_xx,true_strain_yy,true_strain_xy,eng_strain_xx,eng_strain_yy,eng_strain_xy\n\
+                0,110.0,52.0,10.0,2.0,0,0,0,0,0,0\n1,130.0,52.0,nan,2.0,0,0,0,0,0,0\n";
+    let found = read_texts(&[("frame_3.csv", text)], &unit(0.1)).unwrap();
+    assert_eq!(found.layout, "muDIC");
+    near(
+        &found.measurement.frames[0].markers,
+        &[marker(0, [10.0, -5.0], [1.0, -0.2])],
+    );
+}
+
+#[test]
+fn ncorr_keeps_matrices() {
+    let (u, v) = ("0,1,2\n0,3,NaN\n", "0,-1,-2\n0,0,1\n");
+    let reading = Reading {
+        grid: Some(0.5),
+        ..unit(2.0)
+    };
+    let files = [("frame_2_v.csv", v), ("frame_2_u.csv", u)];
+    let found = read_texts(&files, &reading).unwrap();
+    assert_eq!(found.layout, "Ncorr");
+    near(
+        &found.measurement.frames[0].markers,
+        &[
+            marker(0, [0.5, 0.0], [2.0, 2.0]),
+            marker(1, [1.0, 0.0], [4.0, 4.0]),
+            marker(2, [0.5, -0.5], [6.0, 0.0]),
+        ],
+    );
+    let told = read_texts(&files, &unit(1.0)).unwrap_err().to_string();
+    assert!(told.contains("--grid"), "{told}");
+    let told = read_texts(&[("1_u.csv", u), ("1_v.csv", "1,2\n")], &reading).unwrap_err();
+    assert!(told.to_string().contains("has 2 × 3 fields"), "{told}");
+}
+
+#[test]
+fn files_are_frames_by_the_numbers_of_their_names() {
+    let text = "x [mm],y [mm],u [mm],v [mm]\n0,0,1,0\n1,0,1,0\n";
+    let files = [
+        ("a_09.csv", text),
+        ("a_11.csv", text),
+        ("a_10.csv", text),
+        ("a_13.csv", text),
+    ];
+    let found = read_texts(&files, &Reading::default()).unwrap();
+    let numbers: Vec<_> = found
+        .measurement
+        .frames
+        .iter()
+        .map(|frame| frame.number)
+        .collect();
+    assert_eq!(numbers, [9, 10, 11, 13]);
+    assert!(
+        found.warnings[0]
+            .to_string()
+            .contains("frames are missing: 12")
+    );
+    assert_eq!(found.measurement.places(), [[0.0, 0.0], [1.0, 0.0]]);
+}
+
+#[test]
+fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
+    for (text, reason) in [
+        (
+            "x [mm],y [mm],ux [mm]\n1,2,3\n",
+            "a.csv:1: there is no column `uy`",
+        ),
+        ("1,2,3,4\n", "the columns have no names"),
+        (
+            "x,y [mm],ux [mm],uy [mm]\n1,2,3,4\n",
+            "the column `x` has no unit",
+        ),
+        (
+            "x [N],y [mm],ux [mm],uy [mm]\n1,2,3,4\n",
+            "`N` is no unit of length",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm]\n1,2,3,lost\n",
+            "a.csv:2: \"lost\" is not a number",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm]\n1,NaN,3,4\n",
+            "a.csv:2: a marker has no place",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm]\n1,2,NaN,4\n",
+            "no point of the field has a displacement",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm]\n1,2,0,0\n2,2,0,0\n",
+            "zero everywhere",
+        ),
+        (
+            "x [mm],y [mm],ux [m],uy [m]\n1,2,3,4\n9,2,3,4\n",
+            "in different units",
+        ),
+        (
+            "frame,x [mm],y [mm],ux [mm],uy [mm]\n1.5,1,2,3,4\n",
+            "a frame has no whole number",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],uy [mm]\n1,2,3,4,5\n",
+            "the column `uy` says what another column says already",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],standard_devation [mm]\n1,2,3,4,5\n",
+            "did you mean `standard_deviation`?",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],temperature\n1,2,3,4,5\n",
+            "the column `temperature` is not known here",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],uz [mm]\n1,2,3,4,1\n",
+            "the points leave their plane: `uz` reaches 1.0000",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],sigma [mm]\n1,2,3,4,-1\n",
+            "deviation is negative",
+        ),
+    ] {
+        let told = read_texts(&[("a.csv", text)], &Reading::default()).unwrap_err();
+        assert!(told.to_string().contains(reason), "{text:?}: {told}");
+        assert!(told.to_string().contains('('), "a remedy: {told}");
+    }
+}
+
+#[test]
+fn columns_are_passed_over_by_wish_and_harmless_ones_without() {
+    let text = "x [mm],y [mm],ux [mm],uy [mm],uz [mm],exx,Strain YY,temperature [C]\n1,2,3,4,9,0,0,20\n5,2,3,4,9,0,0,20\n";
+    let reading = Reading {
+        ignored_columns: vec!["temperature".into(), "uz".into()],
+        ..Reading::default()
+    };
+    let found = read_texts(&[("a.csv", text)], &reading).unwrap();
+    assert_eq!(found.measurement.frames[0].markers.len(), 2);
+}
+
+#[test]
+fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
+    let text = "x [mm],y [mm],ux [mm],uy [mm]\n0.01,0.02,0.001,0\n0.03,0.02,0.001,0\n";
+    let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
+    near(
+        &found.measurement.frames[0].markers,
+        &[
+            marker(0, [10.0, 20.0], [1.0, 0.0]),
+            marker(1, [30.0, 20.0], [1.0, 0.0]),
+        ],
+    );
+    let told = found.warnings[0].to_string();
+    assert!(told.contains("says mm, --unit says 1000 mm"), "{told}");
+    // Of different units each stands.
+    let text = "x [mm],y [mm],ux [um],uy [um]\n10,20,1000,0\n30,20,1000,0\n";
+    let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
+    assert_eq!(
+        found.measurement.frames[0].markers[1],
+        marker(1, [30.0, 20.0], [1.0, 0.0])
+    );
+}
+
+#[test]
+fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
+    let text = "x [mm],y [mm],ux [mm],uy [mm]\n0,0,1,2\n0,0,1,2\n0,0,1,2.5\n9,0,1,2\n9,9,,\n";
+    let found = read_texts(&[("a.csv", text)], &Reading::default()).unwrap();
+    near(
+        &found.measurement.frames[0].markers,
+        &[
+            marker(0, [0.0, 0.0], [1.0, 2.0]),
+            marker(0, [0.0, 0.0], [1.0, 2.5]),
+            marker(1, [9.0, 0.0], [1.0, 2.0]),
+        ],
+    );
+    assert_eq!(
+        found.measurement.places(),
+        [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]
+    );
+    let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
+    assert!(
+        told[1].contains("rows that stand twice") && told[1].contains(": 1"),
+        "{told:?}"
+    );
+    assert!(
+        told[2].contains("measured again at the same place"),
+        "{told:?}"
+    );
+    // What is found in one frame is not lost.
+    let text = "frame,x [mm],y [mm],ux [mm],uy [mm]\n1,0,0,1,2\n1,9,0,1,2\n2,0,0,,\n2,9,0,1,2\n";
+    let found = read_texts(&[("a.csv", text)], &Reading::default()).unwrap();
+    assert!(found.measurement.lost.is_empty());
+}

@@ -1,0 +1,56 @@
+//! How loads and turns grow with time.
+
+use super::xml::Xml;
+use crate::output::export::{Held, Model, number};
+
+/// Points of the path of a turn between two load factors.
+const TURN_POINTS: u32 = 8;
+
+/// Load curves: the first is the load factor itself, the others follow turning nodes.
+#[derive(Default)]
+pub struct Curves(Vec<Vec<[f64; 2]>>);
+
+impl Curves {
+    /// The number of the curve of a node that a support turns, exact at every load factor and at points between.
+    pub fn turn(&mut self, model: &Model, held: &Held, node: usize) -> usize {
+        let place = model.given.mesh.nodes[node];
+        let mut points = vec![[0.0, 0.0]];
+        for factor in model.given.factors {
+            let before = points[points.len() - 1][0];
+            for i in 1..=TURN_POINTS {
+                let time = match i {
+                    TURN_POINTS => *factor,
+                    _ => before + (factor - before) * f64::from(i) / f64::from(TURN_POINTS),
+                };
+                points.push([time, held.at(place, time)]);
+            }
+        }
+        self.0.push(points);
+        self.0.len() + 1
+    }
+
+    pub fn write(self, file: &mut Xml) {
+        file.open("LoadData", &[]);
+        let factor = vec![[0.0, 0.0], [1.0, 1.0]];
+        for (index, points) in std::iter::once(factor).chain(self.0).enumerate() {
+            let id = (index + 1).to_string();
+            file.open(
+                "load_controller",
+                &[
+                    ("id", &id),
+                    ("name", &format!("curve {id}")),
+                    ("type", "loadcurve"),
+                ],
+            );
+            file.text("interpolate", &[], "LINEAR");
+            file.text("extend", &[], "EXTRAPOLATE");
+            file.open("points", &[]);
+            for [time, value] in points {
+                file.text("pt", &[], &format!("{},{}", number(time), number(value)));
+            }
+            file.close("points");
+            file.close("load_controller");
+        }
+        file.close("LoadData");
+    }
+}

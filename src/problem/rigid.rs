@@ -1,0 +1,413 @@
+//! Motions without strain that no support prevents.
+//!
+//! Cells that share an edge are one rigid body; bodies that share single nodes hang together by hinges. With a body's
+//! motion q = (a, b, ω L) about the centre of the mesh, L its size, the displacement of a node at (x, y) is
+//! (a − ω y, b + ω x). Every held unknown, every tie and every hinge is a linear condition on the motions; those that satisfy all
+//! of them strain nothing. Forces, and what they stiffen, do not count: a body that only its tension would keep in place has such
+//! a motion at rest.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::supports::Supported;
+use crate::error::Diagnostic;
+use crate::mesh::Mesh;
+
+/// Eigenvalue of the conditions, relative to the largest, below which a motion is free: the square of how far
+/// apart two held nodes must be, relative to the mesh.
+const FREE: f64 = 1e-14;
+
+/// Bodies up to which their hinges and common grips count; more are faults of the mesh, each of which stands alone.
+const TOGETHER: usize = 100;
+
+/// Free motions that are told one by one.
+const MOST: usize = 8;
+
+/// The parts of a mesh that can move without strain, each told with its motion.
+pub fn free_motions(mesh: &Mesh, supported: &Supported) -> Vec<Diagnostic> {
+    let bodies = Bodies::of(mesh);
+    let mut found = Vec::new();
+    for group in bodies.groups(supported) {
+        let motions = bodies.free(&group, supported);
+        for (place, body) in group.iter().enumerate() {
+            let own = motions.rows(3 * place, 3).into_owned();
+            if let Some(motion) = bodies.describe(&own) {
+                found.push(bodies.tell(*body, &motion));
+            }
+        }
+    }
+    let more = found.len().saturating_sub(MOST);
+    found.truncate(MOST);
+    if more > 0 {
+        found.push(
+            Diagnostic::error(
+                "support",
+                format!("{more} more parts can move without strain"),
+            )
+            .hint("look for seams of doubled nodes in the mesh"),
+        );
+    }
+    found
+}
+
+/// The rigid bodies of a mesh.
+struct Bodies<'a> {
+    mesh: &'a Mesh,
+    /// The first cell of each body.
+    cells: Vec<usize>,
+    /// The bodies of each node: none, one, or those that hang together there.
+    of_node: Vec<Vec<usize>>,
+    centre: [f64; 2],
+    size: f64,
+}
+
+impl<'a> Bodies<'a> {
+    fn of(mesh: &'a Mesh) -> Self {
+        let mut parents: Vec<usize> = (0..mesh.cell_count()).collect();
+        let mut beside: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+        for cell in 0..mesh.cell_count() {
+            let nodes = mesh.cell(cell);
+            for edge in mesh.shape(cell).edges() {
+                let (a, b) = (nodes[edge[0]], nodes[edge[1]]);
+                let other = *beside.entry([a.min(b), a.max(b)]).or_insert(cell);
+                let [one, other] = [cell, other].map(|cell| root(&mut parents, cell));
+                parents[one.max(other)] = one.min(other);
+            }
+        }
+        let (mut numbers, mut cells) = (BTreeMap::new(), Vec::new());
+        let mut of_node = vec![Vec::new(); mesh.nodes.len()];
+        for cell in 0..mesh.cell_count() {
+            let body = *numbers.entry(root(&mut parents, cell)).or_insert_with(|| {
+                cells.push(cell);
+                cells.len() - 1
+            });
+            for node in mesh.cell(cell) {
+                if !of_node[*node].contains(&body) {
+                    of_node[*node].push(body);
+                }
+            }
+        }
+        let [low, high] = mesh.bounding_box();
+        Self {
+            mesh,
+            cells,
+            of_node,
+            centre: mesh.middle(),
+            size: 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]),
+        }
+    }
+
+    /// Bodies that hinges or ties couple, together; each alone where there are too many.
+    fn groups(&self, supported: &Supported) -> Vec<Vec<usize>> {
+        let mut parents: Vec<usize> = (0..self.cells.len()).collect();
+        if parents.len() > TOGETHER {
+            return parents.into_iter().map(|body| vec![body]).collect();
+        }
+        let mut join = |a: usize, b: usize| {
+            let [one, other] = [a, b].map(|body| root(&mut parents, body));
+            parents[one.max(other)] = one.min(other);
+        };
+        for own in &self.of_node {
+            own.windows(2).for_each(|pair| join(pair[0], pair[1]));
+        }
+        for (unknown, master) in &supported.ties {
+            let [own, others] = [unknown, master].map(|unknown| self.of_node[unknown / 2].first());
+            if let (Some(own), Some(other)) = (own, others) {
+                join(*own, *other);
+            }
+        }
+        let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for body in 0..self.cells.len() {
+            groups
+                .entry(root(&mut parents, body))
+                .or_default()
+                .push(body);
+        }
+        groups.into_values().collect()
+    }
+
+    /// The motions of some bodies that satisfy all conditions: 3 rows a body, a column a motion.
+    fn free(&self, group: &[usize], supported: &Supported) -> DMatrix<f64> {
+        let count = 3 * group.len();
+        let place = |body: &usize| group.binary_search(body).ok();
+        let row = |unknown: usize, body: usize| {
+            let mut row = DVector::zeros(count);
+            if let Some(place) = place(&body) {
+                let entries = self.displacement(unknown);
+                (0..3).for_each(|i| row[3 * place + i] = entries[i]);
+            }
+            row
+        };
+        let first = |unknown: usize| self.of_node[unknown / 2].first().copied();
+        let mut normal = DMatrix::<f64>::zeros(count, count);
+        let mut impose = |row: DVector<f64>| normal.ger(1.0, &row, &row, 1.0);
+        for unknown in supported.held.keys() {
+            first(*unknown)
+                .into_iter()
+                .for_each(|body| impose(row(*unknown, body)));
+        }
+        for (unknown, master) in &supported.ties {
+            if let (Some(own), Some(other)) = (first(*unknown), first(*master)) {
+                impose(row(*unknown, own) - row(*master, other));
+            }
+        }
+        for (node, bodies) in self.of_node.iter().enumerate() {
+            for pair in bodies.windows(2).filter(|_| group.len() > 1) {
+                for unknown in [2 * node, 2 * node + 1] {
+                    impose(row(unknown, pair[0]) - row(unknown, pair[1]));
+                }
+            }
+        }
+        let eigen = SymmetricEigen::new(normal);
+        let most = eigen.eigenvalues.max();
+        let free = (0..count).filter(|i| eigen.eigenvalues[*i] <= FREE * most);
+        let columns: Vec<_> = free
+            .map(|i| eigen.eigenvectors.column(i).into_owned())
+            .collect();
+        match columns.is_empty() {
+            true => DMatrix::zeros(count, 0),
+            false => DMatrix::from_columns(&columns),
+        }
+    }
+
+    /// The displacement of an unknown by the three motions of its body.
+    fn displacement(&self, unknown: usize) -> [f64; 3] {
+        let [x, y] =
+            [0, 1].map(|axis| (self.mesh.nodes[unknown / 2][axis] - self.centre[axis]) / self.size);
+        if unknown.is_multiple_of(2) {
+            [1.0, 0.0, -y]
+        } else {
+            [0.0, 1.0, x]
+        }
+    }
+
+    /// What motions, given as columns a, b, ω L of one body, are in words; nothing where there are none.
+    fn describe(&self, motions: &DMatrix<f64>) -> Option<String> {
+        const SMALL: f64 = 1e-6;
+        if motions.ncols() == 0 {
+            return None;
+        }
+        let svd = motions.clone().svd(true, false);
+        let basis = svd.u.expect("asked for");
+        let kept = (0..svd.singular_values.len()).filter(|i| svd.singular_values[*i] > SMALL);
+        let kept: Vec<_> = kept.map(|i| basis.column(i).into_owned()).collect();
+        let turning = kept
+            .iter()
+            .max_by(|a, b| a[2].abs().total_cmp(&b[2].abs()))?;
+        if turning[2].abs() <= SMALL {
+            return Some(match &kept[..] {
+                [along] => format!("move {}", direction([along[0], along[1]])),
+                _ => "move along x and y".to_owned(),
+            });
+        }
+        match &kept[..] {
+            [turn] => Some(format!("turn about {}", self.pole(turn))),
+            [one, other] => {
+                // The part of both that does not turn.
+                let along = [0, 1].map(|axis| one[axis] * other[2] - other[axis] * one[2]);
+                Some(format!("move {} and turn", direction(along)))
+            }
+            _ => Some("move along x and y and turn: nothing holds it".to_owned()),
+        }
+    }
+
+    /// The point about which a motion turns.
+    fn pole(&self, turn: &DVector<f64>) -> String {
+        let by = self.size / turn[2];
+        let [x, y] = [self.centre[0] - by * turn[1], self.centre[1] + by * turn[0]];
+        // No minus before a zero.
+        let tidy = |x: f64| if x.abs() < 0.05 { 0.0 } else { x };
+        format!("({:.1}, {:.1}) mm", tidy(x), tidy(y))
+    }
+
+    fn tell(&self, body: usize, motion: &str) -> Diagnostic {
+        let part = match self.cells.len() {
+            1 => "the specimen".to_owned(),
+            _ => format!(
+                "the part with {}",
+                self.mesh.describe_cell(self.cells[body])
+            ),
+        };
+        let own = |nodes: &[usize]| nodes.iter().any(|node| self.of_node[*node].contains(&body));
+        let groups = self.mesh.groups().iter();
+        let names = groups
+            .filter(|(_, group)| own(&group.nodes))
+            .map(|(name, _)| format!("`{name}`"));
+        let names: Vec<_> = names.collect();
+        let hint = match names.is_empty() {
+            true => "attach it to the rest of the mesh, or leave it out".to_owned(),
+            false => format!("add a support on one of its groups {}", names.join(", ")),
+        };
+        let message = format!("{part} can {motion} without strain: no support prevents it");
+        Diagnostic::error("support", message).hint(hint)
+    }
+}
+
+fn direction(along: [f64; 2]) -> String {
+    let size = along[0].hypot(along[1]);
+    let [x, y] = along.map(|x| x / size);
+    if y.abs() < 1e-6 {
+        "along x".to_owned()
+    } else if x.abs() < 1e-6 {
+        "along y".to_owned()
+    } else {
+        let sign = x.signum();
+        format!("along ({:.3}, {:.3})", sign * x, sign * y)
+    }
+}
+
+/// The least member that stands for a set.
+fn root(parents: &mut [usize], mut member: usize) -> usize {
+    while parents[member] != member {
+        parents[member] = parents[parents[member]];
+        member = parents[member];
+    }
+    member
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::material::NeoHooke;
+    use crate::mesh::{CellShape, Shape};
+    use crate::problem::{BoundaryProblem, Drive, Support};
+
+    fn checked(mesh: &Mesh, supports: &[(&str, Support)]) -> Vec<Diagnostic> {
+        let owned = supports
+            .iter()
+            .map(|(group, support)| ((*group).to_owned(), *support));
+        let problem = BoundaryProblem {
+            thickness: 1.0,
+            law: Arc::new(NeoHooke { c10: 0.05 }),
+            supports: owned.collect(),
+            loads: Vec::new(),
+        };
+        problem.check(mesh).err().unwrap_or_default()
+    }
+
+    fn strip() -> Mesh {
+        let mut mesh = Shape::Strip { size: [30.0, 10.0] }.mesh(2, CellShape::Quad4);
+        for (name, at) in [("corner", [0.0, -5.0]), ("end", [30.0, -5.0])] {
+            let node = mesh.nodes.iter().position(|node| *node == at).unwrap();
+            mesh.name_nodes(name, &[node].into());
+        }
+        mesh
+    }
+
+    const X: Support = Support::Displacement([Some(0.0), None]);
+    const Y: Support = Support::Displacement([None, Some(0.0)]);
+    const BOTH: Support = Support::Displacement([Some(0.0); 2]);
+
+    #[test]
+    fn free_motions_of_one_part_are_named() {
+        let mesh = strip();
+        for (supports, told) in [
+            (vec![], "move along x and y and turn: nothing holds it"),
+            (vec![("left", X)], "move along y without"),
+            (vec![("bottom", Y)], "move along x without"),
+            (vec![("corner", BOTH)], "turn about (0.0, -5.0) mm"),
+            (vec![("corner", X)], "move along y and turn"),
+            (
+                vec![("corner", X), ("end", Y)],
+                "turn about (30.0, -5.0) mm",
+            ),
+            (
+                vec![(
+                    "right",
+                    Support::Grip([Drive::Force(1.0), Drive::Displacement(0.0)]),
+                )],
+                "move along x without",
+            ),
+            (
+                vec![(
+                    "right",
+                    Support::Grip([Drive::Force(1.0), Drive::Force(0.0)]),
+                )],
+                "move along x and y without",
+            ),
+        ] {
+            let found = checked(&mesh, &supports);
+            assert_eq!(found.len(), 1, "{supports:?}: {found:?}");
+            assert!(
+                found[0].message.starts_with("the specimen can "),
+                "{}",
+                found[0].message
+            );
+            assert!(
+                found[0].message.contains(told),
+                "{supports:?}: {}",
+                found[0].message
+            );
+            let hint = found[0].hint.as_deref().unwrap_or_default();
+            assert!(hint.contains("`left`"), "{hint}");
+        }
+    }
+
+    #[test]
+    fn supports_that_suffice_are_accepted() {
+        let grip = |x, y| Support::Grip([x, y]);
+        for supports in [
+            vec![("left", BOTH)],
+            vec![("corner", BOTH), ("end", Y)],
+            vec![("left", X), ("bottom", Y)],
+            vec![
+                ("left", BOTH),
+                ("right", grip(Drive::Force(1.0), Drive::Force(0.0))),
+            ],
+            vec![
+                ("left", X),
+                ("right", grip(Drive::Force(1.0), Drive::Displacement(0.0))),
+            ],
+        ] {
+            assert_eq!(checked(&strip(), &supports), [], "{supports:?}");
+        }
+    }
+
+    /// Two squares beside each other, at one corner, or apart.
+    fn squares(by: [f64; 2]) -> Mesh {
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let mut nodes = square.to_vec();
+        let mut other = Vec::new();
+        for corner in square {
+            let place = [corner[0] + by[0], corner[1] + by[1]];
+            let known = nodes.iter().position(|node| *node == place);
+            other.push(known.unwrap_or(nodes.len()));
+            if known.is_none() {
+                nodes.push(place);
+            }
+        }
+        let cells = [
+            (CellShape::Quad4, vec![0, 1, 2, 3]),
+            (CellShape::Quad4, other),
+        ];
+        let mut mesh = Mesh::new(nodes, cells);
+        mesh.name_nodes("left", &[0, 3].into());
+        mesh
+    }
+
+    #[test]
+    fn every_part_must_be_held_and_a_hinge_holds_two_motions_of_three() {
+        let clamp = [("left", BOTH)];
+        assert_eq!(checked(&squares([1.0, 0.0]), &clamp), []);
+        let hinged = checked(&squares([1.0, 1.0]), &clamp);
+        assert_eq!(hinged.len(), 1);
+        let message = &hinged[0].message;
+        assert!(
+            message
+                .contains("the part with cell 1 near (1.5, 1.5) mm can turn about (1.0, 1.0) mm"),
+            "{message}"
+        );
+        let apart = checked(&squares([3.0, 0.0]), &clamp);
+        assert_eq!(apart.len(), 1);
+        assert!(apart[0].message.contains("nothing holds it"), "{apart:?}");
+        assert!(
+            apart[0]
+                .hint
+                .as_deref()
+                .is_some_and(|hint| hint.contains("attach it"))
+        );
+    }
+}

@@ -1,0 +1,266 @@
+//! What is known of a specimen besides its displacements: a file, completed by the command line.
+//!
+//! ```toml
+//! title = "Strip, test 12"   # of the report
+//! noise = "0.1 mm"           # standard deviation of each component; estimated where it is left out
+//! robust = "tukey"           # "no", "huber" or "tukey"
+//! physics = "exact"          # or "weighted" against the data, for a law that is not exactly right
+//! unnamed = "tested"         # outer edges that are not named: the data tell which are free, "loaded" or "free"
+//! edge_gap = "1.5 mm"        # how far inside of the specimen's edge the outermost markers lie, if the outline is theirs
+//! fit = ["c10"]              # one or two parameters of the law that are found with the field
+//!
+//! [[edges]]                  # holes that are not named are free
+//! names = ["top", "bottom"]
+//! condition = "free"         # "free", "known", "rigid" (moved by unknown amounts) or "unknown"
+//!
+//! [[edges]]
+//! names = ["left"]
+//! condition = "known"
+//! ux = "0 mm"                # an axis that is left out is free
+//! uy = "0 mm"
+//!
+//! [[force]]                  # that was measured on an edge that is not free
+//! edge = "left"
+//! axis = "x"
+//! force = "-1.2 N"           # of the grip on the specimen, positive along the axis
+//! standard_deviation = "0.02 N"   # 1 % of the force where it is left out
+//! frame = 3                  # may be left out if there is one frame
+//! ```
+
+use std::path::Path;
+
+use crate::corrector::estimation::{
+    EdgeCondition, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
+};
+use crate::document::{Bound, Document, Faults, Section};
+use crate::error::{Diagnostic, Error, suggestion};
+use crate::markers::Measurement;
+use crate::material::Card;
+use crate::mesh::Mesh;
+use crate::studies::plate::study;
+use crate::units::Dimension;
+
+/// An edge by its name, with what is known of it.
+pub type EdgesByName = Vec<(String, EdgeCondition)>;
+
+/// What is known besides the displacements.
+#[derive(Clone, Debug, Default)]
+pub struct Conditions {
+    /// Heading of the report; empty where it is not given.
+    pub title: String,
+    /// The edges.
+    pub edges: EdgesByName,
+    /// Standard deviation of each component of the displacement in mm.
+    pub noise: Option<f64>,
+    /// How markers that are far off are weighted.
+    pub robust: Robust,
+    /// Whether equilibrium holds exactly.
+    pub physics: Physics,
+    /// What is assumed of outer edges that are not named.
+    pub unnamed: Unnamed,
+    /// Measured forces, with the frame where it is said.
+    pub forces: Vec<(Option<usize>, MeasuredForce)>,
+    /// Parameters of the law that are found with the field.
+    pub fit: Vec<String>,
+    /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
+    pub edge_gap: Option<f64>,
+}
+
+/// Standard deviation of a force over the force where it is not given.
+const FORCE_DEVIATION: f64 = 0.01;
+
+/// A measured force; without a standard deviation it has one of 1 %.
+pub fn measured_force(
+    edge: &str,
+    axis: usize,
+    force: f64,
+    deviation: Option<f64>,
+) -> MeasuredForce {
+    MeasuredForce {
+        edge: edge.to_owned(),
+        axis,
+        force,
+        standard_deviation: deviation.unwrap_or(FORCE_DEVIATION * force.abs()),
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Free,
+    Known,
+    Rigid,
+    Unknown,
+}
+
+const KINDS: [(&str, Kind); 4] = [
+    ("free", Kind::Free),
+    ("known", Kind::Known),
+    ("rigid", Kind::Rigid),
+    ("unknown", Kind::Unknown),
+];
+
+impl Conditions {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with all of its faults.
+    pub fn of_file(path: &Path) -> Result<Self, Error> {
+        let text = study::read(path)?;
+        let faults = Faults::default();
+        let document = Document::parse(&path.display().to_string(), &text, &faults);
+        let conditions = read(&document.root(None, &faults));
+        drop(document);
+        faults.finish()?;
+        Ok(conditions)
+    }
+
+    /// Whether the mesh has the edges that are named, each once.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every name that is wrong.
+    pub fn check(&self, mesh: &Mesh) -> Result<(), Error> {
+        let known: Vec<&str> = mesh.groups().keys().map(String::as_str).collect();
+        let mut faults = Vec::new();
+        for (index, (name, _)) in self.edges.iter().enumerate() {
+            if !known.contains(&&**name) {
+                let hint = suggestion(name, &known, "its edges:");
+                let fault = Diagnostic::error("", format!("the mesh has no edge `{name}`"));
+                faults.push(fault.hint(hint));
+            }
+            if self.edges[..index].iter().any(|(other, _)| other == name) {
+                let fault = Diagnostic::error("", format!("the edge `{name}` has two conditions"));
+                faults.push(fault.hint("name it once"));
+            }
+        }
+        match faults.is_empty() {
+            true => Ok(()),
+            false => Err(Error::Input(faults)),
+        }
+    }
+
+    /// Whether the frames have the forces that are given: one frame each, the only one where none is said.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the first force that belongs to no frame.
+    pub fn check_frames(&self, measurement: &Measurement) -> Result<(), Error> {
+        let frames = &measurement.frames;
+        let numbers = || frames.iter().map(|frame| frame.number);
+        for (frame, force) in &self.forces {
+            let known = match frame {
+                None => frames.len() == 1,
+                Some(number) => numbers().any(|known| known == *number),
+            };
+            if !known {
+                let all: Vec<_> = numbers().map(|number| number.to_string()).collect();
+                let fault = format!("the force on `{}` belongs to no frame", force.edge);
+                let hint = format!("give it one: {}", all.join(", "));
+                return Err(Error::input(fault, hint));
+            }
+        }
+        Ok(())
+    }
+
+    /// The law with parameters to be found, if there are any.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the card has no such parameters.
+    pub fn regressed_law(&self, card: &Card) -> Result<Option<RegressedLaw>, Error> {
+        let keys: Vec<&str> = self.fit.iter().map(String::as_str).collect();
+        let regressed = (!keys.is_empty()).then(|| RegressedLaw::of_card(card, &keys));
+        regressed
+            .transpose()
+            .map_err(|fault| Error::Input(vec![fault]))
+    }
+
+    /// What the estimate of a frame takes; a law is regressed in frames with a force.
+    pub fn knowledge(&self, frame: usize, law: Option<&RegressedLaw>) -> Knowledge {
+        let own = self.forces.iter();
+        let own = own.filter(|(of, _)| of.is_none_or(|number| number == frame));
+        let forces: Vec<_> = own.map(|(_, force)| force.clone()).collect();
+        Knowledge {
+            edges: self.edges.clone(),
+            unnamed: self.unnamed,
+            noise: self.noise,
+            robust: self.robust,
+            physics: self.physics,
+            law: law
+                .filter(|_| !forces.is_empty() || self.forces.is_empty())
+                .cloned(),
+            forces,
+        }
+    }
+}
+
+fn read(root: &Section) -> Conditions {
+    let mut conditions = Conditions::default();
+    if root.has("title") {
+        conditions.title = root.heading("title");
+    }
+    if root.has("noise") {
+        conditions.noise = Some(root.quantity("noise", Dimension::Length, Bound::Positive));
+    }
+    if root.has("edge_gap") {
+        conditions.edge_gap =
+            Some(root.quantity("edge_gap", Dimension::Length, Bound::NonNegative));
+    }
+    if root.has("robust") {
+        conditions.robust = root.choice("robust", &Robust::NAMES).unwrap_or_default();
+    }
+    if root.has("physics") {
+        conditions.physics = root.choice("physics", &Physics::NAMES).unwrap_or_default();
+    }
+    if root.has("unnamed") {
+        conditions.unnamed = root.choice("unnamed", &Unnamed::NAMES).unwrap_or_default();
+    }
+    if root.has("fit") {
+        conditions.fit = root.texts("fit");
+    }
+    if root.has("force") {
+        let forces = root.tables("force");
+        conditions.forces = forces.iter().map(force).collect();
+    }
+    if root.has("edges") {
+        for section in root.tables("edges") {
+            let names = section.texts("names");
+            let condition = condition(&section);
+            conditions
+                .edges
+                .extend(names.into_iter().map(|name| (name, condition)));
+            section.unknown_keys();
+        }
+    }
+    root.unknown_keys();
+    conditions
+}
+
+fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
+    let edge = section.text("edge");
+    let axis = section.choice("axis", &[("x", 0), ("y", 1)]).unwrap_or(0);
+    let force = section.quantity("force", Dimension::Force, Bound::Any);
+    let has = |key| section.has(key);
+    let deviation = has("standard_deviation")
+        .then(|| section.quantity("standard_deviation", Dimension::Force, Bound::Positive));
+    let frame = has("frame").then(|| section.count("frame", 0, usize::MAX >> 1));
+    section.unknown_keys();
+    (frame, measured_force(&edge, axis, force, deviation))
+}
+
+fn condition(section: &Section) -> EdgeCondition {
+    let along = |key: &'static str| {
+        let has = section.has(key);
+        has.then(|| section.quantity(key, Dimension::Length, Bound::Any))
+    };
+    match section.choice("condition", &KINDS) {
+        Some(Kind::Known) => {
+            let displacement = [along("ux"), along("uy")];
+            if displacement == [None, None] {
+                let hint = "add ux = \"5 mm\", uy = \"0 mm\", or one of them";
+                section.fault("condition", "a known edge needs its displacement", hint);
+            }
+            EdgeCondition::Known(displacement)
+        }
+        Some(Kind::Rigid) => EdgeCondition::Rigid,
+        Some(Kind::Unknown) => EdgeCondition::Unknown,
+        Some(Kind::Free) | None => EdgeCondition::Free,
+    }
+}

@@ -1,0 +1,92 @@
+//! The report of a correction for programs.
+
+use serde_json::{Value, json};
+
+use super::report::{largest_correction, largest_error, left, outliers, used};
+use super::written::title;
+use crate::corrector::Estimate;
+use crate::corrector::estimation::{EdgeCondition, FieldEstimate};
+use crate::markers::Frame;
+use crate::studies::markers::MeasuredField;
+
+/// The report for programs.
+pub fn json(field: &MeasuredField, estimates: &[FieldEstimate]) -> Value {
+    let frames = field.measurement.frames.iter().zip(estimates);
+    json!({
+        "title": title(field),
+        "layout": field.layout,
+        "material": field.card.name,
+        "thickness_mm": field.thickness,
+        "mesh": {
+            "origin": field.mesh_origin,
+            "nodes": field.mesh.nodes.len(),
+            "cells": field.mesh.cell_count(),
+        },
+        "trade": estimates.first().map(|estimate| estimate.rule),
+        "brought_onto_another_mesh": field.coarse.is_some(),
+        "frames": frames.map(|(frame, estimate)| of_frame(frame, estimate)).collect::<Vec<_>>(),
+        "edge_may_lie_farther_out_by_mm": field.unknown_gap,
+        "doubts": field.all_doubts(estimates).iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "warnings": field.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "gelbench": env!("CARGO_PKG_VERSION"),
+    })
+}
+
+fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
+    let forces = estimate.forces.iter().map(|force| {
+        json!({
+            "edge": force.edge,
+            "x_N": of_estimate(&force.force[0]),
+            "y_N": of_estimate(&force.force[1]),
+        })
+    });
+    let parameters = estimate.parameters.iter();
+    let parameters = parameters
+        .map(|(key, unit, found)| json!({ "key": key, "unit": unit, "found": of_estimate(found) }));
+    let checks = estimate.force_checks.iter().map(|check| {
+        json!({
+            "edge": check.measured.edge,
+            "axis": (["x", "y"][check.measured.axis]),
+            "measured_N": check.measured.force,
+            "found_N": check.found,
+            "standardised_difference": check.standardised,
+        })
+    });
+    let free = estimate
+        .edges
+        .iter()
+        .filter(|edge| edge.condition == EdgeCondition::Free);
+    json!({
+        "frame": frame.number,
+        "time": frame.time,
+        "markers": used(estimate),
+        "outliers": outliers(estimate),
+        "noise_mm": estimate.noise,
+        "noise_is_given": estimate.known_noise,
+        "left_mm": left(estimate),
+        "largest_left_mm": largest_correction(estimate),
+        "effective_parameters": estimate.effective_parameters,
+        "largest_standard_error_mm": largest_error(estimate),
+        "steps": estimate.steps,
+        "errors_hold_the_mesh": estimate.holds_mesh_error,
+        "residual_correlation": estimate.whiteness.map(|found| json!({
+            "of_neighbours": found.correlation,
+            "of_components": found.of_components,
+            "of_white_noise": found.expected,
+            "standard_deviation": found.deviation,
+            "is_white": found.is_white(),
+        })),
+        "measured_forces": checks.collect::<Vec<_>>(),
+        "forces": forces.collect::<Vec<_>>(),
+        "parameters": parameters.collect::<Vec<_>>(),
+        "free_edges": free.map(|edge| edge.edge.as_str()).collect::<Vec<_>>(),
+    })
+}
+
+fn of_estimate(found: &Estimate) -> Value {
+    json!({
+        "value": found.value,
+        "standard_error": found.standard_error,
+        "interval": found.interval,
+    })
+}

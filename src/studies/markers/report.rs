@@ -1,0 +1,359 @@
+//! The report of a correction.
+
+use super::written::title;
+use crate::corrector::Estimate;
+use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
+use crate::results::{Block, Figure};
+use crate::studies::markers::MeasuredField;
+
+/// The figures of every frame, for the terminal.
+pub fn summary(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
+    let mut text = format!(
+        "{}; {}; mesh {}: {}\n",
+        field.layout,
+        field.card.name,
+        field.mesh_origin,
+        field.mesh.describe()
+    );
+    text += match field.coarse {
+        None => {
+            "frame  markers  outliers  noise [mm]  left [mm]  parameters  largest standard error [mm]\n"
+        }
+        Some(_) => "frame    nodes  correction, root mean square [mm]  largest [mm]\n",
+    };
+    for (frame, estimate) in field.measurement.frames.iter().zip(estimates) {
+        text += &match field.coarse {
+            None => format!(
+                "{:>5}  {:>7}  {:>8}  {:>10.4}  {:>9.4}  {:>10.1}  {:>27.4}\n",
+                frame.number,
+                used(estimate),
+                outliers(estimate),
+                estimate.noise,
+                left(estimate),
+                estimate.effective_parameters,
+                largest_error(estimate)
+            ),
+            Some(_) => format!(
+                "{:>5}  {:>7}  {:>33.4}  {:>12.4}\n",
+                frame.number,
+                used(estimate),
+                left(estimate),
+                largest_correction(estimate)
+            ),
+        };
+    }
+    for (frame, estimate) in field.measurement.frames.iter().zip(estimates) {
+        for (key, unit, found) in &estimate.parameters {
+            let [low, high] = found.interval;
+            text += &format!(
+                "{key} in frame {}: {:.6} {unit} ({low:.6} … {high:.6})\n",
+                frame.number, found.value
+            );
+        }
+    }
+    if let (Some(frame), Some(last)) = (field.measurement.frames.last(), estimates.last()) {
+        for force in &last.forces {
+            let [x, y] = &force.force;
+            text += &format!(
+                "force on {} in frame {}: x {}, y {}\n",
+                force.edge,
+                frame.number,
+                newtons(x),
+                newtons(y)
+            );
+        }
+    }
+    for doubt in field.all_doubts(estimates) {
+        text += &format!("doubtful: {}\n", doubt.message);
+    }
+    text
+}
+
+fn newtons(force: &Estimate) -> String {
+    let [low, high] = force.interval;
+    match low < high {
+        true => format!("{:.4} N ({low:.4} … {high:.4})", force.value),
+        false => format!("{:.4} N", force.value),
+    }
+}
+
+/// How many markers lie on the mesh.
+pub(super) fn used(estimate: &FieldEstimate) -> usize {
+    estimate.markers.iter().flatten().count()
+}
+
+pub(super) fn outliers(estimate: &FieldEstimate) -> usize {
+    let markers = estimate.markers.iter().flatten();
+    markers.filter(|marker| marker.outlier).count()
+}
+
+/// Root mean square of the components of what is left of the markers.
+pub(super) fn left(estimate: &FieldEstimate) -> f64 {
+    let residuals = estimate
+        .markers
+        .iter()
+        .flatten()
+        .flat_map(|marker| marker.residual);
+    let squares: f64 = residuals.map(|r| r * r).sum();
+    (squares / (2 * used(estimate).max(1)) as f64).sqrt()
+}
+
+/// The largest distance of the given field from the corrected one at its nodes.
+pub(super) fn largest_correction(estimate: &FieldEstimate) -> f64 {
+    let markers = estimate.markers.iter().flatten();
+    let lengths = markers.map(|marker| marker.residual[0].hypot(marker.residual[1]));
+    lengths.fold(0.0, f64::max)
+}
+
+pub(super) fn largest_error(estimate: &FieldEstimate) -> f64 {
+    let pairs = estimate.displacement_error.chunks_exact(2);
+    pairs.map(|pair| pair[0].hypot(pair[1])).fold(0.0, f64::max)
+}
+
+fn condition(condition: &EdgeCondition) -> String {
+    match condition {
+        EdgeCondition::Free => "free".into(),
+        EdgeCondition::Rigid => "rigid, moved by unknown amounts".into(),
+        EdgeCondition::Unknown => "moved in an unknown smooth way".into(),
+        EdgeCondition::Known([x, y]) => {
+            let along = |axis: &str, value: &Option<f64>| match value {
+                Some(value) => format!("u{axis} = {value} mm"),
+                None => format!("free along {axis}"),
+            };
+            format!("known: {}, {}", along("x", x), along("y", y))
+        }
+    }
+}
+
+/// The report with `figures`.
+pub fn report(
+    field: &MeasuredField,
+    estimates: &[FieldEstimate],
+    figures: &[Figure],
+) -> Vec<Block> {
+    let mut blocks = vec![
+        Block::Heading(1, title(field)),
+        Block::Paragraph(format!(
+            "{} frames, read as {}. Material {} ({}), {} mm thick. Mesh {}: {}.",
+            estimates.len(),
+            field.layout,
+            field.card.name,
+            field.card.title,
+            field.thickness,
+            field.mesh_origin,
+            field.mesh.describe()
+        )),
+        Block::Heading(2, "Frames".into()),
+        match field.coarse {
+            None => frames(field, estimates),
+            Some(_) => transferred_frames(field, estimates),
+        },
+        Block::Paragraph(match field.coarse {
+            None => EXPLANATION.into(),
+            Some(_) => TRANSFERRED.into(),
+        }),
+        Block::Heading(2, "Forces on the edges".into()),
+        forces(field, estimates),
+    ];
+    if let Some(gap) = field.unknown_gap {
+        blocks.push(Block::Paragraph(format!(
+            "The specimen's edge is not known but for the markers: intervals of forces and moduli hold that it may lie up to a \
+             marker's spacing, {gap:.4} mm, farther out."
+        )));
+    }
+    let doubts = field.all_doubts(estimates);
+    if !doubts.is_empty() {
+        let heading = Block::Heading(2, "Doubts".into());
+        let doubts = doubts
+            .iter()
+            .map(|doubt| Block::Paragraph(doubt.to_string()));
+        let place = 2;
+        blocks.splice(place..place, std::iter::once(heading).chain(doubts));
+    }
+    if field.regressed.is_some() {
+        blocks.push(Block::Heading(2, "Parameters of the law".into()));
+        blocks.push(parameters(field, estimates));
+    }
+    if let Some(last) = estimates.last() {
+        blocks.push(Block::Heading(2, "Edges of the last frame".into()));
+        blocks.extend(edges(field, last));
+    }
+    blocks.push(Block::Heading(2, "Pictures of the last frame".into()));
+    let pictures = figures.iter().enumerate();
+    blocks.extend(pictures.map(|(index, figure)| Block::Figure(index, figure.caption.clone())));
+    if !field.warnings.is_empty() {
+        blocks.push(Block::Heading(2, "Warnings".into()));
+        let warnings = field.warnings.iter();
+        blocks.extend(warnings.map(|warning| Block::Paragraph(warning.to_string())));
+    }
+    blocks.push(Block::Paragraph(format!(
+        "gelbench {}",
+        env!("CARGO_PKG_VERSION")
+    )));
+    blocks
+}
+
+const EXPLANATION: &str = "Noise is the standard deviation of each component of a marker's displacement; left is the root \
+    mean square of measured less corrected displacements. Standard errors and intervals (95 %) come from the noise \
+    and from the mesh's own error, which the same equations on cells half as large tell (on meshes of more than 25,000 cells it \
+    is left out): they know nothing of a wrong material, a wrong thickness or a wrong condition. An outlier is a \
+    marker whose residual normal noise would leave in less than one of a thousand.";
+
+const TRANSFERRED: &str = "The given field is taken to be free of noise: edges that are not free keep its displacements, and \
+    the inside and the free edges are brought into equilibrium on the new mesh. The correction is the given field less the \
+    corrected one at the given nodes.";
+
+fn transferred_frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
+    let head = [
+        "frame",
+        "given nodes",
+        "correction, root mean square [mm]",
+        "largest [mm]",
+    ];
+    let frames = field.measurement.frames.iter().zip(estimates);
+    let rows = frames.map(|(frame, estimate)| {
+        vec![
+            frame.number.to_string(),
+            used(estimate).to_string(),
+            format!("{:.5}", left(estimate)),
+            format!("{:.5}", largest_correction(estimate)),
+        ]
+    });
+    Block::table(&head, rows)
+}
+
+fn frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
+    let head = [
+        "frame",
+        "markers",
+        "outliers",
+        "noise [mm]",
+        "noise is",
+        "left [mm]",
+        "parameters determined",
+        "largest standard error [mm]",
+        "correlation of neighbours (white noise)",
+        "steps",
+    ];
+    let frames = field.measurement.frames.iter().zip(estimates);
+    let rows = frames.map(|(frame, estimate)| {
+        vec![
+            frame.number.to_string(),
+            used(estimate).to_string(),
+            outliers(estimate).to_string(),
+            format!("{:.5}", estimate.noise),
+            if estimate.known_noise {
+                "given"
+            } else {
+                "estimated"
+            }
+            .to_owned(),
+            format!("{:.5}", left(estimate)),
+            format!("{:.1}", estimate.effective_parameters),
+            format!("{:.5}", largest_error(estimate)),
+            estimate.whiteness.map_or(String::new(), |found| {
+                format!(
+                    "{:.2} ({:.2} ± {:.2})",
+                    found.correlation, found.expected, found.deviation
+                )
+            }),
+            estimate.steps.to_string(),
+        ]
+    });
+    Block::table(&head, rows)
+}
+
+fn forces(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
+    let frames = field.measurement.frames.iter().zip(estimates);
+    let rows = frames.flat_map(|(frame, estimate)| {
+        estimate.forces.iter().map(move |force| {
+            let [x, y] = &force.force;
+            vec![
+                frame.number.to_string(),
+                force.edge.clone(),
+                newtons(x),
+                newtons(y),
+            ]
+        })
+    });
+    Block::table(&["frame", "edge", "force along x", "force along y"], rows)
+}
+
+/// The parameters of the law that were found with the field.
+fn parameters(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
+    let frames = field.measurement.frames.iter().zip(estimates);
+    let rows = frames.flat_map(|(frame, estimate)| {
+        estimate.parameters.iter().map(move |(key, unit, found)| {
+            let [low, high] = found.interval;
+            vec![
+                frame.number.to_string(),
+                (*key).to_owned(),
+                (*unit).to_owned(),
+                format!("{:.6}", found.value),
+                format!("{:.6}", found.standard_error),
+                format!("{low:.6} … {high:.6}"),
+            ]
+        })
+    });
+    let head = [
+        "frame",
+        "parameter",
+        "unit",
+        "value",
+        "standard error",
+        "95 %",
+    ];
+    Block::table(&head, rows)
+}
+
+fn edges(field: &MeasuredField, last: &FieldEstimate) -> Vec<Block> {
+    let known = |known: &EdgeCondition| match (known, &field.coarse) {
+        (EdgeCondition::Unknown, Some(_)) => "as the given field".to_owned(),
+        (EdgeCondition::Rigid, Some(_)) => "rigid, as near as can be to the given field".to_owned(),
+        _ => condition(known),
+    };
+    let row = |outcome: &EdgeOutcome| {
+        let chosen = outcome.probability.map(|p| format!("{p:.3}"));
+        vec![
+            outcome.edge.clone(),
+            format!("{:.3}", outcome.length),
+            known(&outcome.condition),
+            chosen.unwrap_or_default(),
+        ]
+    };
+    let conditions = last.edges.iter().map(row);
+    let head = [
+        "edge",
+        "length [mm]",
+        "condition",
+        "probability of the misfit if it is free",
+    ];
+    if field.coarse.is_some() {
+        return vec![Block::table(
+            &head[..3],
+            conditions.map(|row| row[..3].to_vec()),
+        )];
+    }
+    let smooth = last.smoothing.iter().map(|smoothing| {
+        vec![
+            smoothing.edge.clone(),
+            ["x", "y"][smoothing.axis].to_owned(),
+            format!("{:.3e}", smoothing.weight),
+            format!("{:.2}", smoothing.freedom),
+        ]
+    });
+    let mut blocks = vec![
+        Block::table(&head, conditions),
+        Block::Paragraph(format!("Data and physics: {}.", last.rule)),
+    ];
+    if !last.smoothing.is_empty() {
+        let head = [
+            "edge",
+            "axis",
+            "weight λ [1/mm²]",
+            "parameters beyond a straight line",
+        ];
+        blocks.push(Block::table(&head, smooth));
+    }
+    blocks
+}

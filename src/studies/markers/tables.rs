@@ -1,0 +1,109 @@
+//! Tables of a corrected field, with units in the heads.
+
+use std::fmt::Write;
+
+use super::written::{left, nominal, nominal_stress};
+use crate::corrector::estimation::FieldEstimate;
+use crate::markers::Frame;
+use crate::studies::markers::MeasuredField;
+
+/// A row of a table; a number that is none leaves its field empty.
+fn row(text: &mut String, first: &[usize], values: &[f64]) {
+    let first = first.iter().map(ToString::to_string);
+    let values = values.iter().map(|value| match value.is_finite() {
+        true => format!("{value:.9e}"),
+        false => String::new(),
+    });
+    let fields: Vec<String> = first.chain(values).collect();
+    let _ = writeln!(text, "{}", fields.join(","));
+}
+
+/// The field at the nodes.
+pub fn nodes(field: &MeasuredField, estimate: &FieldEstimate) -> String {
+    let mut text = String::from(
+        "node,X_mm,Y_mm,ux_mm,uy_mm,ux_standard_error_mm,uy_standard_error_mm,reaction_x_N,reaction_y_N,\
+         multiplier_x_mm2_per_N,multiplier_y_mm2_per_N\n",
+    );
+    for (node, [x, y]) in field.mesh.nodes.iter().enumerate() {
+        let pair = |values: &[f64]| [values[2 * node], values[2 * node + 1]];
+        let parts = [
+            [*x, *y],
+            pair(&estimate.displacement),
+            pair(&estimate.displacement_error),
+            pair(&estimate.reactions),
+            pair(&estimate.multipliers),
+        ];
+        row(&mut text, &[node], parts.as_flattened());
+    }
+    text
+}
+
+/// Stress and thickness in the middle of the cells.
+pub fn cells(field: &MeasuredField, estimate: &FieldEstimate) -> String {
+    let mut text = String::from("cell,X_mm,Y_mm");
+    for of in ["", "_standard_error"] {
+        for component in ["xx", "xy", "yx", "yy"] {
+            let _ = write!(text, ",nominal_stress_{component}{of}_MPa");
+        }
+    }
+    text += ",thickness_mm,thickness_standard_error_mm\n";
+    for (index, cell) in estimate.cells.iter().enumerate() {
+        let mut values = field.mesh.centre(index).to_vec();
+        values.extend(nominal_stress(cell));
+        values.extend(nominal(cell.stress_error));
+        values.extend([cell.thickness, cell.thickness_error]);
+        row(&mut text, &[index], &values);
+    }
+    text
+}
+
+/// The markers of a frame.
+pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
+    let mut text = String::from(
+        "marker,X_mm,Y_mm,ux_mm,uy_mm,residual_x_mm,residual_y_mm,standardised_residual,trust,outlier\n",
+    );
+    for (marker, left) in frame.markers.iter().zip(left(estimate)) {
+        let ([x, y], [ux, uy], [rx, ry]) = (marker.place, marker.displacement, left.residual);
+        let values = [
+            x,
+            y,
+            ux,
+            uy,
+            rx,
+            ry,
+            left.standardised,
+            left.trust,
+            left.outlier,
+        ];
+        row(&mut text, &[marker.number], &values);
+    }
+    text
+}
+
+/// The forces on the edges in all frames.
+pub fn forces(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
+    let mut text = String::from("frame,edge");
+    for axis in ["x", "y"] {
+        let _ = write!(
+            text,
+            ",force_{axis}_N,force_{axis}_standard_error_N,force_{axis}_low_N,force_{axis}_high_N"
+        );
+    }
+    text += "\n";
+    for (frame, estimate) in field.measurement.frames.iter().zip(estimates) {
+        for force in &estimate.forces {
+            let values = force.force.iter().flat_map(|force| {
+                [
+                    force.value,
+                    force.standard_error,
+                    force.interval[0],
+                    force.interval[1],
+                ]
+            });
+            let values: Vec<String> = values.map(|value| format!("{value:.9e}")).collect();
+            let edge = force.edge.replace(',', ";");
+            let _ = writeln!(text, "{},{edge},{}", frame.number, values.join(","));
+        }
+    }
+    text
+}

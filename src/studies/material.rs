@@ -1,0 +1,68 @@
+//! The part of a report on the material.
+
+use crate::material::Card;
+use crate::material::curve::Mode;
+use crate::material::law::HyperelasticLaw;
+use crate::material::stability::{SEARCHED, stable_range};
+use crate::results::Block;
+
+/// The card of a study: law, parameters, measures, ranges, source.
+pub fn material_statement(card: &Card) -> Vec<Block> {
+    let law: &dyn HyperelasticLaw = &*card.law;
+    let [low, high] = card.stretch_range;
+    let row = |key: &str, value: String| vec![key.to_owned(), value];
+    let mut rows = vec![
+        row("card", card.name.clone()),
+        row("law", format!("{}: {}", card.law_name, card.formula)),
+    ];
+    let parameters = card.parameters.iter();
+    rows.extend(parameters.map(|parameter| {
+        let (value, unit) = (parameter.value, parameter.unit());
+        row(parameter.key, format!("{value} {unit}"))
+    }));
+    rows.extend(
+        card.choices
+            .iter()
+            .map(|(key, name)| row(key, name.clone())),
+    );
+    rows.extend([
+        row(
+            "initial Young's modulus E₀",
+            format!("{:.6} MPa", law.youngs_modulus()),
+        ),
+        row(
+            "calibrated range",
+            format!("λ = {low} … {high} ({} test)", card.test),
+        ),
+        row(
+            "measures",
+            format!(
+                "{} stress, {} strain; stress at rest: {}",
+                card.stress_measure.name(),
+                card.strain_measure.name(),
+                card.offset.name()
+            ),
+        ),
+        row("stable (Drucker)", stable(card)),
+        row("specimen", card.specimen.clone()),
+        row("source", card.citation.clone()),
+    ]);
+    for (key, value) in [("DOI", &card.doi), ("note", &card.note)] {
+        rows.extend((!value.is_empty()).then(|| row(key, value.clone())));
+    }
+    vec![
+        Block::Heading(2, "Material".into()),
+        Block::table(&["property", "value"], rows),
+    ]
+}
+
+/// The stable stretches in the usual tests.
+fn stable(card: &Card) -> String {
+    let range = |(name, mode): (&str, Mode)| {
+        let [low, high] = stable_range(&*card.law, mode);
+        format!("{name} λ = {low:.3} … {high:.3}")
+    };
+    let [low, high] = SEARCHED;
+    let ranges = Mode::ALL.map(range).join(", ");
+    format!("{ranges}; looked for from {low} to {high}")
+}

@@ -1,0 +1,172 @@
+//! The springs' motion, corrected in time.
+
+use super::Moved;
+use super::read::MovingPlate;
+use crate::corrector::DifferenceScheme;
+use crate::corrector::motion::{EquationOfMotion, WindowSettings};
+use crate::dynamics::{Instant, SheetViscosity, Viscosity};
+use crate::error::Error;
+use crate::problem::plate::Model;
+
+/// The corrected motion at the instants that are written.
+pub struct Corrected {
+    /// In mm.
+    pub displacement: Vec<Vec<f64>>,
+    /// In mm/s.
+    pub velocity: Vec<Vec<f64>>,
+    /// What was done, or why nothing was.
+    pub note: String,
+}
+
+/// Steps in a period of the first longitudinal vibration at least.
+const STEPS: f64 = 200.0;
+/// β of Newmark's average acceleration.
+const AVERAGE_ACCELERATION: f64 = 0.25;
+const WINDOWS: WindowSettings = WindowSettings {
+    steps: 20,
+    tolerance: 1e-9,
+    max_iterations: 20,
+};
+
+impl MovingPlate {
+    /// Corrects the motion of the springs; nothing but a note where three consecutive instants do not hold the equation
+    /// of motion.
+    pub fn corrected(&self, springs: &Moved) -> Result<Corrected, Error> {
+        let mesh = &springs.mesh;
+        let energy = self.scheme().energy(&self.problem, mesh);
+        let viscosity = SheetViscosity::new(&energy, &self.viscosity);
+        let viscosity = (!self.viscosity.is_none()).then_some(&viscosity as &dyn Viscosity);
+        let model = Model {
+            name: "corrector".into(),
+            mesh,
+            potential: &energy,
+            describe: Box::new(|element| format!("cell {element}")),
+        };
+        let motion = self.motion(&model, viscosity)?;
+        let interval = self.time.interval;
+        let within = (STEPS * interval * springs.frequency).ceil().max(1.0) as usize;
+        let step = interval / within as f64;
+        let equation = match EquationOfMotion::new(&motion, step, AVERAGE_ACCELERATION) {
+            Ok(equation) => equation,
+            Err(reason) => {
+                return Ok(Corrected {
+                    displacement: Vec::new(),
+                    velocity: Vec::new(),
+                    note: format!("The motion of the springs is not corrected: {reason}."),
+                });
+            }
+        };
+        let data = between(&springs.history.instants, within);
+        let found = equation
+            .correct(&data, &motion.start, WINDOWS)
+            .map_err(|fault| Error::Solve {
+                model: model.name.clone(),
+                step: "the motion of the springs".into(),
+                fault,
+            })?;
+        let note = format!(
+            "The corrector brings the springs' motion to the nearest one that satisfies the equation of motion of the \
+             sheet at every three consecutive instants, {within} steps in an interval: {} Newton steps, {} \
+             factorisations. The start being known, its result does not depend on the springs.",
+            found.iterations, found.factorisations
+        );
+        let fine = found.displacement;
+        let instants = (0..fine.len()).step_by(within);
+        Ok(Corrected {
+            velocity: instants
+                .clone()
+                .map(|i| velocity(&fine, i, step, &motion.start.velocity))
+                .collect(),
+            displacement: instants.map(|i| fine[i].clone()).collect(),
+            note,
+        })
+    }
+
+    /// Differences of second order where the numbers of cells allow them.
+    fn scheme(&self) -> DifferenceScheme {
+        let pairs = DifferenceScheme::Biquadratic.side();
+        match self.cells.iter().all(|count| count.is_multiple_of(pairs)) {
+            true => DifferenceScheme::Biquadratic,
+            false => DifferenceScheme::Gauss,
+        }
+    }
+}
+
+/// The displacements at the instants and `within` − 1 times between each two of equal distance, by cubics through
+/// displacements and velocities.
+fn between(instants: &[Instant], within: usize) -> Vec<Vec<f64>> {
+    let Some(first) = instants.first() else {
+        return Vec::new();
+    };
+    let mut fields = vec![first.displacement.clone()];
+    let interval = instants
+        .get(1)
+        .map_or(0.0, |second| second.time - first.time);
+    for pair in instants.windows(2) {
+        let length = pair[1].time - pair[0].time;
+        if (length - interval).abs() > 1e-6 * interval {
+            break;
+        }
+        fields.extend((1..=within).map(|part| hermite(pair, part as f64 / within as f64)));
+    }
+    fields
+}
+
+fn hermite(pair: &[Instant], s: f64) -> Vec<f64> {
+    let length = pair[1].time - pair[0].time;
+    let r = 1.0 - s;
+    let shares = [r * r * (1.0 + 2.0 * s), s * s * (1.0 + 2.0 * r)];
+    let rates = [length * s * r * r, -length * s * s * r];
+    let value = |unknown: usize| {
+        let own = |end: usize| {
+            let Instant {
+                displacement,
+                velocity,
+                ..
+            } = &pair[end];
+            shares[end] * displacement[unknown] + rates[end] * velocity[unknown]
+        };
+        own(0) + own(1)
+    };
+    (0..pair[0].displacement.len()).map(value).collect()
+}
+
+/// Central differences; at the end a one-sided one.
+fn velocity(fields: &[Vec<f64>], instant: usize, step: f64, start: &[f64]) -> Vec<f64> {
+    if instant == 0 {
+        return start.to_vec();
+    }
+    let next = (instant + 1).min(fields.len() - 1);
+    let length = step * (next + 1 - instant) as f64;
+    let pairs = fields[next].iter().zip(&fields[instant - 1]);
+    pairs
+        .map(|(after, before)| (after - before) / length)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubics_keep_a_cubic_motion_and_stop_at_an_interval_of_another_length() {
+        let place = |t: f64| 1.0 + t - 2.0 * t * t + 0.5 * t * t * t;
+        let speed = |t: f64| 1.0 - 4.0 * t + 1.5 * t * t;
+        let instant = |time: f64| Instant {
+            time,
+            displacement: vec![place(time)],
+            velocity: vec![speed(time)],
+            acceleration: vec![0.0],
+            energy: crate::dynamics::EnergyBalance::default(),
+            support_forces: Vec::new(),
+        };
+        let instants = [0.0, 0.5, 1.0, 1.2].map(instant);
+        let fields = between(&instants, 5);
+        assert_eq!(fields.len(), 11);
+        for (i, field) in fields.iter().enumerate() {
+            assert!((field[0] - place(0.1 * i as f64)).abs() < 1e-14, "{i}");
+        }
+        let found = velocity(&fields, 5, 0.1, &[0.0]);
+        assert!((found[0] - speed(0.5)).abs() < 6e-3);
+    }
+}

@@ -1,0 +1,207 @@
+//! What is told about a motion: energies, frequencies, deviations in time.
+
+use super::Moved;
+use super::corrected::Corrected;
+use super::files::{animation, figures, tables, vtk_files};
+use super::read::MovingPlate;
+use super::statement;
+use crate::dynamics::lumped_mass;
+use crate::mesh::Mesh;
+use crate::results::Block;
+use crate::results::{Check, Outcome, Wanted, number};
+
+/// Instants in the table of deviations.
+const ROWS: usize = 12;
+
+/// How far a motion on the lattice is from the finite elements'.
+pub struct Deviations {
+    /// Of the displacement at each instant, in relative L2 over the largest of all instants, in %.
+    pub displacement: Vec<f64>,
+    /// Over all instants, in %.
+    pub whole: f64,
+}
+
+impl Deviations {
+    /// Of fields on the lattice, at the first instants, from the `expected` ones.
+    fn new<'a>(
+        lattice: &Mesh,
+        fields: impl Iterator<Item = &'a Vec<f64>>,
+        expected: &[Vec<f64>],
+    ) -> Self {
+        let weights = lumped_mass(lattice, 1.0, 1.0);
+        let square = |u: &[f64]| u.iter().zip(&weights).map(|(u, w)| w * u * u).sum::<f64>();
+        let errors: Vec<f64> = fields
+            .zip(expected)
+            .map(|(now, expected)| {
+                let both = now.iter().zip(expected);
+                square(&both.map(|(u, v)| u - v).collect::<Vec<_>>())
+            })
+            .collect();
+        let sizes: Vec<f64> = expected.iter().map(|u| square(u)).collect();
+        let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let displacement = errors.iter().map(|error| 100.0 * (error / largest).sqrt());
+        let [all, size] = [&errors, &sizes].map(|values| values.iter().sum::<f64>());
+        Self {
+            displacement: displacement.collect(),
+            whole: 100.0 * (all / size.max(f64::MIN_POSITIVE)).sqrt(),
+        }
+    }
+}
+
+/// The finite elements' displacements at the nodes of the lattice at all instants.
+fn expected(lattice: &Mesh, elements: &Moved) -> Vec<Vec<f64>> {
+    let instants = elements.history.instants.iter();
+    instants
+        .map(|now| elements.mesh.displacement_on(&now.displacement, lattice))
+        .collect()
+}
+
+/// The outcome of both models and the corrected motion.
+pub fn outcome(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> Outcome {
+    let [springs, elements] = models;
+    let expected = expected(&springs.mesh, elements);
+    let of_springs = springs.history.instants.iter();
+    let of_springs = of_springs.map(|now| &now.displacement);
+    let of_corrected = corrected.displacement.iter();
+    let deviations = [
+        Deviations::new(&springs.mesh, of_springs, &expected),
+        Deviations::new(&springs.mesh, of_corrected, &expected),
+    ];
+    let times = models
+        .iter()
+        .map(|model| (model.name.to_owned(), model.seconds));
+    let mut blocks = vec![
+            Block::Paragraph(introduction(plate)),
+            summary(models),
+            Block::Paragraph(corrected.note.clone()),
+            Block::Paragraph(
+                "Deviation at some instants, over the largest displacement field of the finite elements, and the force \
+                 of the right grip:"
+                    .into(),
+            ),
+            in_time(models, &deviations),
+        ];
+    blocks.extend(statement::blocks(plate));
+    Outcome {
+        checks: checks(plate, models, &deviations),
+        blocks,
+        json: [("statement".to_owned(), statement::json(plate))]
+            .into_iter()
+            .collect(),
+        figures: figures(plate, models, corrected),
+        vtk: vtk_files(plate, models, corrected, &expected),
+        files: tables(plate, models, corrected)
+            .into_iter()
+            .chain([animation(models, corrected)])
+            .collect(),
+        times: times.collect(),
+        ..Outcome::default()
+    }
+}
+
+fn introduction(plate: &MovingPlate) -> String {
+    let [length, width] = plate.problem.size;
+    let bar = (plate.problem.law.youngs_modulus() / plate.density).sqrt() / (4.0 * length);
+    let (element, _) = plate.element;
+    format!(
+        "A plate of {length} × {width} × {} mm with a density of {} kg/m³ between grips, by springs with dashpots and by \
+         finite elements ({}) with the same lumped mass. A bar of its length, clamped at one end, has its first \
+         longitudinal vibration √(E₀/ρ)/(4 L) at {} Hz.",
+        plate.problem.thickness,
+        number(1e12 * plate.density),
+        element.name(),
+        number(bar)
+    )
+}
+
+fn summary(models: &[Moved; 2]) -> Block {
+    let head = [
+        "model",
+        "nodes",
+        "steps",
+        "taken again",
+        "factorisations",
+        "first longitudinal frequency at rest [Hz]",
+        "energy balance, largest error [%]",
+        "largest stored energy [mJ]",
+        "dissipated [mJ]",
+        "work of grips and loads [mJ]",
+    ];
+    let row = |model: &Moved| {
+        let history = &model.history;
+        let energies = history.instants.iter().map(|now| now.energy);
+        let stored = energies.fold(0.0, |most: f64, energy| most.max(energy.stored));
+        let last = history.instants[history.instants.len() - 1].energy;
+        vec![
+            model.name.to_owned(),
+            model.mesh.nodes.len().to_string(),
+            history.steps.to_string(),
+            history.halved.to_string(),
+            history.factorisations.to_string(),
+            number(model.frequency),
+            number(100.0 * history.energy_error()),
+            number(stored),
+            number(last.dissipated),
+            number(last.external_work),
+        ]
+    };
+    Block::table(&head, models.iter().map(row))
+}
+
+fn in_time([springs, elements]: &[Moved; 2], deviations: &[Deviations; 2]) -> Block {
+    let head = [
+        "time [s]",
+        "mass-spring: displacement [%]",
+        "corrected: displacement [%]",
+        "mass-spring: force [N]",
+        "finite elements: force [N]",
+    ];
+    let count = deviations[0].displacement.len();
+    let every = count.div_ceil(ROWS).max(1);
+    let percent = |own: &Deviations, instant: usize| {
+        let value = own.displacement.get(instant);
+        value.map_or("–".into(), |value| format!("{value:.3}"))
+    };
+    let row = |instant: usize| {
+        let force = |model: &Moved| model.history.instants[instant].support_forces[1][0];
+        vec![
+            number(springs.history.instants[instant].time),
+            percent(&deviations[0], instant),
+            percent(&deviations[1], instant),
+            number(force(springs)),
+            number(force(elements)),
+        ]
+    };
+    Block::table(&head, (0..count).step_by(every).map(row))
+}
+
+fn checks(plate: &MovingPlate, models: &[Moved; 2], deviations: &[Deviations; 2]) -> Vec<Check> {
+    let limits = plate.tolerances;
+    let check = |quantity: String, limit, value| {
+        Check::new(
+            quantity,
+            "%",
+            Wanted::AtMost(limit),
+            "the study's tolerance",
+            value,
+        )
+    };
+    let energy = |model: &Moved| {
+        check(
+            format!("{}: error of the energy balance", model.name),
+            limits.energy_percent,
+            100.0 * model.history.energy_error(),
+        )
+    };
+    let [springs, corrected] = deviations;
+    let (name, last) = match corrected.displacement.is_empty() {
+        true => ("mass-spring", springs),
+        false => ("corrected", corrected),
+    };
+    let deviation = check(
+        format!("{name}: displacement over all instants"),
+        limits.deviation_percent,
+        last.whole,
+    );
+    models.iter().map(energy).chain([deviation]).collect()
+}

@@ -1,0 +1,159 @@
+//! What a study says, in the report's words and for machines: plate, grips, loads, material.
+
+use serde_json::{Value, json};
+
+use super::read::MovingPlate;
+use crate::dynamics::TimeFunction;
+use crate::mass_spring::{DashpotLaw, SpringLaw};
+use crate::output::material_json;
+use crate::results::Block;
+use crate::results::number;
+use crate::studies::material_statement;
+
+/// The plate, what moves and loads it, what springs and dashpots follow, its material.
+pub fn blocks(plate: &MovingPlate) -> Vec<Block> {
+    let row = |(what, says): (&'static str, String)| vec![what.to_owned(), says];
+    let mut blocks = vec![
+        Block::Heading(2, "Plate, supports and loads".into()),
+        Block::table(
+            &["what", "as the study says"],
+            sentences(plate).into_iter().map(row),
+        ),
+    ];
+    blocks.extend(material_statement(&plate.card));
+    blocks
+}
+
+/// The same for machines.
+pub fn json(plate: &MovingPlate) -> Value {
+    let sentences = sentences(plate).into_iter();
+    let says: serde_json::Map<_, _> = sentences
+        .map(|(what, says)| (what.to_owned(), json!(says)))
+        .collect();
+    json!({
+        "size_mm": plate.problem.size,
+        "thickness_mm": plate.problem.thickness,
+        "density_kg_per_m3": 1e12 * plate.density,
+        "material": material_json(&plate.card),
+        "says": says,
+    })
+}
+
+fn sentences(plate: &MovingPlate) -> Vec<(&'static str, String)> {
+    let [length, width] = plate.problem.size;
+    let thickness = plate.problem.thickness;
+    vec![
+        (
+            "plate",
+            format!("{length} × {width} × {thickness} mm at rest, in plane stress"),
+        ),
+        ("density", format!("{} kg/m³", number(1e12 * plate.density))),
+        ("viscosity", viscosity(plate)),
+        ("left side", "clamped: ux = uy = 0".into()),
+        ("right side", right_side(plate)),
+        ("gravity", gravity(plate)),
+        ("point forces", forces(plate)),
+        ("springs", springs(plate)),
+        ("dashpots", dashpots(plate)),
+    ]
+}
+
+fn viscosity(plate: &MovingPlate) -> String {
+    let material = &plate.viscosity;
+    if material.is_none() {
+        return "none".into();
+    }
+    let shear = 1e6 * material.shear_viscosity;
+    let terms = material.relaxation.iter().map(|term| {
+        let (share, time) = (100.0 * term.share, term.time);
+        format!("{share:.4} % of a sudden stress relaxes with τ = {time} s")
+    });
+    let mut all = vec![format!("η = {shear:.6} Pa·s beside the law")];
+    all.extend(terms);
+    all.join("; ")
+}
+
+/// How the grip on the right moves, in % of the plate's length.
+fn right_side(plate: &MovingPlate) -> String {
+    let motion = match &plate.grip {
+        TimeFunction::Constant(stretch) => format!("held at {:.4} % stretch", 100.0 * stretch),
+        TimeFunction::Ramp { begin, end } => {
+            format!("from rest at {begin} s to 100 % stretch at {end} s")
+        }
+        TimeFunction::Sine {
+            mean,
+            amplitude,
+            frequency,
+        } => format!(
+            "swings about {:.4} % stretch by {:.4} % with {frequency} Hz",
+            100.0 * mean,
+            100.0 * amplitude
+        ),
+        TimeFunction::Table(points) => {
+            let points = points.iter();
+            let points =
+                points.map(|[time, stretch]| format!("{:.4} % at {time} s", 100.0 * stretch));
+            format!(
+                "moved straight between {}",
+                points.collect::<Vec<_>>().join(", ")
+            )
+        }
+    };
+    match plate.release {
+        Some(time) => format!("in a rigid grip, {motion}; let go at {time} s"),
+        None => format!("in a rigid grip, {motion}"),
+    }
+}
+
+fn gravity(plate: &MovingPlate) -> String {
+    match plate.gravity {
+        [0.0, 0.0] => "none".into(),
+        [x, y] => format!(
+            "({}, {}) m/s² in the plane of the plate",
+            1e-3 * x,
+            1e-3 * y
+        ),
+    }
+}
+
+fn forces(plate: &MovingPlate) -> String {
+    let force = |own: &super::read::PointForce| {
+        let ([x, y], [fx, fy]) = (own.at, own.force);
+        let time = match &own.time {
+            TimeFunction::Ramp { begin, end } => format!("growing from {begin} s to {end} s"),
+            _ => "from time 0 on".into(),
+        };
+        format!("({fx}, {fy}) N at ({x}, {y}) mm, {time}")
+    };
+    match plate.forces.is_empty() {
+        true => "none".into(),
+        false => plate
+            .forces
+            .iter()
+            .map(force)
+            .collect::<Vec<_>>()
+            .join("; "),
+    }
+}
+
+fn springs(plate: &MovingPlate) -> String {
+    match &plate.springs {
+        SpringLaw::Material => "follow the material's curve".into(),
+        SpringLaw::SecantModulus(function) => {
+            format!("K(·) = a E/x₀ with a function E of λ − 1 of the study: {function:?}, in MPa")
+        }
+    }
+}
+
+fn dashpots(plate: &MovingPlate) -> String {
+    match &plate.dashpots {
+        DashpotLaw::Material(material) if material.is_none() => "none".into(),
+        DashpotLaw::Material(_) => "follow the material's viscosity".into(),
+        DashpotLaw::Viscosity {
+            by_stretch,
+            by_rate,
+        } => format!(
+            "D(·) = a η/x₀ with η of the study in MPa·s: {by_stretch:?} of λ − 1 times {by_rate:?} of the rate in 1/s"
+        ),
+    }
+}

@@ -1,0 +1,44 @@
+//! Plates between two grips: springs, corrected springs and finite elements at every stretch.
+
+use crate::error::Error;
+use crate::output::{ResultFolder, write_document, write_pictures};
+
+mod figures;
+mod json;
+mod report;
+pub mod results;
+pub mod run;
+pub mod study;
+mod vtk;
+mod warnings;
+
+use results::Results;
+use study::Study;
+pub use warnings::warnings;
+
+/// Writes everything a study asks for into its folder.
+///
+/// # Errors
+/// [`Error::Write`] with the file that could not be written.
+pub fn write(study: &Study, results: &Results, folder: &mut ResultFolder) -> Result<(), Error> {
+    if study.output.vtk {
+        for (name, bytes) in vtk::files(study, results) {
+            folder.add(&format!("vtk/{name}"), &bytes)?;
+        }
+    }
+    if study.output.report {
+        let json = json::json(study, results);
+        folder.add("report.json", format!("{json:#}\n").as_bytes())?;
+    }
+    let figures = if study.output.plots {
+        figures::figures(study, results)
+    } else {
+        Vec::new()
+    };
+    write_pictures(folder, &figures)?;
+    if study.output.report {
+        let blocks = report::report(study, results, &figures);
+        write_document(folder, "report", &blocks, &figures)?;
+    }
+    Ok(())
+}

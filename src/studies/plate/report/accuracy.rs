@@ -1,0 +1,253 @@
+//! The parts of a report on what its figures are worth: error budget, own errors, balance, convergence.
+
+use super::{at_stretches, figure, heading, power};
+use crate::compare::{Deviation, StepComparison};
+use crate::corrector::DifferenceScheme;
+use crate::corrector::plate::CorrectedState;
+use crate::finite_element::convergence::Richardson;
+use crate::problem::plate::{Problem, Solution};
+use crate::results::Block;
+use crate::studies::plate::results::{MODELS, Results};
+use crate::studies::plate::study::Study;
+
+pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
+    let fit = match study.card.fit_error_percent() {
+        Some(error) => format!("{error:.1e}"),
+        None => "–".into(),
+    };
+    let row = |(index, step): (usize, &StepComparison)| {
+        let [_, corrected, _] = results.models(index);
+        let left = corrected.and_then(|state| state.convergence.residuals.last());
+        let departure = |deviation: Option<Deviation>| {
+            figure(deviation.map(|deviation| deviation.departure_percent), 3)
+        };
+        let own = step.reference;
+        vec![
+            Problem::percent(step.stretch),
+            fit.clone(),
+            departure(step.mass_spring),
+            left.map_or("–".into(), |left| format!("{:.1e}", 100.0 * left)),
+            departure(step.corrected),
+            figure(own.map(|own| own.displacement_percent), 5),
+            figure(own.map(|own| own.departure_percent), 5),
+            figure(results.own_force_percent(index), 5),
+        ]
+    };
+    let head = [
+        "stretch [%]",
+        "law: distance to the published curve [%]",
+        "lattice: departure before the correction [%]",
+        "corrector: residual left over [%]",
+        "differences: departure after the correction [%]",
+        "finite elements: displacement [%]",
+        "finite elements: departure [%]",
+        "finite elements: force [%]",
+    ];
+    vec![
+        heading("Error budget"),
+        Block::table(&head, results.comparison.iter().enumerate().map(row)),
+        Block::Paragraph(format!(
+            "The departure before the correction is what the springs cannot do; the correction removes it. What \
+             remains is the discretisation error of the corrector's finite differences on the lattice's nodes{}, and \
+             the finite elements' own discretisation error, estimated from three meshes. The finite elements judge a \
+             deviation only where their own error of it is at most a tenth of it.",
+            match study.scheme {
+                DifferenceScheme::Gauss =>
+                    ", whose equations are those of bilinear finite elements there",
+                DifferenceScheme::Biquadratic =>
+                    ", whose equations are those of biquadratic finite elements there",
+                DifferenceScheme::Corners => "",
+            }
+        )),
+    ]
+}
+
+pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
+    let quantity = |value: Option<Richardson>| {
+        [
+            figure(value.map(|value| value.extrapolated), 5),
+            figure(value.and_then(|value| value.order), 2),
+            figure(value.map(|value| value.error_percent), 6),
+        ]
+    };
+    let row = |(index, step): (usize, &StepComparison)| {
+        let own = step.reference;
+        let energy = results.estimates.get(index).and_then(Option::as_ref);
+        let mut cells = vec![Problem::percent(step.stretch)];
+        cells.extend(quantity(own.map(|own| own.force)));
+        cells.extend(quantity(own.map(|own| own.width)));
+        cells.extend([
+            figure(own.and_then(|own| own.displacement_order), 2),
+            figure(own.map(|own| own.displacement_percent), 6),
+            figure(own.map(|own| own.departure_percent), 6),
+            figure(energy.map(|estimate| estimate.energy.percent()), 4),
+            figure(results.recovered_force_percent(index), 6),
+        ]);
+        cells
+    };
+    let meshes = study.reference_meshes().map(|[x, y]| format!("{x} × {y}"));
+    let head = [
+        "stretch [%]",
+        "force, extrapolated [N]",
+        "order",
+        "error of the finest mesh [%]",
+        "width, extrapolated [mm]",
+        "order",
+        "error of the finest mesh [%]",
+        "displacement: order",
+        "error of the finest mesh [%]",
+        "departure: error of the finest mesh [%]",
+        "by recovery: energy norm [%]",
+        "by recovery: force [%]",
+    ];
+    vec![
+        heading("The finite elements' own error"),
+        Block::Paragraph(format!(
+            "{} elements on {}, {} and {} cells{}; Richardson's extrapolation with the observed order, none above 4. The \
+             clamped corners are singular, which lowers the order where cells are equal; a grading towards them \
+             restores it. The last columns come from the finest mesh alone, by recovery of its gradient; at \
+             singular corners they are good for the order of magnitude, and they count where three meshes do not converge.",
+            study.element.name(),
+            meshes[0],
+            meshes[1],
+            meshes[2],
+            match study.grading > 1.0 {
+                true => format!(", graded by {} towards the corners", study.grading),
+                false => String::new(),
+            }
+        )),
+        Block::table(&head, results.comparison.iter().enumerate().map(row)),
+    ]
+}
+
+/// The worst balance of the grips' forces of every model.
+pub fn balance(study: &Study, results: &Results) -> Vec<Block> {
+    let row = |(model, name): (usize, &str)| {
+        let (relative, stretch) = results.worst_balance(model)?;
+        Some(vec![
+            name.to_owned(),
+            format!("{relative:.1e}"),
+            Problem::percent(stretch),
+            power(results.worst_residual(model)?),
+        ])
+    };
+    let rows = MODELS.into_iter().enumerate().filter_map(row);
+    let head = [
+        "model",
+        "largest unbalanced force or moment, over the largest one [–]",
+        "at a stretch of [%]",
+        "largest force left at a free node, over that on a grip [–]",
+    ];
+    let climb = match study.climb {
+        Some(_) => {
+            " The corrected field has climbed: its iteration ends at a share (`climb_tolerance`) of its own discretisation \
+             error, which is what is left at its nodes."
+        }
+        None => "",
+    };
+    vec![
+        heading("Balance of forces and moments"),
+        Block::table(&head, rows),
+        Block::Paragraph(format!(
+            "The sum of the reactions of both grips along both axes, over the sum of their sizes, and the sum of their \
+             moments about the deformed plate's centre, over the same times half of its diagonal; the worst of all \
+             stretches. A plate is symmetric, and forces that are left at its free nodes cancel each other in these sums: \
+             they have a column of their own.{climb}"
+        )),
+    ]
+}
+
+pub fn convergence(study: &Study, results: &Results) -> Vec<Block> {
+    let row = |stretch: f64, model: &str, solution: &Solution| {
+        let log = &solution.convergence;
+        let cell = |residual: Option<&f64>| residual.map_or("–".into(), |r| format!("{r:.1e}"));
+        vec![
+            Problem::percent(stretch),
+            model.to_owned(),
+            solution.load_steps.to_string(),
+            log.iterations().to_string(),
+            cell(log.residuals.first()),
+            cell(log.residuals.last()),
+            log.cut_steps.to_string(),
+            log.shifted_steps.to_string(),
+        ]
+    };
+    let mut rows = Vec::new();
+    for (index, step) in results.comparison.iter().enumerate() {
+        for (name, solution) in MODELS.into_iter().zip(results.models(index)) {
+            rows.extend(solution.map(|solution| row(step.stretch, name, solution)));
+        }
+    }
+    let head = [
+        "stretch [%]",
+        "model",
+        "load steps",
+        "iterations",
+        "first residual [–]",
+        "last residual [–]",
+        "steps cut",
+        "tangents shifted",
+    ];
+    let mut blocks = vec![
+        heading("Convergence"),
+        Block::table(&head, rows),
+        Block::Paragraph(format!(
+            "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: {}",
+            match study.climb {
+                Some(_) =>
+                    "the correction that is left, root mean square over the nodes of the finest grid, over the \
+                     largest displacement; the first is what this grid adds to the one before it.",
+                None =>
+                    "largest scaled residual over the largest displacement; its equations are as many as its \
+                     unknowns, so that each step is a Newton step that starts from the mass-spring field.",
+            }
+        )),
+    ];
+    blocks.push(Block::Paragraph(role_of_springs(study)));
+    blocks.extend(starts(results));
+    let without = results.stretches_without_springs();
+    if !without.is_empty() {
+        blocks.push(Block::Paragraph(format!(
+            "The springs have no field at {}: there the affine stretch takes the place of ū.",
+            at_stretches(without)
+        )));
+    }
+    blocks
+}
+
+/// How the climb came to the corrected field at every stretch; nothing where the method was direct.
+fn starts(results: &Results) -> Option<Block> {
+    let row = |(step, state): (&StepComparison, &Option<CorrectedState>)| {
+        let way = state.as_ref()?.way.as_ref()?;
+        let stretch = Problem::percent(step.stretch);
+        Some(vec![stretch, way.to_string(), figure(Some(way.away), 3)])
+    };
+    let steps = results.comparison.iter().zip(&results.corrected);
+    let rows: Vec<_> = steps.filter_map(row).collect();
+    let head = [
+        "stretch [%]",
+        "the climb began with",
+        "root mean square distance of that to the corrected field on the first grid [mm]",
+    ];
+    (!rows.is_empty()).then(|| Block::table(&head, rows))
+}
+
+/// What the springs do, and what they do not.
+fn role_of_springs(study: &Study) -> String {
+    let start = match study.climb {
+        Some(_) => {
+            "The climb begins with a field of its own on a coarse grid, as the table says, and needs the study's springs \
+             for the multipliers alone."
+        }
+        None => {
+            "The direct method begins at the springs' field, and the multipliers are those of that field."
+        }
+    };
+    format!(
+        "What is projected: the mass-spring field ū onto the fields that satisfy equilibrium at the inner nodes, the \
+         motion of the grips and the free long sides. These are as many equations as there are unknowns: one field \
+         satisfies them whatever ū is, each step of the projection is a step of Newton's method, and the springs have \
+         no say in the result. Their share is the start and the multipliers. {start} Where fewer conditions than \
+         unknowns are imposed, as with measured points, noise or unknown grips, ū decides together with the physics."
+    )
+}

@@ -1,0 +1,157 @@
+//! Everything that a run has computed.
+
+use crate::compare::StepComparison;
+use crate::corrector::plate::CorrectedState;
+use crate::error::Error;
+use crate::finite_element::FiniteElements;
+use crate::finite_element::error_estimate::ErrorEstimate;
+use crate::mass_spring::MassSpring;
+use crate::mesh::Mesh;
+use crate::problem::Balance;
+use crate::problem::plate::Solution;
+
+mod requirement;
+
+pub use requirement::{Requirement, verdict};
+
+/// The names of the models, in the order of [`Results::models`].
+pub const MODELS: [&str; 3] = ["mass-spring", "corrected", "finite elements"];
+
+/// One finite-element mesh and its solutions.
+#[derive(Debug)]
+pub struct ReferenceMesh {
+    /// The model.
+    pub model: FiniteElements,
+    /// One solution a stretch, as far as the path goes.
+    pub solutions: Vec<Solution>,
+}
+
+/// All fields and figures of a study. A model that has ended early has fewer states than the study has stretches; the
+/// others go on without it.
+#[derive(Debug)]
+pub struct Results {
+    /// The lattice; its mesh is that of the corrected fields too.
+    pub springs: MassSpring,
+    /// The lattice in equilibrium, one solution a stretch, as far as the path goes.
+    pub uncorrected: Vec<Solution>,
+    /// The corrected field at every stretch; nothing where none was found.
+    pub corrected: Vec<Option<CorrectedState>>,
+    /// The finite elements on three meshes, coarse to fine; the last is the reference.
+    pub reference: [ReferenceMesh; 3],
+    /// The estimated errors of the finest of them; nothing where its tangent cannot be factorised.
+    pub estimates: Vec<Option<ErrorEstimate>>,
+    /// The reference field at the nodes of the lattice in mm, as far as the path goes.
+    pub reference_on_lattice: Vec<Vec<f64>>,
+    /// Deviations from the reference, one entry a stretch.
+    pub comparison: Vec<StepComparison>,
+    /// Why models have no solution at stretches of the study, in the order in which they were solved.
+    pub ends: Vec<Error>,
+    /// Wall-clock times: what, and seconds.
+    pub times: Vec<(&'static str, f64)>,
+}
+
+impl Results {
+    /// The finest finite-element mesh and its solutions.
+    pub fn finest(&self) -> &ReferenceMesh {
+        &self.reference[2]
+    }
+
+    /// The mass-spring model, the corrected field and the finest finite elements at a stretch, each where it exists.
+    pub fn models(&self, step: usize) -> [Option<&Solution>; 3] {
+        let corrected = self.corrected[step].as_ref();
+        [
+            self.uncorrected.get(step),
+            corrected.map(|state| &state.solution),
+            self.finest().solutions.get(step),
+        ]
+    }
+
+    /// The mesh of each of them.
+    pub fn meshes(&self) -> [&Mesh; 3] {
+        let lattice = &self.springs.mesh;
+        [lattice, lattice, &self.finest().model.mesh]
+    }
+
+    /// The stretches at which a model of [`MODELS`] has a solution.
+    pub fn reached(&self, model: usize) -> Vec<f64> {
+        let steps = 0..self.comparison.len();
+        let stretch = |step: usize| Some(self.models(step)[model]?.stretch);
+        steps.filter_map(stretch).collect()
+    }
+
+    /// The stretches with a corrected field and without one of the springs.
+    pub fn stretches_without_springs(&self) -> Vec<f64> {
+        let steps = 0..self.comparison.len();
+        let stretch = |step: usize| match self.models(step) {
+            [None, Some(corrected), _] => Some(corrected.stretch),
+            _ => None,
+        };
+        steps.filter_map(stretch).collect()
+    }
+
+    /// The worst balance of the grips' reactions of a model of [`MODELS`], and the stretch of it; nothing where the model
+    /// has no solution.
+    pub fn worst_balance(&self, model: usize) -> Option<(f64, f64)> {
+        let mesh = self.meshes()[model];
+        let steps = 0..self.comparison.len();
+        let of_step = |step: usize| {
+            let solution = self.models(step)[model]?;
+            Some((balance(mesh, solution).relative(), solution.stretch))
+        };
+        let all = steps.filter_map(of_step);
+        all.max_by(|(a, _), (b, _)| a.total_cmp(b))
+    }
+
+    /// The largest residual force at a node that no grip holds over the force on a grip, the worst of all stretches, of a
+    /// model of [`MODELS`]; nothing where it has no solution.
+    pub fn worst_residual(&self, model: usize) -> Option<f64> {
+        let mesh = self.meshes()[model];
+        let of_step = |step: usize| {
+            let solution = self.models(step)[model]?;
+            let residual = solution.residual.iter().enumerate();
+            let free = residual.filter(|(unknown, _)| !mesh.on_grip(unknown / 2));
+            let largest = free.fold(0.0, |most: f64, (_, force)| most.max(force.abs()));
+            Some(largest / solution.force.abs())
+        };
+        let steps = 0..self.comparison.len();
+        steps.filter_map(of_step).reduce(f64::max)
+    }
+
+    /// The last stretch at which one of the models has a solution.
+    pub fn last_step(&self) -> Option<usize> {
+        let any = |step: &usize| self.models(*step).iter().any(Option::is_some);
+        (0..self.comparison.len()).rev().find(any)
+    }
+
+    /// The estimated error of the finest mesh's force at a stretch in %, by recovery, without its sign.
+    pub fn recovered_force_percent(&self, step: usize) -> Option<f64> {
+        let estimate = self.estimates.get(step)?.as_ref()?;
+        Some(100.0 * (estimate.force / self.finest().solutions[step].force).abs())
+    }
+
+    /// The finite elements' own error of the force at a stretch in %: that of three meshes, or the larger one of that and of
+    /// the recovery on the finest where the three do not converge monotonically.
+    pub fn own_force_percent(&self, step: usize) -> Option<f64> {
+        let own = self.comparison[step].reference?.force;
+        let doubted = self
+            .recovered_force_percent(step)
+            .filter(|_| own.order.is_none());
+        Some(doubted.map_or(own.error_percent, |recovered| {
+            own.error_percent.max(recovered)
+        }))
+    }
+}
+
+/// The balance of the reactions of both grips.
+fn balance(mesh: &Mesh, solution: &Solution) -> Balance {
+    let displacements = solution.displacement.chunks_exact(2);
+    let places = mesh.nodes.iter().zip(displacements);
+    let places: Vec<[f64; 2]> = places.map(|([x, y], u)| [x + u[0], y + u[1]]).collect();
+    let mut reactions = solution.residual.clone();
+    for (unknown, reaction) in reactions.iter_mut().enumerate() {
+        if !mesh.on_grip(unknown / 2) {
+            *reaction = 0.0;
+        }
+    }
+    Balance::of_supports(&places, &reactions)
+}

@@ -1,0 +1,72 @@
+//! What a reader of a plate's figures has to know about them.
+
+use crate::problem::plate::Problem;
+use crate::studies::plate::results::{MODELS, Results};
+use crate::studies::plate::study::Study;
+
+use crate::output::wrinkling;
+
+/// Reactions further from balance than this, relative to the largest, deserve a word.
+const BALANCED: f64 = 1e-9;
+
+/// The warnings about a run: compression, doubtful stability, reactions out of balance.
+pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
+    let mut all = Vec::new();
+    all.extend(compression(study, results));
+    all.extend(instability(results));
+    all.extend(imbalance(results));
+    all
+}
+
+/// Compression in the finite elements, or in the corrected field where there are none.
+fn compression(study: &Study, results: &Results) -> Option<String> {
+    let finest = results.finest();
+    let model = match finest.solutions.is_empty() {
+        true => 1,
+        false => 2,
+    };
+    let mesh = results.meshes()[model];
+    let steps = 0..results.comparison.len();
+    let states = steps.filter_map(|step| {
+        let solution = results.models(step)[model]?;
+        let load = Problem::describe_step(solution.stretch);
+        Some((load, &*solution.displacement))
+    });
+    wrinkling::warning(&*study.problem.law, mesh, states)
+}
+
+/// States that were reached through tangents that are not positive definite.
+fn instability(results: &Results) -> Option<String> {
+    let mut found = Vec::new();
+    for (model, name) in MODELS.into_iter().enumerate() {
+        for step in 0..results.comparison.len() {
+            let Some(solution) = results.models(step)[model] else {
+                continue;
+            };
+            if solution.convergence.shifted_steps > 0 {
+                let at = Problem::describe_step(solution.stretch);
+                found.push(format!("{name} at {at}"));
+            }
+        }
+    }
+    (!found.is_empty()).then(|| {
+        format!(
+            "Warning: the tangent was not positive definite on the way to {}: the state may be one of several, or unstable",
+            found.join(", ")
+        )
+    })
+}
+
+fn imbalance(results: &Results) -> Vec<String> {
+    let told = |(model, name): (usize, &str)| {
+        let (relative, stretch) = results.worst_balance(model)?;
+        (relative > BALANCED).then(|| {
+            format!(
+                "Warning: {name}: the reactions of the grips are out of balance by {relative:.1e} of the largest at {}; take a \
+                 smaller tolerance",
+                Problem::describe_step(stretch)
+            )
+        })
+    };
+    MODELS.into_iter().enumerate().filter_map(told).collect()
+}

@@ -1,0 +1,125 @@
+//! Paths that end before their last load factor.
+
+use super::measured::Measured;
+use super::read::Specimen;
+use super::solved::{GroupState, group_states};
+use crate::error::{Error, SolveFault};
+use crate::mesh::Mesh;
+use crate::output::vtk;
+use crate::problem::Discretised;
+use crate::results::Block;
+use crate::results::{Check, Outcome};
+use crate::solve::{PathEnd, State};
+
+/// Where the path of one model ended, and why.
+pub struct End {
+    model: String,
+    step: String,
+    fault: SolveFault,
+    last: Option<Last>,
+}
+
+/// The last equilibrium of a path.
+struct Last {
+    /// Begin of the file's name.
+    file: String,
+    mesh: Mesh,
+    state: State,
+    groups: Vec<GroupState>,
+    /// Whether it lies between two load factors of the study, so that nothing else holds it.
+    between: bool,
+}
+
+impl End {
+    /// The end of the path of a model with the names `[model, file]` on a mesh.
+    pub fn of_path(
+        [name, file]: [&str; 2],
+        specimen: &Specimen,
+        (mesh, model): (&Mesh, &Discretised),
+        end: &PathEnd,
+    ) -> Self {
+        let state = end.last.as_deref().or(end.states.last());
+        Self {
+            model: name.to_owned(),
+            step: end.describe(),
+            fault: end.fault.clone(),
+            last: state.map(|state| Last {
+                file: format!("{file}_end.vtu"),
+                mesh: mesh.clone(),
+                groups: group_states(specimen, model, state),
+                state: state.clone(),
+                between: end.last.is_some(),
+            }),
+        }
+    }
+
+    /// An end at a load factor that has no way to it.
+    pub fn at(model: &str, factor: f64, fault: SolveFault) -> Self {
+        Self {
+            model: model.to_owned(),
+            step: format!("load factor {factor}"),
+            fault,
+            last: None,
+        }
+    }
+
+    /// Whether not one equilibrium was found on the way.
+    pub fn is_empty(&self) -> bool {
+        self.last.is_none()
+    }
+
+    /// The end as an error.
+    pub fn error(&self) -> Error {
+        Error::Solve {
+            model: self.model.clone(),
+            step: self.step.clone(),
+            fault: self.fault.clone(),
+        }
+    }
+}
+
+/// What was the last equilibrium of any of the paths, for a choice of what is measured.
+pub fn last_groups(ends: &[End]) -> Option<(&Mesh, &[GroupState])> {
+    let last = ends.iter().rev().find_map(|end| end.last.as_ref())?;
+    Some((&last.mesh, &last.groups))
+}
+
+/// Adds the ends to an outcome: a requirement that is not met, a row of a table, a file.
+pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &mut Outcome) {
+    let mut rows = Vec::new();
+    for end in ends {
+        let quantity = format!("{} ({})", end.error(), end.fault.advice());
+        outcome
+            .checks
+            .push(Check::fault(quantity, "the whole path"));
+        let Some(last) = end.last else { continue };
+        let file = if last.between { &*last.file } else { "–" };
+        rows.push(vec![
+            end.model,
+            format!("{:.4}", last.state.factor),
+            end.fault.to_string(),
+            format!("{:.5}", measured.of(&last.groups)),
+            file.to_owned(),
+        ]);
+        if last.between {
+            let displacement = &last.state.displacement;
+            let sheet = specimen.sheet();
+            let content = vtk::field_file(&specimen.name, &sheet, &last.mesh, displacement, None);
+            outcome.vtk.push((last.file, content));
+        }
+    }
+    if !rows.is_empty() {
+        let text = "Paths that ended early: the last equilibrium of each, at the largest load factor reached. \
+            One between the study's load factors has a file of its own. The other models went on without them.";
+        let what = format!("{} [{}]", measured.describe(), measured.unit());
+        let head = [
+            "model",
+            "load factor reached [–]",
+            "why it ended",
+            &what,
+            "file",
+        ];
+        outcome.blocks.push(Block::Paragraph(text.into()));
+        outcome.blocks.push(Block::table(&head, rows));
+    }
+}

@@ -1,0 +1,111 @@
+//! Forces, moments and displacements of all groups, for reports and for machines.
+
+use serde_json::{Value, json};
+
+use super::solved::{GroupState, Solved};
+use super::{Models, Specimen};
+use crate::results::Block;
+use crate::results::number;
+
+/// A table of all groups in all models at all load factors.
+pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
+    let head = [
+        "load factor [–]",
+        "group",
+        "model",
+        "force along x [N]",
+        "force along y [N]",
+        "moment about the group's middle [N·mm]",
+        "mean displacement along x [mm]",
+        "mean displacement along y [mm]",
+    ];
+    let mut rows = Vec::new();
+    for (step, factor) in specimen.factors.iter().enumerate() {
+        for (index, group) in specimen.groups().iter().enumerate() {
+            for (model, _, _, solved) in models.named() {
+                if let Some(groups) = solved.groups(step) {
+                    let names = [factor.to_string(), (*group).to_owned(), model.to_owned()];
+                    rows.push(names.into_iter().chain(cells(&groups[index])).collect());
+                }
+            }
+        }
+    }
+    let text = "Forces of the supports on the specimen, with the signs of the axes, and their moments about the middle of \
+                the group's deformed nodes, counter-clockwise; the force that a grip is given counts as one of its \
+                support. Displacements are means over the length of the group's edges.";
+    vec![
+        Block::Heading(2, "Forces at the groups".into()),
+        Block::Paragraph(text.into()),
+        Block::table(&head, rows),
+        Block::Paragraph(balance(models)),
+    ]
+}
+
+/// Balances above this are worth a warning.
+const UNBALANCED: f64 = 1e-9;
+
+/// The larger of two balances; one that is no number is worse than any.
+pub fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// The worst balance of all models.
+pub fn worst_balance(models: &Models) -> Option<f64> {
+    let balances = models.named().into_iter();
+    balances
+        .filter_map(|(_, _, _, solved)| solved.balance)
+        .reduce(f64::max)
+}
+
+/// The balance of each model in a sentence.
+fn balance(models: &Models) -> String {
+    let balances = models.named().into_iter();
+    let told =
+        balances.filter_map(|(name, _, _, solved)| Some(format!("{name} {:.1e}", solved.balance?)));
+    format!(
+        "Balance: supports and loads together leave, at the worst load factor and over the largest force or moment: {}.",
+        told.collect::<Vec<_>>().join(", ")
+    )
+}
+
+/// The warning about forces or moments that do not balance.
+pub fn unbalanced(models: &Models) -> Option<String> {
+    worst_balance(models).filter(|worst| worst.is_nan() || *worst > UNBALANCED)?;
+    Some(format!(
+        "Warning: forces or moments do not balance. {}",
+        balance(models)
+    ))
+}
+
+fn cells(state: &GroupState) -> Vec<String> {
+    let [x, y] = state.force;
+    let [u, v] = state.displacement;
+    let all = [x, y, state.moment, u, v];
+    all.map(number).to_vec()
+}
+
+/// The same for machines: the models by their names, each with its load factors.
+pub fn json(specimen: &Specimen, models: &Models) -> Value {
+    let groups = specimen.groups();
+    let group = |(name, state): (&&str, &GroupState)| {
+        let value = json!({
+            "force_N": state.force,
+            "moment_Nmm": state.moment,
+            "displacement_mm": state.displacement,
+        });
+        ((*name).to_owned(), value)
+    };
+    let step = |solved: &Solved, step: usize| {
+        let states = solved.groups(step)?;
+        let all: serde_json::Map<_, _> = groups.iter().zip(states).map(group).collect();
+        Some(json!({ "load_factor": specimen.factors[step], "groups": all }))
+    };
+    let model = |solved: &Solved| {
+        let steps = 0..specimen.factors.len();
+        let steps: Vec<_> = steps.filter_map(|own| step(solved, own)).collect();
+        json!({ "steps": steps, "balance": solved.balance })
+    };
+    let named = models.named().into_iter();
+    let named = named.map(|(_, key, _, solved)| (key.to_owned(), json!(model(solved))));
+    Value::Object(named.collect())
+}

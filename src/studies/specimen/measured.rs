@@ -1,0 +1,197 @@
+//! What is compared at the measured group: the force of its supports, or a displacement where that force is given.
+
+use super::read::Specimen;
+use super::solved::GroupState;
+use crate::mesh::Mesh;
+use crate::problem::{Drive, Load, Support};
+
+/// A force or a displacement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// The force of the supports.
+    Force,
+    /// The mean displacement, where the force is given or none acts.
+    Displacement,
+}
+
+/// What is measured, where, and along which axis.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Measured {
+    /// What.
+    pub quantity: Quantity,
+    /// The group.
+    pub group: String,
+    /// Its number among [`Specimen::groups`].
+    pub index: usize,
+    /// Along x (0) or y (1).
+    pub axis: usize,
+}
+
+impl Measured {
+    /// The value in N or mm, from what happens at all groups.
+    pub fn of(&self, groups: &[GroupState]) -> f64 {
+        let own = &groups[self.index];
+        match self.quantity {
+            Quantity::Force => own.force[self.axis],
+            Quantity::Displacement => own.displacement[self.axis],
+        }
+    }
+
+    /// `force` or `displacement`.
+    pub fn name(&self) -> &'static str {
+        match self.quantity {
+            Quantity::Force => "force",
+            Quantity::Displacement => "displacement of the group",
+        }
+    }
+
+    /// N or mm.
+    pub fn unit(&self) -> &'static str {
+        match self.quantity {
+            Quantity::Force => "N",
+            Quantity::Displacement => "mm",
+        }
+    }
+
+    /// `x` or `y`.
+    pub fn axis_name(&self) -> &'static str {
+        ["x", "y"][self.axis]
+    }
+
+    /// `the force along x of the supports on the group `left``.
+    pub fn describe(&self) -> String {
+        let (axis, group) = (self.axis_name(), &self.group);
+        match self.quantity {
+            Quantity::Force => {
+                format!("the force along {axis} of the supports on the group `{group}`")
+            }
+            Quantity::Displacement => {
+                format!("the mean displacement along {axis} of the group `{group}`")
+            }
+        }
+    }
+}
+
+/// What the loads push: a group, and the axis where they have a direction.
+struct Pushed<'a> {
+    group: &'a str,
+    axis: Option<usize>,
+}
+
+impl Specimen {
+    /// All groups that are held, loaded or measured, in the order of the study.
+    pub fn groups(&self) -> Vec<&str> {
+        let supports = self.problem.supports.iter().map(|(group, _)| group);
+        let loads = self.problem.loads.iter().map(|(group, _)| group);
+        let mut all: Vec<&str> = Vec::new();
+        for group in supports.chain(loads).chain([&self.group]) {
+            if !all.contains(&group.as_str()) {
+                all.push(group);
+            }
+        }
+        all
+    }
+
+    /// What is measured, by what happens at the groups in the last state of a model on a mesh: along the axis of the larger component. A force that
+    /// equilibrium alone gives says nothing of a model; then it is the displacement of what the loads push.
+    pub fn measured(&self, mesh: &Mesh, last: &[GroupState]) -> Measured {
+        let moved: Vec<_> = self
+            .pushed()
+            .filter(|pushed| self.moves(mesh, pushed))
+            .collect();
+        if let Some(own) = moved.iter().find(|pushed| pushed.group == self.group) {
+            return self.displaced(own, last);
+        }
+        let force = self.along_larger(&self.group, last, Quantity::Force);
+        if !self.is_held(&self.group) {
+            return self.along_larger(&self.group, last, Quantity::Displacement);
+        }
+        match moved.first() {
+            Some(first) if self.holds_alone(mesh, force.axis) => {
+                let mut along = moved
+                    .iter()
+                    .filter(|pushed| pushed.axis == Some(force.axis));
+                self.displaced(along.next().unwrap_or(first), last)
+            }
+            _ => force,
+        }
+    }
+
+    /// The force along x, where not one equilibrium says what is larger.
+    pub fn measured_at_rest(&self) -> Measured {
+        let at_rest = vec![GroupState::default(); self.groups().len()];
+        self.along_larger(&self.group, &at_rest, Quantity::Force)
+    }
+
+    fn displaced(&self, pushed: &Pushed, last: &[GroupState]) -> Measured {
+        let larger = self.along_larger(pushed.group, last, Quantity::Displacement);
+        Measured {
+            axis: pushed.axis.unwrap_or(larger.axis),
+            ..larger
+        }
+    }
+
+    /// A quantity of a group along the axis of its larger component in the last state.
+    fn along_larger(&self, group: &str, last: &[GroupState], quantity: Quantity) -> Measured {
+        let index = self.groups().iter().position(|name| *name == group);
+        let index = index.expect("a group that is held, loaded or measured");
+        let at = |axis| Measured {
+            quantity,
+            group: group.to_owned(),
+            index,
+            axis,
+        };
+        let size = |axis| at(axis).of(last).abs();
+        at(usize::from(size(1) > size(0)))
+    }
+
+    fn is_held(&self, group: &str) -> bool {
+        self.problem.supports.iter().any(|(name, _)| name == group)
+    }
+
+    /// Grips with a given force, then loads.
+    fn pushed(&self) -> impl Iterator<Item = Pushed<'_>> {
+        let grips = self.problem.supports.iter().filter_map(|(group, support)| {
+            let Support::Grip(drives) = support else {
+                return None;
+            };
+            let given = |drive: &Drive| matches!(drive, Drive::Force(force) if *force != 0.0);
+            let axis = drives.iter().position(given)?;
+            Some(Pushed {
+                group,
+                axis: Some(axis),
+            })
+        });
+        let loads = self.problem.loads.iter().map(|(group, load)| Pushed {
+            group,
+            axis: match load {
+                Load::Traction([x, y]) | Load::Force([x, y]) => {
+                    Some(usize::from(y.abs() > x.abs()))
+                }
+                Load::Pressure(_) => None,
+            },
+        });
+        grips.chain(loads)
+    }
+
+    /// Whether supports leave some of a group free to move as it is pushed.
+    fn moves(&self, mesh: &Mesh, pushed: &Pushed) -> bool {
+        let held = self.problem.held_by(mesh).unwrap_or_default();
+        let nodes = &mesh.groups()[pushed.group].nodes;
+        let free = |axis: usize| {
+            nodes
+                .iter()
+                .any(|node| !held.contains_key(&(2 * node + axis)))
+        };
+        pushed.axis.map_or(free(0) || free(1), free)
+    }
+
+    /// Whether no other nodes than those of the measured group are held along an axis.
+    fn holds_alone(&self, mesh: &Mesh, axis: usize) -> bool {
+        let own = &mesh.groups()[&self.group].nodes;
+        let held = self.problem.held_by(mesh).unwrap_or_default();
+        held.keys()
+            .filter(|unknown| *unknown % 2 == axis)
+            .all(|unknown| own.contains(&(unknown / 2)))
+    }
+}

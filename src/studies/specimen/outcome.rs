@@ -1,0 +1,198 @@
+//! What is told about a specimen: what the study says, deviations, own errors, forces, warnings.
+
+use super::files::{figures, files};
+use super::paths::Start;
+use super::verdict::{Deviation, checks};
+use super::warnings::warnings;
+use super::{Models, Solved, Specimen, forces, statement};
+use crate::compare::area_weighted_percent;
+use crate::compare::judgement::Judgement;
+use crate::results::Block;
+use crate::results::{Check, Outcome};
+
+/// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
+pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
+    let expected = expected(models);
+    let deviations = deviations(specimen, models, &expected);
+    let steps = 0..models.reached();
+    let rows = steps.map(|step| row(specimen, models, step, deviations[step].as_ref()));
+    let table = Block::Table(head(models), rows.collect());
+    let mut warnings = warnings(specimen, models);
+    warnings.extend(forces::unbalanced(models));
+    let mut blocks: Vec<_> = warnings.iter().cloned().map(Block::Paragraph).collect();
+    blocks.extend([Block::Paragraph(introduction(models)), table]);
+    blocks.extend(starts(specimen, models).map(Block::Paragraph));
+    blocks.extend(models.reference.history());
+    blocks.extend(forces::table(specimen, models));
+    blocks.extend(statement::blocks(specimen));
+    let judged: Vec<_> = deviations.into_iter().flatten().collect();
+    let json = [
+        ("statement".to_owned(), statement::json(specimen)),
+        ("models".to_owned(), forces::json(specimen, models)),
+    ];
+    Outcome {
+        checks: checks(specimen, models, &judged),
+        blocks,
+        figures: figures(specimen, models, &expected),
+        vtk: files(specimen, models, &expected),
+        warnings,
+        balance: forces::worst_balance(models),
+        json: json.into_iter().collect(),
+        ..Outcome::default()
+    }
+}
+
+/// Whether the finite elements are too coarse for something that they have to judge.
+pub fn is_open(specimen: &Specimen, models: &Models) -> bool {
+    let deviations = deviations(specimen, models, &expected(models));
+    let judged: Vec<_> = deviations.into_iter().flatten().collect();
+    let checks = checks(specimen, models, &judged);
+    let open = |check: &Check| matches!(check.judgement(), Judgement::CannotBeJudged { .. });
+    checks.iter().any(open)
+}
+
+/// The deviations at each load factor, where there are any.
+fn deviations(
+    specimen: &Specimen,
+    models: &Models,
+    expected: &[Vec<f64>],
+) -> Vec<Option<Deviation>> {
+    let steps = 0..specimen.factors.len();
+    steps
+        .map(|step| deviation(models, step, expected.get(step)?))
+        .collect()
+}
+
+/// The finite elements' displacements at the lattice's nodes, at the load factors that they reach.
+fn expected(models: &Models) -> Vec<Vec<f64>> {
+    let (reference, lattice) = (&models.reference, &models.on_lattice.springs.mesh);
+    let states = reference.solved.states.iter();
+    states
+        .map(|state| reference.mesh.displacement_on(&state.displacement, lattice))
+        .collect()
+}
+
+/// Deviations from the expected field, where there is a corrected one.
+fn deviation(models: &Models, step: usize, expected: &[f64]) -> Option<Deviation> {
+    let reference = &models.reference;
+    let lattice = &models.on_lattice.springs.mesh;
+    let what = &reference.measured;
+    let measured = reference.solved.measured(what, step)?;
+    let of = |solved: &Solved| {
+        let field = &solved.states.get(step)?.displacement;
+        let displacement = area_weighted_percent(lattice, field, expected);
+        Some([
+            displacement,
+            percent(solved.measured(what, step)?, measured),
+        ])
+    };
+    Some(Deviation {
+        springs: of(&models.on_lattice.uncorrected),
+        corrected: of(&models.on_lattice.corrected)?,
+        own: [
+            reference
+                .displacement_percent(step, lattice)
+                .unwrap_or(f64::NAN),
+            reference.measured_percent(step).unwrap_or(f64::NAN),
+        ],
+    })
+}
+
+/// The deviation of a value from another one in % of it; two zeros do not deviate.
+fn percent(value: f64, expected: f64) -> f64 {
+    match value == expected {
+        true => 0.0,
+        false => 100.0 * (value / expected - 1.0),
+    }
+}
+
+/// The figures of one load factor.
+fn row(
+    specimen: &Specimen,
+    models: &Models,
+    step: usize,
+    deviation: Option<&Deviation>,
+) -> Vec<String> {
+    let reference = &models.reference;
+    let text = |value: Option<f64>, digits: usize| {
+        value.map_or("–".into(), |value| format!("{value:.digits$}"))
+    };
+    let own = |which: usize| {
+        deviation
+            .map(|own| own.own[which])
+            .filter(|own| !own.is_nan())
+    };
+    let springs = |which: usize| deviation.and_then(|own| Some(own.springs?[which]));
+    let corrected = |which: usize| deviation.map(|own| own.corrected[which]);
+    vec![
+        specimen.factors[step].to_string(),
+        text(springs(0), 3),
+        text(corrected(0), 4),
+        text(deviation.and_then(Deviation::correction_percent), 2),
+        text(own(0), 4),
+        text(springs(1), 2),
+        text(corrected(1), 3),
+        text(reference.solved.measured(&reference.measured, step), 5),
+        text(reference.three_meshes_percent(step), 4),
+        text(reference.recovered_percent(step), 4),
+        text(reference.energy_percent(step), 4),
+    ]
+}
+
+fn head(models: &Models) -> Vec<String> {
+    let measured = &models.reference.measured;
+    let what = measured.name();
+    vec![
+        "load factor [–]".into(),
+        "mass-spring: displacement [%]".into(),
+        "corrected: displacement [%]".into(),
+        "correction [%]".into(),
+        "finite elements: own error of the displacement [%]".into(),
+        format!("mass-spring: {what} [%]"),
+        format!("corrected: {what} [%]"),
+        format!("finite elements: {what} [{}]", measured.unit()),
+        format!("their own error of the {what}, by three meshes [%]"),
+        "the same, by recovery [%]".into(),
+        "their field's own error by recovery, energy norm [%]".into(),
+    ]
+}
+
+fn introduction(models: &Models) -> String {
+    let lattice = &models.on_lattice.springs.mesh;
+    let measured = &models.reference.measured;
+    format!(
+        "Deviations from the finite elements ({}) at {} nodes of the lattice ({}). Displacements in relative L2, weighted \
+         by area; what is measured is {}, its {} axis being that of the larger component or of the given load.",
+        models.reference.describe(),
+        lattice.nodes.len(),
+        lattice.describe(),
+        measured.describe(),
+        measured.axis_name(),
+    )
+}
+
+/// Where the corrector began elsewhere than at the springs' field.
+fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
+    let at = |wanted: Start| {
+        let starts = models.on_lattice.starts.iter().zip(&specimen.factors);
+        let found = starts.filter(|(start, _)| **start == wanted);
+        let found: Vec<_> = found.map(|(_, factor)| factor.to_string()).collect();
+        found.join(", ")
+    };
+    let (alone, steps) = (at(Start::Alone), at(Start::LoadSteps));
+    let mut text = String::new();
+    if !steps.is_empty() {
+        text += &format!(
+            "From the springs' field itself the corrector found no way at the load factors {steps}; it began at an \
+             equilibrium that Newton's method reached from rest in load steps. "
+        );
+    }
+    if !alone.is_empty() {
+        text += &format!(
+            "The springs have no equilibrium at the load factors {alone}. There the corrected field comes from the \
+             corrector's conditions alone, by Newton's method in load steps from rest: no springs' field enters it, and \
+             there is no correction to be measured."
+        );
+    }
+    (!text.is_empty()).then(|| text.trim_end().to_owned())
+}

@@ -1,0 +1,315 @@
+//! What is meshed of a specimen, and how.
+
+use std::path::Path;
+
+use crate::document::{Bound, Section};
+use crate::error::Severity;
+use crate::mesh::{Allowed, CellShape, Mesh, MeshReading, Shape, import};
+use crate::results::number;
+use crate::units::Dimension;
+
+/// What is meshed, and how.
+pub enum Outline {
+    /// A shape by its measures: cells across, cells of the lattice, finite elements.
+    Shape {
+        shape: Shape,
+        cells: usize,
+        lattice: CellShape,
+        element: CellShape,
+    },
+    /// The mesh of a file, the finite elements on it, and whether straight edges are meant where they turn as a curve's.
+    File {
+        mesh: Box<Mesh>,
+        element: CellShape,
+        polygons: bool,
+    },
+}
+
+/// The shape that is read from a file.
+pub const MESH: &str = "mesh";
+
+pub const SHAPES: [&str; 6] = [
+    MESH,
+    "strip",
+    "strip-with-hole",
+    "notched-strip",
+    "dog-bone",
+    "ring-sector",
+];
+
+/// The outline under a shape's name; nothing where it has faults, which are recorded.
+pub fn read_outline(
+    section: &Section,
+    name: &str,
+    folder: &Path,
+    element: CellShape,
+) -> Option<Outline> {
+    if name == MESH {
+        let (mesh, allowed) = read_mesh(section, folder)?;
+        return Some(Outline::File {
+            mesh: Box::new(mesh),
+            element,
+            polygons: allowed.polygons,
+        });
+    }
+    let shape = read_shape(section, name);
+    let cells = section.count("cells", 2, 400);
+    if !cells.is_multiple_of(2) {
+        let hint = format!("one of the meshes has half as many; take {}", cells + 1);
+        section.fault("cells", "must be even", &hint);
+    }
+    let kinds = [
+        ("quadrilaterals", CellShape::Quad4),
+        ("triangles", CellShape::Triangle3),
+    ];
+    let lattice = section.choice("lattice", &kinds)?;
+    Some(Outline::Shape {
+        shape,
+        cells,
+        lattice,
+        element,
+    })
+}
+
+/// The mesh of a file; nothing where it cannot be used, with the faults recorded.
+fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
+    let file = section.text("file");
+    let unit = section.unit("file_unit", Dimension::Length);
+    let merge_nodes = section
+        .has("merge_nodes")
+        .then(|| section.quantity("merge_nodes", Dimension::Length, Bound::Positive));
+    let names = match section.has("allowed") {
+        true => section.texts("allowed"),
+        false => Vec::new(),
+    };
+    let allowed = Allowed::of_names(names.iter().map(String::as_str));
+    if let Err(unknown) = &allowed {
+        let hint = format!("one of {}", Allowed::NAMES.join(", "));
+        section.fault(
+            "allowed",
+            &format!("\"{unknown}\" is not known here"),
+            &hint,
+        );
+    }
+    if file.is_empty() {
+        section.fault("file", "must name a mesh", "such as \"specimen.msh\"");
+    }
+    if file.is_empty() || !unit.is_finite() || merge_nodes.is_some_and(f64::is_nan) {
+        return None;
+    }
+    let reading = MeshReading {
+        unit,
+        merge_nodes,
+        allowed: allowed.ok()?,
+    };
+    let read = import(&folder.join(&file), reading);
+    let (mesh, told) = match read {
+        Ok((mesh, told)) => (Some(mesh), told),
+        Err(told) => (None, told),
+    };
+    for found in told {
+        let hint = found.hint.unwrap_or_default();
+        match found.severity {
+            Severity::Error => section.fault("file", &found.message, &hint),
+            Severity::Warning => section.warning("file", &found.message, &hint),
+        }
+    }
+    Some((mesh?, reading.allowed))
+}
+
+impl Outline {
+    /// A coarse mesh with the groups of the specimen.
+    ///
+    /// # Errors
+    /// Says which measures do not fit together.
+    pub fn coarse(&self) -> Result<Mesh, String> {
+        match self {
+            Self::Shape { shape, .. } => {
+                shape.check()?;
+                Ok(shape.mesh(2, CellShape::Quad4))
+            }
+            Self::File { mesh, .. } => Ok((**mesh).clone()),
+        }
+    }
+
+    /// Whether it is a shape by its measures, and no file's.
+    pub fn is_shape(&self) -> bool {
+        matches!(self, Self::Shape { .. })
+    }
+
+    /// Whether all measures could be read.
+    pub fn is_complete(&self) -> bool {
+        match self {
+            Self::Shape { shape, .. } => shape.measures().iter().all(|measure| measure.is_finite()),
+            Self::File { .. } => true,
+        }
+    }
+
+    /// What it is in words, with its measures.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Shape { shape, .. } => describe(*shape),
+            Self::File { mesh, .. } => {
+                let [[left, bottom], [right, top]] = mesh.bounding_box();
+                format!(
+                    "the sheet of a mesh file, x from {left} to {right} mm and y from {bottom} to {top} mm"
+                )
+            }
+        }
+    }
+
+    /// The mesh of the springs and of the corrector; that of a file has a node wherever the file has one.
+    pub fn lattice(&self) -> Mesh {
+        match self {
+            Self::Shape {
+                shape,
+                cells,
+                lattice,
+                ..
+            } => shape.mesh(*cells, *lattice),
+            Self::File { mesh, .. } if mesh.degree() == 1 => (**mesh).clone(),
+            Self::File { mesh, .. } => mesh.refined().linear(),
+        }
+    }
+
+    /// The mesh of the finite elements of a level: each has cells of half the size of those of the one before. At level 2
+    /// they are half as large as the lattice's where they are quadratic, and a quarter where they are linear or the mesh is
+    /// that of a file, so that their error is small beside that of the corrected field.
+    pub fn reference_mesh(&self, level: usize) -> Mesh {
+        match self {
+            Self::Shape {
+                shape,
+                cells,
+                element,
+                ..
+            } => {
+                let coarsest = if element.degree() == 2 {
+                    cells / 2
+                } else {
+                    *cells
+                };
+                shape.mesh(coarsest << level, *element)
+            }
+            Self::File { mesh, .. } => {
+                let refined = (0..level).fold((**mesh).clone(), |mesh, _| mesh.refined());
+                self.elements_on(&refined)
+            }
+        }
+    }
+
+    /// The meshes of the levels 0, 1 and 2.
+    pub fn reference_meshes(&self) -> [Mesh; 3] {
+        [0, 1, 2].map(|level| self.reference_mesh(level))
+    }
+
+    /// The middle one of the three meshes of a file's specimen with its edges on the curves that they stand for, see
+    /// [`Mesh::rounded`], and the whole change to those curves over the change to this mesh.
+    pub fn rounded_mesh(&self) -> Option<(Mesh, f64)> {
+        let Self::File { mesh, polygons, .. } = self else {
+            return None;
+        };
+        if *polygons && mesh.degree() == 1 {
+            return None;
+        }
+        // What is left between a curve and chords falls with h², between a curve and parabolas with h⁴.
+        let whole = if mesh.degree() == 1 {
+            4.0 / 3.0
+        } else {
+            16.0 / 15.0
+        };
+        Some((self.elements_on(&mesh.rounded()?), whole))
+    }
+
+    /// The triangles that local refinement begins with: as coarse as the coarsest of three meshes.
+    pub fn first_triangles(&self) -> Mesh {
+        match self {
+            Self::Shape { shape, cells, .. } => shape.mesh(*cells / 2, CellShape::Triangle3),
+            Self::File { mesh, .. } => mesh.triangulated(),
+        }
+    }
+
+    /// The mesh of the study's elements on some cells.
+    pub fn elements_on(&self, cells: &Mesh) -> Mesh {
+        let (Self::Shape { element, .. } | Self::File { element, .. }) = self;
+        match (element.degree(), cells.degree()) {
+            (1, 1) => cells.clone(),
+            (1, _) => cells.linear(),
+            _ => self.fitted(cells.quadratic()),
+        }
+    }
+
+    /// A refined mesh with its sides on the outline; that of a file is the one of its mesh.
+    pub fn fitted(&self, mut mesh: Mesh) -> Mesh {
+        if let Self::Shape { shape, .. } = self {
+            shape.fit(&mut mesh);
+        }
+        mesh
+    }
+}
+
+fn read_shape(section: &Section, name: &str) -> Shape {
+    let length = |key| section.quantity(key, Dimension::Length, Bound::Positive);
+    if name == "ring-sector" {
+        return Shape::RingSector {
+            radii: [length("inner_radius"), length("outer_radius")],
+            angle: section.quantity("angle", Dimension::Angle, Bound::Positive),
+        };
+    }
+    let size = [length("length"), length("width")];
+    match name {
+        "strip-with-hole" => Shape::StripWithHole {
+            size,
+            radius: 0.5 * length("hole_diameter"),
+        },
+        "notched-strip" => Shape::NotchedStrip {
+            size,
+            depth: length("notch_depth"),
+            half_length: 0.5 * length("notch_length"),
+        },
+        "dog-bone" => Shape::DogBone {
+            size,
+            narrow: [length("narrow_length"), length("narrow_width")],
+            shoulder: length("shoulder_length"),
+        },
+        _ => Shape::Strip { size },
+    }
+}
+
+/// A shape with its measures in words.
+fn describe(shape: Shape) -> String {
+    match shape {
+        Shape::Strip {
+            size: [length, width],
+        } => format!("a strip of {length} × {width} mm"),
+        Shape::StripWithHole {
+            size: [length, width],
+            radius,
+        } => format!(
+            "a strip of {length} × {width} mm with a hole of {} mm diameter in its middle",
+            2.0 * radius
+        ),
+        Shape::NotchedStrip {
+            size: [length, width],
+            depth,
+            half_length,
+        } => format!(
+            "a strip of {length} × {width} mm with two notches of {depth} mm depth and {} mm length",
+            2.0 * half_length
+        ),
+        Shape::DogBone {
+            size: [length, width],
+            narrow,
+            shoulder,
+        } => format!(
+            "a dumb-bell of {length} × {width} mm with a narrow part of {} × {} mm and shoulders of {shoulder} mm length",
+            narrow[0], narrow[1]
+        ),
+        Shape::RingSector {
+            radii: [inner, outer],
+            angle,
+        } => format!(
+            "a sector of {}° of a ring with radii of {inner} and {outer} mm",
+            number(angle.to_degrees())
+        ),
+    }
+}

@@ -1,0 +1,128 @@
+//! What a study says, in the report's words and for machines: specimen, supports, loads.
+
+use serde_json::{Value, json};
+
+use super::Specimen;
+use crate::output::material_json;
+use crate::problem::{Drive, Load, Support};
+use crate::results::Block;
+use crate::studies::material_statement;
+use crate::units::Linear;
+
+/// The specimen, its supports and loads, its material.
+pub fn blocks(specimen: &Specimen) -> Vec<Block> {
+    let problem = &specimen.problem;
+    let row = |group: &String, text: String| vec![format!("`{group}`"), text];
+    let supports = problem.supports.iter();
+    let supports = supports.map(|(group, own)| row(group, support(own)));
+    let loads = problem.loads.iter();
+    let loads: Vec<_> = loads.map(|(group, own)| row(group, load(own))).collect();
+    let factors: Vec<_> = specimen.factors.iter().map(f64::to_string).collect();
+    let text = format!(
+        "The specimen is {}, {} mm thick at rest, of an incompressible material in plane stress: the card `{}`. \
+         Displacements, turns, forces, tractions and pressures below are those at load factor 1 and grow in proportion to \
+         it; the load factors are {}.",
+        specimen.outline.describe(),
+        problem.thickness,
+        specimen.card.name,
+        factors.join(", ")
+    );
+    let mut blocks = vec![
+        Block::Heading(2, "Specimen, supports and loads".into()),
+        Block::Paragraph(text),
+        Block::table(&["supported group", "what holds it"], supports),
+    ];
+    blocks.push(match loads.is_empty() {
+        true => Block::Paragraph("There are no loads: supports alone move the specimen.".into()),
+        false => Block::table(&["loaded group", "what acts on it"], loads),
+    });
+    blocks.extend(material_statement(&specimen.card));
+    blocks
+}
+
+/// The same for machines.
+pub fn json(specimen: &Specimen) -> Value {
+    let problem = &specimen.problem;
+    let supports = problem.supports.iter();
+    let supports = supports.map(|(group, own)| json!({ "group": group, "says": support(own) }));
+    let loads = problem.loads.iter();
+    let loads = loads.map(|(group, own)| json!({ "group": group, "says": load(own) }));
+    json!({
+        "specimen": specimen.outline.describe(),
+        "thickness_mm": problem.thickness,
+        "material": material_json(&specimen.card),
+        "supports": supports.collect::<Vec<_>>(),
+        "loads": loads.collect::<Vec<_>>(),
+        "load_factors": specimen.factors,
+    })
+}
+
+/// A support in words.
+fn support(support: &Support) -> String {
+    match *support {
+        Support::Displacement([Some(0.0), Some(0.0)]) => "clamped: ux = uy = 0".into(),
+        Support::Displacement(displacement) => {
+            let axis = |(name, given): (&str, Option<f64>)| match given {
+                Some(value) => format!("{name} = {value} mm"),
+                None => format!("{name} is free"),
+            };
+            let axes = ["ux", "uy"].into_iter().zip(displacement).map(axis);
+            format!("displaced: {}", axes.collect::<Vec<_>>().join(", "))
+        }
+        Support::LinearDisplacement(field) => {
+            let axis = |(name, given): (&str, Option<Linear>)| match given {
+                Some(Linear {
+                    at_origin,
+                    slope: [x, y],
+                }) => {
+                    format!("{name} = {at_origin} mm + {x} X + {y} Y")
+                }
+                None => format!("{name} is free"),
+            };
+            let axes = ["ux", "uy"].into_iter().zip(field).map(axis);
+            let axes = axes.collect::<Vec<_>>().join(", ");
+            format!("displaced: {axes}, with the place X, Y at rest in mm")
+        }
+        Support::Radial {
+            centre: [x, y],
+            displacement,
+        } => {
+            format!("displaced by {displacement} mm away from ({x}, {y}) mm")
+        }
+        Support::Roller => {
+            "slides along its straight line without friction, an axis of symmetry".into()
+        }
+        Support::Rotation {
+            centre: [x, y],
+            angle,
+        } => format!(
+            "turned rigidly by {:.6}° about ({x}, {y}) mm",
+            angle.to_degrees()
+        ),
+        Support::Grip(drives) => {
+            let axis = |(name, drive)| match drive {
+                Drive::Displacement(value) => format!("displaced along {name} by {value} mm"),
+                Drive::Force(0.0) => format!("free to move along {name}"),
+                Drive::Force(value) => format!("pulled along {name} by {value} N"),
+            };
+            let axes = ["x", "y"].into_iter().zip(drives).map(axis);
+            let axes = axes.collect::<Vec<_>>().join(", ");
+            format!("in a rigid grip that does not turn: {axes}")
+        }
+    }
+}
+
+/// A load in words.
+fn load(load: &Load) -> String {
+    match *load {
+        Load::Traction([x, y]) => {
+            format!("a traction of ({x}, {y}) MPa on the area at rest, of constant direction")
+        }
+        Load::Pressure(pressure) => format!(
+            "a pressure of {pressure} MPa that stays normal to the deformed edges, on the thickness at rest"
+        ),
+        Load::Force([x, y]) => {
+            format!("a force of ({x}, {y}) N, shared equally by the nodes, of constant direction")
+        }
+    }
+}

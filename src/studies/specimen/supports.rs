@@ -1,0 +1,238 @@
+//! The supports and loads of a specimen's study.
+
+use crate::document::{Bound, Section};
+use crate::error::suggestion;
+use crate::mesh::Mesh;
+use crate::problem::{BoundaryProblem, Drive, Load, Support};
+use crate::units::Dimension;
+
+/// An entry of a study's list with its group and what it says.
+struct Entry<'a, T> {
+    section: Section<'a>,
+    group: String,
+    says: T,
+}
+
+/// The supports and loads that a study says, with their places in it.
+pub struct Given<'a> {
+    supports: Vec<Entry<'a, Support>>,
+    loads: Vec<Entry<'a, Load>>,
+}
+
+impl<'a> Given<'a> {
+    /// Reads `[[support]]` and `[[load]]`; the study must say what holds the specimen.
+    pub fn read(root: &Section<'a>) -> Self {
+        if !root.has("support") {
+            let hint = "only what a study says is done: add [[support]] with group = \"left\" and kind = \"clamp\", for \
+                        example, once for each group that is held";
+            root.fault("support", "is missing: nothing holds the specimen", hint);
+        }
+        Self {
+            supports: entries(root, "support", read_support),
+            loads: entries(root, "load", read_load),
+        }
+    }
+
+    /// The supports by group.
+    pub fn supports(&self) -> Vec<(String, Support)> {
+        pairs(&self.supports)
+    }
+
+    /// The loads by group.
+    pub fn loads(&self) -> Vec<(String, Load)> {
+        pairs(&self.loads)
+    }
+
+    /// Records groups that the specimen does not have.
+    pub fn check_groups(&self, mesh: &Mesh) {
+        let supports = self.supports.iter().map(|own| (&own.section, &own.group));
+        let loads = self.loads.iter().map(|own| (&own.section, &own.group));
+        for (section, group) in supports.chain(loads) {
+            let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
+            if !known.contains(&group.as_str()) {
+                let message = format!("the specimen has no group `{group}`");
+                section.fault(
+                    "group",
+                    &message,
+                    &suggestion(group, &known, "its groups are"),
+                );
+            }
+        }
+    }
+
+    /// Records what keeps the problem from being solved on a mesh, at the entry that each fault names.
+    pub fn check(&self, root: &Section, problem: &BoundaryProblem, mesh: &Mesh) {
+        let known = |group: &str| mesh.groups().contains_key(group);
+        let supports = self.supports.iter().map(|own| &own.group);
+        let mut groups = supports.chain(self.loads.iter().map(|own| &own.group));
+        if self.supports.is_empty()
+            || !problem.thickness.is_finite()
+            || !groups.all(|own| known(own))
+        {
+            return; // told already
+        }
+        for fault in problem.check(mesh).err().unwrap_or_default() {
+            let hint = fault.hint.unwrap_or_default();
+            let entry = match fault.key.as_str() {
+                "load" => named(&self.loads, "load", &fault.message),
+                _ => named(&self.supports, "support", &fault.message),
+            };
+            match entry {
+                Some(section) => section.fault("group", &fault.message, &hint),
+                None => root.fault("support", &fault.message, &hint),
+            }
+        }
+    }
+}
+
+/// The last entry of a list that a fault names by its number, or the first by its group.
+fn named<'a, T>(entries: &'a [Entry<'a, T>], what: &str, message: &str) -> Option<&'a Section<'a>> {
+    let numbered = entries.iter().enumerate();
+    let mut by_number = numbered.filter(|(number, own)| {
+        message.contains(&format!(
+            "{what} {} on the group `{}`",
+            number + 1,
+            own.group
+        ))
+    });
+    let by_group = || {
+        let of_group = |own: &&Entry<T>| message.starts_with(&format!("the group `{}`", own.group));
+        entries.iter().find(of_group)
+    };
+    let found = by_number.next_back().map(|(_, own)| own).or_else(by_group);
+    found.map(|own| &own.section)
+}
+
+/// The entries of a list in the file; none where it has no such list.
+fn entries<'a, T>(
+    root: &Section<'a>,
+    key: &'static str,
+    read: fn(&Section) -> Option<(String, T)>,
+) -> Vec<Entry<'a, T>> {
+    if !root.has(key) {
+        return Vec::new();
+    }
+    let sections = root.tables(key).into_iter();
+    sections
+        .filter_map(|section| {
+            let (group, says) = read(&section)?;
+            Some(Entry {
+                section,
+                group,
+                says,
+            })
+        })
+        .collect()
+}
+
+fn pairs<T: Copy>(entries: &[Entry<T>]) -> Vec<(String, T)> {
+    let entries = entries.iter();
+    entries
+        .map(|entry| (entry.group.clone(), entry.says))
+        .collect()
+}
+
+/// A vector of two quantities under `x` and `y`; one that is missing is nothing.
+fn components(section: &Section, dimension: Dimension) -> [Option<f64>; 2] {
+    ["x", "y"].map(|key| {
+        let given = section.has(key);
+        given.then(|| section.quantity(key, dimension, Bound::Any))
+    })
+}
+
+/// What moves a grip along an axis, by the keys of a displacement and of a force.
+fn drive(section: &Section, (displacement, force): (&'static str, &'static str)) -> Drive {
+    match (section.has(displacement), section.has(force)) {
+        (true, false) => {
+            Drive::Displacement(section.quantity(displacement, Dimension::Length, Bound::Any))
+        }
+        (false, true) => Drive::Force(section.quantity(force, Dimension::Force, Bound::Any)),
+        _ => {
+            let message = format!("a grip needs either {displacement} or {force}");
+            let hint = format!(
+                "{displacement} = \"0 mm\" holds it, {force} = \"0 N\" leaves it free to move"
+            );
+            section.fault("kind", &message, &hint);
+            Drive::Displacement(f64::NAN)
+        }
+    }
+}
+
+/// A point under `centre` in mm.
+fn read_centre(section: &Section) -> [f64; 2] {
+    let centre = section.quantities("centre", Dimension::Length, Bound::Any);
+    centre.try_into().unwrap_or_else(|_| {
+        let hint = "such as [\"0 mm\", \"0 mm\"]";
+        section.fault("centre", "must be two lengths", hint);
+        [f64::NAN; 2]
+    })
+}
+
+fn read_support(section: &Section) -> Option<(String, Support)> {
+    let group = section.text("group");
+    let support = match section.choice(
+        "kind",
+        &[
+            ("clamp", 0),
+            ("displacement", 1),
+            ("roller", 2),
+            ("symmetry", 2),
+            ("grip", 3),
+            ("rotation", 4),
+            ("radial", 5),
+        ],
+    )? {
+        0 => Support::Displacement([Some(0.0); 2]),
+        1 => {
+            let displacement = ["x", "y"].map(|key| {
+                let given = section.has(key);
+                given.then(|| section.linear_length(key))
+            });
+            if displacement == [None; 2] {
+                section.fault("kind", "needs x or y", "x = \"0 mm\" is a roller along y");
+            }
+            let even = displacement
+                .iter()
+                .flatten()
+                .all(|along| along.slope == [0.0; 2]);
+            match even {
+                true => Support::Displacement(displacement.map(|along| Some(along?.at_origin))),
+                false => Support::LinearDisplacement(displacement),
+            }
+        }
+        2 => Support::Roller,
+        5 => Support::Radial {
+            centre: read_centre(section),
+            displacement: section.quantity("displacement", Dimension::Length, Bound::Any),
+        },
+        3 => Support::Grip([("x", "x_force"), ("y", "y_force")].map(|keys| drive(section, keys))),
+        _ => {
+            let centre = read_centre(section);
+            Support::Rotation {
+                centre,
+                angle: section.quantity("angle", Dimension::Angle, Bound::Any),
+            }
+        }
+    };
+    section.unknown_keys();
+    Some((group, support))
+}
+
+fn read_load(section: &Section) -> Option<(String, Load)> {
+    let group = section.text("group");
+    let vector = |dimension: Dimension| {
+        let given = components(section, dimension);
+        if given == [None; 2] {
+            let hint = format!("x = {} acts along x", dimension.example());
+            section.fault("kind", "needs x or y", &hint);
+        }
+        given.map(Option::unwrap_or_default)
+    };
+    let load = match section.choice("kind", &[("traction", 0), ("pressure", 1), ("force", 2)])? {
+        0 => Load::Traction(vector(Dimension::Stress)),
+        1 => Load::Pressure(section.quantity("pressure", Dimension::Stress, Bound::Any)),
+        _ => Load::Force(vector(Dimension::Force)),
+    };
+    section.unknown_keys();
+    Some((group, load))
+}
