@@ -50,15 +50,26 @@ pub use plate::PlateCorrector;
 /// How a correction is computed, and when it is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CorrectorSettings {
-    /// Largest scaled residual relative to the largest displacement; see [`Step::residual`].
+    /// Largest scaled residual relative to the largest displacement; see [`Step::residual`]. Default: 1e-10.
     pub tolerance: f64,
     /// Largest further move of the field that is left undone, relative to the largest displacement, where
-    /// the data have a say in the result: a small part of their noise is enough.
+    /// the data have a say in the result: a small part of their noise is enough. Default: 1e-9.
     pub movement: f64,
-    /// Steps allowed.
+    /// Steps allowed. Default: 40.
     pub max_steps: usize,
-    /// The form of the projection.
+    /// The form of the projection. Default: [`Solver::Automatic`].
     pub solver: Solver,
+}
+
+impl Default for CorrectorSettings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-10,
+            movement: 1e-9,
+            max_steps: 40,
+            solver: Solver::Automatic,
+        }
+    }
 }
 
 /// Names elements and unknowns in messages.

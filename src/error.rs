@@ -103,6 +103,8 @@ impl fmt::Display for Diagnostic {
     }
 }
 
+impl std::error::Error for Diagnostic {}
+
 /// Why a solver did not reach a solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolveFault {

@@ -16,11 +16,12 @@ pub mod error_estimate;
 pub mod recovery;
 
 /// Degree of the elements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Element {
     /// Four nodes, bilinear, 2 × 2 Gauss points.
     Q1,
-    /// Nine nodes, biquadratic, 3 × 3 Gauss points.
+    /// Nine nodes, biquadratic, 3 × 3 Gauss points. The default.
+    #[default]
     Q2,
 }
 

@@ -84,9 +84,9 @@ impl SpringPose {
 }
 
 /// What the lattice consists of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LatticeSettings {
-    /// Whether each cell has the area term that gives ν = ½ at small strain.
+    /// Whether each cell has the area term that gives ν = ½ at small strain. Default: no.
     pub area_term: bool,
 }
 

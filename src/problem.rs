@@ -8,11 +8,12 @@ use crate::error::Diagnostic;
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Group, Mesh};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::solve::Potential;
+use crate::solve::{Potential, State};
 use crate::units::Linear;
 
 mod balance;
 mod contradictions;
+mod deformed;
 mod discretised;
 mod groups;
 mod loads;
@@ -24,6 +25,7 @@ mod supports;
 mod ties;
 
 pub use balance::{Balance, Resultant};
+pub use deformed::{DeformedSheet, PointFault, Stress};
 pub use discretised::Discretised;
 
 use contradictions::contradictions;
@@ -103,6 +105,15 @@ impl BoundaryProblem {
     /// The finite-element energy of a mesh.
     pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
         SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
+    }
+
+    /// A state on a mesh, ready to be asked at any point of the sheet.
+    pub fn deformed(&self, mesh: &Mesh, state: &State) -> DeformedSheet {
+        DeformedSheet::new(
+            mesh.clone(),
+            state.displacement.clone(),
+            Arc::clone(&self.law),
+        )
     }
 
     /// Everything that keeps the problem from being solved on a mesh: supports and loads on groups that it does not have or

@@ -51,7 +51,7 @@ pub fn path(
     for _ in 0..REPETITIONS {
         let start = Instant::now();
         let mut forces = Vec::new();
-        let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::default());
+        let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::FAST);
         climb.follow(stretches, &mut |climbed| forces.push(climbed.force))?;
         times.climb = times.climb.min(start.elapsed().as_secs_f64());
 
@@ -148,7 +148,7 @@ pub fn frames(problem: &Problem, cells: [usize; 2], count: usize) -> Result<Fram
         problem,
         cells,
         DifferenceScheme::Biquadratic,
-        ClimbSettings::default(),
+        ClimbSettings::FAST,
     );
     let nodes = climb.grid().nodes();
     let mut plate = Interactive::new(climb, 0.5)?;

@@ -93,7 +93,7 @@ pub fn go(
         Way::Climb(scheme) => (scheme, false),
         Way::Newton(scheme) => (scheme, true),
     };
-    let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::default());
+    let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::FAST);
     let climbed = match newton {
         true => climb.newton_from_affine(stretch, (0.1 * error).sqrt(), 1e-3)?,
         false => climb.correct(stretch)?,

@@ -22,6 +22,7 @@ mod forces;
 mod grid;
 mod level;
 mod load_path;
+mod mesh;
 mod multipliers;
 mod newton;
 mod path;
@@ -39,17 +40,25 @@ pub use start::{Start, Way};
 /// How exactly the climb solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClimbSettings {
-    /// What the iteration may leave on the finest grid, relative to its discretisation error.
+    /// What the iteration may leave on the finest grid, relative to its discretisation error. Default: 1e-3.
     pub tolerance: f64,
-    /// Iterations allowed after a linearisation.
+    /// Iterations allowed after a linearisation. Default: 20.
     pub max_iterations: usize,
+}
+
+impl ClimbSettings {
+    /// As few iterations as leave the discretisation error as it is: what the iteration leaves is 8 % of it at most.
+    pub const FAST: Self = Self {
+        tolerance: 0.08,
+        max_iterations: 20,
+    };
 }
 
 impl Default for ClimbSettings {
     fn default() -> Self {
         Self {
-            tolerance: 0.08,
-            max_iterations: 20,
+            tolerance: 1e-3,
+            ..Self::FAST
         }
     }
 }

@@ -30,13 +30,14 @@ use crate::problem::plate::Problem;
 use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
 
 /// Where in a cell the differences are taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DifferenceScheme {
     /// In the four corners: one-sided differences.
     Corners,
     /// In the four Gauss points: weighted differences.
     Gauss,
-    /// In nine Gauss points of two by two cells: differences of second order.
+    /// In nine Gauss points of two by two cells: differences of second order. The default.
+    #[default]
     Biquadratic,
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Mesh, Side};
+use crate::problem::DeformedSheet;
 use crate::solve::{Convergence, Loading, NewtonSettings, Potential, State, follow, influence};
 
 /// A rectangular plate between two rigid grips that clamp its short sides.
@@ -212,6 +213,15 @@ impl Problem {
             load_steps: state.load_steps,
             convergence: state.convergence,
         }
+    }
+
+    /// A solution on a mesh, ready to be asked at any point of the plate.
+    pub fn deformed(&self, mesh: &Mesh, solution: &Solution) -> DeformedSheet {
+        DeformedSheet::new(
+            mesh.clone(),
+            solution.displacement.clone(),
+            Arc::clone(&self.law),
+        )
     }
 
     /// `50 % stretch`, for messages.

@@ -5,12 +5,21 @@ use super::sparse::{Cholesky, NotPositiveDefinite, largest, norm};
 use crate::error::SolveFault;
 
 /// When to stop.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
-    /// Largest residual of a free unknown relative to the largest reaction.
+    /// Largest residual of a free unknown relative to the largest reaction. Default: 1e-10.
     pub tolerance: f64,
-    /// Iterations allowed.
+    /// Iterations allowed. Default: 40.
     pub max_iterations: usize,
+}
+
+impl Default for NewtonSettings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-10,
+            max_iterations: 40,
+        }
+    }
 }
 
 /// How a solution was reached.

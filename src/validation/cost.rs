@@ -98,7 +98,7 @@ fn compute(plate: &Plate, repetitions: usize, progress: Progress) -> Result<Outc
 
 /// The field of the climb with the difference scheme of nine-node elements on the same nodes.
 fn climb(plate: &Plate) -> Result<Vec<f64>, Error> {
-    let (scheme, settings) = (DifferenceScheme::Biquadratic, ClimbSettings::default());
+    let (scheme, settings) = (DifferenceScheme::Biquadratic, ClimbSettings::FAST);
     let mut climb = Climb::even(&plate.problem, plate.cells, scheme, settings);
     Ok(climb.correct(plate.stretch())?.field.to_nodes())
 }

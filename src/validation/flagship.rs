@@ -63,7 +63,7 @@ struct Found {
 
 impl Plate {
     fn compute(&self) -> Vec<Found> {
-        let settings = ClimbSettings::default();
+        let settings = ClimbSettings::FAST;
         let mut climb = Climb::even(&self.problem, self.cells, DifferenceScheme::Gauss, settings);
         let direct = self.direct();
         let stretches = self.problem.stretches.iter().enumerate();

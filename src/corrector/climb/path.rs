@@ -2,6 +2,7 @@
 
 use super::{Climb, Climbed, Ending, Field, Inverted, Reached, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};
+use crate::problem::DeformedSheet;
 
 /// States that the next one is extrapolated from.
 const HISTORY: usize = 3;
@@ -266,6 +267,11 @@ impl<'a> Interactive<'a> {
     /// The corrected field and the forces at the grips as they are.
     pub fn state(&self) -> &Climbed {
         &self.climbed
+    }
+
+    /// The corrected field as it is, ready to be asked at any point of the plate.
+    pub fn deformed(&self) -> DeformedSheet {
+        self.climb.deformed(&self.climbed)
     }
 
     /// Where the grips are.

@@ -140,7 +140,7 @@ fn it_stops_at_a_tenth_of_the_discretisation_error_and_knows_how_large_that_is()
     let mut fine = Climb::even(&problem, [240, 80], DifferenceScheme::Biquadratic, TIGHT);
     let truth = fine.correct(0.5).unwrap().field;
     for cells in [[30, 10], [60, 20], [120, 40]] {
-        let mut climb = Climb::even(&problem, cells, scheme, ClimbSettings::default());
+        let mut climb = Climb::even(&problem, cells, scheme, ClimbSettings::FAST);
         let climbed = climb.correct(0.5).unwrap();
         let mut solved = Climb::even(&problem, cells, scheme, TIGHT)
             .correct(0.5)
@@ -210,7 +210,7 @@ fn threads_do_not_change_a_bit() {
             .unwrap();
         pool.install(|| {
             let scheme = DifferenceScheme::Biquadratic;
-            let mut climb = Climb::even(&problem, [210, 70], scheme, ClimbSettings::default());
+            let mut climb = Climb::even(&problem, [210, 70], scheme, ClimbSettings::FAST);
             let climbed = climb.correct(0.7).unwrap();
             (climbed.field, climbed.force)
         })
@@ -250,7 +250,7 @@ fn a_path_has_the_states_that_climbs_have() {
     let stretches: Vec<f64> = (1..=20).map(|step| f64::from(step) / 20.0).collect();
     let scheme = DifferenceScheme::Biquadratic;
     let mut path = Vec::new();
-    let mut climb = Climb::even(&problem, cells, scheme, ClimbSettings::default());
+    let mut climb = Climb::even(&problem, cells, scheme, ClimbSettings::FAST);
     climb
         .follow(&stretches, &mut |climbed| path.push(climbed.clone()))
         .unwrap();

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::corrector::climb::ClimbSettings;
-use crate::corrector::{CorrectorSettings, DifferenceScheme, Solver};
+use crate::corrector::{CorrectorSettings, DifferenceScheme};
 use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error};
 use crate::finite_element::Element;
@@ -189,9 +189,8 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     };
     let corrector = CorrectorSettings {
         tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
-        movement: 1e-9,
         max_steps: section.count("max_steps", 1, 1000),
-        solver: Solver::Automatic,
+        ..CorrectorSettings::default()
     };
     section.unknown_keys();
 
@@ -333,6 +332,18 @@ mod tests {
         assert_eq!(empty.output.folder, Path::new("output/plate"));
         assert_eq!(empty.tolerances, full.tolerances);
         assert!(full.warnings.is_empty());
+    }
+
+    #[test]
+    fn studies_and_the_library_have_the_same_defaults() {
+        let study = parse("").unwrap();
+        assert_eq!(study.lattice, LatticeSettings::default());
+        assert_eq!(study.mass_spring, NewtonSettings::default());
+        assert_eq!(study.scheme, DifferenceScheme::default());
+        assert_eq!(study.climb, Some(ClimbSettings::default()));
+        assert_eq!(study.corrector, CorrectorSettings::default());
+        assert_eq!(study.element, Element::default());
+        assert_eq!(study.finite_element, NewtonSettings::default());
     }
 
     #[test]

@@ -55,7 +55,7 @@ fn check(
     scheme: DifferenceScheme,
 ) -> Result<Climbed, String> {
     let stretch = problem.stretches[0];
-    let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::default());
+    let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::FAST);
     let Ok(expected) = direct(problem, cells, scheme) else {
         return Err("no equilibrium by the direct method".into());
     };
@@ -155,7 +155,7 @@ fn a_way_that_names_springs_began_with_them() {
         &problem,
         [60, 20],
         DifferenceScheme::Gauss,
-        ClimbSettings::default(),
+        ClimbSettings::FAST,
     );
     let way = climb.correct(0.5).unwrap().way;
     assert_eq!((way.start, way.cells), (Start::Springs, [8, 3]));
@@ -189,7 +189,7 @@ fn the_contracted_stretch_inverts_no_cell() {
         for stretch in [-0.9, -0.1, 1e-6, 0.5, 10.0] {
             let problem = problem("neo-hooke", [10.0 * aspect, 10.0], stretch);
             for scheme in DifferenceScheme::NAMES.map(|(_, scheme)| scheme) {
-                let mut climb = Climb::even(&problem, [12, 8], scheme, ClimbSettings::default());
+                let mut climb = Climb::even(&problem, [12, 8], scheme, ClimbSettings::FAST);
                 let field = contracted_stretch(problem.size, climb.grid(), stretch);
                 assert!(
                     climb.forces(&field).is_some(),
@@ -230,7 +230,7 @@ fn an_unstable_law_is_named_as_the_cause() {
         &problem,
         [24, 8],
         DifferenceScheme::Gauss,
-        ClimbSettings::default(),
+        ClimbSettings::FAST,
     );
     let fault = climb.correct(1.5).map(|_| ()).unwrap_err().to_string();
     assert!(

@@ -1,0 +1,181 @@
+//! A deformed sheet, asked at a point: displacement, stretches, stress.
+
+use std::sync::Arc;
+
+use crate::material::HyperelasticLaw;
+use crate::material::sheet::{Gradient, Kinematics};
+use crate::mesh::Mesh;
+
+/// A sheet with the displacements of its nodes, whichever model they come from.
+#[derive(Clone, Debug)]
+pub struct DeformedSheet {
+    mesh: Mesh,
+    displacement: Vec<f64>,
+    law: Arc<dyn HyperelasticLaw>,
+}
+
+/// Stress at a point of a sheet, in MPa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stress {
+    /// First Piola–Kirchhoff stress P, force per reference area: components 11, 12, 21, 22. The nominal stress is its
+    /// transpose.
+    pub first_piola_kirchhoff: [f64; 4],
+    /// Cauchy stress, force per deformed area: components 11, 12, 22.
+    pub cauchy: [f64; 3],
+}
+
+/// Why a sheet has no value at a point.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PointFault {
+    /// The point is not on the sheet.
+    #[error(
+        "the point ({x}, {y}) mm is not on the sheet at rest: give its reference coordinates, which do not move with the sheet"
+    )]
+    Outside {
+        /// Reference coordinate along X in mm.
+        x: f64,
+        /// Reference coordinate along Y in mm.
+        y: f64,
+    },
+    /// The field turns the sheet inside out at the point.
+    #[error(
+        "the sheet is turned inside out at ({x}, {y}) mm, so it has no stress there: refine the mesh, or correct the field"
+    )]
+    Inverted {
+        /// Reference coordinate along X in mm.
+        x: f64,
+        /// Reference coordinate along Y in mm.
+        y: f64,
+    },
+}
+
+/// How far outside its nearest cell a point may lie, in sizes of that cell, and still count as on the edge: rounding.
+const ON_THE_EDGE: f64 = 1e-9;
+
+impl DeformedSheet {
+    /// A sheet of a law with ux, uy of node after node of its mesh in mm.
+    ///
+    /// # Panics
+    /// When there are not two displacements for every node.
+    pub fn new(mesh: Mesh, displacement: Vec<f64>, law: Arc<dyn HyperelasticLaw>) -> Self {
+        assert_eq!(
+            displacement.len(),
+            2 * mesh.nodes.len(),
+            "ux, uy of every node"
+        );
+        Self {
+            mesh,
+            displacement,
+            law,
+        }
+    }
+
+    /// The mesh at rest.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// ux, uy of node after node in mm.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// The displacement in mm of the point with the reference coordinates `point` in mm.
+    ///
+    /// # Errors
+    /// [`PointFault::Outside`].
+    pub fn displacement_at(&self, point: [f64; 2]) -> Result<[f64; 2], PointFault> {
+        self.locate(point)?;
+        Ok(self.mesh.displacement_at(&self.displacement, point))
+    }
+
+    /// The in-plane principal stretches at a point, the larger first, and the thickness stretch.
+    ///
+    /// # Errors
+    /// [`PointFault`].
+    pub fn principal_stretches_at(&self, point: [f64; 2]) -> Result<[f64; 3], PointFault> {
+        Ok(self.kinematics_at(point)?.principal_stretches())
+    }
+
+    /// The stress at a point; on the side of a cell that of one of the cells that share it.
+    ///
+    /// # Errors
+    /// [`PointFault`].
+    pub fn stress_at(&self, point: [f64; 2]) -> Result<Stress, PointFault> {
+        let kinematics = self.kinematics_at(point)?;
+        let (_, stress) = self.law.stress(&kinematics);
+        Ok(Stress {
+            first_piola_kirchhoff: stress.into(),
+            cauchy: kinematics.cauchy_stress(&stress),
+        })
+    }
+
+    fn kinematics_at(&self, point @ [x, y]: [f64; 2]) -> Result<Kinematics, PointFault> {
+        let (cell, local) = self.locate(point)?;
+        let gradient = Gradient::from(self.mesh.gradient_at(&self.displacement, cell, local));
+        Kinematics::new(&gradient).map_err(|_| PointFault::Inverted { x, y })
+    }
+
+    fn locate(&self, point @ [x, y]: [f64; 2]) -> Result<(usize, [f64; 2]), PointFault> {
+        match self.mesh.outside(point) <= ON_THE_EDGE {
+            true => Ok(self.mesh.locate(point)),
+            false => Err(PointFault::Outside { x, y }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::NeoHooke;
+    use crate::mesh::CellShape;
+
+    fn sheet(stretch: impl Fn([f64; 2]) -> [f64; 2]) -> DeformedSheet {
+        let mesh = Mesh::plate([30.0, 10.0], [6, 2], CellShape::Quad9);
+        let displacement = mesh.nodes.iter().flat_map(|node| stretch(*node)).collect();
+        DeformedSheet::new(mesh, displacement, Arc::new(NeoHooke { c10: 0.5 }))
+    }
+
+    #[test]
+    fn a_uniaxial_stretch_has_its_displacement_and_stress_at_every_point() {
+        let (along, across) = (0.44_f64, 1.0 / 1.44_f64.sqrt() - 1.0);
+        let sheet = sheet(|[x, y]| [along * x, across * y]);
+        for point in [[0.0, 0.0], [30.0, 10.0], [12.3, 4.5]] {
+            let [ux, uy] = sheet.displacement_at(point).unwrap();
+            assert!(
+                (ux - along * point[0]).abs() < 1e-12 && (uy - across * point[1]).abs() < 1e-12
+            );
+            let stretches = sheet.principal_stretches_at(point).unwrap();
+            assert!((stretches[0] - 1.44).abs() < 1e-12);
+            // σ = 2 C₁₀ (λ² − 1/λ) under tension.
+            let Stress {
+                cauchy,
+                first_piola_kirchhoff: p,
+            } = sheet.stress_at(point).unwrap();
+            let exact = 1.44_f64.powi(2) - 1.0 / 1.44;
+            assert!(
+                (cauchy[0] - exact).abs() < 1e-12 && cauchy[2].abs() < 1e-12,
+                "{cauchy:?}"
+            );
+            assert!((p[0] - exact / 1.44).abs() < 1e-12, "{p:?}");
+        }
+    }
+
+    #[test]
+    fn points_beside_the_sheet_and_inverted_cells_are_named_with_a_remedy() {
+        let fault = sheet(|_| [0.0; 2]).stress_at([31.0, 5.0]).unwrap_err();
+        assert!(
+            fault
+                .to_string()
+                .contains("(31, 5) mm is not on the sheet at rest"),
+            "{fault}"
+        );
+        let fault = sheet(|[x, _]| [-2.0 * x, 0.0])
+            .stress_at([15.0, 5.0])
+            .unwrap_err();
+        assert!(
+            fault.to_string().contains("inside out at (15, 5) mm"),
+            "{fault}"
+        );
+    }
+}
