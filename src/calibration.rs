@@ -17,7 +17,7 @@ mod test_data;
 pub use card_text::{Provenance, card_text};
 pub use conversion::Conversion;
 pub use fit::{Bounds, Fit, FitSettings, Weighting, fit, rank};
-pub use quality::{Estimate, Quality, StableRange};
+pub use quality::{Quality, StableRange};
 pub use table::{Column, Table};
 pub use test_data::{KEYS, Observation, Reading, StrainColumn, Test, TestData};
 

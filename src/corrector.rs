@@ -42,7 +42,6 @@ pub use condition::{
     Condition, EnclosedArea, Equilibrium, Function, Linear, Linearised, TotalForce,
 };
 pub use difference_scheme::DifferenceScheme;
-pub use estimate::Estimate;
 pub use factor::{Factor, Projection, Solver};
 pub use matrix::CorrectionMatrix;
 pub use plate::PlateCorrector;

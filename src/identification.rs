@@ -22,11 +22,11 @@
 use nalgebra::DVector;
 
 use crate::error::Error;
+use crate::statistics::{BSpline, Ends};
 use band::reach;
 use joint::{Joint, Linearised, State};
 use penalty::{Exponents, Penalised};
 use smoothing::{Sampled, Smoothed, nearest, smooth};
-use spline::UniformSpline;
 
 mod band;
 mod basis;
@@ -36,7 +36,6 @@ mod penalty;
 mod recording;
 mod sample;
 mod smoothing;
-mod spline;
 
 pub use band::Function;
 pub use basis::{Basis, Form, Shape};
@@ -182,7 +181,7 @@ fn begin<'a>(
     let mut intervals =
         (FINER * extension.intervals.max(force.intervals)).min(times.len() / FEWEST_IN_MOTION);
     let (spline, motion) = loop {
-        let spline = UniformSpline::new(span, intervals, 5);
+        let spline = BSpline::new(span, intervals, 5, Ends::Uniform);
         match nearest(&spline, times, &recording.extension) {
             Ok(motion) => break (spline, motion),
             Err(_) if intervals > 1 => intervals -= 1 + intervals / 9,

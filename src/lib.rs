@@ -77,6 +77,7 @@ pub mod output;
 pub mod problem;
 pub mod results;
 pub mod solve;
+pub mod statistics;
 pub mod studies;
 pub mod units;
 pub mod validation;

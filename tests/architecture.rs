@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// The modules by layer; a module may name only modules of the layers above it in this list, and itself.
 const LAYERS: &[&[&str]] = &[
-    &["error", "units"],
+    &["error", "units", "statistics"],
     &["document"],
     &["mesh", "material", "solve", "multigrid"],
     &["calibration"],
@@ -34,6 +34,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("toml::", &["src/document"]),
     ("spade::", &["src/mesh/triangulate.rs"]),
     ("csv::", &["src/calibration/table.rs"]),
+    ("statrs::", &["src/statistics.rs"]),
     ("rmpfit::", &["src/calibration/least_squares.rs"]),
     (
         "pulp::",

@@ -1,7 +1,6 @@
 //! How far a fit can be trusted.
 
 use nalgebra::DMatrix;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::fit::{SMALLEST_SHARE, Weighting};
 use super::least_squares;
@@ -11,23 +10,15 @@ use crate::material::HyperelasticLaw;
 use crate::material::curve::Mode;
 use crate::material::parameters::Parameter;
 use crate::material::stability::stable_range;
+use crate::statistics::{self, Estimate, student_reach};
 
-/// A parameter with its uncertainty; not numbers where the data say nothing about it or a bound holds it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// Standard error in the unit of the parameter.
-    pub standard_error: f64,
-    /// The 95 % interval by Student's distribution.
-    pub interval: [f64; 2],
-    /// Whether a bound holds it.
-    pub at_bound: bool,
-}
-
-impl Estimate {
-    /// Whether the interval of a value does not hold zero.
-    fn knows_sign_of(&self, value: f64) -> bool {
-        let [low, high] = self.interval;
-        if value > 0.0 { low >= 0.0 } else { high <= 0.0 }
+/// Whether the interval of an estimate does not hold zero.
+fn knows_sign(estimate: &Estimate) -> bool {
+    let [low, high] = estimate.interval;
+    if estimate.value > 0.0 {
+        low >= 0.0
+    } else {
+        high <= 0.0
     }
 }
 
@@ -68,8 +59,10 @@ pub struct Quality {
     pub aicc: f64,
     /// Largest |σᵢ − σ|/|σᵢ| in %, of the stresses above a hundredth of their test's largest.
     pub largest_relative_error_percent: f64,
-    /// One for each parameter.
+    /// One for each parameter; uncertainties are NaN where a bound holds it.
     pub estimates: Vec<Estimate>,
+    /// Whether a bound holds it, for each parameter.
+    pub at_bound: Vec<bool>,
     /// Correlation of the parameters.
     pub correlation: DMatrix<f64>,
     /// Covariance of the parameters.
@@ -88,9 +81,8 @@ pub struct Quality {
 
 impl Quality {
     /// Whether no parameter is held by a bound or has an interval that holds zero.
-    pub fn is_identifiable(&self, parameters: &[Parameter]) -> bool {
-        let mut pairs = parameters.iter().zip(&self.estimates);
-        pairs.all(|(parameter, estimate)| estimate.knows_sign_of(parameter.value))
+    pub fn is_identifiable(&self) -> bool {
+        self.estimates.iter().all(knows_sign)
     }
 
     /// Whether the law is stable in the uniaxial, planar and equibiaxial tests as far as the data go.
@@ -121,13 +113,8 @@ pub(super) fn assess(
         .collect();
     let weighted = deviations.weighted;
     let freedom = points - parameters.len();
-    let covariance = if values.is_empty() {
-        DMatrix::zeros(0, 0)
-    } else {
-        covariance(misfit, &values, &at_bound, weighted / freedom as f64)
-    };
-    let student = StudentsT::new(0.0, 1.0, freedom as f64)
-        .map_or(f64::NAN, |student| student.inverse_cdf(0.975));
+    let covariance = covariance(misfit, &values, &at_bound, weighted / freedom as f64);
+    let student = student_reach(freedom as f64);
     let estimates: Vec<Estimate> = values
         .iter()
         .enumerate()
@@ -137,11 +124,7 @@ pub(super) fn assess(
             } else {
                 covariance[(i, i)].sqrt()
             };
-            Estimate {
-                standard_error: error,
-                interval: [value - student * error, value + student * error],
-                at_bound: at_bound[i],
-            }
+            Estimate::new(*value, error, student)
         })
         .collect();
     let correlation = DMatrix::from_fn(values.len(), values.len(), |i, j| {
@@ -178,6 +161,7 @@ pub(super) fn assess(
         aicc: n * (weighted / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0),
         largest_relative_error_percent: 100.0 * deviations.largest_relative,
         estimates,
+        at_bound,
         correlation,
         covariance,
         student,
@@ -240,34 +224,20 @@ impl Deviations {
     }
 }
 
-/// s² (JᵀJ)⁻¹ of the parameters that no bound holds, by the singular values of J with columns of unit length; not
-/// numbers for the others. What the data do not determine at all gets a huge variance.
+/// The covariance of the parameters that no bound holds; NaN for the others.
 fn covariance(misfit: &Misfit, values: &[f64], fixed: &[bool], variance: f64) -> DMatrix<f64> {
-    const LEAST: f64 = 1e-14;
     let size = values.len();
     let free: Vec<usize> = (0..size).filter(|index| !fixed[*index]).collect();
     let mut covariance = DMatrix::from_element(size, size, f64::NAN);
     if free.is_empty() {
         return covariance;
     }
-    let mut jacobian = least_squares::jacobian(misfit, values, fixed).select_columns(&free);
-    let scales: Vec<f64> = jacobian
-        .column_iter()
-        .map(|column| column.norm().max(f64::MIN_POSITIVE))
-        .collect();
-    for (mut column, scale) in jacobian.column_iter_mut().zip(&scales) {
-        column /= *scale;
-    }
-    // The triangle of QR has the singular values of J and is small.
-    let decomposition = jacobian.qr().r().svd(false, true);
-    let Some(v) = &decomposition.v_t else {
-        return covariance;
-    };
-    for (i, row) in free.iter().enumerate() {
-        for (j, column) in free.iter().enumerate() {
-            let singular = decomposition.singular_values.iter().enumerate();
-            let terms = singular.map(|(k, s)| v[(k, i)] * v[(k, j)] / s.max(LEAST).powi(2));
-            covariance[(*row, *column)] = variance * terms.sum::<f64>() / (scales[i] * scales[j]);
+    let jacobian = least_squares::jacobian(misfit, values, fixed).select_columns(&free);
+    if let Some(own) = statistics::covariance(jacobian, variance) {
+        for (i, row) in free.iter().enumerate() {
+            for (j, column) in free.iter().enumerate() {
+                covariance[(*row, *column)] = own[(i, j)];
+            }
         }
     }
     covariance
@@ -300,12 +270,12 @@ fn warnings(quality: &Quality, parameters: &[Parameter], other: Option<&[f64]>) 
         ));
     }
     let mut vague = Vec::new();
-    for (parameter, estimate) in parameters.iter().zip(&quality.estimates) {
-        let (key, value) = (parameter.key, parameter.value);
-        if estimate.at_bound {
-            warnings.push(format!("{key} = {value:.4e} is held by a bound"));
-        } else if !estimate.knows_sign_of(value) {
-            vague.push(key);
+    for (index, estimate) in quality.estimates.iter().enumerate() {
+        if quality.at_bound[index] {
+            let value = estimate.value;
+            warnings.push(format!("{} = {value:.4e} is held by a bound", key(index)));
+        } else if !knows_sign(estimate) {
+            vague.push(key(index));
         }
     }
     if !vague.is_empty() {

@@ -21,10 +21,11 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
     if !fit.parameters.is_empty() {
         text += &format!("  residuals    {}\n", fit.settings.weighting.describe());
     }
-    for (parameter, estimate) in fit.parameters.iter().zip(&quality.estimates) {
+    let estimates = quality.estimates.iter().zip(&quality.at_bound);
+    for (parameter, (estimate, at_bound)) in fit.parameters.iter().zip(estimates) {
         let (key, value, unit) = (parameter.key, parameter.value, parameter.unit());
         let [low, high] = estimate.interval;
-        text += &if estimate.at_bound {
+        text += &if *at_bound {
             format!(
                 "  {key:<12} {} {unit}   held by a bound\n",
                 digits(value, 6)
@@ -151,7 +152,7 @@ pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
             quality.nmad_percent,
             quality.largest_relative_error_percent,
             if quality.is_stable() { "yes" } else { "no" },
-            if quality.is_identifiable(&fit.parameters) {
+            if quality.is_identifiable() {
                 "yes"
             } else {
                 "no"

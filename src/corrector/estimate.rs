@@ -10,21 +10,9 @@
 //!
 //! to first order in the noise. The interval uses Student's distribution with m − q degrees of freedom.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use super::{Correction, Corrector, difference};
 use crate::error::SolveFault;
-
-/// An estimated value with its uncertainty, in the unit of the value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The value.
-    pub value: f64,
-    /// Its standard error.
-    pub standard_error: f64,
-    /// The 95 % confidence interval.
-    pub interval: [f64; 2],
-}
+use crate::statistics::{Estimate, student_reach};
 
 impl Corrector<'_> {
     /// The uncertainty of one unknown of a corrected field: an entry of the field, or a parameter.
@@ -52,12 +40,6 @@ impl Corrector<'_> {
         let column = column.map_err(|_| SolveFault::Singular)?;
         let standard_error = (variance * column[unknown].max(0.0)).sqrt();
         let value = correction.field()[unknown];
-        let student = StudentsT::new(0.0, 1.0, freedom).map_err(|_| SolveFault::Singular)?;
-        let reach = student.inverse_cdf(0.975) * standard_error;
-        Ok(Estimate {
-            value,
-            standard_error,
-            interval: [value - reach, value + reach],
-        })
+        Ok(Estimate::new(value, standard_error, student_reach(freedom)))
     }
 }

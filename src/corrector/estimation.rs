@@ -45,7 +45,6 @@ mod regression;
 mod result;
 mod robust;
 mod search;
-mod spline;
 mod start;
 mod transfer;
 mod whiteness;

@@ -13,10 +13,9 @@
 //! J. Sun, C. R. Loader, Ann. Stat. 22, 1328 (1994), doi:10.1214/aos/1176325631
 
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::basis::{Basis, Form};
-use crate::corrector::Estimate;
+use crate::statistics::{Estimate, student_reach, student_tail};
 
 /// An identified function.
 #[derive(Clone, Debug)]
@@ -50,12 +49,7 @@ impl Function {
     }
 
     fn estimate(&self, value: f64, standard_error: f64) -> Estimate {
-        let reach = self.reach[0] * standard_error;
-        Estimate {
-            value,
-            standard_error,
-            interval: [value - reach, value + reach],
-        }
+        Estimate::new(value, standard_error, self.reach[0])
     }
 
     /// The value at `x` with its standard error and its 95 % interval at this place alone.
@@ -102,13 +96,16 @@ impl Function {
 /// Half widths in standard errors for so many degrees of freedom.
 pub fn reach(functions: &[Function; 2], freedom: f64) -> Option<[f64; 2]> {
     const MISSED: f64 = 0.05;
-    let student = StudentsT::new(0.0, 1.0, freedom).ok()?;
+    let point = student_reach(freedom);
+    if point.is_nan() {
+        return None;
+    }
     let lengths = functions.each_ref().map(Function::length);
     let missed = |c: f64| -> f64 {
         let tube = (1.0 + c * c / freedom).powf(-0.5 * freedom) / std::f64::consts::PI;
         lengths
             .iter()
-            .map(|length| length * tube + 2.0 * student.sf(c))
+            .map(|length| length * tube + 2.0 * student_tail(freedom, c))
             .sum()
     };
     let (mut low, mut high) = (1.0, 40.0);
@@ -120,5 +117,5 @@ pub fn reach(functions: &[Function; 2], freedom: f64) -> Option<[f64; 2]> {
             &mut high
         }) = middle;
     }
-    Some([student.inverse_cdf(1.0 - 0.5 * MISSED), high])
+    Some([point, high])
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::spline::UniformSpline;
+use crate::statistics::{BSpline, Ends};
 
 /// The form of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,12 +74,12 @@ impl Basis {
         }
     }
 
-    fn spline(&self) -> UniformSpline {
+    fn spline(&self) -> BSpline {
         let intervals = match self.form {
             Form::Spline(intervals) => intervals,
             Form::Constant | Form::Polynomial(_) => 1,
         };
-        UniformSpline::new(self.range, intervals, 3)
+        BSpline::new(self.range, intervals, 3, Ends::Uniform)
     }
 
     /// The argument at which the powers of a polynomial are one.

@@ -6,8 +6,8 @@ use super::basis::Basis;
 use super::penalty::Reduced;
 use super::recording::Recording;
 use super::smoothing::{Banded, Sampled};
-use super::spline::Local;
 use crate::solve::{Cholesky, NotPositiveDefinite};
+use crate::statistics::LocalValues;
 
 /// What D(·) is a function of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -186,9 +186,9 @@ impl Joint<'_> {
     }
 
     /// The derivatives of extension and force by the motion's coefficients, over the noise.
-    fn by_motion(&self, instant: usize, at: &Instant) -> (usize, [Local; 2]) {
+    fn by_motion(&self, instant: usize, at: &Instant) -> (usize, [LocalValues; 2]) {
         let [x, v, a] = [0, 1, 2].map(|order: usize| &self.orders[order].rows[instant].1);
-        let mut rows = [Local::default(); 2];
+        let mut rows = [LocalValues::default(); 2];
         for i in 0..x.len() {
             rows[0][i] = x[i] / self.noise[0];
             let force = self.recording.mass * a[i] + at.slopes[0] * x[i] + at.slopes[1] * v[i];

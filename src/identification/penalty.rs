@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::Basis;
+use crate::statistics::inverse;
 
 /// Normal equations of the coefficients of K(·) and D(·).
 #[derive(Clone, Debug)]
@@ -34,6 +35,9 @@ const DEARNESS: f64 = 1.4;
 /// # References
 /// P. Hall, Ann. Stat. 20, 675 (1992), doi:10.1214/aos/1176348651
 const UNDERSMOOTHING: f64 = -1.0;
+
+/// The least pivot of a matrix scaled to a unit diagonal.
+const LEAST_PIVOT: f64 = 1e-7;
 
 /// How strongly a spline is held in its shape, over its share in the information.
 const SHAPE_WEIGHT: f64 = 1e6;
@@ -125,7 +129,7 @@ impl Reduced {
             }
             first += count;
         }
-        let inverse = inverse(&(&self.information + &penalty))?;
+        let inverse = inverse(&(&self.information + &penalty), LEAST_PIVOT)?;
         let coefficients = &inverse * (&self.gradient + &self.information * from);
         let step = &coefficients - from;
         let sum =
@@ -182,27 +186,4 @@ impl Reduced {
         }
         best.1.map(|exponent| exponent + UNDERSMOOTHING)
     }
-}
-
-/// The inverse of a matrix scaled to a unit diagonal; nothing where it is singular to working precision.
-fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    const LEAST_PIVOT: f64 = 1e-7;
-    let scales = matrix.diagonal().map(|entry| entry.sqrt().recip());
-    if scales.iter().any(|scale| !scale.is_finite()) {
-        return None;
-    }
-    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-        matrix[(i, j)] * scales[i] * scales[j]
-    });
-    let cholesky = scaled.cholesky()?;
-    if cholesky.l_dirty().diagonal().min() < LEAST_PIVOT {
-        return None;
-    }
-    let mut inverse = cholesky.inverse();
-    for i in 0..inverse.nrows() {
-        for j in 0..inverse.ncols() {
-            inverse[(i, j)] *= scales[i] * scales[j];
-        }
-    }
-    Some(inverse)
 }

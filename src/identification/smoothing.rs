@@ -1,7 +1,7 @@
 //! Least-squares splines of a signal over time, with as many parts as its noise allows.
 
-use super::spline::{Local, MOST, UniformSpline};
 use crate::solve::{Cholesky, NotPositiveDefinite, SymmetricPattern};
+use crate::statistics::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
 /// Instants for each part of a spline at least.
 const FEWEST: usize = 4;
@@ -21,12 +21,12 @@ pub struct Smoothed {
 #[derive(Clone, Debug)]
 pub struct Sampled {
     /// First function and values, instant after instant.
-    pub rows: Vec<(usize, Local)>,
+    pub rows: Vec<(usize, LocalValues)>,
 }
 
 impl Sampled {
     /// Derivatives of some order at all `times`.
-    pub fn new(spline: &UniformSpline, times: &[f64], order: usize) -> Self {
+    pub fn new(spline: &BSpline, times: &[f64], order: usize) -> Self {
         Self {
             rows: times.iter().map(|t| spline.local(*t, order)).collect(),
         }
@@ -53,7 +53,7 @@ impl Banded {
     /// [`NotPositiveDefinite`] when there is no memory for it.
     pub fn new(count: usize) -> Result<Self, NotPositiveDefinite> {
         let columns = (0..count).map(|column| {
-            (column..=column + MOST)
+            (column..column + MOST_FUNCTIONS)
                 .filter(|row| *row < count)
                 .collect()
         });
@@ -66,7 +66,7 @@ impl Banded {
     }
 
     /// Adds the square of a row.
-    pub fn add(&mut self, first: usize, row: &Local) {
+    pub fn add(&mut self, first: usize, row: &LocalValues) {
         for (i, a) in row.iter().enumerate() {
             for (j, b) in row.iter().enumerate().skip(i) {
                 // Rows of lower degrees end with zeros, which may lie beyond the last function.
@@ -96,7 +96,7 @@ impl Banded {
 /// # Errors
 /// [`NotPositiveDefinite`] when the instants leave gaps of several parts.
 pub fn nearest(
-    spline: &UniformSpline,
+    spline: &BSpline,
     times: &[f64],
     signal: &[f64],
 ) -> Result<Vec<f64>, NotPositiveDefinite> {
@@ -120,7 +120,7 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<Smoothed> 
     let mut best: Option<(f64, Smoothed)> = None;
     let (mut intervals, most) = (2, times.len() / FEWEST);
     while intervals <= most {
-        let spline = UniformSpline::new(range, intervals, degree);
+        let spline = BSpline::new(range, intervals, degree, Ends::Uniform);
         if let Ok(coefficients) = nearest(&spline, times, signal) {
             let sampled = Sampled::new(&spline, times, 0);
             let left = signal.iter().enumerate();
@@ -178,7 +178,7 @@ mod tests {
         times.retain(|t| !(60.0..90.0).contains(t));
         let signal: Vec<f64> = times.iter().map(|t| (0.02 * t).sin()).collect();
         assert!(smooth(&times, &signal, 5).is_some());
-        let fine = UniformSpline::new([0.0, 199.0], 60, 5);
+        let fine = BSpline::new([0.0, 199.0], 60, 5, Ends::Uniform);
         assert!(nearest(&fine, &times, &signal).is_err());
     }
 }

@@ -18,6 +18,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::triangulate::fill;
 use super::{CellShape, Mesh};
+use crate::statistics::median;
 
 mod alpha_shape;
 mod lattice;
@@ -289,9 +290,7 @@ fn regularity(points: &[[f64; 2]], area: f64) -> f64 {
             least.min(polygon::length(*point, *other))
         })
     };
-    let mut distances: Vec<f64> = points.iter().map(nearest).collect();
-    let middle = distances.len() / 2;
-    *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / side
+    median(points.iter().map(nearest)) / side
 }
 
 /// Three quadrilaterals for each triangle, about its centre.

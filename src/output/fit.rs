@@ -215,7 +215,10 @@ fn names(tests: &[TestData]) -> String {
 /// All figures of a fit. Numbers that do not exist are `null`.
 pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
     let quality = &fit.quality;
-    let parameters = fit.parameters.iter().zip(&quality.estimates);
+    let parameters = fit
+        .parameters
+        .iter()
+        .zip(quality.estimates.iter().zip(&quality.at_bound));
     let rows = quality.correlation.row_iter();
     json!({
         "gelbench": env!("CARGO_PKG_VERSION"),
@@ -229,13 +232,13 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
         })).collect::<Vec<_>>(),
         "weighting": fit.settings.weighting.name(),
         "residuals": fit.settings.weighting.describe(),
-        "parameters": parameters.map(|(parameter, estimate)| json!({
+        "parameters": parameters.map(|(parameter, (estimate, at_bound))| json!({
             "key": parameter.key,
             "value": parameter.value,
             "unit": parameter.unit(),
             "standard_error": estimate.standard_error,
             "interval_95_percent": estimate.interval,
-            "at_bound": estimate.at_bound,
+            "at_bound": at_bound,
         })).collect::<Vec<_>>(),
         "correlation": rows.map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
         "points": quality.points,

@@ -15,10 +15,11 @@
 use nalgebra::DMatrix;
 
 use crate::corrector::{
-    Condition, Corrector, CorrectorSettings, Estimate, Factor, Function, Linear, Linearised, Solver,
+    Condition, Corrector, CorrectorSettings, Factor, Function, Linear, Linearised, Solver,
 };
 use crate::error::SolveFault;
 use crate::solve::SparseRows;
+use crate::statistics::Estimate;
 
 /// A motion, sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]

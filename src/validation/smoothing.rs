@@ -281,11 +281,7 @@ fn noisy(
         .into_par_iter()
         .map(correct)
         .collect::<Result<Vec<_>, Error>>()?;
-    let median = |which: fn(&[f64; 2]) -> f64| {
-        let mut values: Vec<f64> = pairs.iter().map(which).collect();
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    };
+    let median = |which: fn(&[f64; 2]) -> f64| crate::statistics::median(pairs.iter().map(which));
     Ok(Summary {
         before: median(|pair| pair[0]),
         after: median(|pair| pair[1]),

@@ -13,6 +13,7 @@ use crate::error::Error;
 use crate::identification::{Function, Identification, IdentificationSettings, Sample, identify};
 use crate::output::identification_picture;
 use crate::results::{Block, Figure};
+use crate::statistics::median;
 use crate::units::Dimension;
 
 #[derive(Clone, Copy)]
@@ -131,11 +132,7 @@ fn share(trials: &[Trial], index: usize, holds: impl Fn(&Place) -> bool) -> f64 
 /// Median of |error| over trials and places, in % of the truth.
 fn median_error(trials: &[Trial], index: usize) -> f64 {
     let all = trials.iter().flat_map(|trial| &trial[index]);
-    let mut errors: Vec<f64> = all
-        .map(|place| 100.0 * (place.error / place.truth).abs())
-        .collect();
-    errors.sort_by(f64::total_cmp);
-    errors[errors.len() / 2]
+    median(all.map(|place| 100.0 * (place.error / place.truth).abs()))
 }
 
 fn checks(trials: &[Trial], good: usize) -> Vec<Check> {

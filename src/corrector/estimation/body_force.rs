@@ -7,9 +7,9 @@
 use nalgebra::DMatrix;
 
 use super::edge_motion::Roughness;
-use super::spline::Spline;
 use crate::mesh::Mesh;
 use crate::solve::{Inadmissible, Local, Potential};
+use crate::statistics::{BSpline, Ends};
 
 /// Spans along the longer side of the specimen's box.
 const SPANS: f64 = 4.0;
@@ -30,19 +30,16 @@ impl BodyForce {
         let [low, high] = mesh.bounding_box();
         let size = [0, 1].map(|axis| high[axis] - low[axis]);
         let longer = size[0].max(size[1]);
-        let splines = size.map(|size| Spline {
-            spans: ((SPANS * size / longer).round() as usize).max(1),
+        let splines = [0, 1].map(|axis| {
+            let spans = ((SPANS * size[axis] / longer).round() as usize).max(1);
+            BSpline::new([low[axis], high[axis]], spans, 3, Ends::Clamped)
         });
-        let values = |node: [f64; 2]| {
-            [0, 1].map(|axis| splines[axis].derivatives((node[axis] - low[axis]) / size[axis], 0))
-        };
-        let count = splines[0].functions() * splines[1].functions();
+        let count = splines[0].count() * splines[1].count();
         let mut columns = vec![vec![0.0; held.len()]; 2 * count];
         for (node, place) in mesh.nodes.iter().enumerate() {
-            let [along, across] = values(*place);
-            for (i, x) in &along {
-                for (j, y) in &across {
-                    let function = i * splines[1].functions() + j;
+            for (i, x) in splines[0].derivatives(place[0], 0) {
+                for (j, y) in splines[1].derivatives(place[1], 0) {
+                    let function = i * splines[1].count() + j;
                     for axis in [0, 1].into_iter().filter(|axis| !held[2 * node + axis]) {
                         columns[axis * count + function][2 * node + axis] = areas[node] * x * y;
                     }

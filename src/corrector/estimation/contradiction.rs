@@ -4,12 +4,11 @@
 //! field that was found. Where the misfit falls by more than noise would let it (F test), something is wrong with what was
 //! said, or with law and thickness.
 
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
-
 use super::mesh_error::MeshError;
 use super::regression::{Fit, Trade};
 use super::search::{Found, Search};
 use super::{Edge, EdgeCondition, Task};
+use crate::statistics::f_tail;
 
 /// Probability below which the data contradict. Smoothness is chosen by the data too, which the test does not count; small
 /// values leave room for that.
@@ -93,5 +92,5 @@ fn probability(found: &Found, (fit, trade): &(Fit, Trade), own: Option<&MeshErro
     }
     let noise = (after / rest + nothing / count).max(f64::MIN_POSITIVE);
     let ratio = (before - after).max(0.0) / more / noise;
-    FisherSnedecor::new(more, rest).map_or(1.0, |law| law.sf(ratio))
+    f_tail([more, rest], ratio)
 }

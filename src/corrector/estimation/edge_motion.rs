@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::outline::Segment;
-use super::spline::Spline;
 use crate::mesh::Mesh;
+use crate::statistics::{BSpline, Ends};
 
 /// What is known of a part of the boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ enum Part {
     },
     Smooth {
         name: String,
-        spline: Spline,
+        spline: BSpline,
         /// Along one axis and the other.
         coefficients: [Vec<Coefficient>; 2],
         /// Nodes that it moves, with their places on 0…1.
@@ -173,9 +173,8 @@ impl EdgeMotion {
         let length = segment.length();
         let edges = segment.nodes.len() - 1;
         let spans = (length / (SPACINGS * spacing)).round() as usize;
-        let spline = Spline {
-            spans: spans.clamp(1, MOST_SPANS.min(edges)),
-        };
+        let spans = spans.clamp(1, MOST_SPANS.min(edges));
+        let spline = BSpline::new([0.0, 1.0], spans, 3, Ends::Clamped);
         let coefficients = [0, 1].map(|axis| {
             let [first, last] = segment.ends().map(|node| 2 * node + axis);
             let mut end = |motion: &mut Self, unknown: usize| {
@@ -183,7 +182,7 @@ impl EdgeMotion {
                 *moved.entry(unknown).or_insert_with(own)
             };
             let mut coefficients = vec![end(self, first)];
-            for _ in 1..spline.functions() - 1 {
+            for _ in 1..spline.count() - 1 {
                 coefficients.push(Coefficient::Parameter(self.take(1)));
             }
             coefficients.push(end(self, last));
@@ -232,9 +231,9 @@ impl EdgeMotion {
                     for axis in [0, 1] {
                         let q = combinations(&unknowns, &coefficients[axis], p);
                         for (node, place) in nodes {
-                            unknowns.entry(2 * node + axis).or_insert_with(|| {
-                                combine(&q, spline.derivatives(*place, 0).into_iter())
-                            });
+                            unknowns
+                                .entry(2 * node + axis)
+                                .or_insert_with(|| combine(&q, spline.derivatives(*place, 0)));
                         }
                     }
                 }
@@ -282,10 +281,7 @@ impl EdgeMotion {
             for axis in [0, 1] {
                 let q = combinations(&imposed.unknowns, &coefficients[axis], p);
                 let rows = spline.roughness();
-                let rows: Vec<_> = rows
-                    .into_iter()
-                    .map(|row| combine(&q, row.into_iter()))
-                    .collect();
+                let rows: Vec<_> = rows.map(|row| combine(&q, row.into_iter())).collect();
                 let mut slopes = DMatrix::zeros(rows.len(), self.parameters);
                 for (row, combination) in rows.iter().enumerate() {
                     for (index, slope) in &combination.slopes {
@@ -297,7 +293,7 @@ impl EdgeMotion {
                     axis,
                     values: rows.iter().map(|row| row.value).collect(),
                     slopes,
-                    rank: spline.functions() - 2,
+                    rank: spline.count() - 2,
                 });
             }
         }

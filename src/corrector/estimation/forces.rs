@@ -4,12 +4,12 @@ use super::Edge;
 use super::edge_motion::EdgeCondition;
 use super::linearise::dot;
 use super::mesh_error::MeshError;
-use super::result::{EdgeForce, ForceCheck, interval};
+use super::result::{EdgeForce, ForceCheck};
 use super::search::Found;
-use crate::corrector::estimate::Estimate;
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::sheet::{Gradient, Kinematics};
+use crate::statistics::Estimate;
 
 impl Found<'_> {
     /// The forces on the edges that are not free; with the mesh's own error, if it is known.
@@ -30,7 +30,7 @@ impl Found<'_> {
             let mesh = own.map_or(0.0, |own| {
                 own.forces[index][axis] + dot(&row, own.parameters.as_slice())
             });
-            Ok(interval(force, self.error(&row).hypot(mesh), reach))
+            Ok(Estimate::new(force, self.error(&row).hypot(mesh), reach))
         };
         let held = (0..edges.len()).filter(|index| edges[*index].condition != EdgeCondition::Free);
         let force = |index: usize| {
@@ -55,7 +55,7 @@ impl Found<'_> {
             let place = first + index;
             let error = self.fit.covariance[(place, place)].max(0.0).sqrt();
             let mesh = own.map_or(0.0, |own| own.parameters[place]);
-            let value = interval(self.parameters[place], error.hypot(mesh), reach);
+            let value = Estimate::new(self.parameters[place], error.hypot(mesh), reach);
             (parameter.key, parameter.unit(), value)
         };
         parameters.map(estimate).collect()

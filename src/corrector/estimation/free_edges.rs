@@ -1,12 +1,11 @@
 //! Which of the edges that nobody names are free: the data say it.
 
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
-
 use super::edge_motion::EdgeCondition;
 use super::result::EdgeForce;
 use super::search::{Found, MOST_STEPS, Search};
 use super::{Edge, Task};
 use crate::error::Error;
+use crate::statistics::f_tail;
 
 /// Probability of the misfit under which a free edge is refused.
 const LEVEL: f64 = 0.01;
@@ -67,7 +66,7 @@ fn probability(loaded: &Found, free: &Found) -> f64 {
     let rest = (count - loaded.fit.effective).max(1.0);
     let (before, after) = (loaded.misfit(loaded), free.misfit(loaded));
     let ratio = (after - before).max(0.0) / more / (before / rest).max(f64::MIN_POSITIVE);
-    FisherSnedecor::new(more, rest).map_or(0.0, |law| law.sf(ratio))
+    f_tail([more, rest], ratio)
 }
 
 impl Found<'_> {

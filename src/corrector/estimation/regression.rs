@@ -18,10 +18,11 @@
 //! S. N. Wood, M. Fasiolo, Biometrics 73, 1071 (2017), doi:10.1111/biom.12666;
 //! D. Nychka, J. Am. Stat. Assoc. 83, 1134 (1988), doi:10.1080/01621459.1988.10478711
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 
 use super::edge_motion::Roughness;
 use super::robust::Robust;
+use crate::statistics::inverse;
 
 /// What is fitted.
 pub struct Regression<'a> {
@@ -77,6 +78,9 @@ pub struct Fit {
 pub struct Undetermined;
 
 const MOST_ITERATIONS: usize = 200;
+
+/// The least pivot of a matrix scaled to a unit diagonal: √1e-13.
+const LEAST_PIVOT: f64 = 3.162_277_660_168_379e-7;
 
 /// Change of the effective number of parameters, and relative change of the variance, at which the fixed point is reached.
 const CLOSE: f64 = 1e-4;
@@ -151,7 +155,7 @@ impl Regression<'_> {
             matrix += &form.square * *smoothing;
             target -= &form.slope * *smoothing;
         }
-        let covariance = inverse(matrix)?;
+        let covariance = inverse(&matrix, LEAST_PIVOT).ok_or(Undetermined)?;
         let step = &covariance * &target;
         let left = |(form, smoothing): (&Form, &f64)| {
             (form.rank - smoothing * form.square.dot(&covariance)).max(0.0)
@@ -215,32 +219,4 @@ impl Form {
             rank: prior.rank as f64,
         }
     }
-}
-
-/// The inverse of a positive definite matrix, scaled to a unit diagonal on the way.
-fn inverse(matrix: DMatrix<f64>) -> Result<DMatrix<f64>, Undetermined> {
-    const SINGULAR: f64 = 1e-13;
-    let scale = matrix.diagonal().map(|entry| 1.0 / entry.sqrt());
-    if scale.iter().any(|entry| !entry.is_finite()) {
-        return Err(Undetermined);
-    }
-    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-        scale[i] * matrix[(i, j)] * scale[j]
-    });
-    let factor: Cholesky<f64, Dyn> = Cholesky::new(scaled).ok_or(Undetermined)?;
-    if factor
-        .l_dirty()
-        .diagonal()
-        .iter()
-        .any(|pivot| pivot * pivot < SINGULAR)
-    {
-        return Err(Undetermined);
-    }
-    let mut inverse = factor.inverse();
-    for i in 0..inverse.nrows() {
-        for j in 0..inverse.ncols() {
-            inverse[(i, j)] *= scale[i] * scale[j];
-        }
-    }
-    Ok(inverse)
 }

@@ -2,7 +2,6 @@
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 use super::contradiction::Contradiction;
 use super::edge_motion::EdgeCondition;
@@ -13,10 +12,10 @@ use super::robust::Robust;
 use super::search::{Found, Search};
 use super::whiteness::Whiteness;
 use super::{Edge, MeasuredForce};
-use crate::corrector::estimate::Estimate;
 use crate::error::{Error, SolveFault};
 use crate::finite_element::recovery::{RecoveredGradient, Recovery};
 use crate::material::sheet::{Gradient, Kinematics, cofactor};
+use crate::statistics::{Estimate, chi_squared_limit, normal_reach, student_reach};
 
 /// The field nearest to the markers.
 ///
@@ -177,10 +176,8 @@ impl Found<'_> {
         let robust = self.search.task.knowledge.robust != Robust::No;
         let freedom = (rows - self.fit.effective).max(1.0);
         let reach = match known_noise && !robust {
-            true => Normal::standard().inverse_cdf(0.975),
-            false => StudentsT::new(0.0, 1.0, freedom)
-                .map_err(|_| super::search::solve(SolveFault::Singular))?
-                .inverse_cdf(0.975),
+            true => normal_reach(),
+            false => student_reach(freedom),
         };
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
@@ -344,8 +341,7 @@ impl Found<'_> {
 
     fn markers(&self) -> Vec<Option<MarkerEstimate>> {
         let observations = self.observations();
-        let limit =
-            ChiSquared::new(2.0).map_or(f64::INFINITY, |law| law.inverse_cdf(1.0 - FALSE_ALARMS));
+        let limit = chi_squared_limit(2.0, FALSE_ALARMS);
         let mut all = vec![None; observations.markers];
         for (row, index) in observations.chosen.iter().enumerate() {
             all[*index] = Some(self.marker(row, limit));
@@ -375,15 +371,5 @@ impl Found<'_> {
             trust,
             outlier: square > limit,
         }
-    }
-}
-
-/// A value with its standard error.
-pub(super) fn interval(value: f64, standard_error: f64, reach: f64) -> Estimate {
-    let half = reach * standard_error;
-    Estimate {
-        value,
-        standard_error,
-        interval: [value - half, value + half],
     }
 }

@@ -17,6 +17,8 @@
 //! P. J. Huber, Robust Statistics (1981), section 7.6; P. J. Rousseeuw, A. M. Leroy, Robust Regression and Outlier
 //! Detection (1987)
 
+use crate::statistics::robust_deviation;
+
 /// How markers that are far off are weighted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Robust {
@@ -35,8 +37,6 @@ const HUBER: f64 = 1.5;
 const TUKEY: f64 = 5.1227;
 /// Known noise is not believed where the markers scatter by more than so many times as much.
 const CONTRADICTED: f64 = 2.0;
-/// The median of χ² with two degrees of freedom: 2 ln 2.
-const MEDIAN: f64 = 2.0 * std::f64::consts::LN_2;
 
 /// The level of the noise, and what follows from it.
 pub struct Noise {
@@ -85,7 +85,7 @@ impl Robust {
                 trust: vec![1.0; distances.len()],
             };
         }
-        let own = spread(distances) * (2.0 * count / freedom).sqrt();
+        let own = robust_deviation(distances.iter().copied()) * (2.0 * count / freedom).sqrt();
         let scale = match known && own <= CONTRADICTED {
             true => 1.0,
             false => own,
@@ -108,14 +108,6 @@ impl Robust {
     }
 }
 
-/// The standard deviation of normal noise in two components with this median distance.
-pub fn spread(distances: &[f64]) -> f64 {
-    let mut squares: Vec<f64> = distances.iter().map(|d| d * d).collect();
-    squares.sort_by(f64::total_cmp);
-    let middle = squares.get(squares.len() / 2).copied().unwrap_or(0.0);
-    (middle / MEDIAN).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use rand::SeedableRng;
@@ -133,7 +125,7 @@ mod tests {
     #[test]
     fn normal_noise_has_its_variance_at_an_efficiency_of_95_percent() {
         let normal = distances(40_000, 0.3);
-        assert!((spread(&normal) / 0.3 - 1.0).abs() < 0.01);
+        assert!((robust_deviation(normal.iter().copied()) / 0.3 - 1.0).abs() < 0.01);
         for (robust, efficiency) in [
             (Robust::No, 1.0),
             (Robust::Huber, 0.95),

@@ -5,7 +5,7 @@ use rand::seq::index::sample;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::robust::spread;
+use crate::statistics::robust_deviation;
 
 /// The largest degree.
 pub const DEGREE: usize = 3;
@@ -146,7 +146,7 @@ impl Polynomial {
     pub fn trust(&self, points: &Points) -> Vec<f64> {
         const FAR: f64 = 5.0;
         let distances = self.distances(points);
-        let limit = FAR * spread(&distances);
+        let limit = FAR * robust_deviation(distances.iter().copied());
         distances
             .iter()
             .map(|d| f64::from(u8::from(*d <= limit)))

@@ -17,12 +17,12 @@ use super::{
     Edge, EdgeCondition, EdgeForce, EdgeOutcome, FieldEstimate, Knowledge, MarkerEstimate,
     Specimen, StressEstimate,
 };
-use crate::corrector::estimate::Estimate;
 use crate::error::{Error, SolveFault};
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::Mesh;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{Newton, NewtonSettings};
+use crate::statistics::Estimate;
 
 const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
@@ -245,12 +245,7 @@ fn forces(edges: &[(Segment, EdgeCondition)], reactions: &[f64]) -> Vec<EdgeForc
         nodes.sort_unstable();
         nodes.dedup();
         let along = |axis: usize| {
-            let value = nodes.iter().map(|node| reactions[2 * node + axis]).sum();
-            Estimate {
-                value,
-                standard_error: 0.0,
-                interval: [value; 2],
-            }
+            Estimate::exact(nodes.iter().map(|node| reactions[2 * node + axis]).sum())
         };
         EdgeForce {
             edge: segment.name.clone(),

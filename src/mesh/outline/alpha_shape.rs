@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::polygon::{self, area};
 use crate::mesh::triangulate::delaunay;
+use crate::statistics::median;
 
 /// Circles of triangles up to so many spacings are inside.
 const RADIUS: f64 = 1.9;
@@ -40,11 +41,7 @@ fn median_edge(points: &[[f64; 2]], triangles: &[[usize; 3]]) -> f64 {
         .flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
     // An edge between two triangles is counted once.
     let edges = edges.filter(|[a, b]| a < b);
-    let mut lengths: Vec<f64> = edges
-        .map(|[a, b]| polygon::length(points[*a], points[*b]))
-        .collect();
-    let middle = lengths.len() / 2;
-    *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
+    median(edges.map(|[a, b]| polygon::length(points[*a], points[*b])))
 }
 
 /// The radius of the circle through the corners of a triangle.

@@ -3,10 +3,10 @@
 //! A doubt stands beside the figures and makes the command end with exit code 1.
 
 use super::MeasuredField;
-use crate::corrector::Estimate;
 use crate::corrector::estimation::FieldEstimate;
 use crate::error::Diagnostic;
 use crate::markers::Frame;
+use crate::statistics::{Estimate, robust_deviation};
 
 /// A measured force farther from the field's than so many of its standard deviations contradicts it: noise alone does so in
 /// six of a hundred thousand cases.
@@ -78,19 +78,17 @@ type Doubt = (String, &'static str);
 
 /// The noise that is left, from the median of the standardised residuals, beside the stated one.
 fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
-    // Median of χ² with two degrees of freedom, and the standard error of ln of a deviation from it.
-    const MEDIAN: f64 = 2.0 * std::f64::consts::LN_2;
+    // The standard error of ln of a deviation from the median.
     const ERROR: f64 = 0.72;
     const SURE: f64 = 4.0;
     let markers = estimate.markers.iter().flatten();
-    let mut squares: Vec<f64> = markers.map(|m| m.standardised_residual.powi(2)).collect();
+    let lengths: Vec<f64> = markers.map(|marker| marker.standardised_residual).collect();
     // A field without noise that was brought onto another mesh has nothing to compare.
-    if !estimate.known_noise || estimate.noise == 0.0 || squares.is_empty() {
+    if !estimate.known_noise || estimate.noise == 0.0 || lengths.is_empty() {
         return None;
     }
-    squares.sort_by(f64::total_cmp);
-    let ratio = estimate.noise_scale * (squares[squares.len() / 2] / MEDIAN).sqrt();
-    let sure = SURE * ERROR / (squares.len() as f64).sqrt();
+    let sure = SURE * ERROR / (lengths.len() as f64).sqrt();
+    let ratio = estimate.noise_scale * robust_deviation(lengths);
     (ratio.ln().abs() > OFF.ln().max(sure)).then(|| {
         let relation = if ratio > 1.0 { "more" } else { "less" };
         let message = format!(

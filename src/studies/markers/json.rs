@@ -4,9 +4,9 @@ use serde_json::{Value, json};
 
 use super::report::{largest_correction, largest_error, left, outliers, used};
 use super::written::title;
-use crate::corrector::Estimate;
 use crate::corrector::estimation::{EdgeCondition, FieldEstimate};
 use crate::markers::Frame;
+use crate::statistics::Estimate;
 use crate::studies::markers::MeasuredField;
 
 /// The report for programs.

@@ -1,9 +1,9 @@
 //! The report of a correction.
 
 use super::written::title;
-use crate::corrector::Estimate;
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::results::{Block, Figure};
+use crate::statistics::Estimate;
 use crate::studies::markers::MeasuredField;
 
 /// The figures of every frame, for the terminal.

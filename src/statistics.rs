@@ -1,0 +1,161 @@
+//! Statistics, each formula once: quantiles and tail probabilities, estimates with their intervals, robust measures of
+//! scale, the inverse of normal matrices, B-splines.
+
+use nalgebra::DMatrix;
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
+
+mod spline;
+
+pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
+
+/// An estimated value with its uncertainty, in the unit of the value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// The 95 % confidence interval.
+    pub interval: [f64; 2],
+}
+
+impl Estimate {
+    /// An estimate whose interval reaches `reach` standard errors to either side.
+    pub fn new(value: f64, standard_error: f64, reach: f64) -> Self {
+        let half = reach * standard_error;
+        Self {
+            value,
+            standard_error,
+            interval: [value - half, value + half],
+        }
+    }
+
+    /// A value without uncertainty.
+    pub fn exact(value: f64) -> Self {
+        Self::new(value, 0.0, 0.0)
+    }
+}
+
+/// Half the width of a 95 % interval in standard errors where the noise is known.
+pub fn normal_reach() -> f64 {
+    Normal::standard().inverse_cdf(0.975)
+}
+
+/// Half the width of a 95 % interval in standard errors where the noise is estimated with so many degrees of freedom;
+/// NaN where there are none.
+pub fn student_reach(freedom: f64) -> f64 {
+    student(freedom, |law| law.inverse_cdf(0.975))
+}
+
+/// P(t > x) for Student's t with so many degrees of freedom; NaN where there are none.
+pub fn student_tail(freedom: f64, x: f64) -> f64 {
+    student(freedom, |law| law.sf(x))
+}
+
+fn student(freedom: f64, value: impl Fn(StudentsT) -> f64) -> f64 {
+    StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, value)
+}
+
+/// P(F > ratio) for the ratio of two variances with so many degrees of freedom; NaN where either has none.
+pub fn f_tail(freedoms: [f64; 2], ratio: f64) -> f64 {
+    FisherSnedecor::new(freedoms[0], freedoms[1]).map_or(f64::NAN, |law| law.sf(ratio))
+}
+
+/// The value that χ² with so many degrees of freedom exceeds with a probability; NaN where there are none.
+pub fn chi_squared_limit(freedom: f64, probability: f64) -> f64 {
+    ChiSquared::new(freedom).map_or(f64::NAN, |law| law.inverse_cdf(1.0 - probability))
+}
+
+/// The median, the upper one of the middle two; NaN of nothing.
+pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    let middle = values.len() / 2;
+    match values.is_empty() {
+        true => f64::NAN,
+        false => *values.select_nth_unstable_by(middle, f64::total_cmp).1,
+    }
+}
+
+/// The standard deviation of each component of normal noise in a plane, from the median of its lengths, which gross
+/// errors hardly move: the median of χ² with two degrees of freedom is 2 ln 2.
+pub fn robust_deviation(lengths: impl IntoIterator<Item = f64>) -> f64 {
+    let squares = lengths.into_iter().map(|length| length * length);
+    (median(squares) / (2.0 * std::f64::consts::LN_2)).sqrt()
+}
+
+/// The inverse of a positive definite matrix, scaled to a unit diagonal on the way; `None` where a pivot of the scaled
+/// matrix is below `least`.
+pub fn inverse(matrix: &DMatrix<f64>, least: f64) -> Option<DMatrix<f64>> {
+    let scales = matrix.diagonal().map(|entry| entry.sqrt().recip());
+    if scales.iter().any(|scale| !scale.is_finite()) {
+        return None;
+    }
+    let scaled =
+        |matrix: &DMatrix<f64>| matrix.map_with_location(|i, j, x| scales[i] * x * scales[j]);
+    let factor = scaled(matrix).cholesky()?;
+    (factor.l_dirty().diagonal().min() >= least).then(|| scaled(&factor.inverse()))
+}
+
+/// s² (JᵀJ)⁻¹ of a Jacobian J by its singular values, with columns of unit length; what J does not determine at all
+/// gets a huge variance.
+pub fn covariance(mut jacobian: DMatrix<f64>, variance: f64) -> Option<DMatrix<f64>> {
+    const LEAST: f64 = 1e-14;
+    let size = jacobian.ncols();
+    let lengths = jacobian.column_iter().map(|column| column.norm());
+    let scales: Vec<f64> = lengths
+        .map(|length| length.max(f64::MIN_POSITIVE))
+        .collect();
+    for (mut column, scale) in jacobian.column_iter_mut().zip(&scales) {
+        column /= *scale;
+    }
+    // The triangle of QR has the singular values of J and is small.
+    let decomposition = jacobian.qr().r().svd(false, true);
+    let v = decomposition.v_t?;
+    Some(DMatrix::from_fn(size, size, |i, j| {
+        let singular = decomposition.singular_values.iter().enumerate();
+        let terms = singular.map(|(k, s)| v[(k, i)] * v[(k, j)] / s.max(LEAST).powi(2));
+        variance * terms.sum::<f64>() / (scales[i] * scales[j])
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables of Student, F and χ² at their usual levels.
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        assert!((normal_reach() - 1.959_964).abs() < 1e-6);
+        assert!((student_reach(10.0) - 2.228_139).abs() < 1e-6);
+        assert!((student_tail(10.0, 2.228_139) - 0.025).abs() < 1e-6);
+        assert!((f_tail([3.0, 20.0], 3.098_391) - 0.05).abs() < 1e-6);
+        assert!((chi_squared_limit(2.0, 0.05) - 5.991_465).abs() < 1e-6);
+        assert!(student_reach(0.0).is_nan() && chi_squared_limit(0.0, 0.1).is_nan());
+    }
+
+    #[test]
+    fn the_median_is_the_upper_one_of_the_middle_two() {
+        assert_eq!(median([3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median([4.0, 1.0, 3.0, 2.0]), 3.0);
+        assert!(median([]).is_nan());
+    }
+
+    #[test]
+    fn inverses_of_badly_scaled_matrices_are_exact_and_singular_ones_refused() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[4e12, 1.0, 1.0, 1e-12]);
+        let unit = inverse(&matrix, 1e-7).unwrap() * &matrix;
+        assert!((unit - DMatrix::identity(2, 2)).amax() < 1e-3);
+        let singular = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.0]);
+        assert!(inverse(&singular, 1e-7).is_none());
+        assert!(inverse(&-matrix, 1e-7).is_none());
+    }
+
+    /// A straight line through 0, 1, 2: (JᵀJ)⁻¹ = [5/6 −1/2; −1/2 1/2].
+    #[test]
+    fn the_covariance_of_a_straight_line_is_known() {
+        let line = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 1.0, 1.0, 2.0]);
+        let expected = DMatrix::from_row_slice(2, 2, &[5.0 / 6.0, -0.5, -0.5, 0.5]);
+        let found = covariance(line, 4.0).unwrap();
+        assert!((found - expected * 4.0).amax() < 1e-14);
+    }
+}
