@@ -173,6 +173,8 @@ pub enum QuantityFault {
     },
 }
 
+impl std::error::Error for QuantityFault {}
+
 impl fmt::Display for QuantityFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -45,7 +45,8 @@ pub struct TimeSettings {
 }
 
 /// The end of a motion before its time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}: {fault}; {}", self.describe(), fault.advice())]
 pub struct MotionEnd {
     /// The last time in s that was reached.
     pub time: f64,

@@ -24,7 +24,10 @@ use super::law::{EnergyDerivatives, Invariants};
 pub type Gradient = Vector4<f64>;
 
 /// A sheet whose in-plane area ratio J is not positive, or not a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the in-plane area ratio J is not a positive number: the sheet is turned inside out or has collapsed"
+)]
 pub struct Inadmissible;
 
 /// Strain measures of the sheet that follow from the displacement gradient alone.

@@ -6,7 +6,8 @@ use super::transfer::Transfer;
 use super::vector::{Lines, Vector};
 
 /// An operator that has no positive definite inverse.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the operator of the coarsest grid is not positive definite")]
 pub struct NotPositiveDefinite;
 
 /// One grid with its operator and the vectors of a cycle.

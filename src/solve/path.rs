@@ -44,7 +44,8 @@ pub struct State {
 }
 
 /// The end of a path before its last load factor.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}: {fault}; {}", self.describe(), fault.advice())]
 pub struct PathEnd {
     /// The load factor that could not be reached.
     pub factor: f64,

@@ -4,7 +4,8 @@ use super::dissection::dissection;
 use super::sparse::{Cholesky, NotPositiveDefinite, SymmetricPattern, moved};
 
 /// An element that has turned inside out, collapsed, or left the range of numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("element {element} is turned inside out, has collapsed, or is not finite")]
 pub struct Inadmissible {
     /// The element's index.
     pub element: usize,

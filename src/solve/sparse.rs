@@ -109,7 +109,8 @@ impl SymmetricPattern {
 }
 
 /// A matrix that is not positive definite, or not finite.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the matrix is not positive definite, or not finite")]
 pub struct NotPositiveDefinite;
 
 /// A sparse Cholesky factor A = L Lᵀ. The symbolic analysis is done once for a pattern; every new set

@@ -39,6 +39,8 @@ pub enum LinearFault {
     Quantity(String, QuantityFault),
 }
 
+impl std::error::Error for LinearFault {}
+
 impl fmt::Display for LinearFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
