@@ -20,7 +20,7 @@
 //! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems
 
 use crate::error::SolveFault;
-use crate::solve::sparse::largest;
+use crate::solve::vector::largest;
 use crate::solve::{Convergence, Inadmissible, NotPositiveDefinite, SparseRows};
 
 mod acceleration;

@@ -27,7 +27,7 @@ use crate::error::Error;
 use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::plate::{Model, Problem, Solution};
-use crate::solve::{Inadmissible, Local, NewtonSettings, Potential};
+use crate::solve::{Connectivity, Inadmissible, Local, NewtonSettings, Potential};
 
 /// One spring.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,11 +104,8 @@ pub struct MassSpring {
 struct Lattice {
     law: Arc<dyn HyperelasticLaw>,
     spring_law: SpringLaw,
-    unknowns: usize,
     /// Unknowns of the springs, then of the cells.
-    element_unknowns: Vec<usize>,
-    /// Where the unknowns of each element begin.
-    starts: Vec<usize>,
+    connectivity: Connectivity,
     springs: Vec<(f64, f64)>,
     /// Reference components of each spring's direction, as for `springs`.
     directions: Vec<[f64; 2]>,
@@ -300,17 +297,14 @@ impl Lattice {
         springs: &[Spring],
         area_stiffness: f64,
     ) -> Self {
-        let pair = |node: &usize| [2 * node, 2 * node + 1];
-        let (mut element_unknowns, mut starts) = (Vec::new(), vec![0]);
+        let mut connectivity = Connectivity::new(2 * mesh.nodes.len());
         for spring in springs {
-            element_unknowns.extend(spring.nodes.iter().flat_map(pair));
-            starts.push(element_unknowns.len());
+            connectivity.push_nodes(&spring.nodes);
         }
         let mut corners = Vec::new();
         for cell in 0..mesh.cell_count() {
             let nodes = &mesh.cell(cell)[..mesh.shape(cell).corners()];
-            element_unknowns.extend(nodes.iter().flat_map(pair));
-            starts.push(element_unknowns.len());
+            connectivity.push_nodes(nodes);
             corners.push(nodes.iter().map(|node| mesh.nodes[*node]).collect());
         }
         let direction = |spring: &Spring| {
@@ -320,9 +314,7 @@ impl Lattice {
         Self {
             law: Arc::clone(law),
             spring_law: SpringLaw::Material,
-            unknowns: 2 * mesh.nodes.len(),
-            element_unknowns,
-            starts,
+            connectivity,
             directions: springs.iter().map(direction).collect(),
             springs: springs
                 .iter()
@@ -441,16 +433,8 @@ fn polygon_area(corners: &[[f64; 2]]) -> f64 {
 }
 
 impl Potential for Lattice {
-    fn unknowns(&self) -> usize {
-        self.unknowns
-    }
-
-    fn elements(&self) -> usize {
-        self.springs.len() + self.corners.len()
-    }
-
-    fn element_unknowns(&self, element: usize) -> &[usize] {
-        &self.element_unknowns[self.starts[element]..self.starts[element + 1]]
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
     }
 
     fn evaluate_element(

@@ -2,16 +2,27 @@
 //!
 //! Nothing here knows any mechanics: an unknown is a number in a vector, an element is a term of a sum.
 
+pub mod assembly;
+mod connectivity;
 pub mod dissection;
 mod ending;
+mod loading;
 pub mod newton;
 pub mod path;
+mod pattern;
 pub mod potential;
 pub mod rows;
 pub mod sparse;
+pub mod tangent;
+pub mod vector;
 
+pub use assembly::Assembly;
+pub use connectivity::Connectivity;
+pub use loading::{Loading, State};
 pub use newton::{Convergence, Newton, NewtonSettings};
-pub use path::{Loading, PathEnd, State, compliance, follow, influence};
-pub use potential::{Assembly, Inadmissible, Local, Potential, SkewCoupling};
+pub use path::{PathEnd, compliance, follow, influence};
+pub use pattern::SymmetricPattern;
+pub use potential::{DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum};
 pub use rows::SparseRows;
-pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu, SymmetricPattern};
+pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu};
+pub use tangent::Tangent;

@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{Corrector, Factor, Step, difference};
 use crate::error::SolveFault;
 use crate::solve::NotPositiveDefinite;
-use crate::solve::sparse::{largest, norm};
+use crate::solve::vector::{largest, norm};
 
 /// Iterates that are combined.
 const DEPTH: usize = 12;

@@ -3,7 +3,7 @@
 //! Rows depend on each other when a combination yᵀ B of them vanishes. With rows of unit length the
 //! combinations y are found by inverse iteration on B Bᵀ + ε I; the rows with large entries take part.
 
-use crate::solve::sparse::{largest, norm};
+use crate::solve::vector::{largest, norm};
 use crate::solve::{Cholesky, NotPositiveDefinite, SparseRows};
 
 /// Rows whose combination vanishes.

@@ -28,7 +28,7 @@ use super::{Condition, Corrector, CorrectorSettings, Linearised};
 use crate::dynamics::Motion;
 use crate::dynamics::viscosity::{Passing, ViscousLocal};
 use crate::error::SolveFault;
-use crate::solve::{Assembly, Inadmissible, Local, Potential, SparseRows};
+use crate::solve::{Assembly, Connectivity, Inadmissible, Local, Potential, SparseRows};
 
 mod window;
 
@@ -319,16 +319,8 @@ struct ViscousStep<'a> {
 }
 
 impl Potential for ViscousStep<'_> {
-    fn unknowns(&self) -> usize {
-        self.energy.unknowns()
-    }
-
-    fn elements(&self) -> usize {
-        self.energy.elements()
-    }
-
-    fn element_unknowns(&self, element: usize) -> &[usize] {
-        self.energy.element_unknowns(element)
+    fn connectivity(&self) -> &Connectivity {
+        self.energy.connectivity()
     }
 
     fn evaluate_element(

@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::mesh::{Mesh, Side};
 use crate::problem::plate::{Problem, Solution};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::solve::sparse::largest;
+use crate::solve::vector::largest;
 use crate::solve::{Assembly, Convergence, SparseRows};
 
 /// Name of the condition F.

@@ -3,7 +3,7 @@
 use super::{Corrector, Factor, Projection, System, difference, factor};
 use crate::error::SolveFault;
 use crate::solve::SparseRows;
-use crate::solve::sparse::largest;
+use crate::solve::vector::largest;
 
 /// The shortest share of a step that is tried.
 pub const SHORTEST_STEP: f64 = 1e-4;

@@ -149,7 +149,7 @@ fn with_fewer_conditions_the_change_is_orthogonal_to_what_they_allow() {
     let direction = difference(moved.field(), field);
     let change = difference(&data, field);
     let product: f64 = direction.iter().zip(&change).map(|(a, b)| a * b).sum();
-    let size = crate::solve::sparse::norm(&direction) * crate::solve::sparse::norm(&change);
+    let size = crate::solve::vector::norm(&direction) * crate::solve::vector::norm(&change);
     assert!((product / size).abs() < 1e-5, "{:.1e}", product / size);
 }
 
@@ -226,7 +226,7 @@ fn the_free_edges_are_needed() {
         grips: true,
         free_edges: false,
     });
-    let error = |field: &[f64]| crate::solve::sparse::norm(&difference(field, &exact));
+    let error = |field: &[f64]| crate::solve::vector::norm(&difference(field, &exact));
     assert!(
         error(&without) > 0.7 * error(data),
         "{} {}",

@@ -1,7 +1,7 @@
 //! A single spring with a dashpot, for tests.
 
 use super::viscosity::{Passing, Viscosity, ViscousLocal};
-use crate::solve::{Inadmissible, Local, Potential};
+use crate::solve::{Connectivity, Inadmissible, Local, Potential};
 
 /// One unknown with the energy ½ k u² + ¼ q u⁴, in mJ, and a dashpot of constant c in N·s/mm.
 pub struct Spring {
@@ -11,16 +11,8 @@ pub struct Spring {
 }
 
 impl Potential for Spring {
-    fn unknowns(&self) -> usize {
-        1
-    }
-
-    fn elements(&self) -> usize {
-        1
-    }
-
-    fn element_unknowns(&self, _: usize) -> &[usize] {
-        &[0]
+    fn connectivity(&self) -> &Connectivity {
+        Connectivity::single()
     }
 
     fn evaluate_element(

@@ -4,7 +4,7 @@ use super::frequency;
 use super::motion::{Motion, Moving};
 use super::viscosity::{Passing, ViscousLocal, gather, inverted};
 use crate::error::SolveFault;
-use crate::solve::{Assembly, Inadmissible, Local, Potential};
+use crate::solve::{Assembly, Connectivity, Inadmissible, Local, Potential};
 
 /// The tangent of a step: of Π + viscous forces by the displacements at its end.
 pub(super) struct Tangents<'a> {
@@ -93,16 +93,8 @@ impl<'a> Tangents<'a> {
 }
 
 impl Potential for Tangents<'_> {
-    fn unknowns(&self) -> usize {
-        self.motion.energy.unknowns()
-    }
-
-    fn elements(&self) -> usize {
-        self.motion.energy.elements()
-    }
-
-    fn element_unknowns(&self, element: usize) -> &[usize] {
-        self.motion.energy.element_unknowns(element)
+    fn connectivity(&self) -> &Connectivity {
+        self.motion.energy.connectivity()
     }
 
     fn evaluate_element(

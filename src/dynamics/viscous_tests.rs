@@ -277,7 +277,7 @@ fn springs_take_any_stiffness() {
         .map(|i| 0.3 * (1.3 * i as f64).sin())
         .collect();
     let direction: Vec<f64> = (0..u.len()).map(|i| (0.7 * i as f64).cos()).collect();
-    let errors = crate::solve::potential::derivative_errors(springs.potential(), &u, &direction);
+    let errors = crate::solve::assembly::derivative_errors(springs.potential(), &u, &direction);
     assert!(errors.iter().all(|error| *error < 1e-8), "{errors:?}");
     let state = springs.spring_states(&u)[0];
     let strain = state.stretch - 1.0;

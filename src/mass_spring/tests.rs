@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::*;
 use crate::material::Card;
-use crate::solve::potential::derivative_errors;
+use crate::solve::assembly::derivative_errors;
 
 fn problem(card: &str) -> Problem {
     let law = Card::load(card, Path::new(".")).unwrap().law;
@@ -94,7 +94,7 @@ fn internal_forces_balance_and_a_rigid_motion_is_free() {
     let u = field(&plate.mesh, 0.3);
     let mut residual = vec![0.0; u.len()];
     crate::solve::Assembly::residual(plate.potential(), &u, &mut residual).unwrap();
-    let size = crate::solve::sparse::norm(&residual);
+    let size = crate::solve::vector::norm(&residual);
     for axis in 0..2 {
         assert!(residual.iter().skip(axis).step_by(2).sum::<f64>().abs() < 1e-12 * size);
     }
@@ -119,7 +119,7 @@ fn internal_forces_balance_and_a_rigid_motion_is_free() {
     let energy =
         crate::solve::Assembly::residual(plate.potential(), &turned, &mut residual).unwrap();
     assert!(
-        energy.abs() < 1e-20 && crate::solve::sparse::norm(&residual) < 1e-10,
+        energy.abs() < 1e-20 && crate::solve::vector::norm(&residual) < 1e-10,
         "{energy:.1e}"
     );
 }

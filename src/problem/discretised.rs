@@ -5,7 +5,7 @@ use super::groups::shares;
 use super::loads::Loaded;
 use super::rigid::free_motions;
 use super::supports::{Motion, Supported};
-use super::ties::Tied;
+use super::ties::TiedPotential;
 use crate::error::{Diagnostic, SolveFault};
 use crate::mesh::Mesh;
 use crate::solve::{
@@ -206,7 +206,7 @@ impl Loading for Discretised<'_> {
         if self.supported.ties.is_empty() {
             loaded
         } else {
-            Box::new(Tied::new(loaded, &self.supported.ties))
+            Box::new(TiedPotential::new(loaded, &self.supported.ties))
         }
     }
 

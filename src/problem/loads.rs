@@ -8,10 +8,10 @@
 
 use super::Load;
 use super::balance::Resultant;
-use super::pressure::{Edge, End, Pressures};
+use super::pressure::Pressures;
 use super::supports::Supported;
 use crate::mesh::{Group, Mesh};
-use crate::solve::{Inadmissible, Local, Potential, SkewCoupling};
+use crate::solve::{DeadForces, Potential, Sum};
 
 /// All loads of a problem at load factor 1.
 #[derive(Clone, Debug, Default)]
@@ -111,12 +111,12 @@ impl Loaded {
     }
 
     /// The potential of an energy with these loads at a load factor.
-    pub fn at<'a>(&'a self, energy: &'a dyn Potential, factor: f64) -> LoadedPotential<'a> {
-        LoadedPotential {
-            energy,
-            loads: self,
-            factor,
-        }
+    pub fn at<'a>(&'a self, energy: &'a dyn Potential, factor: f64) -> Sum<'a> {
+        let unknowns = energy.unknowns();
+        let force = |unknown: &usize| (*unknown, factor * self.force(*unknown));
+        let forces = DeadForces::new(unknowns, self.pushed.iter().map(force));
+        let pressures = self.pressures.at(factor, unknowns);
+        Sum::new(Sum::new(energy, pressures), forces)
     }
 }
 
@@ -193,93 +193,4 @@ fn edge_functions(nodes: usize, x: f64) -> (Vec<f64>, Vec<f64>) {
         vec![0.5 * x * (x - 1.0), 0.5 * x * (x + 1.0), 1.0 - x * x],
         vec![x - 0.5, x + 0.5, -2.0 * x],
     )
-}
-
-/// An energy with loads at one load factor.
-pub struct LoadedPotential<'a> {
-    energy: &'a dyn Potential,
-    loads: &'a Loaded,
-    factor: f64,
-}
-
-/// A term of the sum.
-enum Term<'a> {
-    Energy,
-    Edge(&'a Edge),
-    End(&'a End),
-    Force(&'a [usize]),
-}
-
-impl LoadedPotential<'_> {
-    fn find(&self, element: usize) -> Term<'_> {
-        let Pressures { edges, ends } = &self.loads.pressures;
-        let Some(own) = element.checked_sub(self.energy.elements()) else {
-            return Term::Energy;
-        };
-        if let Some(edge) = edges.get(own) {
-            return Term::Edge(edge);
-        }
-        match ends.get(own - edges.len()) {
-            Some(end) => Term::End(end),
-            None => {
-                let pushed = own - edges.len() - ends.len();
-                Term::Force(&self.loads.pushed[pushed..=pushed])
-            }
-        }
-    }
-}
-
-impl Potential for LoadedPotential<'_> {
-    fn unknowns(&self) -> usize {
-        self.energy.unknowns()
-    }
-
-    fn elements(&self) -> usize {
-        let Loaded {
-            pressures, pushed, ..
-        } = self.loads;
-        self.energy.elements() + pressures.edges.len() + pressures.ends.len() + pushed.len()
-    }
-
-    fn element_unknowns(&self, element: usize) -> &[usize] {
-        match self.find(element) {
-            Term::Energy => self.energy.element_unknowns(element),
-            Term::Edge(edge) => &edge.unknowns,
-            Term::End(end) => &end.unknowns,
-            Term::Force(unknown) => unknown,
-        }
-    }
-
-    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
-        self.energy.place(unknown)
-    }
-
-    fn skew_couplings(&self) -> Vec<SkewCoupling> {
-        let mut all = self.energy.skew_couplings();
-        all.extend(self.loads.pressures.skew(self.factor));
-        all
-    }
-
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
-        match self.find(element) {
-            Term::Energy => self.energy.evaluate_element(element, u, local),
-            Term::Edge(edge) => Ok(edge.evaluate(self.factor, u, local)),
-            Term::End(end) => Ok(end.energy(self.factor, u)),
-            Term::Force(unknown) => {
-                let force = self.factor * self.loads.force(unknown[0]);
-                local.residual[0] = -force;
-                Ok(-force * u[0])
-            }
-        }
-    }
-
-    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        let own = element < self.energy.elements();
-        own.then(|| self.energy.instability(element, u)).flatten()
-    }
 }

@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 
 use super::balance::Resultant;
 use crate::mesh::{Group, Mesh};
-use crate::solve::{Local, SkewCoupling};
+use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling};
 
 /// A share of the line load at an end below which it is rounding of a sum of nothing.
 const NOTHING: f64 = 1e-12;
@@ -107,14 +107,20 @@ impl Pressures {
             .collect();
     }
 
-    /// The skew part of the tangent at a load factor.
-    pub fn skew(&self, factor: f64) -> Vec<SkewCoupling> {
-        let coupling = |end: &End| SkewCoupling {
-            row: end.unknowns[0],
-            column: end.unknowns[1],
-            stiffness: 0.5 * factor * end.line_load,
-        };
-        self.ends.iter().map(coupling).collect()
+    /// Their potential at a load factor: edges, then ends.
+    pub fn at(&self, factor: f64, unknowns: usize) -> PressurePotential<'_> {
+        let mut connectivity = Connectivity::new(unknowns);
+        for edge in &self.edges {
+            connectivity.push(edge.unknowns.iter().copied());
+        }
+        for end in &self.ends {
+            connectivity.push(end.unknowns);
+        }
+        PressurePotential {
+            pressures: self,
+            factor,
+            connectivity,
+        }
     }
 
     /// Their resultant about a point on the edges displaced by `u`, by its exact integral and not by the nodal forces:
@@ -143,9 +149,44 @@ impl Pressures {
     }
 }
 
+/// Pressures at one load factor.
+pub struct PressurePotential<'a> {
+    pressures: &'a Pressures,
+    factor: f64,
+    connectivity: Connectivity,
+}
+
+impl Potential for PressurePotential<'_> {
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        let Pressures { edges, ends } = self.pressures;
+        Ok(match edges.get(element) {
+            Some(edge) => edge.evaluate(self.factor, u, local),
+            None => ends[element - edges.len()].energy(self.factor, u),
+        })
+    }
+
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        let coupling = |end: &End| SkewCoupling {
+            row: end.unknowns[0],
+            column: end.unknowns[1],
+            stiffness: 0.5 * self.factor * end.line_load,
+        };
+        self.pressures.ends.iter().map(coupling).collect()
+    }
+}
+
 impl Edge {
     /// Its part of s p t A, less that at rest; the true nodal forces, and the stiffness of A alone.
-    pub fn evaluate(&self, factor: f64, u: &[f64], local: Local<'_>) -> f64 {
+    fn evaluate(&self, factor: f64, u: &[f64], local: Local<'_>) -> f64 {
         let by = factor * self.line_load;
         let place: Vec<f64> = self.rest.iter().zip(u).map(|(rest, u)| rest + u).collect();
         let count = place.len() / 2;
@@ -178,7 +219,7 @@ impl Edge {
 
 impl End {
     /// The potential of the term at an end that slides along an axis, less that at rest; its forces are those of the edges.
-    pub fn energy(&self, factor: f64, u: &[f64]) -> f64 {
+    fn energy(&self, factor: f64, u: &[f64]) -> f64 {
         let sign = match self.held {
             Some(0) => -0.5,
             Some(_) => 0.5,

@@ -7,7 +7,7 @@ use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::stability::is_stable;
 use crate::mesh::{Mesh, QuadraturePoint};
-use crate::solve::{Inadmissible, Local, Potential};
+use crate::solve::{Connectivity, Inadmissible, Local, Potential};
 
 /// Where the energy is sampled: the displacement gradient there as a combination of nodal values.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,13 +22,8 @@ pub struct SamplingPoint {
 #[derive(Clone, Debug)]
 pub struct SheetEnergy {
     law: Arc<dyn HyperelasticLaw>,
-    unknowns: usize,
-    /// Where the nodes are, if that is known.
-    places: Vec<[f64; 2]>,
-    /// ux, uy of node after node for each cell.
-    cell_unknowns: Vec<usize>,
-    /// Where the unknowns of each cell begin.
-    unknown_starts: Vec<usize>,
+    /// The unknowns of each cell: ux, uy of node after node.
+    connectivity: Connectivity,
     points: Vec<SamplingPoint>,
     /// Where the points of each cell begin.
     point_starts: Vec<usize>,
@@ -43,17 +38,12 @@ impl SheetEnergy {
     ) -> Self {
         let mut energy = Self {
             law,
-            unknowns: 2 * nodes,
-            places: Vec::new(),
-            cell_unknowns: Vec::new(),
-            unknown_starts: vec![0],
+            connectivity: Connectivity::new(2 * nodes),
             points: Vec::new(),
             point_starts: vec![0],
         };
         for (nodes, points) in cells {
-            let unknowns = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
-            energy.cell_unknowns.extend(unknowns);
-            energy.unknown_starts.push(energy.cell_unknowns.len());
+            energy.connectivity.push_nodes(nodes);
             energy.points.extend(points);
             energy.point_starts.push(energy.points.len());
         }
@@ -74,9 +64,10 @@ impl SheetEnergy {
             rule.map(point).collect()
         };
         let cells = (0..mesh.cell_count()).map(|cell| (mesh.cell(cell), points(cell)));
+        let energy = Self::new(law, mesh.nodes.len(), cells);
         Self {
-            places: mesh.nodes.clone(),
-            ..Self::new(law, mesh.nodes.len(), cells)
+            connectivity: energy.connectivity.with_places(mesh.nodes.clone()),
+            ..energy
         }
     }
 
@@ -129,20 +120,8 @@ impl SamplingPoint {
 }
 
 impl Potential for SheetEnergy {
-    fn unknowns(&self) -> usize {
-        self.unknowns
-    }
-
-    fn elements(&self) -> usize {
-        self.unknown_starts.len() - 1
-    }
-
-    fn element_unknowns(&self, element: usize) -> &[usize] {
-        &self.cell_unknowns[self.unknown_starts[element]..self.unknown_starts[element + 1]]
-    }
-
-    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
-        self.places.get(unknown / 2).copied()
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
     }
 
     fn evaluate_element(
@@ -204,7 +183,7 @@ mod tests {
     use super::*;
     use crate::material::{MooneyRivlin, NeoHooke};
     use crate::mesh::CellShape;
-    use crate::solve::potential::derivative_errors;
+    use crate::solve::assembly::derivative_errors;
 
     fn mesh() -> Mesh {
         Mesh::plate([4.0, 3.0], [2, 2], CellShape::Quad9)

@@ -4,8 +4,8 @@ use super::{Balance, BoundaryProblem, Drive, Load, Support};
 use crate::error::SolveFault;
 use crate::material::NeoHooke;
 use crate::mesh::{CellShape, Mesh, Shape};
-use crate::solve::potential::derivative_errors;
-use crate::solve::sparse::{largest, norm};
+use crate::solve::assembly::derivative_errors;
+use crate::solve::vector::{largest, norm};
 use crate::solve::{Assembly, Convergence, Loading, NewtonSettings, Potential, State};
 use crate::units::parse_linear_length;
 
@@ -245,19 +245,11 @@ fn bent(mesh: &Mesh) -> Vec<f64> {
 }
 
 /// Without the strain energy, so that nothing hides the pressure.
-struct Nothing(usize);
+struct Nothing(crate::solve::Connectivity);
 
 impl Potential for Nothing {
-    fn unknowns(&self) -> usize {
-        self.0
-    }
-
-    fn elements(&self) -> usize {
-        0
-    }
-
-    fn element_unknowns(&self, _: usize) -> &[usize] {
-        &[]
+    fn connectivity(&self) -> &crate::solve::Connectivity {
+        &self.0
     }
 
     fn evaluate_element(
@@ -277,7 +269,7 @@ fn a_pressure_s_energy_force_and_stiffness_are_derivatives_at_finite_strain() {
         let mut mesh = strip(shape);
         mesh.name_boundary("boundary", |_| true);
         let problem = problem(&[], &[("boundary", Load::Pressure(0.04))]);
-        let none = Nothing(2 * mesh.nodes.len());
+        let none = Nothing(crate::solve::Connectivity::new(2 * mesh.nodes.len()));
         let model = problem.on(&mesh, &none).unwrap();
         let u = bent(&mesh);
         let direction: Vec<f64> = (0..u.len()).map(|i| (1.0 + 3.7 * i as f64).sin()).collect();
@@ -301,7 +293,7 @@ fn the_tangent_of_a_pressure_that_ends_freely_is_complete() {
                 ("right", Load::Pressure(0.01)),
             ],
         );
-        let none = Nothing(2 * mesh.nodes.len());
+        let none = Nothing(crate::solve::Connectivity::new(2 * mesh.nodes.len()));
         let model = problem.on(&mesh, &none).unwrap();
         let potential = model.potential(1.0);
         let u = bent(&mesh);

@@ -2,34 +2,31 @@
 
 use std::collections::BTreeMap;
 
-use crate::solve::{Inadmissible, Local, Potential, SkewCoupling};
+use crate::solve::vector::gather;
+use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling};
 
 /// Π(u) with uᵢ = uₖ for every tie (i, k): elements depend on the k alone, and no equation is left for an i.
 ///
 /// ```text
 /// u = T v,   r_v = Tᵀ r,   K_v = Tᵀ K T,   T of zeros and ones
 /// ```
-pub struct Tied<'a> {
+pub struct TiedPotential<'a> {
     potential: Box<dyn Potential + 'a>,
-    elements: BTreeMap<usize, TiedElement>,
-    ties: BTreeMap<usize, usize>,
+    connectivity: Connectivity,
+    /// Of each element with tied unknowns, the place of each unknown of the untied element among its own.
+    places: BTreeMap<usize, Vec<usize>>,
+    ties: &'a BTreeMap<usize, usize>,
 }
 
-/// An element with tied unknowns.
-struct TiedElement {
-    /// The unknowns, each once.
-    unknowns: Vec<usize>,
-    /// The place among these of each unknown of the untied element.
-    places: Vec<usize>,
-}
-
-impl<'a> Tied<'a> {
+impl<'a> TiedPotential<'a> {
     /// Ties unknowns (keys) to others.
-    pub fn new(potential: Box<dyn Potential + 'a>, ties: &BTreeMap<usize, usize>) -> Self {
-        let mut elements = BTreeMap::new();
+    pub fn new(potential: Box<dyn Potential + 'a>, ties: &'a BTreeMap<usize, usize>) -> Self {
+        let mut connectivity = Connectivity::new(potential.unknowns());
+        let mut tied = BTreeMap::new();
         for element in 0..potential.elements() {
             let own = potential.element_unknowns(element);
             if !own.iter().any(|unknown| ties.contains_key(unknown)) {
+                connectivity.push(own.iter().copied());
                 continue;
             }
             let (mut unknowns, mut places) = (Vec::new(), Vec::new());
@@ -41,40 +38,21 @@ impl<'a> Tied<'a> {
                     unknowns.push(unknown);
                 }
             }
-            elements.insert(element, TiedElement { unknowns, places });
+            connectivity.push(unknowns);
+            tied.insert(element, places);
         }
         Self {
+            connectivity: connectivity.with_places_of(potential.connectivity()),
             potential,
-            elements,
-            ties: ties.clone(),
+            places: tied,
+            ties,
         }
     }
 }
 
-impl TiedElement {
-    fn expand(&self, u: &[f64]) -> Vec<f64> {
-        self.places.iter().map(|place| u[*place]).collect()
-    }
-}
-
-impl Potential for Tied<'_> {
-    fn unknowns(&self) -> usize {
-        self.potential.unknowns()
-    }
-
-    fn elements(&self) -> usize {
-        self.potential.elements()
-    }
-
-    fn element_unknowns(&self, element: usize) -> &[usize] {
-        match self.elements.get(&element) {
-            Some(tied) => &tied.unknowns,
-            None => self.potential.element_unknowns(element),
-        }
-    }
-
-    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
-        self.potential.place(unknown)
+impl Potential for TiedPotential<'_> {
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
@@ -94,10 +72,10 @@ impl Potential for Tied<'_> {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        let Some(tied) = self.elements.get(&element) else {
+        let Some(places) = self.places.get(&element) else {
             return self.potential.evaluate_element(element, u, local);
         };
-        let (size, own) = (tied.unknowns.len(), tied.places.len());
+        let (size, own) = (u.len(), places.len());
         let mut residual = vec![0.0; own];
         let mut matrix = vec![0.0; local.stiffness.as_ref().map_or(0, |_| own * own)];
         let inner = Local {
@@ -106,13 +84,13 @@ impl Potential for Tied<'_> {
         };
         let energy = self
             .potential
-            .evaluate_element(element, &tied.expand(u), inner)?;
-        for (place, r) in tied.places.iter().zip(residual) {
+            .evaluate_element(element, &gather(places, u), inner)?;
+        for (place, r) in places.iter().zip(residual) {
             local.residual[*place] += r;
         }
         if let Some(stiffness) = local.stiffness {
-            for (row, to_row) in tied.places.iter().enumerate() {
-                for (column, to_column) in tied.places.iter().enumerate() {
+            for (row, to_row) in places.iter().enumerate() {
+                for (column, to_column) in places.iter().enumerate() {
                     // Elements may fill the lower triangle alone.
                     let value = matrix[row.max(column) * own + row.min(column)];
                     stiffness[to_row * size + to_column] += value;
@@ -123,8 +101,8 @@ impl Potential for Tied<'_> {
     }
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        match self.elements.get(&element) {
-            Some(tied) => self.potential.instability(element, &tied.expand(u)),
+        match self.places.get(&element) {
+            Some(places) => self.potential.instability(element, &gather(places, u)),
             None => self.potential.instability(element, u),
         }
     }

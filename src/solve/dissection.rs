@@ -1,6 +1,6 @@
 //! Nested dissection by coordinates: an order of elimination that keeps the factors of large meshes sparse.
 
-use super::sparse::SymmetricPattern;
+use super::pattern::SymmetricPattern;
 
 /// Vertices of a part that is not divided any more.
 const LEAF: usize = 9;

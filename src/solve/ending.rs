@@ -7,10 +7,11 @@
 //! # References
 //! P. Wriggers, Nonlinear Finite Element Methods, Springer (2008), § 7.1, doi:10.1007/978-3-540-71001-1
 
+use super::assembly::Assembly;
+use super::loading::{Loading, State};
 use super::newton::Newton;
-use super::path::{Loading, State};
-use super::potential::{Assembly, Potential};
-use super::sparse::{largest, norm};
+use super::potential::Potential;
+use super::vector::{difference, dot, gather, largest, norm};
 use crate::error::SolveFault;
 
 /// How far from the last equilibrium a tangent tells about it, relative to the largest displacement.
@@ -53,7 +54,7 @@ pub fn diagnose(
     if let Some(found) = unstable(last).or_else(|| unstable(&u)) {
         return found;
     }
-    let Some((_, mode)) = newton.softest_mode(&*potential, &u) else {
+    let Some((_, mode)) = newton.tangent.softest_mode(&*potential, &u) else {
         return fault;
     };
     let most = (0..mode.len()).max_by(|a, b| mode[*a].abs().total_cmp(&mode[*b].abs()));
@@ -78,14 +79,11 @@ fn critical(
         return indefinite.filter(|_| !inverted).map(<[f64]>::to_vec);
     };
     let last = &previous.displacement;
-    let distance = |u: &[f64]| {
-        let pairs = u.iter().zip(last);
-        pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
-    };
-    if let Some(u) = indefinite.filter(|u| distance(u) <= NEAR * largest(last)) {
+    let near = |u: &&[f64]| largest(&difference(u, last)) <= NEAR * largest(last);
+    if let Some(u) = indefinite.filter(near) {
         return Some(u.to_vec());
     }
-    let mut softest = |u: &[f64]| newton.softest_mode(potential, u).map(|(least, _)| least);
+    let mut softest = |u: &[f64]| Some(newton.tangent.softest_mode(potential, u)?.0);
     let (now, rest) = (softest(last), softest(&vec![0.0; last.len()]));
     let soft = now
         .zip(rest)
@@ -96,11 +94,8 @@ fn critical(
 /// The first element that is unstable by itself, and in which state.
 fn unstable_element(potential: &dyn Potential, u: &[f64]) -> Option<(usize, String)> {
     (0..potential.elements()).find_map(|element| {
-        let unknowns = potential.element_unknowns(element).iter();
-        let own: Vec<f64> = unknowns.map(|unknown| u[*unknown]).collect();
-        potential
-            .instability(element, &own)
-            .map(|state| (element, state))
+        let own = gather(potential.element_unknowns(element), u);
+        Some((element, potential.instability(element, &own)?))
     })
 }
 
@@ -113,8 +108,7 @@ fn is_driven(newton: &Newton, loading: &dyn Loading, factor: f64, u: &[f64], mod
     let (Ok(loaded), Ok(unloaded)) = (residual(factor), residual(0.0)) else {
         return false;
     };
-    let free = newton.free();
-    let load: Vec<f64> = free.iter().map(|i| loaded[*i] - unloaded[*i]).collect();
-    let product: f64 = free.iter().zip(&load).map(|(i, q)| mode[*i] * q).sum();
+    let load = gather(newton.free(), &difference(&loaded, &unloaded));
+    let product = dot(&gather(newton.free(), mode), &load);
     product.abs() > DRIVEN * norm(&load) * norm(mode)
 }

@@ -1,47 +1,12 @@
 //! Equilibria along a path of load factors.
 
 use super::ending::diagnose;
-use super::newton::{Convergence, Newton, NewtonSettings};
+use super::loading::{Loading, State};
+use super::newton::{Newton, NewtonSettings};
 use super::potential::Potential;
+use super::tangent::Tangent;
+use super::vector::difference;
 use crate::error::SolveFault;
-
-/// A system whose supports and loads follow one load factor.
-pub trait Loading {
-    /// Marks the unknowns that supports hold.
-    fn held(&self) -> Vec<bool>;
-
-    /// Writes the displacements that supports impose at a load factor, and those of tied unknowns, which count
-    /// as held, after the ones that they follow.
-    fn impose(&self, factor: f64, displacement: &mut [f64]);
-
-    /// The potential at a load factor; its pattern must not depend on the factor.
-    fn potential(&self, factor: f64) -> Box<dyn Potential + '_>;
-
-    /// A first guess at a load factor; held unknowns are imposed afterwards. Nothing where the linear
-    /// prediction from the state before is the best guess.
-    fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>>;
-
-    /// Names an element of the potential with its place, for messages.
-    fn describe(&self, element: usize) -> String;
-
-    /// Names an unknown with its place, for messages.
-    fn describe_unknown(&self, unknown: usize) -> String;
-}
-
-/// An equilibrium at one load factor.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State {
-    /// The load factor.
-    pub factor: f64,
-    /// The unknowns.
-    pub displacement: Vec<f64>,
-    /// ∂Π/∂u: nothing at free unknowns, reactions at held ones.
-    pub residual: Vec<f64>,
-    /// Equilibria on the way from the state before, this one included; 1 when it was reached in one go.
-    pub load_steps: usize,
-    /// How the last of them was reached.
-    pub convergence: Convergence,
-}
 
 /// The end of a path before its last load factor.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -98,23 +63,12 @@ pub fn follow(
     let Some(&first) = factors.first() else {
         return Ok(states);
     };
-    let newton = match Newton::new(&*loading.potential(first), &loading.held()) {
-        Ok(newton) => newton,
-        Err(fault) => {
-            return Err(PathEnd {
-                factor: first,
-                fault,
-                states,
-                last: None,
-            });
-        }
-    };
-    let mut path = Path {
-        loading,
-        settings,
-        newton,
-        step: f64::INFINITY,
-    };
+    let mut path = Path::new(loading, settings, first).map_err(|fault| PathEnd {
+        factor: first,
+        fault,
+        states: Vec::new(),
+        last: None,
+    })?;
     for &factor in factors {
         match path.reach(states.last(), factor) {
             Ok(state) => states.push(state),
@@ -145,9 +99,9 @@ pub fn influence(
 ) -> Result<Vec<f64>, SolveFault> {
     let (factor, displacement) = state;
     let potential = loading.potential(factor);
-    let mut newton = Newton::new(&*potential, &loading.held())?;
+    let mut tangent = Tangent::new(&*potential, &loading.held())?;
     let describe = |element| loading.describe(element);
-    newton.influence(&*potential, displacement, motion, &describe)
+    tangent.influence(&*potential, displacement, motion, &describe)
 }
 
 /// The change of an equilibrium by its transposed tangent under small forces on free unknowns, while held ones rest: the
@@ -163,9 +117,9 @@ pub fn compliance(
 ) -> Result<Vec<f64>, SolveFault> {
     let (factor, displacement) = state;
     let potential = loading.potential(factor);
-    let mut newton = Newton::new(&*potential, &loading.held())?;
+    let mut tangent = Tangent::new(&*potential, &loading.held())?;
     let describe = |element| loading.describe(element);
-    newton.respond(&*potential, displacement, forces, &describe)
+    tangent.respond(&*potential, displacement, forces, &describe)
 }
 
 struct Path<'a> {
@@ -176,7 +130,21 @@ struct Path<'a> {
     step: f64,
 }
 
-impl Path<'_> {
+impl<'a> Path<'a> {
+    /// Begins at rest; the pattern is that at a load factor.
+    fn new(
+        loading: &'a dyn Loading,
+        settings: NewtonSettings,
+        factor: f64,
+    ) -> Result<Self, SolveFault> {
+        Ok(Self {
+            loading,
+            settings,
+            newton: Newton::new(&*loading.potential(factor), &loading.held())?,
+            step: f64::INFINITY,
+        })
+    }
+
     /// Solves one load factor from the state before it, through intermediate ones where it must; a fault comes
     /// with the last of these.
     fn reach(
@@ -264,13 +232,10 @@ impl Path<'_> {
         };
         let mut target = start.clone();
         self.loading.impose(factor, &mut target);
-        let motion: Vec<f64> = target
-            .iter()
-            .zip(&start)
-            .map(|(to, from)| to - from)
-            .collect();
+        let motion = difference(&target, &start);
         let describe = |element| self.loading.describe(element);
-        let step = self.newton.predict(potential, &start, &motion, &describe)?;
+        let tangent = &mut self.newton.tangent;
+        let step = tangent.predict(potential, &start, &motion, &describe)?;
         for ((u, motion), step) in start.iter_mut().zip(motion).zip(step) {
             *u += motion + step;
         }
@@ -281,7 +246,7 @@ impl Path<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::potential::{Inadmissible, Local};
+    use crate::solve::{Connectivity, Inadmissible, Local};
 
     const NEWTON: NewtonSettings = NewtonSettings {
         tolerance: 1e-10,
@@ -297,16 +262,8 @@ mod tests {
     struct Loaded<'a>(&'a Point, f64);
 
     impl Potential for Loaded<'_> {
-        fn unknowns(&self) -> usize {
-            1
-        }
-
-        fn elements(&self) -> usize {
-            1
-        }
-
-        fn element_unknowns(&self, _: usize) -> &[usize] {
-            &[0]
+        fn connectivity(&self) -> &Connectivity {
+            Connectivity::single()
         }
 
         fn evaluate_element(

@@ -1,7 +1,6 @@
-//! A potential energy that is a sum over elements, and its assembly.
+//! A potential energy that is a sum over elements.
 
-use super::dissection::dissection;
-use super::sparse::{Cholesky, NotPositiveDefinite, SymmetricPattern, moved};
+use super::connectivity::Connectivity;
 
 /// An element that has turned inside out, collapsed, or left the range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -17,7 +16,7 @@ pub struct Inadmissible {
 pub struct Local<'a> {
     /// Residual, one number for each of the element's unknowns.
     pub residual: &'a mut [f64],
-    /// Stiffness, symmetric, row by row.
+    /// Stiffness, symmetric, row by row; the lower triangle at least.
     pub stiffness: Option<&'a mut [f64]>,
 }
 
@@ -34,28 +33,11 @@ pub struct SkewCoupling {
 
 /// A potential energy Π(u) = Σ Πₑ(u), one term an element.
 ///
-/// Mass-spring lattices, finite elements and the corrector's difference scheme are all of this kind,
+/// Mass-spring lattices, finite elements, loads and the corrector's difference scheme are all of this kind,
 /// so that one assembly, one Newton method and one derivative check serve them all.
 pub trait Potential: Sync {
-    /// Length of u.
-    fn unknowns(&self) -> usize;
-
-    /// Number of elements.
-    fn elements(&self) -> usize;
-
-    /// The unknowns that element `element` depends on.
-    fn element_unknowns(&self, element: usize) -> &[usize];
-
-    /// Where an unknown is in the body, if that is known: large systems are eliminated in an order by places.
-    fn place(&self, _unknown: usize) -> Option<[f64; 2]> {
-        None
-    }
-
-    /// What the derivatives of the residual have beside the symmetric stiffness of the elements: forces without a
-    /// potential, such as a pressure that follows an edge up to its free end. None for a true potential.
-    fn skew_couplings(&self) -> Vec<SkewCoupling> {
-        Vec::new()
-    }
+    /// Which unknowns each element depends on.
+    fn connectivity(&self) -> &Connectivity;
 
     /// Πₑ, and its derivatives into `local`, at the element's own unknowns `u`.
     ///
@@ -68,32 +50,37 @@ pub trait Potential: Sync {
         local: Local<'_>,
     ) -> Result<f64, Inadmissible>;
 
-    /// The state of an element that is unstable by itself at its own unknowns `u`, in words; nothing where it is
+    /// What the derivatives of the residual have beside the symmetric stiffness of the elements: forces without a
+    /// potential, such as a pressure that follows an edge up to its free end. None for a true potential.
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        Vec::new()
+    }
+
+    /// The state of an element that is unstable by itself at its own unknowns `u`, in words; `None` where it is
     /// stable, or where only the sum has a stability.
     fn instability(&self, _element: usize, _u: &[f64]) -> Option<String> {
         None
     }
+
+    /// Length of u.
+    fn unknowns(&self) -> usize {
+        self.connectivity().unknowns()
+    }
+
+    /// Number of elements.
+    fn elements(&self) -> usize {
+        self.connectivity().elements()
+    }
+
+    /// The unknowns that an element depends on.
+    fn element_unknowns(&self, element: usize) -> &[usize] {
+        self.connectivity().of(element)
+    }
 }
 
 impl<P: Potential + ?Sized> Potential for &P {
-    fn unknowns(&self) -> usize {
-        (**self).unknowns()
-    }
-
-    fn elements(&self) -> usize {
-        (**self).elements()
-    }
-
-    fn element_unknowns(&self, element: usize) -> &[usize] {
-        (**self).element_unknowns(element)
-    }
-
-    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
-        (**self).place(unknown)
-    }
-
-    fn skew_couplings(&self) -> Vec<SkewCoupling> {
-        (**self).skew_couplings()
+    fn connectivity(&self) -> &Connectivity {
+        (**self).connectivity()
     }
 
     fn evaluate_element(
@@ -105,272 +92,114 @@ impl<P: Potential + ?Sized> Potential for &P {
         (**self).evaluate_element(element, u, local)
     }
 
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        (**self).skew_couplings()
+    }
+
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         (**self).instability(element, u)
     }
 }
 
-/// The sum of element contributions into a sparse matrix over the free unknowns.
-#[derive(Debug)]
-pub struct Assembly {
-    /// Position of each unknown among the free ones.
-    free_index: Vec<Option<usize>>,
-    /// The free unknowns, ascending.
-    free: Vec<usize>,
-    pattern: SymmetricPattern,
-    /// For each element, for each entry of its lower triangle, where it is added; `usize::MAX` for none.
-    scatter: Vec<usize>,
-    scatter_starts: Vec<usize>,
+/// The sum of two potentials of the same unknowns: the elements of the first, then those of the second.
+pub struct Sum<'a> {
+    first: Box<dyn Potential + 'a>,
+    second: Box<dyn Potential + 'a>,
+    connectivity: Connectivity,
 }
 
-const NOWHERE: usize = usize::MAX;
-
-/// Unknowns from which on nested dissection pays: its analysis takes half the time of one by least degree, and from
-/// half a million unknowns on the factorisation takes one to three times less.
-const WORTH_DISSECTION: usize = 30_000;
-
-impl Assembly {
-    /// Prepares the assembly of `potential` with the unknowns marked in `fixed` held.
-    pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Self {
-        let free: Vec<usize> = (0..fixed.len()).filter(|i| !fixed[*i]).collect();
-        let mut free_index = vec![None; fixed.len()];
-        free.iter()
-            .enumerate()
-            .for_each(|(index, unknown)| free_index[*unknown] = Some(index));
-        let mut neighbours = vec![Vec::new(); free.len()];
-        for element in 0..potential.elements() {
-            let indices = || {
-                potential
-                    .element_unknowns(element)
-                    .iter()
-                    .filter_map(|i| free_index[*i])
-            };
-            for column in indices() {
-                neighbours[column].extend(indices().filter(|row| *row > column));
-            }
-        }
-        let pattern = SymmetricPattern::new(neighbours.into_iter());
-        let (mut scatter, mut scatter_starts) = (Vec::new(), vec![0]);
-        for element in 0..potential.elements() {
-            let unknowns = potential.element_unknowns(element);
-            for (local, row) in unknowns.iter().enumerate() {
-                for column in &unknowns[..=local] {
-                    let place = free_index[*row].zip(free_index[*column]);
-                    let place = place.and_then(|(row, column)| pattern.position(row, column));
-                    scatter.push(place.unwrap_or(NOWHERE));
-                }
-            }
-            scatter_starts.push(scatter.len());
+impl<'a> Sum<'a> {
+    /// Π₁ + Π₂; the places of the unknowns are those that the first potential knows.
+    pub fn new(first: impl Potential + 'a, second: impl Potential + 'a) -> Self {
+        let mut connectivity = first.connectivity().clone();
+        for element in 0..second.elements() {
+            connectivity.push(second.element_unknowns(element).iter().copied());
         }
         Self {
-            free_index,
-            free,
-            pattern,
-            scatter,
-            scatter_starts,
+            first: Box::new(first),
+            second: Box::new(second),
+            connectivity,
         }
     }
 
-    /// The free unknowns, ascending.
-    pub fn free(&self) -> &[usize] {
-        &self.free
+    /// Π − f·u with a force in N on every unknown.
+    pub fn with_forces(energy: impl Potential + 'a, forces: &[f64]) -> Self {
+        let forces = forces.iter().copied().enumerate();
+        let forces = DeadForces::new(energy.unknowns(), forces);
+        Self::new(energy, forces)
     }
 
-    /// Position of an unknown among the free ones.
-    pub fn free_index(&self, unknown: usize) -> Option<usize> {
-        self.free_index[unknown]
-    }
-
-    /// Pattern of the stiffness over the free unknowns.
-    pub fn pattern(&self) -> &SymmetricPattern {
-        &self.pattern
-    }
-
-    /// Analyses the pattern of the stiffness, in an order by places where the system is large and they are known.
-    ///
-    /// # Errors
-    /// [`NotPositiveDefinite`] when the pattern cannot be analysed, which means out of memory.
-    pub fn analyse(&self, potential: &dyn Potential) -> Result<Cholesky, NotPositiveDefinite> {
-        let places = || self.free.iter().map(|unknown| potential.place(*unknown));
-        match places().collect::<Option<Vec<_>>>() {
-            Some(places) if places.len() >= WORTH_DISSECTION => {
-                let order = dissection(&self.pattern, &places);
-                Cholesky::analyse_in_order(self.pattern.clone(), &order)
-            }
-            _ => Cholesky::analyse(self.pattern.clone()),
+    /// The part that an element belongs to, and its number there.
+    fn part(&self, element: usize) -> (&dyn Potential, usize) {
+        match element.checked_sub(self.first.elements()) {
+            Some(own) => (&*self.second, own),
+            None => (&*self.first, element),
         }
     }
+}
 
-    /// Energy and full residual (fixed unknowns too: there it is the reaction).
-    ///
-    /// # Errors
-    /// [`Inadmissible`] with the first inverted element.
-    pub fn residual(
-        potential: &dyn Potential,
-        u: &[f64],
-        residual: &mut [f64],
-    ) -> Result<f64, Inadmissible> {
-        residual.fill(0.0);
-        let (mut values, mut local) = (Vec::new(), Vec::new());
-        let mut energy = 0.0;
-        for element in 0..potential.elements() {
-            let unknowns = potential.element_unknowns(element);
-            gather(unknowns, u, &mut values);
-            local.clear();
-            local.resize(unknowns.len(), 0.0);
-            energy += potential.evaluate_element(
-                element,
-                &values,
-                Local {
-                    residual: &mut local,
-                    stiffness: None,
-                },
-            )?;
-            unknowns
-                .iter()
-                .zip(&local)
-                .for_each(|(unknown, r)| residual[*unknown] += r);
-        }
-        Ok(energy)
+impl Potential for Sum<'_> {
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
     }
 
-    /// Adds the forces K m of a small motion m of some unknowns, at all unknowns.
-    ///
-    /// # Errors
-    /// [`Inadmissible`] with the first inverted element.
-    pub fn add_product(
-        potential: &dyn Potential,
-        u: &[f64],
-        motion: &[f64],
-        forces: &mut [f64],
-    ) -> Result<(), Inadmissible> {
-        let mut own = ElementTerms::default();
-        for element in 0..potential.elements() {
-            let unknowns = potential.element_unknowns(element);
-            if unknowns.iter().all(|unknown| motion[*unknown] == 0.0) {
-                continue;
-            }
-            let size = unknowns.len();
-            own.evaluate(potential, element, u)?;
-            for row in 0..size {
-                for column in 0..size {
-                    let stiffness = own.stiffness[row.max(column) * size + row.min(column)];
-                    forces[unknowns[row]] += stiffness * motion[unknowns[column]];
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Energy, full residual and the stiffness of the free unknowns.
-    ///
-    /// # Errors
-    /// [`Inadmissible`] with the first inverted element.
-    pub fn linearise(
+    fn evaluate_element(
         &self,
-        potential: &dyn Potential,
-        u: &[f64],
-        residual: &mut [f64],
-        stiffness: &mut Vec<f64>,
-    ) -> Result<f64, Inadmissible> {
-        residual.fill(0.0);
-        stiffness.clear();
-        stiffness.resize(self.pattern.entries(), 0.0);
-        let mut own = ElementTerms::default();
-        let mut energy = 0.0;
-        for element in 0..potential.elements() {
-            let unknowns = potential.element_unknowns(element);
-            let size = unknowns.len();
-            energy += own.evaluate(potential, element, u)?;
-            unknowns
-                .iter()
-                .zip(&own.residual)
-                .for_each(|(unknown, r)| residual[*unknown] += r);
-            let mut places = self.scatter[self.scatter_starts[element]..].iter();
-            for row in 0..size {
-                for (value, place) in own.stiffness[row * size..=row * size + row]
-                    .iter()
-                    .zip(&mut places)
-                {
-                    if *place != NOWHERE {
-                        stiffness[*place] += value;
-                    }
-                }
-            }
-        }
-        Ok(energy)
-    }
-}
-
-/// Residual and stiffness of one element after the other, in the same memory.
-#[derive(Default)]
-struct ElementTerms {
-    values: Vec<f64>,
-    residual: Vec<f64>,
-    /// Row by row; the lower triangle at least.
-    stiffness: Vec<f64>,
-}
-
-impl ElementTerms {
-    /// Takes an element's terms at `u`; its energy.
-    fn evaluate(
-        &mut self,
-        potential: &dyn Potential,
         element: usize,
         u: &[f64],
+        local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        let unknowns = potential.element_unknowns(element);
-        let size = unknowns.len();
-        gather(unknowns, u, &mut self.values);
-        self.residual.clear();
-        self.residual.resize(size, 0.0);
-        self.stiffness.clear();
-        self.stiffness.resize(size * size, 0.0);
-        potential.evaluate_element(
-            element,
-            &self.values,
-            Local {
-                residual: &mut self.residual,
-                stiffness: Some(&mut self.stiffness),
-            },
-        )
+        let (part, own) = self.part(element);
+        let energy = part.evaluate_element(own, u, local);
+        energy.map_err(|_| Inadmissible { element })
+    }
+
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        let mut all = self.first.skew_couplings();
+        all.extend(self.second.skew_couplings());
+        all
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        let (part, own) = self.part(element);
+        part.instability(own, u)
     }
 }
 
-fn gather(unknowns: &[usize], u: &[f64], values: &mut Vec<f64>) {
-    values.clear();
-    values.extend(unknowns.iter().map(|unknown| u[*unknown]));
+/// The potential −f·u of dead forces: each is an element of its own.
+pub struct DeadForces {
+    connectivity: Connectivity,
+    forces: Vec<f64>,
 }
 
-/// Checks ∂Π/∂u and ∂²Π/∂u² against central differences along a direction; returns the smallest
-/// relative errors over the step sizes (each error is V-shaped in the step).
-pub fn derivative_errors(potential: &dyn Potential, u: &[f64], direction: &[f64]) -> [f64; 2] {
-    let size = potential.unknowns();
-    let assembly = Assembly::new(potential, &vec![false; size]);
-    let (mut residual, mut stiffness) = (vec![0.0; size], Vec::new());
-    let at = |step: f64| {
-        let mut residual = vec![0.0; size];
-        let energy = Assembly::residual(potential, &moved(u, step, direction), &mut residual)
-            .expect("admissible");
-        (energy, residual)
-    };
-    assembly
-        .linearise(potential, u, &mut residual, &mut stiffness)
-        .expect("admissible");
-    let slope: f64 = residual.iter().zip(direction).map(|(r, d)| r * d).sum();
-    let product = assembly.pattern.multiply(&stiffness, direction);
-    let mut best = [f64::INFINITY; 2];
-    for step in (1..8).map(|power| 10f64.powi(-power)) {
-        let ((up_energy, up), (down_energy, down)) = (at(step), at(-step));
-        let energy_error = ((up_energy - down_energy) / (2.0 * step) - slope).abs() / slope.abs();
-        let difference: Vec<f64> = up
-            .iter()
-            .zip(&down)
-            .zip(&product)
-            .map(|((u, d), p)| (u - d) / (2.0 * step) - p)
-            .collect();
-        let residual_error = super::sparse::norm(&difference) / super::sparse::norm(&product);
-        best = [best[0].min(energy_error), best[1].min(residual_error)];
+impl DeadForces {
+    /// Forces in N on some of so many unknowns.
+    pub fn new(unknowns: usize, forces: impl IntoIterator<Item = (usize, f64)>) -> Self {
+        let mut own = Self {
+            connectivity: Connectivity::new(unknowns),
+            forces: Vec::new(),
+        };
+        for (unknown, force) in forces {
+            own.connectivity.push([unknown]);
+            own.forces.push(force);
+        }
+        own
     }
-    best
+}
+
+impl Potential for DeadForces {
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        let force = self.forces[element];
+        local.residual[0] = -force;
+        Ok(-force * u[0])
+    }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::sparse::SymmetricPattern;
+use super::pattern::SymmetricPattern;
 
 /// A sparse matrix by rows, of any shape.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! Sparse matrices and their factorisation. The only file that names faer.
+//! Factorisation of sparse matrices. The only file that names faer.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -12,101 +12,9 @@ use faer::sparse::linalg::solvers::Lu;
 use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMatRef, Triplet};
 use faer::{Conj, MatMut, Par, Side};
 
+use super::pattern::SymmetricPattern;
 use super::rows::SparseRows;
-
-/// The places of the entries of a symmetric matrix: lower triangle by columns, rows ascending.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SymmetricPattern {
-    column_starts: Vec<usize>,
-    rows: Vec<usize>,
-}
-
-impl SymmetricPattern {
-    /// Pattern from the rows of each column; rows above the diagonal are ignored, the diagonal is
-    /// always present.
-    pub fn new(columns: impl Iterator<Item = Vec<usize>>) -> Self {
-        let (mut column_starts, mut rows) = (vec![0], Vec::new());
-        for (column, mut entries) in columns.enumerate() {
-            entries.retain(|row| *row >= column);
-            entries.push(column);
-            entries.sort_unstable();
-            entries.dedup();
-            rows.extend_from_slice(&entries);
-            column_starts.push(rows.len());
-        }
-        Self {
-            column_starts,
-            rows,
-        }
-    }
-
-    /// Number of rows, which is the number of columns.
-    pub fn size(&self) -> usize {
-        self.column_starts.len() - 1
-    }
-
-    /// Number of stored entries.
-    pub fn entries(&self) -> usize {
-        self.rows.len()
-    }
-
-    /// The rows of a column from the diagonal on.
-    pub fn column(&self, column: usize) -> &[usize] {
-        &self.rows[self.column_starts[column]..self.column_starts[column + 1]]
-    }
-
-    /// Where the entry (row, column) of either triangle is stored.
-    pub fn position(&self, row: usize, column: usize) -> Option<usize> {
-        let (row, column) = (row.max(column), row.min(column));
-        let start = self.column_starts[column];
-        let column_rows = &self.rows[start..self.column_starts[column + 1]];
-        column_rows
-            .binary_search(&row)
-            .ok()
-            .map(|place| start + place)
-    }
-
-    /// Where the diagonal entries are stored.
-    pub fn diagonal(&self) -> &[usize] {
-        &self.column_starts[..self.size()]
-    }
-
-    /// The stored entries with their values: (row, column, value), row ≥ column.
-    fn triplets<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
-        (0..self.size()).flat_map(move |column| {
-            let places = self.column_starts[column]..self.column_starts[column + 1];
-            let entries = self.rows[places.clone()].iter().zip(&values[places]);
-            entries.map(move |(row, value)| (*row, column, *value))
-        })
-    }
-
-    /// y = A x for the matrix with these `values`.
-    pub fn multiply(&self, values: &[f64], x: &[f64]) -> Vec<f64> {
-        let mut y = vec![0.0; x.len()];
-        for (row, column, value) in self.triplets(values) {
-            y[row] += value * x[column];
-            if row != column {
-                y[column] += value * x[row];
-            }
-        }
-        y
-    }
-
-    /// Both triangles by rows: for each row its (column, value), columns ascending.
-    pub fn full_rows(&self, values: &[f64]) -> Vec<Vec<(usize, f64)>> {
-        let mut rows = vec![Vec::new(); self.size()];
-        for (row, column, value) in self.triplets(values) {
-            rows[row].push((column, value));
-        }
-        for (row, column, value) in self
-            .triplets(values)
-            .filter(|(row, column, _)| row != column)
-        {
-            rows[column].push((row, value));
-        }
-        rows
-    }
-}
+use super::vector::{add_scaled, difference, norm};
 
 /// A matrix that is not positive definite, or not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -157,15 +65,8 @@ impl Cholesky {
         pattern: SymmetricPattern,
         ordering: SymmetricOrdering<'_, usize>,
     ) -> Result<Self, NotPositiveDefinite> {
-        let size = pattern.size();
         let symbolic = factorize_symbolic_cholesky(
-            SymbolicSparseColMatRef::new_checked(
-                size,
-                size,
-                &pattern.column_starts,
-                None,
-                &pattern.rows,
-            ),
+            structure(&pattern),
             Side::Lower,
             ordering,
             CholeskySymbolicParams::default(),
@@ -218,18 +119,10 @@ impl Cholesky {
         if values.iter().any(|value| !value.is_finite()) {
             return Err(NotPositiveDefinite);
         }
-        let size = self.pattern.size();
-        let structure = SymbolicSparseColMatRef::new_checked(
-            size,
-            size,
-            &self.pattern.column_starts,
-            None,
-            &self.pattern.rows,
-        );
         self.symbolic
             .factorize_numeric_llt(
                 &mut self.factor,
-                SparseColMatRef::new(structure, values),
+                SparseColMatRef::new(structure(&self.pattern), values),
                 Side::Lower,
                 LltRegularization::default(),
                 Par::Seq,
@@ -251,24 +144,13 @@ impl Cholesky {
         self.substitute(&mut x);
         let mut correction = self.defect(b, &x);
         self.substitute(&mut correction);
-        x.iter_mut()
-            .zip(&correction)
-            .for_each(|(x, correction)| *x += correction);
-        let scale = norm(b).max(f64::MIN_POSITIVE);
-        let defect = norm(&self.defect(b, &x)) / scale;
-        if defect < 1e-6 {
-            Ok(x)
-        } else {
-            Err(NotPositiveDefinite)
-        }
+        add_scaled(&mut x, 1.0, &correction);
+        let defect = self.defect(b, &x);
+        solved(x, b, &defect)
     }
 
     fn defect(&self, b: &[f64], x: &[f64]) -> Vec<f64> {
-        let product = self.pattern.multiply(&self.values, x);
-        b.iter()
-            .zip(product)
-            .map(|(b, product)| b - product)
-            .collect()
+        difference(b, &self.pattern.multiply(&self.values, x))
     }
 
     /// x ← A⁻¹ x by substitution alone, without refinement and proof: for iterations that look at their own residual.
@@ -336,32 +218,25 @@ impl SparseLu {
             let size = defect.len();
             let right = MatMut::from_column_major_slice_mut(&mut defect, size, 1);
             self.factor.solve_in_place_with_conj(Conj::No, right);
-            x.iter_mut().zip(&defect).for_each(|(x, step)| *x += step);
-            let product = self.matrix.multiply(&x);
-            defect = b.iter().zip(product).map(|(b, p)| b - p).collect();
+            add_scaled(&mut x, 1.0, &defect);
+            defect = difference(b, &self.matrix.multiply(&x));
         }
-        let scale = norm(b).max(f64::MIN_POSITIVE);
-        if norm(&defect) < 1e-6 * scale {
-            Ok(x)
-        } else {
-            Err(NotPositiveDefinite)
-        }
+        solved(x, b, &defect)
     }
 }
 
-/// x + step · direction.
-pub fn moved(x: &[f64], step: f64, direction: &[f64]) -> Vec<f64> {
-    x.iter().zip(direction).map(|(x, d)| x + step * d).collect()
+/// A pattern as faer reads it.
+fn structure(pattern: &SymmetricPattern) -> SymbolicSparseColMatRef<'_, usize> {
+    let (size, [starts, rows]) = (pattern.size(), pattern.columns());
+    SymbolicSparseColMatRef::new_checked(size, size, starts, None, rows)
 }
 
-/// Euclidean norm.
-pub fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-/// The largest magnitude.
-pub fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
+/// x where it solves A x = b, given b − A x.
+fn solved(x: Vec<f64>, b: &[f64], defect: &[f64]) -> Result<Vec<f64>, NotPositiveDefinite> {
+    let scale = norm(b).max(f64::MIN_POSITIVE);
+    (norm(defect) / scale < 1e-6)
+        .then_some(x)
+        .ok_or(NotPositiveDefinite)
 }
 
 #[cfg(test)]

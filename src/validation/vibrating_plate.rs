@@ -30,7 +30,7 @@ use crate::mesh::Mesh;
 use crate::problem::plate::{Model, Problem};
 use crate::problem::{BoundaryProblem, Load};
 use crate::results::Block;
-use crate::solve::{Inadmissible, Local, Newton, Potential};
+use crate::solve::{Connectivity, Inadmissible, Local, Newton, Potential};
 use crate::units::Dimension;
 use crate::validation::plate::NEWTON;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, number};
@@ -139,16 +139,8 @@ fn measured_frequency(times: &[f64], values: &[f64]) -> f64 {
 struct Spring;
 
 impl Potential for Spring {
-    fn unknowns(&self) -> usize {
-        1
-    }
-
-    fn elements(&self) -> usize {
-        1
-    }
-
-    fn element_unknowns(&self, _: usize) -> &[usize] {
-        &[0]
+    fn connectivity(&self) -> &Connectivity {
+        Connectivity::single()
     }
 
     fn evaluate_element(&self, _: usize, u: &[f64], local: Local<'_>) -> Result<f64, Inadmissible> {
@@ -267,8 +259,11 @@ fn longitudinal(model: &Model, supports: Vec<usize>) -> Result<Longitudinal, Err
     };
     let forces = problem.dead_forces(model.mesh);
     let forces = forces.map_err(|found| Error::Input(vec![found]))?;
-    let respond =
-        |newton: &mut Newton| newton.respond(model.potential, &rest, &forces, &|_| String::new());
+    let respond = |newton: &mut Newton| {
+        newton
+            .tangent
+            .respond(model.potential, &rest, &forces, &|_| String::new())
+    };
     let field = Newton::new(model.potential, &held).and_then(|mut newton| respond(&mut newton));
     let field = field.map_err(|found| fault("rest", found))?;
     // The displacement that the load works on: L' = E ū/σ.

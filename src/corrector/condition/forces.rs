@@ -1,7 +1,7 @@
 //! Conditions on the internal forces of a potential.
 
 use super::{Condition, Linearised};
-use crate::solve::sparse::{largest, moved};
+use crate::solve::vector::{largest, moved};
 use crate::solve::{Assembly, Inadmissible, Potential, SkewCoupling, SparseRows};
 
 /// Balance of forces ∂Π/∂uᵢ − fᵢ = 0 at the chosen unknowns, in N.

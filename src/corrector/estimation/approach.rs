@@ -39,7 +39,9 @@ pub fn approach(
     }
     for _ in 0..MOST_MOVES {
         let motion = jump(field);
-        let inside = newton.predict(potential, field, &motion, describe)?;
+        let inside = newton
+            .tangent
+            .predict(potential, field, &motion, describe)?;
         let mut length = 1.0;
         loop {
             let moves = motion.iter().zip(&inside);

@@ -8,7 +8,6 @@ use nalgebra::DMatrix;
 
 use super::edge_motion::Roughness;
 use crate::mesh::Mesh;
-use crate::solve::{Inadmissible, Local, Potential};
 use crate::statistics::{BSpline, Ends};
 
 /// Spans along the longer side of the specimen's box.
@@ -104,56 +103,4 @@ fn nodal_areas(mesh: &Mesh) -> Vec<f64> {
         }
     }
     areas
-}
-
-/// Π(u) − f·u; each force is an element of its own.
-pub struct Pushed<'a> {
-    energy: &'a dyn Potential,
-    forces: &'a [f64],
-    unknowns: Vec<usize>,
-}
-
-impl<'a> Pushed<'a> {
-    /// Pushes with forces in N on all unknowns.
-    pub fn new(energy: &'a dyn Potential, forces: &'a [f64]) -> Self {
-        Self {
-            energy,
-            forces,
-            unknowns: (0..forces.len()).collect(),
-        }
-    }
-}
-
-impl Potential for Pushed<'_> {
-    fn unknowns(&self) -> usize {
-        self.energy.unknowns()
-    }
-
-    fn elements(&self) -> usize {
-        self.energy.elements() + self.forces.len()
-    }
-
-    fn element_unknowns(&self, element: usize) -> &[usize] {
-        match element.checked_sub(self.energy.elements()) {
-            Some(unknown) => &self.unknowns[unknown..=unknown],
-            None => self.energy.element_unknowns(element),
-        }
-    }
-
-    fn place(&self, unknown: usize) -> Option<[f64; 2]> {
-        self.energy.place(unknown)
-    }
-
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
-        let Some(unknown) = element.checked_sub(self.energy.elements()) else {
-            return self.energy.evaluate_element(element, u, local);
-        };
-        local.residual[0] = -self.forces[unknown];
-        Ok(-self.forces[unknown] * u[0])
-    }
 }

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::MeasuredForce;
-use super::body_force::{BodyForce, Pushed};
+use super::body_force::BodyForce;
 use super::search::{Place, Search, solve};
 use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
-use crate::solve::{Assembly, Inadmissible, Potential};
+use crate::solve::{Assembly, Inadmissible, Potential, Sum};
 
 /// A law with one parameter a little smaller and larger, and the width between.
 pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
@@ -37,7 +37,7 @@ impl Search<'_> {
     /// The energy with the forces on the interior.
     pub(super) fn potential(&self) -> Box<dyn Potential + '_> {
         match self.body {
-            Some(_) => Box::new(Pushed::new(&self.energy, &self.forces)),
+            Some(_) => Box::new(Sum::with_forces(&self.energy, &self.forces)),
             None => Box::new(&self.energy),
         }
     }
@@ -104,10 +104,10 @@ impl Search<'_> {
         let describe = |cell: usize| mesh.describe_cell(cell);
         let residual = match self.body {
             Some(_) => {
-                let pushed = Pushed::new(&self.energy, &self.forces);
-                self.newton.tangent(&pushed, field, &describe)
+                let pushed = Sum::with_forces(&self.energy, &self.forces);
+                self.newton.tangent.at(&pushed, field, &describe)
             }
-            None => self.newton.tangent(&self.energy, field, &describe),
+            None => self.newton.tangent.at(&self.energy, field, &describe),
         };
         let residual = residual.map_err(solve)?;
         let motions = self.motion.at(&place.parameters);
@@ -123,7 +123,7 @@ impl Search<'_> {
         forces.extend(slopes.iter().cloned());
         let body = self.body.iter().flat_map(BodyForce::columns);
         forces.extend(body.map(|column| column.iter().map(|force| -force).collect()));
-        let mut changes = self.newton.changes(&forces).map_err(solve)?;
+        let mut changes = self.newton.tangent.changes(&forces).map_err(solve)?;
         let mut sensitivities = changes.split_off(1);
         for (sensitivity, motion) in sensitivities.iter_mut().zip(motions) {
             sensitivity

@@ -12,13 +12,12 @@
 
 use nalgebra::DVector;
 
-use super::body_force::Pushed;
 use super::linearise::dot;
 use super::search::Found;
 use super::{Edge, EdgeCondition};
 use crate::mesh::Mesh;
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::solve::{Newton, NewtonSettings};
+use crate::solve::{Newton, NewtonSettings, Sum};
 
 /// Meshes with more cells are not refined.
 pub const MOST_CELLS: usize = 25_000;
@@ -108,7 +107,7 @@ impl Found<'_> {
                 .forces(self.body_coefficients(), fixed.len()),
             None => vec![0.0; fixed.len()],
         };
-        let pushed = Pushed::new(&energy, &forces);
+        let pushed = Sum::with_forces(&energy, &forces);
         let mut displacement = mesh.displacement_on(&self.field, &fine);
         let mut residual = vec![0.0; displacement.len()];
         let describe = |cell: usize| fine.describe_cell(cell);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::approach::approach;
-use super::body_force::{BodyForce, Pushed};
+use super::body_force::BodyForce;
 use super::edge_motion::{EdgeMotion, Roughness};
 use super::linearise::Linear;
 use super::observations::Observations;
@@ -16,8 +16,8 @@ use super::{Edge, Physics, Specimen, Task};
 use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::solve::sparse::largest;
-use crate::solve::{Assembly, Newton, NewtonSettings, Potential};
+use crate::solve::vector::largest;
+use crate::solve::{Assembly, Newton, NewtonSettings, Potential, Sum};
 
 /// How equilibria on the way and at the end are solved.
 const ON_THE_WAY: NewtonSettings = NewtonSettings {
@@ -113,7 +113,7 @@ impl<'a> Search<'a> {
         let weighted = task.knowledge.physics == Physics::Weighted;
         let forces = vec![0.0; energy.unknowns()];
         let newton = match weighted {
-            true => Newton::new(&Pushed::new(&energy, &forces), &held),
+            true => Newton::new(&Sum::with_forces(&energy, &forces), &held),
             false => Newton::new(&energy, &held),
         };
         Ok(Self {
@@ -295,7 +295,7 @@ impl<'a> Search<'a> {
         let field = &mut place.field;
         let solved = match self.body {
             Some(_) => {
-                let pushed = Pushed::new(&self.energy, &self.forces);
+                let pushed = Sum::with_forces(&self.energy, &self.forces);
                 let newton = &mut self.newton;
                 newton.solve(&pushed, field, &mut residual, settings, &describe)
             }
@@ -359,7 +359,7 @@ impl<'a> Search<'a> {
             .observations
             .interpolation
             .multiply_transposed(&pull);
-        let mut changes = self.newton.changes(&[force]).map_err(solve)?;
+        let mut changes = self.newton.tangent.changes(&[force]).map_err(solve)?;
         Ok(changes.remove(0))
     }
 

@@ -65,13 +65,16 @@ pub fn transfer(
     let mut newton = Newton::new(&energy, &held).map_err(solve)?;
     let (field, residual, steps) = equilibrium(&mut newton, &energy, mesh, (&start, &imposed))?;
     let describe = |cell: usize| mesh.describe_cell(cell);
-    newton.tangent(&energy, &field, &describe).map_err(solve)?;
+    newton
+        .tangent
+        .at(&energy, &field, &describe)
+        .map_err(solve)?;
     let pull = field
         .iter()
         .zip(&start)
         .map(|(u, given)| u - given)
         .collect();
-    let multipliers = newton.changes(&[pull]).map_err(solve)?.remove(0);
+    let multipliers = newton.tangent.changes(&[pull]).map_err(solve)?.remove(0);
     let mut reactions = residual;
     for unknown in newton.free() {
         reactions[*unknown] = 0.0;

@@ -4,7 +4,7 @@ use super::{EquationOfMotion, Stretch};
 use crate::dynamics::Start;
 use crate::error::SolveFault;
 use crate::solve::Cholesky;
-use crate::solve::sparse::largest;
+use crate::solve::vector::largest;
 
 /// How a motion is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::material::curve::Mode;
 use crate::mesh::CellShape;
 use crate::problem::Support;
-use crate::solve::potential::derivative_errors;
+use crate::solve::assembly::derivative_errors;
 use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
 
 const SIZE: [f64; 2] = [60.0, 40.0];

@@ -1,0 +1,42 @@
+//! A system whose supports and loads follow one load factor, and its equilibria.
+
+use super::newton::Convergence;
+use super::potential::Potential;
+
+/// A system whose supports and loads follow one load factor.
+pub trait Loading {
+    /// Marks the unknowns that supports hold.
+    fn held(&self) -> Vec<bool>;
+
+    /// Writes the displacements that supports impose at a load factor, and those of tied unknowns, which count
+    /// as held, after the ones that they follow.
+    fn impose(&self, factor: f64, displacement: &mut [f64]);
+
+    /// The potential at a load factor; its pattern must not depend on the factor.
+    fn potential(&self, factor: f64) -> Box<dyn Potential + '_>;
+
+    /// A first guess at a load factor; held unknowns are imposed afterwards. `None` where the linear
+    /// prediction from the state before is the best guess.
+    fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>>;
+
+    /// Names an element of the potential with its place, for messages.
+    fn describe(&self, element: usize) -> String;
+
+    /// Names an unknown with its place, for messages.
+    fn describe_unknown(&self, unknown: usize) -> String;
+}
+
+/// An equilibrium at one load factor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// The load factor.
+    pub factor: f64,
+    /// The unknowns.
+    pub displacement: Vec<f64>,
+    /// ∂Π/∂u: zero at free unknowns, reactions at held ones.
+    pub residual: Vec<f64>,
+    /// Equilibria on the way from the state before, this one included; 1 when it was reached in one go.
+    pub load_steps: usize,
+    /// How the last of them was reached.
+    pub convergence: Convergence,
+}

@@ -1,0 +1,282 @@
+//! The tangent of a potential, factorised: small changes of an equilibrium, and its softest mode.
+
+use super::assembly::Assembly;
+use super::potential::{Inadmissible, Potential, SkewCoupling};
+use super::sparse::{Cholesky, NotPositiveDefinite};
+use super::vector::{difference, dot, gather, largest, norm, scale, spread};
+use crate::error::SolveFault;
+
+/// The tangent of a potential over its free unknowns, factorised at one state after the other.
+pub struct Tangent {
+    pub(super) assembly: Assembly,
+    cholesky: Cholesky,
+    /// The part of the tangent factorised last that is not symmetric, over the free unknowns.
+    skew: Vec<SkewCoupling>,
+}
+
+/// Names an element of a potential for messages.
+pub type Describe<'a> = &'a dyn Fn(usize) -> String;
+
+impl Tangent {
+    /// Analyses the pattern of `potential` with the unknowns marked in `fixed` held.
+    ///
+    /// # Errors
+    /// [`SolveFault::Singular`] when the pattern cannot be analysed.
+    pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Result<Self, SolveFault> {
+        let assembly = Assembly::new(potential, fixed);
+        let cholesky = assembly.analyse(potential);
+        Ok(Self {
+            cholesky: cholesky.map_err(|_| SolveFault::Singular)?,
+            assembly,
+            skew: Vec::new(),
+        })
+    }
+
+    /// The free unknowns, ascending.
+    pub fn free(&self) -> &[usize] {
+        self.assembly.free()
+    }
+
+    /// Factorises the tangent at `u` for [`Self::changes`]; the residual there, at held unknowns too.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when `u` is not admissible or the tangent there is not positive definite: what followed from a
+    /// shifted one would be the derivative of another body.
+    pub fn at(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        describe: Describe,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let (residual, shifted) = self.factorise_at(potential, u, describe)?;
+        self.take_skew(potential, 1.0);
+        match shifted {
+            true => Err(SolveFault::NotPositiveDefinite),
+            false => Ok(residual),
+        }
+    }
+
+    /// −K⁻¹ r at the free unknowns, by the tangent factorised last, of many residuals one after the other; zero at held
+    /// unknowns. The first one proves the factor right.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when the tangent is singular to working precision.
+    pub fn changes(&mut self, residuals: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, SolveFault> {
+        const TOGETHER: usize = 8;
+        let Some((first, others)) = residuals.split_first() else {
+            return Ok(Vec::new());
+        };
+        if !self.skew.is_empty() {
+            return residuals.iter().map(|own| self.change(own)).collect();
+        }
+        let mut changes = vec![self.change(first)?];
+        let free = self.assembly.free();
+        for group in others.chunks(TOGETHER) {
+            let right = group.iter().flat_map(|r| free.iter().map(|i| -r[*i]));
+            let mut columns: Vec<f64> = right.collect();
+            self.cholesky.substitute_columns(&mut columns, group.len());
+            for (residual, column) in group.iter().zip(columns.chunks(free.len().max(1))) {
+                changes.push(spread(free, column, residual.len()));
+            }
+        }
+        Ok(changes)
+    }
+
+    /// The change of the free unknowns by the tangent at `u` when the held ones move by `motion` and the
+    /// potential is the one given; zero at held unknowns. A guess: the tangent is shifted where it is not positive
+    /// definite.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when `u` is not admissible or the tangent cannot be factorised.
+    pub fn predict(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        motion: &[f64],
+        describe: Describe,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let (mut residual, _) = self.factorise_at(potential, u, describe)?;
+        self.take_skew(potential, 1.0);
+        add_product(potential, 1.0, u, motion, &mut residual).map_err(|f| inverted(f, describe))?;
+        self.change(&residual)
+    }
+
+    /// The field that is at rest at free unknowns under the transposed tangent at `u` while held ones move by `motion`:
+    /// the influence of forces on free unknowns on the work of the reactions in that motion; `motion` itself at held
+    /// unknowns.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when `u` is not admissible or the tangent there is not positive definite.
+    pub fn influence(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        motion: &[f64],
+        describe: Describe,
+    ) -> Result<Vec<f64>, SolveFault> {
+        self.at(potential, u, describe)?;
+        self.take_skew(potential, -1.0);
+        let mut forces = vec![0.0; u.len()];
+        add_product(potential, -1.0, u, motion, &mut forces).map_err(|f| inverted(f, describe))?;
+        let change = self.change(&forces)?;
+        Ok(motion.iter().zip(change).map(|(m, c)| m + c).collect())
+    }
+
+    /// The change of the free unknowns by the transposed tangent at `u` under small forces on them; zero at held
+    /// unknowns. The tangent of a potential is its own transpose.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when `u` is not admissible or the tangent there is not positive definite.
+    pub fn respond(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        forces: &[f64],
+        describe: Describe,
+    ) -> Result<Vec<f64>, SolveFault> {
+        self.at(potential, u, describe)?;
+        self.take_skew(potential, -1.0);
+        let opposed: Vec<f64> = forces.iter().map(|force| -force).collect();
+        self.change(&opposed)
+    }
+
+    /// The direction φ of least stiffness at `u`, ‖φ‖ = 1, by inverse iteration, and φᵀ K φ; φ is zero at held
+    /// unknowns. `None` where there is no tangent.
+    pub fn softest_mode(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+    ) -> Option<(f64, Vec<f64>)> {
+        const ITERATIONS: usize = 20;
+        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+        let linearised = self
+            .assembly
+            .linearise(potential, u, &mut residual, &mut stiffness);
+        linearised.ok()?;
+        let tangent = stiffness.clone();
+        self.factorise(&mut stiffness).ok()?;
+        // A start without any symmetry has a part of every mode.
+        let count = self.free().len();
+        let mut mode: Vec<f64> = (0..count).map(|i| (1.0 + i as f64).sqrt().sin()).collect();
+        for _ in 0..ITERATIONS {
+            mode = self.cholesky.solve(&mode).ok()?;
+            let size = norm(&mode);
+            mode.iter_mut().for_each(|entry| *entry /= size);
+        }
+        let forces = self.assembly.pattern().multiply(&tangent, &mode);
+        Some((dot(&mode, &forces), spread(self.free(), &mode, u.len())))
+    }
+
+    /// Factorises the tangent at `u`; the residual there, and whether the tangent had to be shifted.
+    fn factorise_at(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        describe: Describe,
+    ) -> Result<(Vec<f64>, bool), SolveFault> {
+        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+        self.assembly
+            .linearise(potential, u, &mut residual, &mut stiffness)
+            .map_err(|fault| inverted(fault, describe))?;
+        let shifted = self.factorise(&mut stiffness)?;
+        Ok((residual, shifted))
+    }
+
+    /// Factorises the stiffness, shifted along its diagonal where it is not positive definite; says
+    /// whether it had to be shifted.
+    pub(super) fn factorise(&mut self, stiffness: &mut [f64]) -> Result<bool, SolveFault> {
+        let diagonal = self.assembly.pattern().diagonal();
+        let sum: f64 = diagonal.iter().map(|place| stiffness[*place].abs()).sum();
+        let mean = sum / diagonal.len().max(1) as f64;
+        let mut shift = 0.0;
+        while let Err(NotPositiveDefinite) = self.cholesky.factorise(stiffness) {
+            let next = if shift == 0.0 {
+                1e-4 * mean
+            } else {
+                4.0 * shift
+            };
+            if mean.is_nan() || next >= 1e3 * mean {
+                return Err(SolveFault::Singular);
+            }
+            for place in diagonal {
+                stiffness[*place] += next - shift;
+            }
+            shift = next;
+        }
+        Ok(shift > 0.0)
+    }
+
+    /// Takes the skew part of a potential's tangent between free unknowns with a sign: −1 for the transposed tangent.
+    pub(super) fn take_skew(&mut self, potential: &dyn Potential, sign: f64) {
+        let free = |unknown| self.assembly.free_index(unknown);
+        let all = potential.skew_couplings().into_iter();
+        let couplings = all.filter_map(|coupling| {
+            Some(SkewCoupling {
+                row: free(coupling.row)?,
+                column: free(coupling.column)?,
+                stiffness: sign * coupling.stiffness,
+            })
+        });
+        self.skew = couplings.collect();
+    }
+
+    /// −K⁻¹ r at the free unknowns.
+    fn change(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
+        let step = self.step(residual)?;
+        Ok(spread(self.free(), &step, residual.len()))
+    }
+
+    /// −K⁻¹ r by the symmetric factor; a skew part, small beside it, is added by iteration: K_s dᵢ₊₁ = −r − S dᵢ.
+    pub(super) fn step(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
+        const ITERATIONS: usize = 60;
+        let mut negative = gather(self.assembly.free(), residual);
+        scale(&mut negative, -1.0);
+        let mut solve =
+            |right: &[f64]| self.cholesky.solve(right).map_err(|_| SolveFault::Singular);
+        let mut step = solve(&negative)?;
+        if self.skew.is_empty() {
+            return Ok(step);
+        }
+        let mut last = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let mut right = negative.clone();
+            for own in &self.skew {
+                right[own.row] -= own.stiffness * step[own.column];
+                right[own.column] += own.stiffness * step[own.row];
+            }
+            let next = solve(&right)?;
+            let change = largest(&difference(&next, &step));
+            if change.is_nan() || change >= last {
+                break;
+            }
+            (step, last) = (next, change);
+            if change <= 1e-14 * largest(&step) {
+                break;
+            }
+        }
+        Ok(step)
+    }
+}
+
+/// An element's fault with its name.
+pub(crate) fn inverted(fault: Inadmissible, describe: Describe) -> SolveFault {
+    SolveFault::Inverted {
+        element: describe(fault.element),
+    }
+}
+
+/// Adds the forces K m of a small motion m of some unknowns, at all unknowns; Kᵀ m where the sign of the skew part is −1.
+fn add_product(
+    potential: &dyn Potential,
+    sign: f64,
+    u: &[f64],
+    motion: &[f64],
+    forces: &mut [f64],
+) -> Result<(), Inadmissible> {
+    Assembly::add_product(potential, u, motion, forces)?;
+    for own in potential.skew_couplings() {
+        forces[own.row] += sign * own.stiffness * motion[own.column];
+        forces[own.column] -= sign * own.stiffness * motion[own.row];
+    }
+    Ok(())
+}

@@ -1,0 +1,52 @@
+//! Arithmetic of plain vectors; all sums from the first entry to the last.
+
+/// a · b.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Euclidean norm.
+pub fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The largest magnitude.
+pub fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
+}
+
+/// a − b.
+pub fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// x + step · direction.
+pub fn moved(x: &[f64], step: f64, direction: &[f64]) -> Vec<f64> {
+    x.iter().zip(direction).map(|(x, d)| x + step * d).collect()
+}
+
+/// sum ← sum + factor · x.
+pub fn add_scaled(sum: &mut [f64], factor: f64, x: &[f64]) {
+    for (sum, x) in sum.iter_mut().zip(x) {
+        *sum += factor * x;
+    }
+}
+
+/// x ← factor · x.
+pub fn scale(x: &mut [f64], factor: f64) {
+    x.iter_mut().for_each(|x| *x *= factor);
+}
+
+/// Chosen entries of a vector.
+pub fn gather(places: &[usize], x: &[f64]) -> Vec<f64> {
+    places.iter().map(|place| x[*place]).collect()
+}
+
+/// A vector of so many entries: the given ones at their places, zero elsewhere.
+pub fn spread(places: &[usize], entries: &[f64], count: usize) -> Vec<f64> {
+    let mut all = vec![0.0; count];
+    for (place, entry) in places.iter().zip(entries) {
+        all[*place] = *entry;
+    }
+    all
+}
