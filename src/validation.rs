@@ -6,12 +6,10 @@ use std::path::Path;
 
 use crate::document::{Document, Faults};
 use crate::error::{Diagnostic, Error, suggestion};
-use crate::mesh::Mesh;
-use crate::output::mesh_picture;
-use crate::output::picture::lines::{Line, LineChart, Stroke};
-use crate::results::{Check, Claim, Computed, Figure, Outcome, Wanted, limit, number};
-use crate::studies::{Kind, Prepared, Progress, motion, specimen};
+use crate::results::{Check, Computed, Outcome};
+use crate::studies::{Kind, Progress, motion, specimen};
 
+mod case;
 mod correction_matrix;
 mod cost;
 mod finite_elements;
@@ -29,163 +27,46 @@ mod spring_identification;
 mod vibrating_plate;
 mod vibrating_spring;
 
+/// A table of cases: kind, the study that comes along, `quick` or `slow`, and what reads it.
+macro_rules! cases {
+    (@slow quick) => { false };
+    (@slow slow) => { true };
+    ($($kind:expr, $file:literal, $speed:ident, $prepare:path;)*) => {
+        &[$(Kind {
+            kind: $kind,
+            study: include_str!(concat!("../", $file)),
+            file: $file,
+            slow: cases!(@slow $speed),
+            prepare: $prepare,
+        }),*]
+    };
+}
+
 /// All cases, in the order of the report.
-pub const CASES: &[Kind] = &[
-    Kind {
-        kind: "nonlinear-spring",
-        study: include_str!("../examples/nonlinear_spring.toml"),
-        file: "examples/nonlinear_spring.toml",
-        slow: false,
-        prepare: nonlinear_spring::prepare,
-    },
-    Kind {
-        kind: "plate-ablation",
-        study: include_str!("../examples/plate_ablation.toml"),
-        file: "examples/plate_ablation.toml",
-        slow: false,
-        prepare: plate_ablation::prepare,
-    },
-    Kind {
-        kind: "flagship",
-        study: include_str!("../validation/cases/flagship.toml"),
-        file: "validation/cases/flagship.toml",
-        slow: true,
-        prepare: flagship::prepare,
-    },
-    Kind {
-        kind: "vibrating-spring",
-        study: include_str!("../examples/vibrating_spring.toml"),
-        file: "examples/vibrating_spring.toml",
-        slow: false,
-        prepare: vibrating_spring::prepare,
-    },
-    Kind {
-        kind: "spring-identification",
-        study: include_str!("../examples/spring_identification.toml"),
-        file: "examples/spring_identification.toml",
-        slow: true,
-        prepare: spring_identification::prepare,
-    },
-    Kind {
-        kind: "smoothing",
-        study: include_str!("../examples/smoothing.toml"),
-        file: "examples/smoothing.toml",
-        slow: true,
-        prepare: smoothing::prepare,
-    },
-    Kind {
-        kind: "measured-fields",
-        study: include_str!("../validation/cases/measured_fields.toml"),
-        file: "validation/cases/measured_fields.toml",
-        slow: true,
-        prepare: measured_fields::prepare,
-    },
-    Kind {
-        kind: specimen::KIND,
-        study: include_str!("../examples/strip_with_hole.toml"),
-        file: "examples/strip_with_hole.toml",
-        slow: true,
-        prepare: specimen::prepare,
-    },
-    Kind {
-        kind: "motion",
-        study: include_str!("../examples/released_plate.toml"),
-        file: "examples/released_plate.toml",
-        slow: true,
-        prepare: motion::prepare,
-    },
-    Kind {
-        kind: "cost",
-        study: include_str!("../examples/cost.toml"),
-        file: "examples/cost.toml",
-        slow: true,
-        prepare: cost::prepare,
-    },
-    Kind {
-        kind: "correction-matrix",
-        study: include_str!("../validation/correction_matrix.toml"),
-        file: "validation/correction_matrix.toml",
-        slow: false,
-        prepare: correction_matrix::prepare,
-    },
-    Kind {
-        kind: "other-codes",
-        study: include_str!("../validation/other_codes.toml"),
-        file: "validation/other_codes.toml",
-        slow: true,
-        prepare: other_codes::prepare,
-    },
-    Kind {
-        kind: "patch-tests",
-        study: include_str!("../validation/cases/patch_tests.toml"),
-        file: "validation/cases/patch_tests.toml",
-        slow: false,
-        prepare: finite_elements::patch::prepare,
-    },
-    Kind {
-        kind: "manufactured-solution",
-        study: include_str!("../validation/cases/manufactured_solution.toml"),
-        file: "validation/cases/manufactured_solution.toml",
-        slow: false,
-        prepare: finite_elements::manufactured::prepare,
-    },
-    Kind {
-        kind: "hole",
-        study: include_str!("../validation/cases/hole.toml"),
-        file: "validation/cases/hole.toml",
-        slow: false,
-        prepare: finite_elements::hole::prepare,
-    },
-    Kind {
-        kind: "ring",
-        study: include_str!("../validation/cases/ring.toml"),
-        file: "validation/cases/ring.toml",
-        slow: false,
-        prepare: finite_elements::ring::prepare,
-    },
-    Kind {
-        kind: "curved-meshes",
-        study: include_str!("../validation/cases/curved_meshes.toml"),
-        file: "validation/cases/curved_meshes.toml",
-        slow: true,
-        prepare: finite_elements::curved_meshes::prepare,
-    },
-    Kind {
-        kind: "cantilever",
-        study: include_str!("../validation/cases/cantilever.toml"),
-        file: "validation/cases/cantilever.toml",
-        slow: false,
-        prepare: finite_elements::cantilever::prepare,
-    },
-    Kind {
-        kind: "cook",
-        study: include_str!("../validation/cases/cook.toml"),
-        file: "validation/cases/cook.toml",
-        slow: true,
-        prepare: finite_elements::cook::prepare,
-    },
-    Kind {
-        kind: "motion-correction",
-        study: include_str!("../validation/cases/motion_correction.toml"),
-        file: "validation/cases/motion_correction.toml",
-        slow: true,
-        prepare: motion_correction::prepare,
-    },
-    Kind {
-        kind: "vibrating-plate",
-        study: include_str!("../validation/cases/vibrating_plate.toml"),
-        file: "validation/cases/vibrating_plate.toml",
-        slow: false,
-        prepare: vibrating_plate::prepare,
-    },
-    Kind {
-        kind: "own-error",
-        study: include_str!("../validation/cases/own_error.toml"),
-        file: "validation/cases/own_error.toml",
-        slow: true,
-        prepare: finite_elements::own_error::prepare,
-    },
-];
+pub const CASES: &[Kind] = cases! {
+    "nonlinear-spring", "examples/nonlinear_spring.toml", quick, nonlinear_spring::prepare;
+    "plate-ablation", "examples/plate_ablation.toml", quick, plate_ablation::prepare;
+    "flagship", "validation/cases/flagship.toml", slow, flagship::prepare;
+    "vibrating-spring", "examples/vibrating_spring.toml", quick, vibrating_spring::prepare;
+    "spring-identification", "examples/spring_identification.toml", slow, spring_identification::prepare;
+    "smoothing", "examples/smoothing.toml", slow, smoothing::prepare;
+    "measured-fields", "validation/cases/measured_fields.toml", slow, measured_fields::prepare;
+    specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;
+    "motion", "examples/released_plate.toml", slow, motion::prepare;
+    "cost", "examples/cost.toml", slow, cost::prepare;
+    "correction-matrix", "validation/correction_matrix.toml", quick, correction_matrix::prepare;
+    "other-codes", "validation/other_codes.toml", slow, other_codes::prepare;
+    "patch-tests", "validation/cases/patch_tests.toml", quick, finite_elements::patch::prepare;
+    "manufactured-solution", "validation/cases/manufactured_solution.toml", quick, finite_elements::manufactured::prepare;
+    "hole", "validation/cases/hole.toml", quick, finite_elements::hole::prepare;
+    "ring", "validation/cases/ring.toml", quick, finite_elements::ring::prepare;
+    "curved-meshes", "validation/cases/curved_meshes.toml", slow, finite_elements::curved_meshes::prepare;
+    "cantilever", "validation/cases/cantilever.toml", quick, finite_elements::cantilever::prepare;
+    "cook", "validation/cases/cook.toml", slow, finite_elements::cook::prepare;
+    "motion-correction", "validation/cases/motion_correction.toml", slow, motion_correction::prepare;
+    "vibrating-plate", "validation/cases/vibrating_plate.toml", quick, vibrating_plate::prepare;
+    "own-error", "validation/cases/own_error.toml", slow, finite_elements::own_error::prepare;
+};
 
 /// The cases of some kinds, or all; without the slow ones where `quick` is wanted and none is named.
 ///
@@ -262,44 +143,10 @@ pub fn compute_or_fail(case: &Kind, progress: Progress) -> Result<Computed, Erro
     }
 }
 
-/// Distance of two series over the size of the second, in relative L2, in %.
-fn percent(values: &[f64], reference: &[f64]) -> f64 {
-    let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
-    let error = norm(&mut values.iter().zip(reference).map(|(u, v)| u - v));
-    100.0 * error / norm(&mut reference.iter().copied())
-}
-
-/// A chart as a figure of a case.
-fn figure(name: &str, caption: &str, chart: &LineChart) -> Figure {
-    Figure::new(name, caption, chart.png())
-}
-
-/// The `which`th number of all points over their first one, as a marked line.
-fn marked_line<const N: usize>(
-    points: &[[f64; N]],
-    which: usize,
-    label: &str,
-    colour: [u8; 3],
-) -> Line {
-    Line {
-        label: label.to_owned(),
-        points: points
-            .iter()
-            .map(|point| [point[0], point[which]])
-            .collect(),
-        colour,
-        stroke: Stroke::Marked,
-    }
-}
-
-/// A mesh as a figure of a case.
-fn mesh_figure(name: &str, caption: &str, title: &str, mesh: &Mesh) -> Figure {
-    Figure::new(name, caption, mesh_picture(title, mesh))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::{Wanted, limit, number};
 
     #[test]
     fn checks_pass_and_fail_as_they_should() {

@@ -6,8 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::case::{Check, Outcome, Prepared, Wanted};
 use super::plate::CORRECTOR;
-use super::{Check, Outcome, Prepared, Wanted};
 use crate::corrector::{CorrectionMatrix, Corrector, Factor, Linear, Projection, Solver, retained};
 use crate::document::Section;
 use crate::error::{Error, SolveFault};

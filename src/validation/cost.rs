@@ -8,8 +8,8 @@
 use std::path::Path;
 use std::time::Instant;
 
+use super::case::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
 use super::plate::Plate;
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
 use crate::compare::departure_percent;
 use crate::corrector::DifferenceScheme;
 use crate::corrector::climb::{Climb, ClimbSettings};

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::case::{Check, Outcome, Prepared, Progress, Wanted, number};
 use super::plate::NEWTON;
-use super::{Check, Outcome, Prepared, Progress, Wanted, number};
 use crate::corrector::DifferenceScheme;
 use crate::corrector::climb::{Climb, ClimbSettings, Climbed};
 use crate::document::{Bound, Section};

@@ -11,8 +11,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
+use super::case::{Check, Claim, Outcome, Prepared, Progress, Wanted, marked_line, number};
 use super::plate::Plate;
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, marked_line, number};
 use crate::corrector::estimation::{
     EdgeCondition, Knowledge, MeasuredForce, RegressedLaw, Robust, Specimen, Unnamed, estimate,
 };
@@ -118,7 +118,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
         Block::Paragraph(EXPLANATION.into()),
         Block::table(&HEAD, rows),
     ];
-    outcome.figures.push(super::figure(
+    outcome.figures.push(super::case::figure(
         "measured_fields.png",
         "Noisy markers before and after.",
         &chart(&points),

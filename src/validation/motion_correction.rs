@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
+use super::case::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
 use super::plate::{NEWTON, Plate};
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
 use crate::corrector::DifferenceScheme;
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::document::{Bound, Section};
@@ -170,7 +170,7 @@ fn integrate(
 /// Distance of two motions over the size of the second, in relative L2 over space and time, in %.
 fn percent(fields: &[Vec<f64>], reference: &[Vec<f64>]) -> f64 {
     let flat = |fields: &[Vec<f64>]| fields.concat();
-    super::percent(&flat(fields), &flat(reference))
+    super::case::percent(&flat(fields), &flat(reference))
 }
 
 fn every<T: Clone>(fields: &[T], stride: usize) -> Vec<T> {
@@ -349,12 +349,12 @@ fn figures(
         band: None,
     };
     vec![
-        super::figure(
+        super::case::figure(
             "motion_correction.png",
             "Displacement of the middle of the free end.",
             &motion,
         ),
-        super::figure(
+        super::case::figure(
             "motion_correction_error.png",
             "Deviation from the finite elements over time.",
             &errors,

@@ -5,12 +5,14 @@
 
 use std::path::Path;
 
-use super::{Check, Claim, Outcome, Prepared, Wanted, number, percent};
+use super::case::{
+    Block, Check, Claim, Figure, Outcome, Prepared, chart, check, figure, largest, line, number,
+    percent, row, section, table,
+};
 use crate::corrector::{Corrector, CorrectorSettings, Function, Linearised, Solver};
 use crate::document::{Bound, Section};
 use crate::error::Error;
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::results::{Block, Figure};
+use crate::output::picture::lines::{Axis, Stroke};
 use crate::solve::SparseRows;
 use crate::units::Dimension;
 
@@ -23,20 +25,17 @@ struct Spring {
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("spring");
-    let stiffness = section.number("stiffness", Bound::Positive);
-    let largest = section.quantity("largest_force", Dimension::Force, Bound::Positive);
-    let points = section.count("points", 2, 10_000);
-    let iterates = section.count("iterates", 2, 6);
-    section.unknown_keys();
-    let forces = (1..=points)
-        .map(|i| largest * i as f64 / points as f64)
-        .collect();
-    let spring = Spring {
-        stiffness,
-        forces,
-        iterates,
-    };
+    let spring = section(root, "spring", |section| {
+        let stiffness = section.number("stiffness", Bound::Positive);
+        let largest = section.quantity("largest_force", Dimension::Force, Bound::Positive);
+        let points = section.count("points", 2, 10_000);
+        let force = |i| largest * i as f64 / points as f64;
+        Spring {
+            stiffness,
+            forces: (1..=points).map(force).collect(),
+            iterates: section.count("iterates", 2, 6),
+        }
+    });
     Box::new(move |_| compute(&spring))
 }
 
@@ -51,33 +50,20 @@ fn compute(spring: &Spring) -> Result<Outcome, Error> {
         step: "the parabolic spring".into(),
         fault,
     })?;
-    let iterates: Vec<&[f64]> = correction
-        .steps
-        .iter()
-        .map(|step| &step.field[..])
-        .collect();
-    let deviations: Vec<f64> = iterates
-        .iter()
-        .map(|field| percent(field, &exact))
-        .collect();
+    let steps = correction.steps.iter();
+    let iterates: Vec<&[f64]> = steps.map(|step| &step.field[..]).collect();
+    let deviations = iterates.iter().map(|field| percent(field, &exact));
+    let deviations: Vec<f64> = deviations.collect();
     // W (u − ū) + Bᵀ ψ = 0 with B = −2 k u.
-    let fields = exact.iter().zip(&trial);
-    let closed_form = fields.map(|(u, data)| (u - data) / (2.0 * k * u));
+    let closed_form = |(u, data): (&f64, &f64)| (u - data) / (2.0 * k * u);
+    let closed_form = exact.iter().zip(&trial).map(closed_form);
     let psi = &correction.multipliers[0].values;
-    let wrong = closed_form
-        .zip(psi)
-        .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
-    let rows = deviations.iter().enumerate().take(spring.iterates + 1);
-    let table = Block::Table(
-        vec!["step".into(), "deviation, relative L2 [%]".into()],
-        rows.map(|(step, deviation)| vec![step.to_string(), number(*deviation)])
-            .collect(),
-    );
+    let wrong_multipliers = largest(closed_form.zip(psi).map(|(a, b)| a - b));
     Ok(Outcome {
-        checks: checks(&deviations, wrong),
+        checks: checks(&deviations, wrong_multipliers),
         claims: vec![claim(&deviations)],
-        blocks: vec![table],
-        figures: figures(spring, &exact, &iterates, psi),
+        blocks: vec![deviation_table(&deviations[..=spring.iterates])],
+        figures: figures(forces, &exact, &iterates, psi),
         ..Outcome::default()
     })
 }
@@ -101,33 +87,22 @@ fn corrector(spring: &Spring) -> Corrector<'static> {
 }
 
 fn checks(deviations: &[f64], wrong_multipliers: f64) -> Vec<Check> {
-    let at_most = |quantity, unit, limit, source, value| {
-        Check::new(quantity, unit, Wanted::AtMost(limit), source, value)
-    };
-    let last = deviations[deviations.len() - 1];
     vec![
-        at_most(
-            "deviation after one step",
+        check("deviation after one step", "%", deviations[1])
+            .at_most(10.0, "publication: below 10 %"),
+        check("deviation after two steps", "%", deviations[2]).at_most(1.0, "Newton from a secant"),
+        check(
+            "deviation at the end",
             "%",
-            10.0,
-            "publication: below 10 %",
-            deviations[1],
-        ),
-        at_most(
-            "deviation after two steps",
-            "%",
-            1.0,
-            "Newton from a secant",
-            deviations[2],
-        ),
-        at_most("deviation at the end", "%", 1e-9, "u = √(f/k)", last),
-        at_most(
+            deviations[deviations.len() - 1],
+        )
+        .at_most(1e-9, "u = √(f/k)"),
+        check(
             "multipliers beside (u − ū)/(2 k u)",
             "mm²/N",
-            1e-9,
-            "closed form",
             wrong_multipliers,
-        ),
+        )
+        .at_most(1e-9, "closed form"),
     ]
 }
 
@@ -145,23 +120,20 @@ fn claim(deviations: &[f64]) -> Claim {
     }
 }
 
-fn figures(spring: &Spring, exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> Vec<Figure> {
-    let line = |label: &str, values: &[f64], colour, stroke| Line {
-        label: label.to_owned(),
-        points: spring
-            .forces
-            .iter()
-            .zip(values)
-            .map(|(f, u)| [*f, *u])
-            .collect(),
-        colour,
-        stroke,
-    };
-    let motion = LineChart {
-        title: "Parabolic spring from a linear trial".into(),
-        x: Axis::linear("force [N]"),
-        y: Axis::linear("displacement [mm]"),
-        lines: vec![
+fn deviation_table(deviations: &[f64]) -> Block {
+    let rows = deviations.iter().enumerate();
+    let rows = rows.map(|(step, deviation)| row(step.to_string(), [*deviation]));
+    table("step | deviation, relative L2 [%]", rows)
+}
+
+fn figures(forces: &[f64], exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> Vec<Figure> {
+    let line =
+        |label: &str, values: &[f64], colour, stroke| line(label, forces, values, colour, stroke);
+    let force = || Axis::linear("force [N]");
+    let motion = chart(
+        "Parabolic spring from a linear trial",
+        [force(), Axis::linear("displacement [mm]")],
+        [
             line("exact", exact, [30, 30, 30], Stroke::Solid),
             line("uncorrected", iterates[0], [213, 94, 0], Stroke::Solid),
             line("after one step", iterates[1], [0, 158, 115], Stroke::Dashed),
@@ -172,22 +144,19 @@ fn figures(spring: &Spring, exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> 
                 Stroke::Points,
             ),
         ],
-        band: None,
-    };
-    let multipliers = LineChart {
-        title: "Lagrange multipliers of f − k u² = 0".into(),
-        x: Axis::linear("force [N]"),
-        y: Axis::linear("multiplier ζ [mm²/N]"),
-        lines: vec![line("ζ", psi, [204, 121, 167], Stroke::Marked)],
-        band: None,
-    };
+    );
+    let multipliers = chart(
+        "Lagrange multipliers of f − k u² = 0",
+        [force(), Axis::linear("multiplier ζ [mm²/N]")],
+        [line("ζ", psi, [204, 121, 167], Stroke::Marked)],
+    );
     vec![
-        super::figure(
+        figure(
             "nonlinear_spring.png",
             "Figure 1 of the publication: uncorrected, corrected and exact displacement.",
             &motion,
         ),
-        super::figure(
+        figure(
             "nonlinear_spring_multipliers.png",
             "Figure 1 of the publication: the Lagrange multipliers.",
             &multipliers,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::{Check, Outcome, Prepared, Progress, Wanted};
+use super::case::{Check, Outcome, Prepared, Progress, Wanted};
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;

@@ -4,13 +4,14 @@ use std::path::Path;
 
 use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::corrector::{CorrectorSettings, DifferenceScheme, PlateCorrector, Solver};
-use crate::document::Section;
+use crate::document::{Bound, Section};
 use crate::error::{Error, SolveFault};
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::problem::plate::{Problem, Solution};
 use crate::solve::NewtonSettings;
 use crate::studies::plate::study;
+use crate::units::Dimension;
 
 /// The plate of a case, read from its `[plate]` section.
 #[derive(Clone, Debug)]
@@ -34,6 +35,15 @@ pub const CORRECTOR: CorrectorSettings = CorrectorSettings {
     max_steps: 60,
     solver: Solver::Automatic,
 };
+
+/// The standard deviations of noise in mm that a case goes through; at least one.
+pub fn read_noise(section: &Section) -> Vec<f64> {
+    let noise = section.quantities("noise", Dimension::Length, Bound::Positive);
+    if noise.is_empty() {
+        section.fault("noise", "needs at least one value", "such as [\"0.5 mm\"]");
+    }
+    noise
+}
 
 impl Plate {
     /// Reads the section; a card given by a path is looked for relative to `folder`.

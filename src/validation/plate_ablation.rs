@@ -7,8 +7,8 @@ use std::path::Path;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::case::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
 use super::plate::{NEWTON, Plate};
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
 use crate::compare::{departure_percent, displacement_percent};
 use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::document::{Bound, Section};
@@ -211,7 +211,7 @@ fn known_conditions(
         lines,
         band: None,
     };
-    outcome.figures.push(super::figure(
+    outcome.figures.push(super::case::figure(
         "plate_ablation.png",
         "Deviation of each iterate for the known conditions T that are imposed.",
         &chart,

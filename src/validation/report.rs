@@ -1,7 +1,6 @@
 //! The validation report: all checks in one table, the publication's claims, the cases.
 
-use super::{Check, Computed, Wanted, limit, number};
-use crate::results::{Block, Figure};
+use crate::results::{Block, Check, Computed, Figure, Wanted, limit, number};
 
 /// The report of one or several cases, and its pictures.
 pub fn report(title: &str, cases: &[Computed]) -> (Vec<Block>, Vec<Figure>) {

@@ -2,15 +2,16 @@
 //!
 //! The data come from converged finite elements on another mesh, never from the corrector's own equations.
 
+use std::fmt;
 use std::path::Path;
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
+use super::case::{
+    Check, Claim, Figure, Outcome, Prepared, Progress, chart, check, figure, largest, line,
+    normal_numbers, number, paragraph, removed_percent, row, section, table,
+};
 use super::plate::{CORRECTOR, Plate};
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, marked_line, number};
 use crate::compare::{departure_percent, displacement_percent};
 use crate::corrector::plate::KnownConditions;
 use crate::corrector::{Corrector, CorrectorSettings, Linear, PlateCorrector};
@@ -19,8 +20,8 @@ use crate::error::{Error, SolveFault};
 use crate::finite_element::Element;
 use crate::mass_spring::MassSpring;
 use crate::mesh::{Mesh, Side};
-use crate::output::picture::lines::{Axis, LineChart};
-use crate::results::Block;
+use crate::output::picture::lines::{Axis, Stroke};
+use crate::statistics;
 use crate::units::Dimension;
 
 struct Settings {
@@ -35,28 +36,19 @@ struct Settings {
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
     let plate = Plate::read(root, folder);
-    let section = root.section("data");
-    let settings = Settings {
+    let settings = section(root, "data", |section| Settings {
         plate,
         coarse: section.count_pair("coarse_cells", 1, 400).unwrap_or([1, 1]),
-        noise: section.quantities("noise", Dimension::Length, Bound::Positive),
+        noise: super::plate::read_noise(section),
         seeds: section.count("seeds", 1, 10_000) as u64,
         checked_up_to: section.quantity("checked_up_to", Dimension::Length, Bound::Positive),
-    };
-    if settings.noise.is_empty() {
-        section.fault("noise", "needs at least one value", "such as [\"0.5 mm\"]");
-    }
-    section.unknown_keys();
+    });
     Box::new(move |progress| compute(&settings, progress))
 }
 
-const UNKNOWN_GRIPS: KnownConditions = KnownConditions {
-    grips: false,
-    free_edges: true,
-};
-
 /// What all data are made of and compared with.
-struct Fields {
+struct Fields<'a> {
+    settings: &'a Settings,
     lattice: MassSpring,
     /// The uncorrected mass-spring field, where corrections of noisy data begin.
     start: Vec<f64>,
@@ -68,61 +60,35 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     progress("reference");
     let lattice = plate.lattice();
     let fields = Fields {
+        settings,
         start: plate.solve(&lattice)?.displacement,
         reference: plate.reference(&lattice)?,
         lattice,
     };
-    let mut outcome = Outcome::default();
-    let (mut rows, [known, unknown]) = coarse(settings, &fields, &mut outcome)?;
-    let mut points = Vec::new();
+    let coarse = fields.coarse()?;
+    let mut outcome = Outcome {
+        checks: vec![coarse.check()],
+        ..Outcome::default()
+    };
+    let mut rows = coarse.rows(settings.coarse);
+    let mut noisy = Vec::new();
     for noise in &settings.noise {
-        let summary = |grips| noisy(settings, &fields, *noise, grips, progress);
-        let (rigid, free) = (summary(Grips::Rigid)?, summary(Grips::Unknown)?);
-        let row = |grips, summary: &Summary| {
-            summary.row(&format!(
-                "noise of {noise} mm, {grips}, median of {} seeds",
-                settings.seeds
-            ))
+        let found = Noisy {
+            noise: *noise,
+            seeds: settings.seeds,
+            rigid: fields.noisy(*noise, Grips::Rigid, progress)?,
+            unknown: fields.noisy(*noise, Grips::Unknown, progress)?,
         };
-        rows.extend([
-            row("rigid grips that moved unknown ways", &rigid),
-            row("grips unknown", &free),
-        ]);
-        points.push([*noise, rigid.before, rigid.after, free.after]);
-        if *noise > settings.checked_up_to {
-            continue;
+        rows.extend(found.rows());
+        if *noise <= settings.checked_up_to {
+            outcome.checks.extend(found.checks());
+            outcome.claims.push(found.claim(&coarse));
         }
-        let seeds = settings.seeds;
-        outcome.checks.extend([
-            rigid.check(*noise, "rigid grips", seeds),
-            free.check(*noise, "grips unknown", seeds),
-        ]);
-        outcome.claims.push(Claim {
-            claim: "The technique smooths results of other methods",
-            reproduced: format!(
-                "noise of {noise} mm: {} % becomes {} % in relative L2 with rigid grips, {} % with unknown ones; \
-                 of a coarse finite-element field's departure {} % are corrected with known grips, {} % with rigid unknown ones",
-                number(rigid.before), number(rigid.after), number(free.after), number(known),
-                number(unknown)
-            ),
-        });
+        noisy.push(found);
     }
-    let head = [
-        "data",
-        "before [%]",
-        "after [%]",
-        "correction [%]",
-        "seeds converged",
-    ];
-    outcome.blocks = vec![
-        Block::Paragraph(EXPLANATION.into()),
-        Block::table(&head, rows),
-    ];
-    outcome.figures.push(super::figure(
-        "smoothing.png",
-        "Noisy fields before and after.",
-        &chart(&points),
-    ));
+    let head = "data | before [%] | after [%] | correction [%] | seeds converged";
+    outcome.blocks = vec![paragraph(EXPLANATION), table(head, rows)];
+    outcome.figures.push(picture(&noisy));
     Ok(outcome)
 }
 
@@ -131,63 +97,6 @@ const EXPLANATION: &str = "Relative L2 distance to converged finite elements, we
     fields begin at the uncorrected mass-spring field of the stretched plate, never at the noisy data. A seed whose \
     correction does not converge counts as the worst: where nothing is known of the grips, noise that is a good part \
     of a cell's size nearly folds the cells there.";
-
-/// A coarse finite-element field corrected on the lattice's nodes, once with everything known and once with
-/// rigid grips that moved unknown ways: two rows, and the two corrections in %.
-fn coarse(
-    settings: &Settings,
-    fields: &Fields,
-    outcome: &mut Outcome,
-) -> Result<(Vec<Vec<String>>, [f64; 2]), Error> {
-    let (plate, lattice) = (&settings.plate, &fields.lattice);
-    let affine = plate.problem.affine(&lattice.mesh, plate.stretch());
-    let (model, solution) = plate.finite_elements(settings.coarse, Element::Q1)?;
-    let data = model
-        .mesh
-        .displacement_on(&solution.displacement, &lattice.mesh);
-    let departure =
-        |field: &[f64]| departure_percent(&lattice.mesh, field, &fields.reference, &affine);
-    let known = plate.corrected(lattice, &data)?.solution.displacement;
-    let plate_corrector = plate.corrector(lattice);
-    let corrector = grips_corrector(
-        &plate_corrector,
-        &lattice.mesh,
-        plate.stretch(),
-        Grips::Rigid,
-        CORRECTOR,
-    );
-    let rigid = corrector
-        .correct(&data, &data)
-        .map_err(|fault| plate.fault(fault))?;
-    let before = departure(&data);
-    let [nx, ny] = settings.coarse;
-    let row = |grips: &str, after: f64| {
-        let correction = 100.0 * (1.0 - after / before);
-        let data = format!("bilinear finite elements, {nx} × {ny} cells, {grips}");
-        vec![
-            data,
-            number(before),
-            number(after),
-            number(correction),
-            "–".into(),
-        ]
-    };
-    let (known, rigid) = (departure(&known), departure(rigid.field()));
-    let corrections = [known, rigid].map(|after| 100.0 * (1.0 - after / before));
-    let quantity = "coarse finite elements, grips known: correction of the departure";
-    outcome.checks.push(Check::new(
-        quantity,
-        "%",
-        Wanted::AtLeast(80.0),
-        "publication: above 80 %",
-        corrections[0],
-    ));
-    let rows = vec![
-        row("grips known (the data have no say)", known),
-        row("rigid grips that moved unknown ways", rigid),
-    ];
-    Ok((rows, corrections))
-}
 
 /// What is known of the grips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -198,12 +107,102 @@ enum Grips {
     Unknown,
 }
 
+impl fmt::Display for Grips {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Rigid => "rigid grips",
+            Self::Unknown => "grips unknown",
+        })
+    }
+}
+
+/// The deviation of a coarse finite-element field before and after its corrections, in %.
+struct Coarse {
+    before: f64,
+    /// With everything known.
+    known: f64,
+    /// With rigid grips that moved unknown ways.
+    rigid: f64,
+}
+
+impl Coarse {
+    fn rows(&self, [nx, ny]: [usize; 2]) -> Vec<Vec<String>> {
+        let row = |grips: &str, after: f64| {
+            let data = format!("bilinear finite elements, {nx} × {ny} cells, {grips}");
+            let numbers = [self.before, after, removed_percent(self.before, after)];
+            let mut row = row(data, numbers);
+            row.push("–".into());
+            row
+        };
+        vec![
+            row("grips known (the data have no say)", self.known),
+            row("rigid grips that moved unknown ways", self.rigid),
+        ]
+    }
+
+    fn check(&self) -> Check {
+        let quantity = "coarse finite elements, grips known: correction of the departure";
+        let removed = removed_percent(self.before, self.known);
+        check(quantity, "%", removed).at_least(80.0, "publication: above 80 %")
+    }
+}
+
 /// Medians over all seeds; a seed that did not converge counts as the worst of all.
 struct Summary {
+    grips: Grips,
     before: f64,
     after: f64,
     correction: f64,
     converged: usize,
+}
+
+/// Fields with one noise in mm, corrected with both kinds of grips.
+struct Noisy {
+    noise: f64,
+    seeds: u64,
+    rigid: Summary,
+    unknown: Summary,
+}
+
+impl Noisy {
+    fn rows(&self) -> [Vec<String>; 2] {
+        [&self.rigid, &self.unknown].map(|summary| {
+            let grips = match summary.grips {
+                Grips::Rigid => "rigid grips that moved unknown ways",
+                Grips::Unknown => "grips unknown",
+            };
+            let (noise, seeds) = (self.noise, self.seeds);
+            let data = format!("noise of {noise} mm, {grips}, median of {seeds} seeds");
+            let mut row = row(data, [summary.before, summary.after, summary.correction]);
+            row.push(summary.converged.to_string());
+            row
+        })
+    }
+
+    fn checks(&self) -> [Check; 2] {
+        [&self.rigid, &self.unknown].map(|summary| {
+            let (noise, seeds, grips) = (self.noise, self.seeds, summary.grips);
+            let what = format!("noise of {noise} mm, {grips}: correction, median of {seeds} seeds");
+            check(what, "%", summary.correction).at_least(80.0, "publication: above 80 %")
+        })
+    }
+
+    fn claim(&self, coarse: &Coarse) -> Claim {
+        let of_coarse = |after| number(removed_percent(coarse.before, after));
+        Claim {
+            claim: "The technique smooths results of other methods",
+            reproduced: format!(
+                "noise of {} mm: {} % becomes {} % in relative L2 with rigid grips, {} % with unknown ones; \
+                 of a coarse finite-element field's departure {} % are corrected with known grips, {} % with rigid unknown ones",
+                self.noise,
+                number(self.rigid.before),
+                number(self.rigid.after),
+                number(self.unknown.after),
+                of_coarse(coarse.known),
+                of_coarse(coarse.rigid)
+            ),
+        }
+    }
 }
 
 /// A correction is done when the field would move by no more than this share of the noise.
@@ -211,99 +210,90 @@ const MOVEMENT: f64 = 0.01;
 /// Seeds that need more steps than this are given up.
 const MOST_STEPS: usize = 30;
 
-impl Summary {
-    fn row(&self, data: &str) -> Vec<String> {
-        let numbers = [self.before, self.after, self.correction].map(number);
-        let mut row = vec![data.to_owned()];
-        row.extend(numbers);
-        row.push(self.converged.to_string());
-        row
+impl Fields<'_> {
+    /// A coarse finite-element field corrected on the lattice's nodes.
+    fn coarse(&self) -> Result<Coarse, Error> {
+        let (plate, mesh) = (&self.settings.plate, &self.lattice.mesh);
+        let affine = plate.problem.affine(mesh, plate.stretch());
+        let (model, solution) = plate.finite_elements(self.settings.coarse, Element::Q1)?;
+        let data = model.mesh.displacement_on(&solution.displacement, mesh);
+        let departure = |field: &[f64]| departure_percent(mesh, field, &self.reference, &affine);
+        let known = plate.corrected(&self.lattice, &data)?.solution.displacement;
+        let rigid = self.correct(&data, &data, Grips::Rigid, CORRECTOR);
+        let rigid = rigid.map_err(|fault| plate.fault(fault))?;
+        Ok(Coarse {
+            before: departure(&data),
+            known: departure(&known),
+            rigid: departure(&rigid),
+        })
     }
 
-    fn check(&self, noise: f64, grips: &str, seeds: u64) -> Check {
-        let quantity = format!("noise of {noise} mm, {grips}: correction, median of {seeds} seeds");
-        Check::new(
-            quantity,
-            "%",
-            Wanted::AtLeast(80.0),
-            "publication: above 80 %",
-            self.correction,
-        )
+    /// Noisy fields of all seeds, corrected.
+    fn noisy(&self, noise: f64, grips: Grips, progress: Progress) -> Result<Summary, Error> {
+        progress(&format!("noise of {noise} mm, {grips}"));
+        let seeds = (0..self.settings.seeds).into_par_iter();
+        let pairs = seeds.map(|seed| self.one_seed(noise, grips, seed));
+        let pairs = pairs.collect::<Result<Vec<_>, Error>>()?;
+        let median = |which: fn(&[f64; 2]) -> f64| statistics::median(pairs.iter().map(which));
+        Ok(Summary {
+            grips,
+            before: median(|pair| pair[0]),
+            after: median(|pair| pair[1]),
+            // The lower one of the middle two, as the deviation is the upper one.
+            correction: -median(|pair| 100.0 * (pair[1] / pair[0] - 1.0)),
+            converged: pairs.iter().filter(|pair| pair[1].is_finite()).count(),
+        })
     }
-}
 
-fn noisy(
-    settings: &Settings,
-    fields: &Fields,
-    noise: f64,
-    grips: Grips,
-    progress: Progress,
-) -> Result<Summary, Error> {
-    progress(&format!("noise of {noise} mm, {grips:?} grips"));
-    let plate = &settings.plate;
-    let Fields {
-        lattice,
-        start,
-        reference,
-    } = fields;
-    let correct = |seed: u64| -> Result<[f64; 2], Error> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let draw = |random: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(random) };
-        let data: Vec<f64> = reference
-            .iter()
-            .map(|u| u + noise * draw(&mut random))
-            .collect();
-        let largest = reference.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+    /// The deviation of a noisy field before and after its correction, in %; infinite where that does not converge.
+    fn one_seed(&self, noise: f64, grips: Grips, seed: u64) -> Result<[f64; 2], Error> {
+        let exact = self.reference.iter().zip(normal_numbers(seed));
+        let data: Vec<f64> = exact.map(|(u, draw)| u + noise * draw).collect();
         let limits = CorrectorSettings {
-            movement: MOVEMENT * noise / largest,
+            movement: MOVEMENT * noise / largest(self.reference.iter().copied()),
             max_steps: MOST_STEPS,
             ..CORRECTOR
         };
-        let plate_corrector = plate.corrector(lattice);
-        let corrector = grips_corrector(
-            &plate_corrector,
-            &lattice.mesh,
-            plate.stretch(),
-            grips,
-            limits,
-        );
-        let deviation = |field: &[f64]| displacement_percent(&lattice.mesh, field, reference);
-        match corrector.correct(&data, start) {
-            Ok(correction) => Ok([deviation(&data), deviation(correction.field())]),
-            Err(SolveFault::Stalled { .. } | SolveFault::Inverted { .. }) => {
-                Ok([deviation(&data), f64::INFINITY])
-            }
-            Err(fault) => Err(plate.fault(fault)),
-        }
-    };
-    let seeds = 0..settings.seeds;
-    let pairs = seeds
-        .into_par_iter()
-        .map(correct)
-        .collect::<Result<Vec<_>, Error>>()?;
-    let median = |which: fn(&[f64; 2]) -> f64| crate::statistics::median(pairs.iter().map(which));
-    Ok(Summary {
-        before: median(|pair| pair[0]),
-        after: median(|pair| pair[1]),
-        // The lower one of the middle two, as the deviation is the upper one.
-        correction: -median(|pair| 100.0 * (pair[1] / pair[0] - 1.0)),
-        converged: pairs.iter().filter(|pair| pair[1].is_finite()).count(),
-    })
-}
-
-/// The corrector with equilibrium, free edges, and what is known of the grips.
-fn grips_corrector<'a>(
-    plate: &'a PlateCorrector<'_>,
-    mesh: &Mesh,
-    stretch: f64,
-    grips: Grips,
-    settings: CorrectorSettings,
-) -> Corrector<'a> {
-    let mut conditions = plate.conditions(stretch, UNKNOWN_GRIPS);
-    if grips == Grips::Rigid {
-        conditions.push(Box::new(rigid_grips(mesh)));
+        let mesh = &self.lattice.mesh;
+        let deviation = |field: &[f64]| displacement_percent(mesh, field, &self.reference);
+        let after = match self.correct(&data, &self.start, grips, limits) {
+            Ok(field) => deviation(&field),
+            Err(SolveFault::Stalled { .. } | SolveFault::Inverted { .. }) => f64::INFINITY,
+            Err(fault) => return Err(self.settings.plate.fault(fault)),
+        };
+        Ok([deviation(&data), after])
     }
-    Corrector::new(conditions, vec![1.0; 2 * mesh.nodes.len()], settings)
+
+    /// Imposes equilibrium, free edges, and what is known of the grips on data.
+    fn correct(
+        &self,
+        data: &[f64],
+        start: &[f64],
+        grips: Grips,
+        limits: CorrectorSettings,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let plate = self.settings.plate.corrector(&self.lattice);
+        let corrector = self.grips_corrector(&plate, grips, limits);
+        Ok(corrector.correct(data, start)?.field().to_vec())
+    }
+
+    fn grips_corrector<'a>(
+        &self,
+        plate: &'a PlateCorrector<'_>,
+        grips: Grips,
+        limits: CorrectorSettings,
+    ) -> Corrector<'a> {
+        let known = KnownConditions {
+            grips: false,
+            free_edges: true,
+        };
+        let mesh = &self.lattice.mesh;
+        let mut conditions = plate.conditions(self.settings.plate.stretch(), known);
+        if grips == Grips::Rigid {
+            conditions.push(Box::new(rigid_grips(mesh)));
+        }
+        Corrector::new(conditions, vec![1.0; 2 * mesh.nodes.len()], limits)
+    }
 }
 
 /// Each grip moves as a whole, without turning.
@@ -315,24 +305,33 @@ fn rigid_grips(mesh: &Mesh) -> Linear {
             nodes.map(|node| 2 * node + axis).collect::<Vec<_>>()
         })
     });
-    Linear::together(
-        "rigid grips",
-        2 * mesh.nodes.len(),
-        &groups.collect::<Vec<_>>(),
-    )
+    let groups: Vec<_> = groups.collect();
+    Linear::together("rigid grips", 2 * mesh.nodes.len(), &groups)
 }
 
-fn chart(points: &[[f64; 4]]) -> LineChart {
-    let line = |label, which, colour| marked_line(points, which, label, colour);
-    LineChart {
-        title: "Noisy fields smoothed".into(),
-        x: Axis::linear("noise at every node [mm]"),
-        y: Axis::logarithmic("deviation, relative L2 [%]"),
-        lines: vec![
-            line("before", 1, [213, 94, 0]),
-            line("after, grips unknown", 3, [0, 158, 115]),
-            line("after, rigid grips", 2, [0, 114, 178]),
-        ],
-        band: None,
-    }
+fn picture(noisy: &[Noisy]) -> Figure {
+    let of = |value: fn(&Noisy) -> f64| noisy.iter().map(value).collect::<Vec<_>>();
+    let line = |label, deviation, colour| {
+        let (noise, deviation) = (of(|noisy| noisy.noise), of(deviation));
+        line(label, &noise, &deviation, colour, Stroke::Marked)
+    };
+    let axes = [
+        Axis::linear("noise at every node [mm]"),
+        Axis::logarithmic("deviation, relative L2 [%]"),
+    ];
+    let lines = [
+        line("before", |noisy| noisy.rigid.before, [213, 94, 0]),
+        line(
+            "after, grips unknown",
+            |noisy| noisy.unknown.after,
+            [0, 158, 115],
+        ),
+        line(
+            "after, rigid grips",
+            |noisy| noisy.rigid.after,
+            [0, 114, 178],
+        ),
+    ];
+    let chart = chart("Noisy fields smoothed", axes, lines);
+    figure("smoothing.png", "Noisy fields before and after.", &chart)
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::{Check, Claim, Outcome, Prepared, Progress, Wanted, limit, number};
+use super::case::{Check, Claim, Outcome, Prepared, Progress, Wanted, limit, number};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::identification::{Function, Identification, IdentificationSettings, Sample, identify};

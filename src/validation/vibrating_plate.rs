@@ -32,8 +32,8 @@ use crate::problem::{BoundaryProblem, Load};
 use crate::results::Block;
 use crate::solve::{Connectivity, Inadmissible, Local, Newton, Potential};
 use crate::units::Dimension;
+use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, number};
 use crate::validation::plate::NEWTON;
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, number};
 
 const SIZE: [f64; 2] = [150.0, 50.0];
 const THICKNESS: f64 = 2.0;

@@ -17,33 +17,27 @@ use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::CellShape;
 use crate::problem::Load;
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
+use crate::validation::case::{Outcome, Prepared, Progress, check, mean, section};
 
 const LENGTH: f64 = 100.0;
 const HEIGHT: f64 = 10.0;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("mesh");
-    let cells = section.count("cells", 2, 40);
-    section.unknown_keys();
+    let cells = section(root, "mesh", |mesh| mesh.count("cells", 2, 40));
     Box::new(move |progress| compute(cells, progress))
 }
 
 fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
-    for (name, shape) in CellShape::NAMES {
-        if shape.degree() == 1 {
-            continue;
-        }
+    let elements = CellShape::NAMES.into_iter();
+    for (name, shape) in elements.filter(|(_, shape)| shape.degree() > 1) {
         progress(name);
-        outcome.checks.push(Check::new(
-            format!("{name}: deflection over the beam's"),
-            "–",
-            Wanted::Equal(1.0, 0.2),
-            "Timoshenko and Goodier § 21",
-            deflection(shape, cells)?,
-        ));
+        let what = format!("{name}: deflection over the beam's");
+        let deflection = check(what, "–", deflection(shape, cells)?);
+        outcome
+            .checks
+            .push(deflection.equal(1.0, 0.2, "Timoshenko and Goodier § 21"));
     }
     Ok(outcome)
 }
@@ -71,10 +65,7 @@ fn deflection(shape: CellShape, cells: usize) -> Result<f64, Error> {
     let state = solve(&model, "cantilever", 1)?;
     let bent = force * LENGTH.powi(3) / (3.0 * modulus * inertia);
     let sheared = (4.0 + 2.5) * force * HEIGHT * HEIGHT * LENGTH / (24.0 * modulus * inertia);
-    let end = &mesh.groups()["right"].nodes;
-    let sum: f64 = end
-        .iter()
-        .map(|node| state.displacement[2 * node + 1])
-        .sum();
-    Ok(sum / end.len() as f64 / (bent + sheared))
+    let end = mesh.groups()["right"].nodes.iter();
+    let deflection = mean(end.map(|node| state.displacement[2 * node + 1]));
+    Ok(deflection / (bent + sheared))
 }

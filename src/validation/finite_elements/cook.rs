@@ -9,40 +9,63 @@ use std::path::Path;
 use super::{held, misfit, solve};
 use crate::document::Section;
 use crate::error::Error;
-use crate::finite_element::convergence::richardson;
+use crate::finite_element::convergence::{Richardson, richardson};
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::problem::Load;
-use crate::results;
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
+use crate::validation::case::{
+    Check, Outcome, Prepared, Progress, check, mesh_figure, section, table,
+};
 
-/// Dead shear tractions in MPa: 1/30, 0.4 and 21 times Young's modulus, and the agreement that is wanted in %. On a sheet 1 mm
-/// thick the last one is 100 N. Under the second one most of the sheet is compressed, the more so the finer the mesh is at the
-/// clamp's corner: the orders of the elements scatter from 0 to 1.2 there, and what they tend to is known less exactly.
-const TRACTIONS: [(f64, f64); 3] = [(0.01, 0.3), (0.125, 0.5), (6.25, 0.3)];
+/// A dead shear traction in MPa, and how well the elements have to agree under it, in %.
+struct Shear {
+    traction: f64,
+    tolerance: f64,
+}
+
+/// 1/30, 0.4 and 21 times Young's modulus; on a sheet 1 mm thick the last one is 100 N. Under the second one most of the sheet
+/// is compressed, the more so the finer the mesh is at the clamp's corner: the orders of the elements scatter from 0 to 1.2
+/// there, and what they tend to is known less exactly.
+const SHEARS: [Shear; 3] = [
+    Shear {
+        traction: 0.01,
+        tolerance: 0.3,
+    },
+    Shear {
+        traction: 0.125,
+        tolerance: 0.5,
+    },
+    Shear {
+        traction: 6.25,
+        tolerance: 0.3,
+    },
+];
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("mesh");
-    let cells = section.count("coarsest", 2, 40);
-    section.unknown_keys();
+    let cells = section(root, "mesh", |mesh| mesh.count("coarsest", 2, 40));
     Box::new(move |progress| compute(cells, progress))
 }
 
 fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     let mut rows = Vec::new();
-    for (traction, tolerance) in TRACTIONS {
-        let checks = compare(coarsest, (traction, tolerance), progress, &mut rows)?;
-        outcome.checks.extend(checks);
+    for shear in SHEARS {
+        let mut found = Vec::new();
+        for (name, shape) in CellShape::NAMES {
+            progress(name);
+            found.push(Deflection::new(name, shape, coarsest, shear.traction)?);
+        }
+        found.sort_by_key(|deflection| !deflection.is_reference());
+        outcome.checks.extend(shear.checks(&found));
+        rows.extend(found.iter().map(Deflection::row));
     }
-    let heads = [1, 2, 4].map(|finer| {
+    let deflections = [1, 2, 4].map(|finer| {
         let cells = coarsest * finer;
         format!("deflection, {cells} × {cells} cells [mm]")
     });
-    let mut head = vec!["traction [MPa]".to_owned(), "element".to_owned()];
-    head.extend(heads);
-    head.extend(["order".to_owned(), "extrapolated [mm]".to_owned()]);
-    outcome.blocks.push(results::Block::Table(head, rows));
+    let deflections = deflections.join(" | ");
+    let head = format!("traction [MPa] | element | {deflections} | order | extrapolated [mm]");
+    outcome.blocks.push(table(&head, rows));
     outcome.figures.push(mesh_figure(
         "cook.png",
         "Cook's membrane; the left side is clamped, the right one pushed upward.",
@@ -52,44 +75,59 @@ fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     Ok(outcome)
 }
 
-/// The deflections of all elements under a traction in MPa beside that of Q2, with the agreement wanted in %; a row of the table for each element.
-fn compare(
-    coarsest: usize,
-    (traction, tolerance): (f64, f64),
-    progress: Progress,
-    rows: &mut Vec<Vec<String>>,
-) -> Result<Vec<Check>, Error> {
-    let mut extrapolated = |name: &str, shape: CellShape| -> Result<f64, Error> {
-        progress(name);
+/// The deflection of an element on three meshes, each twice as fine as the one before.
+struct Deflection {
+    element: &'static str,
+    traction: f64,
+    values: [f64; 3],
+    limit: Richardson,
+}
+
+impl Deflection {
+    fn new(
+        element: &'static str,
+        shape: CellShape,
+        coarsest: usize,
+        traction: f64,
+    ) -> Result<Self, Error> {
         let mut values = [0.0; 3];
         for (finer, value) in [1, 2, 4].into_iter().zip(&mut values) {
             *value = deflection(&panel(coarsest * finer, shape), traction)?;
         }
-        let found = richardson(values);
-        let mut row = vec![traction.to_string(), name.to_owned()];
-        row.extend(values.map(|value| format!("{value:.4}")));
-        row.extend([
-            found
-                .order
-                .map_or("none".to_owned(), |order| format!("{order:.2}")),
-            format!("{:.4}", found.extrapolated),
-        ]);
-        rows.push(row);
-        Ok(found.extrapolated)
-    };
-    let reference = extrapolated("Q2", CellShape::Quad9)?;
-    let others = CellShape::NAMES.into_iter();
-    let others = others.filter(|(_, shape)| *shape != CellShape::Quad9);
-    let check = |(name, shape)| {
-        Ok(Check::new(
-            format!("{name}: extrapolated deflection under {traction} MPa"),
-            "mm",
-            Wanted::Equal(reference, tolerance),
-            "Q2, extrapolated from three meshes",
-            extrapolated(name, shape)?,
-        ))
-    };
-    others.map(check).collect()
+        Ok(Self {
+            element,
+            traction,
+            values,
+            limit: richardson(values),
+        })
+    }
+
+    fn is_reference(&self) -> bool {
+        self.element == "Q2"
+    }
+
+    fn row(&self) -> Vec<String> {
+        let order = self.limit.order;
+        let order = order.map_or("none".to_owned(), |order| format!("{order:.2}"));
+        let [coarse, middle, fine] = self.values.map(|value| format!("{value:.4}"));
+        let extrapolated = format!("{:.4}", self.limit.extrapolated);
+        let (traction, element) = (self.traction.to_string(), self.element.to_owned());
+        vec![traction, element, coarse, middle, fine, order, extrapolated]
+    }
+}
+
+impl Shear {
+    /// The first deflection is what the others are compared with.
+    fn checks(&self, found: &[Deflection]) -> Vec<Check> {
+        let reference = found[0].limit.extrapolated;
+        let others = found[1..].iter().map(|other| {
+            let (element, traction) = (other.element, self.traction);
+            let what = format!("{element}: extrapolated deflection under {traction} MPa");
+            let source = "Q2, extrapolated from three meshes";
+            check(what, "mm", other.limit.extrapolated).equal(reference, self.tolerance, source)
+        });
+        others.collect()
+    }
 }
 
 fn panel(cells: usize, shape: CellShape) -> Mesh {

@@ -14,9 +14,10 @@ use crate::finite_element::convergence::richardson;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::problem::BoundaryProblem;
-use crate::results::Block;
 use crate::studies::specimen::{self, Specimen};
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure, number};
+use crate::validation::case::{
+    Check, Outcome, Prepared, Progress, check, mesh_figure, number, paragraph, section, table,
+};
 
 /// Kinds of cells with curved sides.
 const KINDS: [CellShape; 3] = [CellShape::Triangle6, CellShape::Quad9, CellShape::Quad8];
@@ -68,10 +69,9 @@ fn half_ring(cells: usize, kind: CellShape) -> Mesh {
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("mesh");
-    let cells = section.count("cells", 2, 8);
-    let exact = section.count("exact", 16, 64);
-    section.unknown_keys();
+    let [cells, exact] = section(root, "mesh", |mesh| {
+        [mesh.count("cells", 2, 8), mesh.count("exact", 16, 64)]
+    });
     Box::new(move |progress| compute(cells, exact, progress))
 }
 
@@ -83,22 +83,16 @@ fn compute(cells: usize, exact: usize, progress: Progress) -> Result<Outcome, Er
         let truth = truth(&body, exact)?;
         for kind in KINDS {
             for cells in [cells, 2 * cells] {
-                rows.push(judge(&body, kind, cells, truth, &mut outcome)?);
+                let stated = Stated::new(&body, kind, cells, truth)?;
+                outcome.checks.push(stated.check());
+                rows.push(stated.row());
             }
         }
     }
-    let head = [
-        "specimen",
-        "cells of the file",
-        "force [N]",
-        "true force [N]",
-        "stated error [%]",
-        "true error [%]",
-        "stated over true",
-    ];
+    let head = "specimen | cells of the file | force [N] | true force [N] | stated error [%] | true error [%] | \
+                stated over true";
     let text = "The force on the finest of three meshes, each cut out of the cells of the file along their curved sides.";
-    outcome.blocks.push(Block::Paragraph(text.into()));
-    outcome.blocks.push(Block::table(&head, rows));
+    outcome.blocks = vec![paragraph(text), table(head, rows)];
     outcome.figures.push(mesh_figure(
         "curved_meshes.png",
         "The coarsest mesh of the ring, of six-node triangles: its sides are parabolas.",
@@ -121,40 +115,60 @@ fn truth(body: &Body, cells: usize) -> Result<f64, Error> {
     Ok(richardson(forces).extrapolated)
 }
 
-/// The stated error of a mesh as that of a file, checked beside the true one.
-fn judge(
-    body: &Body,
-    kind: CellShape,
-    cells: usize,
+/// The stated error of a mesh as that of a file, beside the true one.
+struct Stated {
+    body: &'static str,
+    /// The cells of the file.
+    cells: String,
+    /// Forces in N.
+    force: f64,
     truth: f64,
-    outcome: &mut Outcome,
-) -> Result<Vec<String>, Error> {
-    let mesh = (body.mesh)(cells, kind);
-    let what = format!("{} {}", mesh.cell_count(), mesh.element_names());
-    let card = Card::load("neo-hooke", Path::new("."))?;
-    let specimen = Specimen::of_mesh(card, body.problem.clone(), mesh, kind, body.measured);
-    let (force, stated) = specimen::force_with_error(&specimen)?;
-    let error = 100.0 * (force / truth - 1.0).abs();
-    let ratio = stated / error;
-    outcome.checks.push(Check::new(
-        format!(
-            "{}, {what}: stated over true error or its inverse",
-            body.name
-        ),
-        "–",
-        Wanted::AtMost(2.0),
-        "the force on circles",
-        ratio.max(1.0 / ratio),
-    ));
-    Ok(vec![
-        body.name.into(),
-        what,
-        format!("{force:.8}"),
-        format!("{truth:.8}"),
-        number(stated),
-        number(error),
-        format!("{ratio:.3}"),
-    ])
+    /// Errors in %.
+    stated: f64,
+    error: f64,
+}
+
+impl Stated {
+    fn new(body: &Body, kind: CellShape, cells: usize, truth: f64) -> Result<Self, Error> {
+        let mesh = (body.mesh)(cells, kind);
+        let cells = format!("{} {}", mesh.cell_count(), mesh.element_names());
+        let card = Card::load("neo-hooke", Path::new("."))?;
+        let specimen = Specimen::of_mesh(card, body.problem.clone(), mesh, kind, body.measured);
+        let (force, stated) = specimen::force_with_error(&specimen)?;
+        Ok(Self {
+            body: body.name,
+            cells,
+            force,
+            truth,
+            stated,
+            error: 100.0 * (force / truth - 1.0).abs(),
+        })
+    }
+
+    fn ratio(&self) -> f64 {
+        self.stated / self.error
+    }
+
+    fn check(&self) -> Check {
+        let what = format!(
+            "{}, {}: stated over true error or its inverse",
+            self.body, self.cells
+        );
+        let ratio = self.ratio();
+        check(what, "–", ratio.max(1.0 / ratio)).at_most(2.0, "the force on circles")
+    }
+
+    fn row(&self) -> Vec<String> {
+        vec![
+            self.body.into(),
+            self.cells.clone(),
+            format!("{:.8}", self.force),
+            format!("{:.8}", self.truth),
+            number(self.stated),
+            number(self.error),
+            format!("{:.3}", self.ratio()),
+        ]
+    }
 }
 
 #[cfg(test)]
@@ -166,9 +180,8 @@ mod tests {
         let [_, strip] = bodies();
         let truth = truth(&strip, 12).unwrap();
         for kind in [CellShape::Triangle6, CellShape::Quad8] {
-            let mut outcome = Outcome::default();
-            let row = judge(&strip, kind, 2, truth, &mut outcome).unwrap();
-            assert!(outcome.checks[0].passed(), "{row:?}");
+            let stated = Stated::new(&strip, kind, 2, truth).unwrap();
+            assert!(stated.check().passed(), "{:?}", stated.row());
         }
     }
 }

@@ -14,7 +14,7 @@ use super::{held, misfit, solve, stress};
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
+use crate::validation::case::{Outcome, Prepared, Progress, check, mesh_figure, section};
 
 /// Hole diameter over width, and the concentration: Kirsch's, then Howland's.
 #[expect(clippy::approx_constant, reason = "3.14 is Howland's value")]
@@ -36,9 +36,7 @@ const STRAIN: f64 = 1e-6;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("mesh");
-    let cells = section.count("cells", 4, 100);
-    section.unknown_keys();
+    let cells = section(root, "mesh", |mesh| mesh.count("cells", 4, 100));
     Box::new(move |progress| compute(cells, progress))
 }
 
@@ -47,14 +45,11 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     for (ratio, expected) in HOWLAND {
         progress(&format!("diameter/width {ratio}"));
         let mesh = quarter(ratio * HALF, cells, CellShape::Quad9);
-        let found = concentration(&mesh, ratio * HALF)?;
-        outcome.checks.push(Check::new(
-            format!("stress concentration at diameter/width {ratio}"),
-            "–",
-            Wanted::Equal(expected, 1.0),
-            "Kirsch 1898, Howland 1930",
-            found,
-        ));
+        let what = format!("stress concentration at diameter/width {ratio}");
+        let found = check(what, "–", concentration(&mesh, ratio * HALF)?);
+        outcome
+            .checks
+            .push(found.equal(expected, 1.0, "Kirsch 1898, Howland 1930"));
     }
     let mesh = quarter(0.5 * HALF, 6, CellShape::Quad9);
     outcome.figures.push(mesh_figure(

@@ -16,7 +16,7 @@ use crate::output::picture::PALETTE;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::problem::{BoundaryProblem, Support};
 use crate::solve::State;
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, figure};
+use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, figure};
 
 /// For messages.
 const NAME: &str = "manufactured solution";

@@ -16,7 +16,7 @@ use crate::output::picture::PALETTE;
 use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::problem::plate::{Problem, Solution};
 use crate::results::{Block, Figure};
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, figure, number};
+use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, figure, number};
 
 const SIZE: [f64; 2] = [150.0, 50.0];
 const STRETCH: f64 = 0.5;

@@ -3,24 +3,23 @@
 use std::path::Path;
 
 use super::{distorted, held, largest_error, misfit, sheet, solve, stress};
-use crate::document::Section;
+use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::material::curve::Mode;
-use crate::mesh::CellShape;
-use crate::problem::Support;
+use crate::mesh::{CellShape, Mesh};
+use crate::problem::{BoundaryProblem, Support};
 use crate::solve::assembly::derivative_errors;
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted};
+use crate::validation::case::{Check, Outcome, Prepared, Progress, check, section};
 
 const SIZE: [f64; 2] = [60.0, 40.0];
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("mesh");
-    let cells = section.count_pair("cells", 2, 60).unwrap_or([2, 2]);
-    section.unknown_keys();
-    let section = root.section("load");
-    let stretch = section.number("stretch", crate::document::Bound::Within(1.0, 3.0));
-    section.unknown_keys();
+    let cells = section(root, "mesh", |mesh| mesh.count_pair("cells", 2, 60));
+    let cells = cells.unwrap_or([2, 2]);
+    let stretch = section(root, "load", |load| {
+        load.number("stretch", Bound::Within(1.0, 3.0))
+    });
     Box::new(move |progress| compute(cells, stretch, progress))
 }
 
@@ -28,53 +27,39 @@ fn compute(cells: [usize; 2], stretch: f64, progress: Progress) -> Result<Outcom
     let mut outcome = Outcome::default();
     for (name, shape) in CellShape::NAMES {
         progress(name);
-        let mut check = |what: String, limit: f64, source, value: f64| {
-            let quantity = format!("{name}: {what}");
-            let wanted = Wanted::AtMost(limit);
-            outcome
-                .checks
-                .push(Check::new(quantity, "–", wanted, source, value));
-        };
-        let error = patch(shape, cells)?;
-        check(
-            "linear field on a distorted patch".into(),
-            1e-12,
-            "linear field",
-            error,
-        );
-        for (mode_name, mode) in Mode::ALL {
-            let error = homogeneous(shape, cells, mode, stretch)?;
-            let what = format!("{mode_name} tension to λ = {stretch}, field and stress");
-            check(what, 1e-12, "closed form", error);
-        }
-        let what = format!("simple shear γ = {}, force", stretch - 1.0);
-        check(
-            what,
-            1e-12,
-            "closed form",
-            simple_shear(shape, cells, stretch - 1.0)?,
-        );
-        check(
-            "rigid turn by 90°, field".into(),
-            1e-12,
-            "rigid turn",
-            turn(shape, cells)?,
-        );
-        let [residual, tangent] = derivatives(shape, cells);
-        check(
-            "residual beside differences of the energy".into(),
-            1e-7,
-            "differences",
-            residual,
-        );
-        check(
-            "tangent beside differences of the residual".into(),
-            1e-7,
-            "differences",
-            tangent,
-        );
+        outcome
+            .checks
+            .extend(element_checks(name, shape, cells, stretch)?);
     }
     Ok(outcome)
+}
+
+fn element_checks(
+    name: &str,
+    shape: CellShape,
+    cells: [usize; 2],
+    stretch: f64,
+) -> Result<Vec<Check>, Error> {
+    let error = |what: &str, error: f64| check(format!("{name}: {what}"), "–", error);
+    let patch = error("linear field on a distorted patch", patch(shape, cells)?);
+    let mut checks = vec![patch.at_most(1e-12, "linear field")];
+    for (mode_name, mode) in Mode::ALL {
+        let what = format!("{mode_name} tension to λ = {stretch}, field and stress");
+        let found = error(&what, homogeneous(shape, cells, mode, stretch)?);
+        checks.push(found.at_most(1e-12, "closed form"));
+    }
+    let shear = stretch - 1.0;
+    let what = format!("simple shear γ = {shear}, force");
+    let found = error(&what, simple_shear(shape, cells, shear)?);
+    checks.push(found.at_most(1e-12, "closed form"));
+    let turn = error("rigid turn by 90°, field", turn(shape, cells)?);
+    checks.push(turn.at_most(1e-12, "rigid turn"));
+    let [residual, tangent] = derivatives(shape, cells);
+    checks.extend([
+        error("residual beside differences of the energy", residual).at_most(1e-7, "differences"),
+        error("tangent beside differences of the residual", tangent).at_most(1e-7, "differences"),
+    ]);
+    Ok(checks)
 }
 
 /// Error of the nodes inside when the boundary follows a linear field.
@@ -139,11 +124,7 @@ fn simple_shear(shape: CellShape, cells: [usize; 2], amount: f64) -> Result<f64,
 }
 
 /// P₁₂ averaged over the area.
-fn mean_shear_stress(
-    mesh: &crate::mesh::Mesh,
-    problem: &crate::problem::BoundaryProblem,
-    displacement: &[f64],
-) -> f64 {
+fn mean_shear_stress(mesh: &Mesh, problem: &BoundaryProblem, displacement: &[f64]) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);
     for cell in 0..mesh.cell_count() {
         for (point, weight) in mesh.shape(cell).quadrature() {

@@ -18,7 +18,9 @@ use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::problem::Load;
 use crate::solve::State;
-use crate::validation::{Check, Outcome, Prepared, Progress, Wanted, mesh_figure};
+use crate::validation::case::{
+    Check, Outcome, Prepared, Progress, check, largest, mean, mesh_figure, section,
+};
 
 mod one_dimension;
 
@@ -32,9 +34,7 @@ const LARGE_PRESSURE: f64 = 0.12;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("mesh");
-    let cells = section.count("cells", 4, 100);
-    section.unknown_keys();
+    let cells = section(root, "mesh", |mesh| mesh.count("cells", 4, 100));
     Box::new(move |progress| compute(cells, progress))
 }
 
@@ -48,26 +48,21 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
         progress(name);
         let mesh = quarter(cells, shape);
         let found = inflate(&mesh, pressure, 1)?[0];
-        outcome.checks.push(Check::new(
-            format!("{name}: inner displacement over Lamé's"),
-            "–",
-            Wanted::Equal(1.0, if shape.degree() == 1 { 0.5 } else { 0.01 }),
-            "Timoshenko and Goodier § 28",
-            found / exact,
-        ));
+        let what = format!("{name}: inner displacement over Lamé's");
+        let tolerance = if shape.degree() == 1 { 0.5 } else { 0.01 };
+        let source = "Timoshenko and Goodier § 28";
+        outcome
+            .checks
+            .push(check(what, "–", found / exact).equal(1.0, tolerance, source));
     }
     let mesh = quarter(cells, CellShape::Quad9);
     let [grown, round] = inflate(&mesh, LARGE_PRESSURE * modulus, 6)?;
-    outcome.checks.push(Check::new(
-        format!(
-            "inflated to {:.2} of the inner radius: out of round",
-            1.0 + grown / INNER
-        ),
-        "–",
-        Wanted::AtMost(1e-5),
-        "symmetry of a pressure that follows the surface",
-        round,
-    ));
+    let bore = 1.0 + grown / INNER;
+    let what = format!("inflated to {bore:.2} of the inner radius: out of round");
+    let source = "symmetry of a pressure that follows the surface";
+    outcome
+        .checks
+        .push(check(what, "–", round).at_most(1e-5, source));
     for stretch in [1.5, 2.0] {
         outcome.checks.extend(beside_one_dimension(&mesh, stretch)?);
     }
@@ -87,44 +82,48 @@ fn beside_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> 
         slope: &|_| sheet().law.shear_modulus() / 2.0,
     };
     let [pressure, outside] = ring.pressure(stretch);
-    let solved = pressed(mesh, pressure, 6)?;
-    let mean = |group: &str| {
-        let radii = deformed_radii(mesh, group, &solved.state);
-        radii.iter().sum::<f64>() / radii.len() as f64
-    };
-    let source = "one-dimensional solution by Runge and Kutta";
-    let check = |what: &str, unit: &'static str, expected: f64, found: f64| {
-        let quantity = format!("bore to {stretch} of its radius: {what}");
-        Check::new(quantity, unit, Wanted::Equal(expected, 0.01), source, found)
-    };
+    let solved = Inflated::new(mesh, pressure, 6)?;
+    let radius = |group: &str| mean(deformed_radii(mesh, group, &solved.state));
     let force = pressure * sheet().thickness * INNER * stretch;
-    let mut checks = vec![
-        check("radius of the bore", "mm", INNER * stretch, mean("inside")),
+    let check = |what: &str, unit, computed| {
         check(
+            format!("bore to {stretch} of its radius: {what}"),
+            unit,
+            computed,
+        )
+    };
+    let beside = |what, unit, expected, computed| {
+        let source = "one-dimensional solution by Runge and Kutta";
+        check(what, unit, computed).equal(expected, 0.01, source)
+    };
+    let [across, along] = solved.forces.map(|force| -force);
+    Ok(vec![
+        beside(
+            "radius of the bore",
+            "mm",
+            INNER * stretch,
+            radius("inside"),
+        ),
+        beside(
             "radius of the outside",
             "mm",
             OUTER + outside,
-            mean("outside"),
+            radius("outside"),
         ),
-        check(
-            "force on the vertical line of symmetry",
-            "N",
-            force,
-            -solved.forces[0],
-        ),
-        check(
+        beside("force on the vertical line of symmetry", "N", force, across),
+        beside(
             "force on the horizontal line of symmetry",
             "N",
             force,
-            -solved.forces[1],
+            along,
         ),
-    ];
-    let quantity =
-        format!("bore to {stretch} of its radius: unbalanced forces and moments, relative");
-    let wanted = Wanted::AtMost(1e-9);
-    let source = "equilibrium of the whole";
-    checks.push(Check::new(quantity, "–", wanted, source, solved.unbalanced));
-    Ok(checks)
+        check(
+            "unbalanced forces and moments, relative",
+            "–",
+            solved.unbalanced,
+        )
+        .at_most(1e-9, "equilibrium of the whole"),
+    ])
 }
 
 fn quarter(cells: usize, shape: CellShape) -> Mesh {
@@ -143,12 +142,12 @@ fn quarter(cells: usize, shape: CellShape) -> Mesh {
 /// A quarter of the ring, and its state at the large pressure.
 pub fn blown_up(cells: usize, shape: CellShape) -> Result<(Mesh, State), Error> {
     let mesh = quarter(cells, shape);
-    let solved = pressed(&mesh, LARGE_PRESSURE * sheet().law.youngs_modulus(), 6)?;
-    Ok((mesh, solved.state))
+    let inflated = Inflated::new(&mesh, LARGE_PRESSURE * sheet().law.youngs_modulus(), 6)?;
+    Ok((mesh, inflated.state))
 }
 
 /// A quarter under pressure.
-struct Pressed {
+struct Inflated {
     state: State,
     /// Of the supports across the vertical and the horizontal line of symmetry, in N.
     forces: [f64; 2],
@@ -156,25 +155,24 @@ struct Pressed {
     unbalanced: f64,
 }
 
-fn pressed(mesh: &Mesh, pressure: f64, steps: usize) -> Result<Pressed, Error> {
-    let mut problem = held(&[
-        ("symmetry_x", [Some(0.0), None]),
-        ("symmetry_y", [None, Some(0.0)]),
-    ]);
-    problem
-        .loads
-        .push(("inside".into(), Load::Pressure(pressure)));
-    let energy = problem.finite_elements(mesh);
-    let model = problem.on(mesh, &energy).map_err(misfit)?;
-    let state = solve(&model, "ring", steps)?;
-    Ok(Pressed {
-        forces: [
-            model.reaction(&state, "symmetry_x")[0],
-            model.reaction(&state, "symmetry_y")[1],
-        ],
-        unbalanced: model.balance(&state).relative(),
-        state,
-    })
+impl Inflated {
+    fn new(mesh: &Mesh, pressure: f64, steps: usize) -> Result<Self, Error> {
+        let mut problem = held(&[
+            ("symmetry_x", [Some(0.0), None]),
+            ("symmetry_y", [None, Some(0.0)]),
+        ]);
+        let load = Load::Pressure(pressure);
+        problem.loads.push(("inside".into(), load));
+        let energy = problem.finite_elements(mesh);
+        let model = problem.on(mesh, &energy).map_err(misfit)?;
+        let state = solve(&model, "ring", steps)?;
+        let force = |group, axis: usize| model.reaction(&state, group)[axis];
+        Ok(Self {
+            forces: [force("symmetry_x", 0), force("symmetry_y", 1)],
+            unbalanced: model.balance(&state).relative(),
+            state,
+        })
+    }
 }
 
 /// The deformed distances of a group's nodes from the centre in mm.
@@ -189,11 +187,10 @@ fn deformed_radii(mesh: &Mesh, group: &str, state: &State) -> Vec<f64> {
 
 /// The mean radial displacement of the inner edge in mm, and how far it is from round, relative.
 fn inflate(mesh: &Mesh, pressure: f64, steps: usize) -> Result<[f64; 2], Error> {
-    let radii = deformed_radii(mesh, "inside", &pressed(mesh, pressure, steps)?.state);
-    let mean = radii.iter().sum::<f64>() / radii.len() as f64;
-    let out = radii
-        .iter()
-        .fold(0.0, |most: f64, radius| most.max((radius - mean).abs()));
+    let inflated = Inflated::new(mesh, pressure, steps)?;
+    let radii = deformed_radii(mesh, "inside", &inflated.state);
+    let mean = mean(radii.iter().copied());
+    let out = largest(radii.iter().map(|radius| radius - mean));
     Ok([mean - INNER, out / mean])
 }
 

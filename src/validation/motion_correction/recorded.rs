@@ -15,8 +15,8 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::DashpotLaw;
 use crate::results::Block;
 use crate::units::Dimension;
+use crate::validation::case::{Check, Outcome, Progress, Wanted, limit, number};
 use crate::validation::plate::Plate;
-use crate::validation::{Check, Outcome, Progress, Wanted, limit, number};
 
 /// What is recorded.
 pub struct Recording {

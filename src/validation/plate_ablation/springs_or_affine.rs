@@ -6,8 +6,8 @@ use crate::corrector::Multipliers;
 use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
 use crate::results::Block;
+use crate::validation::case::{Check, Outcome, Wanted, number};
 use crate::validation::plate::Plate;
-use crate::validation::{Check, Outcome, Wanted, number};
 
 /// The grips alone: fewer conditions than unknowns.
 const GRIPS: KnownConditions = KnownConditions {
@@ -47,7 +47,7 @@ impl Pair {
         };
         let [springs, affine] =
             [&self.springs, &self.affine].map(|state| values(&state.multipliers));
-        crate::validation::percent(&affine, &springs)
+        crate::validation::case::percent(&affine, &springs)
     }
 
     fn row(&self, name: &str, fields: &Fields) -> Vec<String> {

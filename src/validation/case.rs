@@ -1,0 +1,181 @@
+//! What the cases share: how they read their settings, draw noise, and judge and show what they found.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::document::Section;
+use crate::mesh::Mesh;
+use crate::output::mesh_picture;
+use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
+pub use crate::results::Wanted;
+use crate::statistics::median;
+
+pub use crate::results::{Block, Check, Claim, Figure, Outcome, limit, number};
+pub use crate::studies::{Prepared, Progress};
+
+/// Reads a section and reports its unknown keys.
+pub fn section<'a, T>(
+    root: &Section<'a>,
+    key: &'static str,
+    read: impl FnOnce(&Section<'a>) -> T,
+) -> T {
+    let section = root.section(key);
+    let settings = read(&section);
+    section.unknown_keys();
+    settings
+}
+
+/// A computed quantity, about to be judged.
+pub struct Quantity {
+    name: String,
+    unit: &'static str,
+    computed: f64,
+}
+
+/// What was computed, before anything is demanded of it: `check(name, unit, value).at_most(limit, source)`.
+pub fn check(name: impl Into<String>, unit: &'static str, computed: f64) -> Quantity {
+    Quantity {
+        name: name.into(),
+        unit,
+        computed,
+    }
+}
+
+impl Quantity {
+    /// It must not exceed a limit.
+    pub fn at_most(self, limit: f64, source: &'static str) -> Check {
+        self.must(Wanted::AtMost(limit), source)
+    }
+
+    /// It must not fall below a limit.
+    pub fn at_least(self, limit: f64, source: &'static str) -> Check {
+        self.must(Wanted::AtLeast(limit), source)
+    }
+
+    /// It must equal a value within a tolerance in percent.
+    pub fn equal(self, expected: f64, tolerance: f64, source: &'static str) -> Check {
+        self.must(Wanted::Equal(expected, tolerance), source)
+    }
+
+    fn must(self, wanted: Wanted, source: &'static str) -> Check {
+        Check::new(self.name, self.unit, wanted, source, self.computed)
+    }
+}
+
+/// A paragraph of a report.
+pub fn paragraph(text: impl Into<String>) -> Block {
+    Block::Paragraph(text.into())
+}
+
+/// A table; the column heads stand in one line, separated by ` | `.
+pub fn table(head: &str, rows: impl IntoIterator<Item = Vec<String>>) -> Block {
+    Block::table(&head.split(" | ").collect::<Vec<_>>(), rows)
+}
+
+/// A row of a table: a name and some numbers.
+pub fn row(name: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Vec<String> {
+    let values = values.into_iter().map(number);
+    [name.into()].into_iter().chain(values).collect()
+}
+
+/// A chart as a figure of a case.
+pub fn figure(name: &str, caption: &str, chart: &LineChart) -> Figure {
+    Figure::new(name, caption, chart.png())
+}
+
+/// A mesh as a figure of a case.
+pub fn mesh_figure(name: &str, caption: &str, title: &str, mesh: &Mesh) -> Figure {
+    Figure::new(name, caption, mesh_picture(title, mesh))
+}
+
+/// A chart of some lines over two axes.
+pub fn chart(title: &str, [x, y]: [Axis; 2], lines: impl Into<Vec<Line>>) -> LineChart {
+    LineChart {
+        title: title.to_owned(),
+        x,
+        y,
+        lines: lines.into(),
+        band: None,
+    }
+}
+
+/// A line of `y` over `x`.
+pub fn line(label: &str, x: &[f64], y: &[f64], colour: [u8; 3], stroke: Stroke) -> Line {
+    Line {
+        label: label.to_owned(),
+        points: x.iter().zip(y).map(|(x, y)| [*x, *y]).collect(),
+        colour,
+        stroke,
+    }
+}
+
+/// Standard normal numbers, the same for the same seed.
+pub fn normal_numbers(seed: u64) -> impl Iterator<Item = f64> {
+    StandardNormal.sample_iter(ChaCha8Rng::seed_from_u64(seed))
+}
+
+/// Distance of two series over the size of the second, in relative L2, in %.
+pub fn percent(values: &[f64], reference: &[f64]) -> f64 {
+    let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
+    let error = norm(&mut values.iter().zip(reference).map(|(u, v)| u - v));
+    100.0 * error / norm(&mut reference.iter().copied())
+}
+
+/// How much of a deviation a correction removes, in %.
+pub fn removed_percent(before: f64, after: f64) -> f64 {
+    100.0 * (1.0 - after / before)
+}
+
+/// Largest absolute value.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    let values = values.into_iter();
+    values.fold(0.0, |most, value| most.max(value.abs()))
+}
+
+/// Mean value.
+pub fn mean(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (sum, count) = values
+        .into_iter()
+        .fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
+}
+
+/// Share of what holds, in %.
+pub fn share(holds: impl IntoIterator<Item = bool>) -> f64 {
+    100.0 * mean(holds.into_iter().map(|holds| f64::from(u8::from(holds))))
+}
+
+/// Least, median and largest value; of an even number of values the upper one of the two in the middle.
+#[derive(Clone, Copy, Debug)]
+pub struct Spread {
+    /// The least value.
+    pub least: f64,
+    /// The median.
+    pub median: f64,
+    /// The largest value.
+    pub most: f64,
+}
+
+impl Spread {
+    /// Of at least one value.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let values: Vec<f64> = values.into_iter().collect();
+        Self {
+            least: values.iter().copied().fold(f64::INFINITY, f64::min),
+            most: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            median: median(values),
+        }
+    }
+}
+
+/// The `which`th number of all points over their first one, as a marked line.
+pub fn marked_line<const N: usize>(
+    points: &[[f64; N]],
+    which: usize,
+    label: &str,
+    colour: [u8; 3],
+) -> Line {
+    let of = |which: usize| points.iter().map(|point| point[which]).collect::<Vec<_>>();
+    line(label, &of(0), &of(which), colour, Stroke::Marked)
+}
