@@ -14,7 +14,7 @@ mod correction_matrix;
 mod cost;
 mod finite_elements;
 mod flagship;
-mod measured_fields;
+mod interval_coverage;
 mod motion_correction;
 mod nonlinear_spring;
 mod oscillator;
@@ -50,7 +50,7 @@ pub const CASES: &[Kind] = cases! {
     "vibrating-spring", "examples/vibrating_spring.toml", quick, vibrating_spring::prepare;
     "spring-identification", "examples/spring_identification.toml", slow, spring_identification::prepare;
     "smoothing", "examples/smoothing.toml", slow, smoothing::prepare;
-    "measured-fields", "validation/cases/measured_fields.toml", slow, measured_fields::prepare;
+    "measured-fields", "validation/cases/measured_fields.toml", slow, interval_coverage::prepare;
     specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;
     "motion", "examples/released_plate.toml", slow, motion::prepare;
     "cost", "examples/cost.toml", slow, cost::prepare;

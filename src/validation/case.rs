@@ -112,7 +112,14 @@ pub fn line(label: &str, x: &[f64], y: &[f64], colour: [u8; 3], stroke: Stroke) 
 
 /// Standard normal numbers, the same for the same seed.
 pub fn normal_numbers(seed: u64) -> impl Iterator<Item = f64> {
-    StandardNormal.sample_iter(ChaCha8Rng::seed_from_u64(seed))
+    normal_numbers_of_stream(seed, 0)
+}
+
+/// Standard normal numbers of one of the independent streams of a seed.
+pub fn normal_numbers_of_stream(seed: u64, stream: u64) -> impl Iterator<Item = f64> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(stream);
+    StandardNormal.sample_iter(random)
 }
 
 /// Distance of two series over the size of the second, in relative L2, in %.
@@ -167,15 +174,4 @@ impl Spread {
             median: median(values),
         }
     }
-}
-
-/// The `which`th number of all points over their first one, as a marked line.
-pub fn marked_line<const N: usize>(
-    points: &[[f64; N]],
-    which: usize,
-    label: &str,
-    colour: [u8; 3],
-) -> Line {
-    let of = |which: usize| points.iter().map(|point| point[which]).collect::<Vec<_>>();
-    line(label, &of(0), &of(which), colour, Stroke::Marked)
 }

@@ -11,6 +11,7 @@ use crate::markers::Marker;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::Mesh;
+use crate::problem::plate::Problem;
 use crate::problem::{BoundaryProblem, Support};
 use crate::validation::plate::NEWTON;
 
@@ -34,18 +35,13 @@ pub struct Markers {
 }
 
 impl Truth {
-    /// Solves the specimen.
-    pub fn new(
-        mesh: Mesh,
-        law: &Arc<dyn HyperelasticLaw>,
-        thickness: f64,
-        stretch: f64,
-    ) -> Result<Self, Error> {
+    /// Solves the specimen of the plate's material with its ends pulled apart.
+    pub fn new(mesh: Mesh, plate: &Problem, stretch: f64) -> Result<Self, Error> {
         let [low, high] = mesh.bounding_box();
         let clamp = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
         let problem = BoundaryProblem {
-            thickness,
-            law: Arc::clone(law),
+            thickness: plate.thickness,
+            law: Arc::clone(&plate.law),
             supports: vec![
                 ("left".into(), clamp(0.0)),
                 ("right".into(), clamp(stretch * (high[0] - low[0]))),
@@ -53,25 +49,21 @@ impl Truth {
             loads: Vec::new(),
         };
         let energy = problem.finite_elements(&mesh);
-        let (displacement, force) = {
-            let discretised = problem.on(&mesh, &energy);
-            let discretised = discretised.map_err(|fault| Error::Input(vec![fault]))?;
-            let states = discretised.solve(&[1.0], NEWTON, &|_| ());
-            let state = states.map_err(|end| Error::Solve {
-                model: "finite elements".into(),
-                step: end.describe(),
-                fault: end.fault,
-            })?;
-            let state = &state[0];
-            (
-                state.displacement.clone(),
-                discretised.reaction(state, "right")[0],
-            )
-        };
+        let discretised = problem.on(&mesh, &energy);
+        let discretised = discretised.map_err(|fault| Error::Input(vec![fault]))?;
+        let states = discretised.solve(&[1.0], NEWTON, &|_| ());
+        let mut states = states.map_err(|end| Error::Solve {
+            model: "finite elements".into(),
+            step: end.describe(),
+            fault: end.fault,
+        })?;
+        let state = states.remove(0);
+        let force = discretised.reaction(&state, "right")[0];
+        drop(discretised);
         Ok(Self {
-            law: Arc::clone(law),
+            law: problem.law,
             mesh,
-            displacement,
+            displacement: state.displacement,
             force,
         })
     }
