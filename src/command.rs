@@ -9,12 +9,10 @@
 //! | 4 | a file could not be written |
 //! | 70 | a fault of the program itself |
 
-use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::error::{Diagnostic, Error};
 use crate::output;
@@ -25,6 +23,7 @@ use crate::studies::Kind;
 use crate::studies::plate::study::{self, DEFAULT, Study};
 use crate::studies::plate::{self, run};
 use crate::validation;
+use terminal::{Outcome, complain, print, progress_bar, warn};
 
 mod compare;
 mod containment;
@@ -34,6 +33,7 @@ mod fit_message;
 mod identify;
 mod materials;
 mod message;
+mod terminal;
 
 const SAMPLES: &str = "\
 Samples:
@@ -159,8 +159,6 @@ fn perform(command: Command) -> u8 {
     })
 }
 
-type Outcome = Result<u8, Error>;
-
 fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
     let text = study::read(path)?;
     if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
@@ -273,13 +271,6 @@ fn conclude(cases: &[Computed], report: &Path) -> Outcome {
     Ok(u8::from(!cases.iter().all(Computed::passed)))
 }
 
-fn progress_bar(length: u64) -> ProgressBar {
-    let bar = ProgressBar::new(length);
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {wide_msg}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
-}
-
 fn check(path: &Path) -> Outcome {
     let text = study::read(path)?;
     if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
@@ -313,35 +304,4 @@ fn new_study(name: PathBuf) -> Outcome {
         "{shown} written; compute it with: gelbench run {shown}\n"
     ))?;
     Ok(0)
-}
-
-/// Prints to standard output; a reader that has gone away is no error.
-fn print(text: &str) -> Result<(), Error> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Error::write("standard output", cause))
-        }
-        _ => Ok(()),
-    }
-}
-
-fn warn(warnings: &[Diagnostic]) {
-    let coloured = io::stderr().is_terminal();
-    for warning in warnings {
-        let _ = write!(io::stderr(), "{}", message::diagnostic(warning, coloured));
-    }
-}
-
-fn complain(error: &Error) {
-    let coloured = io::stderr().is_terminal();
-    let text = match error {
-        Error::Input(faults) => faults
-            .iter()
-            .map(|fault| message::diagnostic(fault, coloured))
-            .collect(),
-        Error::Solve { fault, .. } => format!("error: {error}\n  try: {}\n", fault.advice()),
-        Error::Write { .. } => format!("error: {error}\n"),
-    };
-    let _ = write!(io::stderr(), "{text}");
 }

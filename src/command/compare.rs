@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::{Outcome, export::not_for_other_codes, print, progress_bar, warn};
+use super::export::not_for_other_codes;
+use super::terminal::{Outcome, print, progress_bar, warn};
 use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField, Sites};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::HyperelasticLaw;

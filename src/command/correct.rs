@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::{Outcome, print, progress_bar, warn};
+use super::terminal::{Outcome, print, progress_bar, warn};
 use crate::corrector::estimation::{EdgeCondition, MeasuredForce, Physics, Robust};
 use crate::error::Error;
 use crate::markers::Reading;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::{Outcome, print, warn};
+use super::terminal::{Outcome, print, warn};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::finite_element::FiniteElements;
 use crate::mesh::Side;

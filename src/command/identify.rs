@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::{Outcome, print, warn};
+use super::terminal::{Outcome, print, warn};
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
     Argument, Form, Function, Identification, IdentificationSettings, Recording, Said, Sample,

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, Subcommand};
 
-use super::{Outcome, fit_message, message, print, warn};
+use super::terminal::{Outcome, print, warn};
+use super::{fit_message, message};
 use crate::calibration::{
     self, Bounds, Conversion, Fit, FitSettings, Provenance, Reading, StrainColumn, TestData,
     Weighting,
