@@ -212,16 +212,13 @@ fn run_case(case: &Kind, path: &Path, text: &str, folder: Option<PathBuf>) -> Ou
     bar.finish_and_clear();
     let computed = computed?;
     let (title, json) = (computed.title.clone(), computed.json());
-    for (name, bytes) in &computed.outcome.vtk {
-        results.add(&format!("vtk/{name}"), bytes)?;
+    for series in &computed.outcome.grids {
+        output::write_grids(&mut results, series)?;
     }
-    for (name, bytes) in &computed.outcome.files {
-        results.add(name, bytes)?;
-    }
+    output::write_files(&mut results, &computed.outcome.files)?;
     results.add("report.json", format!("{json:#}\n").as_bytes())?;
     let cases = [computed];
     let (blocks, figures) = validation::report::report(&title, &cases);
-    output::write_pictures(&mut results, &figures)?;
     output::write_document(&mut results, "report", &blocks, &figures)?;
     results.finish()?;
     conclude(&cases, &folder.join("report.html"))
@@ -251,7 +248,6 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     }
     bar.finish_and_clear();
     let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
-    output::write_pictures(&mut results, &figures)?;
     output::write_document(&mut results, "REPORT", &blocks, &figures)?;
     results.finish()?;
     conclude(&cases, &folder.join("REPORT.md"))

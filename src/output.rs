@@ -4,37 +4,53 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::results::{Block, Figure};
+use crate::results::{Block, Content, Figure, GridSeries};
 
 pub mod export;
-mod figures;
-mod fit;
 mod folder;
 mod html;
-mod identification;
 mod markdown;
-mod material;
-pub mod picture;
-pub mod series;
+mod picture;
 pub mod vtk;
-pub mod wrinkling;
 
-pub use figures::{
-    Field, cell_figure, cells, comparison_chart, deformed, field_animation, field_figure,
-    material_chart, mesh_picture,
-};
-pub use fit::{fit_json, fit_picture};
 pub use folder::{ResultFolder, refuse_inputs};
-pub use identification::{identification_json, identification_picture};
-pub use material::material_json;
+pub use picture::png;
 
-/// Writes pictures into a folder.
+/// Draws pictures and writes them into a folder.
 ///
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
-pub fn write_pictures(folder: &mut ResultFolder, figures: &[Figure]) -> Result<(), Error> {
-    let mut pictures = figures.iter();
-    pictures.try_for_each(|figure| folder.add(&figure.name, &figure.png))
+pub fn write_pictures(
+    folder: &mut ResultFolder,
+    figures: &[Figure],
+) -> Result<Vec<Vec<u8>>, Error> {
+    let mut written = Vec::new();
+    for figure in figures {
+        let picture = png(&figure.drawing);
+        folder.add(&figure.name, &picture)?;
+        written.push(picture);
+    }
+    Ok(written)
+}
+
+/// Writes tables, texts and pictures beside a report.
+///
+/// # Errors
+/// [`Error::Write`] with the file that could not be written.
+pub fn write_files(folder: &mut ResultFolder, files: &[(String, Content)]) -> Result<(), Error> {
+    files.iter().try_for_each(|(name, content)| match content {
+        Content::Text(text) => folder.add(name, text.as_bytes()),
+        Content::Picture(drawing) => folder.add(name, &png(drawing)),
+    })
+}
+
+/// Writes the grids of a series into the folder `vtk`.
+///
+/// # Errors
+/// [`Error::Write`] with the file that could not be written.
+pub fn write_grids(folder: &mut ResultFolder, series: &GridSeries) -> Result<(), Error> {
+    let mut files = vtk::files(series);
+    files.try_for_each(|(name, bytes)| folder.add(&format!("vtk/{name}"), &bytes))
 }
 
 /// Writes a document as `NAME.md`, with its pictures beside it, and as one self-contained `NAME.html`.
@@ -51,7 +67,8 @@ pub fn write_document(
         Block::Heading(1, title) => Some(title.as_str()),
         _ => None,
     });
-    let page = html::html(title.unwrap_or(name), blocks, figures);
+    let pictures = write_pictures(folder, figures)?;
+    let page = html::html(title.unwrap_or(name), blocks, &pictures);
     let text = markdown::markdown(blocks, figures);
     folder.add(&format!("{name}.html"), page.as_bytes())?;
     folder.add(&format!("{name}.md"), text.as_bytes())

@@ -5,8 +5,25 @@ use serde_json::{Map, Value, json};
 use crate::compare::judgement::Judgement;
 
 mod block;
+mod chart;
+mod curves;
+mod fields;
+mod fit;
+mod grid;
+mod identification;
+mod material;
+mod series;
+pub mod wrinkling;
 
-pub use block::{Block, Figure};
+pub use block::{Block, Content, Drawing, Figure};
+pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke};
+pub use curves::{comparison_chart, material_chart};
+pub use fields::{Animation, Colours, FieldCell, FieldFigure, Frame, Panel, mesh_outlines};
+pub use fit::{fit_json, fit_picture};
+pub use grid::{Array, Grid, GridCell, GridSeries, NamedGrid, Sheet};
+pub use identification::{identification_json, identification_picture};
+pub use material::{material_json, material_statement};
+pub use series::{Series, csv};
 
 /// What a computed value has to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,10 +152,10 @@ pub struct Outcome {
     pub blocks: Vec<Block>,
     /// Pictures.
     pub figures: Vec<Figure>,
-    /// VTK files: name and content.
-    pub vtk: Vec<(String, Vec<u8>)>,
+    /// Fields of the models.
+    pub grids: Vec<GridSeries>,
     /// Tables and other files beside the report: name and content.
-    pub files: Vec<(String, Vec<u8>)>,
+    pub files: Vec<(String, Content)>,
     /// Times that were measured: what, and seconds.
     pub times: Vec<(String, f64)>,
     /// What deserves attention in the results, each in a sentence.

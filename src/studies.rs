@@ -8,12 +8,9 @@ use crate::error::{Diagnostic, Error};
 use crate::results::{Computed, Outcome};
 
 pub mod markers;
-mod material;
 pub mod motion;
 pub mod plate;
 pub mod specimen;
-
-pub use material::material_statement;
 
 /// Reports what is being done.
 pub type Progress<'a> = &'a dyn Fn(&str);

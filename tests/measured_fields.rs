@@ -9,6 +9,7 @@ use gelbench::material::Card;
 use gelbench::mesh::{CellShape, Mesh};
 use gelbench::output::vtk;
 use gelbench::problem::{BoundaryProblem, Support};
+use gelbench::results::{Grid, Sheet};
 use gelbench::solve::NewtonSettings;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -383,13 +384,13 @@ fn a_coarse_field_is_brought_onto_a_finer_mesh() {
     let coarse = Mesh::plate([150.0, 50.0], [15, 5], CellShape::Quad4);
     let [_, field] = &pulled(&coarse);
     let folder = TempDir::new().unwrap();
-    let sheet = vtk::Sheet {
+    let sheet = Sheet {
         law: &*Card::load("pva-10", root()).unwrap().law,
         thickness: 2.0,
     };
     let finer = Mesh::plate([150.0, 50.0], [30, 10], CellShape::Quad9);
     let write = |name: &str, mesh: &Mesh, field: &[f64]| {
-        let bytes = vtk::field_file("field", &sheet, mesh, field, None);
+        let bytes = vtk::grid(&Grid::sheet(sheet, mesh, field));
         fs::write(folder.path().join(name), bytes).unwrap();
     };
     write("coarse.vtu", &coarse, field);

@@ -2,8 +2,8 @@
 
 use gelbench::corrector::DifferenceScheme;
 use gelbench::finite_element::Element;
-use gelbench::output::picture::PALETTE;
-use gelbench::output::picture::lines::{Axis, Line, LineChart, Stroke, stacked};
+use gelbench::output;
+use gelbench::results::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
 
 use super::measure::Run;
 use super::opponent::Guess;
@@ -219,35 +219,26 @@ pub fn picture(runs: &[Run]) -> Vec<u8> {
             let own = runs
                 .iter()
                 .filter(|run| run.way == *way && run.threads == 1);
-            Line {
-                label: way.name(),
-                points: own.map(|run| [value(run), run.seconds]).collect(),
-                colour: *colour,
-                stroke: Stroke::Marked,
-            }
+            let points = own.map(|run| [value(run), run.seconds]);
+            Line::new(way.name(), points, *colour, Stroke::Marked)
         };
-        LineChart {
-            title: title.to_owned(),
-            x: Axis::logarithmic(x),
-            y: Axis::logarithmic("time [s]"),
-            lines: ways.iter().zip(&PALETTE).map(line).collect(),
-            band: None,
-        }
+        let lines = ways.iter().zip(&PALETTE).map(line).collect();
+        let chart = LineChart::new(
+            title,
+            Axis::logarithmic(x),
+            Axis::logarithmic("time [s]"),
+            lines,
+        );
+        (chart, 480)
     };
-    stacked(&[
-        (
-            chart("Plate at 100 %: time against nodes", "nodes", |run| {
-                run.nodes as f64
-            }),
-            480,
+    output::png(&Drawing::Charts(vec![
+        chart("Plate at 100 %: time against nodes", "nodes", |run| {
+            run.nodes as f64
+        }),
+        chart(
+            "Time against error",
+            "departure from affine: error [%]",
+            |run| run.departure_percent,
         ),
-        (
-            chart(
-                "Time against error",
-                "departure from affine: error [%]",
-                |run| run.departure_percent,
-            ),
-            480,
-        ),
-    ])
+    ]))
 }

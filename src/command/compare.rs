@@ -11,8 +11,8 @@ use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField,
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
-use crate::output::{self, ResultFolder, vtk};
-use crate::results::Block;
+use crate::output::{self, ResultFolder};
+use crate::results::{Array, Block, Grid, GridSeries, Sheet};
 use crate::studies::plate::run;
 use crate::studies::plate::study::{self, Study};
 use crate::studies::{Kind, specimen};
@@ -213,36 +213,27 @@ fn write(
     file: &Path,
     folder: &mut ResultFolder,
 ) -> Result<(), Error> {
-    let sheet = vtk::Sheet {
+    let sheet = Sheet {
         law: &*compared.law,
         thickness: compared.thickness,
     };
     for field in &compared.fields {
-        let bytes = match &compared.imported {
+        let grid = match &compared.imported {
             Imported::OnMesh(imported) => {
-                let expected = imported
-                    .mesh
-                    .displacement_on(&imported.displacement, &field.mesh);
-                vtk::imported_file(
-                    &compared.title,
-                    &sheet,
-                    &field.mesh,
-                    &field.displacement,
-                    &expected,
-                )
+                let (mesh, u) = (&field.mesh, &field.displacement);
+                let expected = imported.mesh.displacement_on(&imported.displacement, mesh);
+                Grid::sheet(sheet, mesh, u).with(Array::imported(u, &expected))
             }
             Imported::AtPoints {
                 places,
                 displacement,
-            } => vtk::points_file(
-                &compared.title,
-                places,
-                &compared.sites.at(field),
-                displacement,
-            ),
+            } => {
+                let own = compared.sites.at(field);
+                Grid::scattered(places, &own).with(Array::imported(&own, displacement))
+            }
         };
-        let name = format!("{}.vtu", field.model.replace([' ', '-'], "_"));
-        folder.add(&format!("vtk/{name}"), &bytes)?;
+        let name = field.model.replace([' ', '-'], "_");
+        output::write_grids(folder, &GridSeries::single(&name, grid))?;
     }
     let mut blocks = report(compared, differences, file);
     blocks.extend(

@@ -12,7 +12,7 @@ use crate::identification::{
     Shape, identify, law_text,
 };
 use crate::output::{self, ResultFolder};
-use crate::results::number;
+use crate::results::{identification_json, identification_picture, number};
 
 pub const HELP: &str = "\
 The file is a table of instants with units in the heads; what it does not say can be given by options:
@@ -156,11 +156,11 @@ fn write(
 ) -> Result<PathBuf, Error> {
     let file = path.file_name().unwrap_or_default().to_string_lossy();
     let mut results = ResultFolder::open(folder, &format!("identify {stem}"), &[path])?;
-    let json = output::identification_json(found, recording, &file);
+    let json = identification_json(found, recording, &file);
     let law = format!("{stem}.toml");
     results.add(&law, law_text(found, recording, &file).as_bytes())?;
     results.add(&format!("{stem}.json"), format!("{json:#}\n").as_bytes())?;
-    let picture = output::identification_picture(found, recording);
+    let picture = output::png(&identification_picture(found, recording));
     results.add(&format!("{stem}.png"), &picture)?;
     results.finish()?;
     Ok(folder.join(law))

@@ -16,6 +16,7 @@ use crate::material::card::FitRecord;
 use crate::material::parameters::StressMeasure;
 use crate::material::registry::{CARDS, DATA, LAWS, Law};
 use crate::output;
+use crate::results::{comparison_chart, fit_json, fit_picture, material_chart};
 
 #[derive(Subcommand)]
 pub enum Materials {
@@ -226,7 +227,7 @@ fn plot(name: &str, file: Option<PathBuf>) -> Outcome {
     let stem = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let file = file.unwrap_or_else(|| PathBuf::from(format!("{stem}_curves.png")));
     output::refuse_inputs(&file, &[Path::new(name)])?;
-    output::save(&file, &output::material_chart(&card).png())?;
+    output::save(&file, &output::png(&material_chart(&card).into()))?;
     print(&format!("{} written\n", file.display()))?;
     Ok(0)
 }
@@ -252,7 +253,7 @@ fn compare(names: &[String], file: &Path) -> Outcome {
     let cards = together(names.iter().map(|name| load(name)))?;
     let inputs: Vec<&Path> = names.iter().map(Path::new).collect();
     output::refuse_inputs(file, &inputs)?;
-    output::save(file, &output::comparison_chart(&cards).png())?;
+    output::save(file, &output::png(&comparison_chart(&cards).into()))?;
     let lines: String = cards.iter().map(message::moduli_line).collect();
     print(&format!("{lines}{} written\n", file.display()))?;
     Ok(0)
@@ -296,8 +297,8 @@ fn fit(arguments: FitArguments) -> Outcome {
     };
     let text = calibration::card_text(&fit, &tests, &provenance);
     output::save(&card, text.as_bytes())?;
-    output::save(&target("png"), &output::fit_picture(&fit, &tests))?;
-    let json = format!("{:#}\n", output::fit_json(&fit, &tests));
+    output::save(&target("png"), &output::png(&fit_picture(&fit, &tests)))?;
+    let json = format!("{:#}\n", fit_json(&fit, &tests));
     output::save(&target("json"), json.as_bytes())?;
     let card = card.display();
     print(&format!(

@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::results::{Block, Figure};
+use crate::results::Block;
 
 const STYLE: &str = "
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; }
@@ -20,7 +20,7 @@ pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; 
 ";
 
 /// A page that needs nothing beside it.
-pub fn html(title: &str, blocks: &[Block], figures: &[Figure]) -> String {
+pub fn html(title: &str, blocks: &[Block], pictures: &[Vec<u8>]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -30,13 +30,13 @@ pub fn html(title: &str, blocks: &[Block], figures: &[Figure]) -> String {
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
-            body { @for block in blocks { (render(block, figures)) } }
+            body { @for block in blocks { (render(block, pictures)) } }
         }
     };
     page.into_string()
 }
 
-fn render(block: &Block, figures: &[Figure]) -> Markup {
+fn render(block: &Block, pictures: &[Vec<u8>]) -> Markup {
     match block {
         Block::Heading(1, text) => html! { h1 { (text) } },
         Block::Heading(2, text) => html! { h2 { (text) } },
@@ -44,7 +44,7 @@ fn render(block: &Block, figures: &[Figure]) -> Markup {
         Block::Paragraph(text) => html! { p { (text) } },
         Block::Code(code) => html! { pre { (code) } },
         Block::Figure(index, caption) => {
-            let data = STANDARD.encode(&figures[*index].png);
+            let data = STANDARD.encode(&pictures[*index]);
             html! {
                 figure {
                     img src={ "data:image/png;base64," (data) } alt=(caption);

@@ -8,19 +8,21 @@ use std::sync::{Arc, LazyLock};
 use plotters::prelude::*;
 use resvg::{tiny_skia, usvg};
 
-pub mod animation;
-pub mod fields;
-pub mod lines;
+use crate::results::{Drawing, Scale};
 
-/// Colours that most people tell apart (Okabe and Ito).
-pub const PALETTE: [[u8; 3]; 6] = [
-    [0, 114, 178],
-    [213, 94, 0],
-    [0, 158, 115],
-    [204, 121, 167],
-    [230, 159, 0],
-    [86, 180, 233],
-];
+mod animation;
+mod fields;
+mod lines;
+
+/// A drawing as a PNG.
+pub fn png(drawing: &Drawing) -> Vec<u8> {
+    match drawing {
+        Drawing::Charts(charts) => lines::stacked(charts),
+        Drawing::Field(figure) => figure.png(),
+        Drawing::Animation(animation) => animation.png(),
+        Drawing::Outlines(title, cells) => fields::outlines(title, cells),
+    }
+}
 
 /// Units of the drawing for each point of the design. plotters rounds to whole units: they must be small.
 const FINE: u32 = 8;
@@ -133,17 +135,6 @@ fn power_of_ten(exponent: f64) -> String {
         other => char::from_u32('⁰' as u32 + other as u32 - '0' as u32).unwrap_or(other),
     });
     format!("10{}", superscript.collect::<String>())
-}
-
-/// How numbers lie on an axis or a colour bar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
-    /// Evenly.
-    Linear,
-    /// Evenly, with zero only where the values reach it: an axis of stretches.
-    Interval,
-    /// By their decimal logarithm.
-    Logarithmic,
 }
 
 impl Scale {

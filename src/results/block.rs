@@ -1,7 +1,9 @@
 //! Parts of a report.
 
+use super::{Animation, FieldFigure, LineChart};
+
 /// A part of a report.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Block {
     /// A heading of the given level, 1 to 3.
     Heading(u8, String),
@@ -16,6 +18,16 @@ pub enum Block {
 }
 
 impl Block {
+    /// A heading of the second level.
+    pub fn heading(text: impl Into<String>) -> Self {
+        Self::Heading(2, text.into())
+    }
+
+    /// Running text.
+    pub fn paragraph(text: impl Into<String>) -> Self {
+        Self::Paragraph(text.into())
+    }
+
     /// A table with these heads.
     pub fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Self {
         let head = head.iter().map(|cell| (*cell).to_owned()).collect();
@@ -23,24 +35,63 @@ impl Block {
     }
 }
 
+/// What a picture shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Drawing {
+    /// Charts one below the other, with their heights in points.
+    Charts(Vec<(LineChart, u32)>),
+    /// Fields on deformed plates.
+    Field(FieldFigure),
+    /// Fields that move.
+    Animation(Animation),
+    /// A heading, and the outlines of cells, each a closed line, in mm.
+    Outlines(String, Vec<Vec<[f64; 2]>>),
+}
+
+/// What a file beside a report holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Content {
+    /// A table or another text.
+    Text(String),
+    /// A picture.
+    Picture(Drawing),
+}
+
+impl From<LineChart> for Drawing {
+    fn from(chart: LineChart) -> Self {
+        const HEIGHT: u32 = 480;
+        Self::Charts(vec![(chart, HEIGHT)])
+    }
+}
+
+impl From<FieldFigure> for Drawing {
+    fn from(figure: FieldFigure) -> Self {
+        Self::Field(figure)
+    }
+}
+
 /// A picture and its caption.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// File name.
     pub name: String,
     /// What it shows, in one sentence.
     pub caption: String,
     /// The picture.
-    pub png: Vec<u8>,
+    pub drawing: Drawing,
 }
 
 impl Figure {
     /// A picture with its file name and caption.
-    pub fn new(name: &str, caption: &str, png: Vec<u8>) -> Self {
+    pub fn new(
+        name: impl Into<String>,
+        caption: impl Into<String>,
+        drawing: impl Into<Drawing>,
+    ) -> Self {
         Self {
-            name: name.to_owned(),
-            caption: caption.to_owned(),
-            png,
+            name: name.into(),
+            caption: caption.into(),
+            drawing: drawing.into(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Plates between two grips: springs, corrected springs and finite elements at every stretch.
 
 use crate::error::Error;
-use crate::output::{ResultFolder, write_document, write_pictures};
+use crate::output::{ResultFolder, write_document, write_grids, write_pictures};
 
 mod figures;
 mod json;
@@ -22,8 +22,8 @@ pub use warnings::warnings;
 /// [`Error::Write`] with the file that could not be written.
 pub fn write(study: &Study, results: &Results, folder: &mut ResultFolder) -> Result<(), Error> {
     if study.output.vtk {
-        for (name, bytes) in vtk::files(study, results) {
-            folder.add(&format!("vtk/{name}"), &bytes)?;
+        for series in vtk::grids(study, results) {
+            write_grids(folder, &series)?;
         }
     }
     if study.output.report {
@@ -35,10 +35,9 @@ pub fn write(study: &Study, results: &Results, folder: &mut ResultFolder) -> Res
     } else {
         Vec::new()
     };
-    write_pictures(folder, &figures)?;
     if study.output.report {
         let blocks = report::report(study, results, &figures);
-        write_document(folder, "report", &blocks, &figures)?;
+        return write_document(folder, "report", &blocks, &figures);
     }
-    Ok(())
+    write_pictures(folder, &figures).map(|_| ())
 }

@@ -6,9 +6,8 @@ use crate::compare::imported::ModelField;
 use crate::document::Section;
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
-use crate::output::vtk;
 use crate::problem::Discretised;
-use crate::results::Outcome;
+use crate::results::{Outcome, Sheet};
 use crate::solve::Potential;
 use crate::studies::{Kind, Prepared, Progress};
 
@@ -59,8 +58,8 @@ pub fn prepare(root: &Section, folder: &Path) -> Prepared {
 
 impl Specimen {
     /// What stresses follow from.
-    fn sheet(&self) -> vtk::Sheet<'_> {
-        vtk::Sheet {
+    fn sheet(&self) -> Sheet<'_> {
+        Sheet {
             law: &*self.problem.law,
             thickness: self.problem.thickness,
         }

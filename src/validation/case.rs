@@ -6,9 +6,8 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::document::Section;
 use crate::mesh::Mesh;
-use crate::output::mesh_picture;
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 pub use crate::results::Wanted;
+use crate::results::{Axis, Line, LineChart, Stroke, mesh_outlines};
 use crate::statistics::median;
 
 pub use crate::results::{Block, Check, Claim, Figure, Outcome, limit, number};
@@ -81,33 +80,23 @@ pub fn row(name: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Ve
 
 /// A chart as a figure of a case.
 pub fn figure(name: &str, caption: &str, chart: &LineChart) -> Figure {
-    Figure::new(name, caption, chart.png())
+    Figure::new(name, caption, chart.clone())
 }
 
 /// A mesh as a figure of a case.
 pub fn mesh_figure(name: &str, caption: &str, title: &str, mesh: &Mesh) -> Figure {
-    Figure::new(name, caption, mesh_picture(title, mesh))
+    Figure::new(name, caption, mesh_outlines(title, mesh))
 }
 
 /// A chart of some lines over two axes.
 pub fn chart(title: &str, [x, y]: [Axis; 2], lines: impl Into<Vec<Line>>) -> LineChart {
-    LineChart {
-        title: title.to_owned(),
-        x,
-        y,
-        lines: lines.into(),
-        band: None,
-    }
+    LineChart::new(title, x, y, lines.into())
 }
 
 /// A line of `y` over `x`.
 pub fn line(label: &str, x: &[f64], y: &[f64], colour: [u8; 3], stroke: Stroke) -> Line {
-    Line {
-        label: label.to_owned(),
-        points: x.iter().zip(y).map(|(x, y)| [*x, *y]).collect(),
-        colour,
-        stroke,
-    }
+    let points = x.iter().zip(y).map(|(x, y)| [*x, *y]);
+    Line::new(label, points, colour, stroke)
 }
 
 /// Standard normal numbers, the same for the same seed.

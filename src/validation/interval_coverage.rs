@@ -15,7 +15,7 @@ use crate::corrector::estimation::{RegressedLaw, Robust, Specimen, estimate};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, Mesh};
-use crate::output::picture::lines::{Axis, Stroke};
+use crate::results::{Axis, Stroke};
 use crate::studies::plate::study;
 use crate::units::Dimension;
 use inference::{free_edges, modulus};

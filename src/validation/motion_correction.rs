@@ -19,10 +19,8 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::viscosity::ViscousMaterial;
 use crate::mesh::{Mesh, Side};
-use crate::output::picture::PALETTE;
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::problem::plate::{Model, Problem};
-use crate::results::Block;
+use crate::results::{Axis, Block, Line, LineChart, PALETTE, Stroke};
 use crate::solve::Potential;
 use crate::units::Dimension;
 

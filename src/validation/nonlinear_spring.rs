@@ -12,7 +12,7 @@ use super::case::{
 use crate::corrector::{Corrector, CorrectorSettings, Function, Linearised, Solver};
 use crate::document::{Bound, Section};
 use crate::error::Error;
-use crate::output::picture::lines::{Axis, Stroke};
+use crate::results::{Axis, Stroke};
 use crate::solve::SparseRows;
 use crate::units::Dimension;
 

@@ -14,8 +14,7 @@ use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mass_spring::{MassSpring, Spring};
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::results::Block;
+use crate::results::{Axis, Block, Line, LineChart, Stroke};
 use crate::solve::Newton;
 use crate::units::Dimension;
 

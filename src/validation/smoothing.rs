@@ -20,7 +20,7 @@ use crate::error::{Error, SolveFault};
 use crate::finite_element::Element;
 use crate::mass_spring::MassSpring;
 use crate::mesh::{Mesh, Side};
-use crate::output::picture::lines::{Axis, Stroke};
+use crate::results::{Axis, Stroke};
 use crate::statistics;
 use crate::units::Dimension;
 

@@ -11,7 +11,7 @@ use super::case::{Check, Claim, Outcome, Prepared, Progress, Wanted, limit, numb
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::identification::{Function, Identification, IdentificationSettings, Sample, identify};
-use crate::output::identification_picture;
+use crate::results::identification_picture;
 use crate::results::{Block, Figure};
 use crate::statistics::median;
 use crate::units::Dimension;
@@ -81,15 +81,15 @@ fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
         checks: checks(&trials, good),
         claims: vec![claim(&settings, good)],
         blocks: vec![explanation(&settings), table(&trials, &places)],
-        figures: vec![Figure {
-            name: "spring_identification.png".into(),
-            caption: format!(
+        figures: vec![Figure::new(
+            "spring_identification.png",
+            format!(
                 "K(·) and D(·) identified from the recording of seed {}: K = 0.15 + 0.05 e^(x/8 mm) N/mm, \
                  D = 0.004 + 0.0015 tanh(x/5 mm) N·s/mm.",
                 settings.sample.seed
             ),
-            png: identification_picture(&drawn, &recording),
-        }],
+            identification_picture(&drawn, &recording),
+        )],
         ..Outcome::default()
     })
 }

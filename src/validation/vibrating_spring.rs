@@ -16,7 +16,7 @@ use super::plate::CORRECTOR;
 use crate::corrector::Corrector;
 use crate::document::{Bound, Section};
 use crate::error::{Error, SolveFault};
-use crate::output::picture::lines::{Axis, Stroke};
+use crate::results::{Axis, Stroke};
 use crate::statistics::Estimate;
 use crate::units::Dimension;
 

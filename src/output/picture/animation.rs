@@ -3,32 +3,8 @@
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Writer};
 use resvg::tiny_skia::Pixmap;
 
-use super::fields::{Colours, FieldFigure, Panel};
-use super::{Scale, rasterise};
-
-/// One picture of an animation.
-#[derive(Clone, Debug)]
-pub struct Frame {
-    /// Time in s, shown in the title.
-    pub time: f64,
-    /// The plates; as many in every frame.
-    pub panels: Vec<Panel>,
-}
-
-/// Plates that move, all frames in true proportions, at one place and on one colour scale.
-#[derive(Clone, Debug)]
-pub struct Animation {
-    /// Heading.
-    pub title: String,
-    /// What the colours show, with its unit.
-    pub quantity: String,
-    /// The colours.
-    pub colours: Colours,
-    /// The pictures in order.
-    pub frames: Vec<Frame>,
-    /// How long each is shown, in ms.
-    pub milliseconds: u16,
-}
+use super::rasterise;
+use crate::results::{Animation, FieldFigure, Panel, Scale};
 
 /// A part of a picture: left, top, width, height in pixels.
 type Part = [u32; 4];
@@ -138,6 +114,7 @@ fn changed(before: &Pixmap, after: &Pixmap) -> Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::{Colours, Frame};
 
     fn animation() -> Animation {
         let frame = |step: u32| {

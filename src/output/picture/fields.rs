@@ -4,43 +4,8 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{DrawResult, FINE, INK, Scale, bold, render, stroke, text, tick};
-
-/// A cell: its corners in mm and its value.
-pub type FieldCell = ([[f64; 2]; 4], f64);
-
-/// One plate.
-#[derive(Clone, Debug)]
-pub struct Panel {
-    /// Its name.
-    pub label: String,
-    /// Its cells.
-    pub cells: Vec<FieldCell>,
-}
-
-/// Which colours a field is drawn in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Colours {
-    /// Dark to light: magnitudes.
-    Sequential,
-    /// Blue over white to red: values of both signs; the range is made symmetric.
-    Diverging,
-}
-
-/// Plates above each other, in true proportions, on one colour scale.
-#[derive(Clone, Debug)]
-pub struct FieldFigure {
-    /// Heading.
-    pub title: String,
-    /// What the colours show, with its unit.
-    pub quantity: String,
-    /// How the values lie on the colour bar.
-    pub scale: Scale,
-    /// The colours.
-    pub colours: Colours,
-    /// The plates.
-    pub panels: Vec<Panel>,
-}
+use super::{DrawResult, FINE, INK, bold, render, stroke, text, tick};
+use crate::results::{Colours, FieldFigure, Scale};
 
 const WIDTH: f64 = 960.0;
 const LEFT: f64 = 56.0;

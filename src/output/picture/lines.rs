@@ -4,95 +4,18 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{FINE, INK, PALE, Scale, bold, render, stroke, text, units};
-
-/// One axis.
-#[derive(Clone, Debug)]
-pub struct Axis {
-    /// What is shown, with its unit.
-    pub label: String,
-    /// How numbers lie on it.
-    pub scale: Scale,
-}
-
-impl Axis {
-    /// An even axis.
-    pub fn linear(label: &str) -> Self {
-        Self {
-            label: label.to_owned(),
-            scale: Scale::Linear,
-        }
-    }
-
-    /// An axis of stretches.
-    pub fn stretch() -> Self {
-        Self {
-            label: "stretch λ [–]".to_owned(),
-            scale: Scale::Interval,
-        }
-    }
-
-    /// A logarithmic axis.
-    pub fn logarithmic(label: &str) -> Self {
-        Self {
-            label: label.to_owned(),
-            scale: Scale::Logarithmic,
-        }
-    }
-}
-
-/// How a line is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stroke {
-    /// A line with a marker at each point.
-    Marked,
-    /// A line.
-    Solid,
-    /// A broken line.
-    Dashed,
-    /// Markers alone.
-    Points,
-    /// A pale area, its points the outline.
-    Filled,
-}
-
-/// One line of a chart.
-#[derive(Clone, Debug)]
-pub struct Line {
-    /// Its name in the legend; an empty one is left out there.
-    pub label: String,
-    /// Its points.
-    pub points: Vec<[f64; 2]>,
-    /// Its colour as red, green, blue.
-    pub colour: [u8; 3],
-    /// How it is drawn.
-    pub stroke: Stroke,
-}
-
-/// A line chart.
-#[derive(Clone, Debug)]
-pub struct LineChart {
-    /// Heading.
-    pub title: String,
-    /// Horizontal axis.
-    pub x: Axis,
-    /// Vertical axis.
-    pub y: Axis,
-    /// The lines; later ones lie above.
-    pub lines: Vec<Line>,
-    /// A band along x that is shaded, with its name.
-    pub band: Option<([f64; 2], String)>,
-}
+use super::{FINE, INK, PALE, bold, render, stroke, text, units};
+use crate::results::{Line, LineChart, Scale, Stroke};
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-const SIZE: (u32, u32) = (860, 480);
+const WIDTH: u32 = 860;
 const LEGEND_WIDTH: u32 = 250;
 
 /// Charts one below the other as one PNG, with their heights in points.
 pub fn stacked(charts: &[(LineChart, u32)]) -> Vec<u8> {
     let height = charts.iter().map(|(_, height)| height).sum();
-    render((SIZE.0, height), |area| {
+    render((WIDTH, height), |area| {
         let mut rest = area.clone();
         for (chart, height) in charts {
             let (own, below) = rest.split_vertically(FINE * height);
@@ -104,16 +27,11 @@ pub fn stacked(charts: &[(LineChart, u32)]) -> Vec<u8> {
 }
 
 impl LineChart {
-    /// The chart as a PNG.
-    pub fn png(&self) -> Vec<u8> {
-        render(SIZE, |area| self.draw(area))
-    }
-
     fn draw(
         &self,
         area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
     ) -> super::DrawResult<()> {
-        let (chart_area, legend) = area.split_horizontally(FINE * (SIZE.0 - LEGEND_WIDTH));
+        let (chart_area, legend) = area.split_horizontally(FINE * (WIDTH - LEGEND_WIDTH));
         let positions = |axis: usize| {
             let scale = [self.x.scale, self.y.scale][axis];
             let points = self.lines.iter().flat_map(|line| &line.points);
@@ -232,35 +150,6 @@ impl LineChart {
 }
 
 impl Line {
-    /// A curve that is solid within a range of x and dashed outside of it.
-    pub fn within(
-        label: &str,
-        points: &[[f64; 2]],
-        colour: [u8; 3],
-        [low, high]: [f64; 2],
-    ) -> Vec<Self> {
-        let below = points.iter().take_while(|point| point[0] < low).count();
-        let above = points
-            .iter()
-            .filter(|point| point[0] <= high)
-            .count()
-            .max(below);
-        // The dashed parts begin where the solid one ends.
-        let parts = [
-            (&points[..(below + 1).min(points.len())], "", Stroke::Dashed),
-            (&points[below..above], label, Stroke::Solid),
-            (&points[above.saturating_sub(1)..], "", Stroke::Dashed),
-        ];
-        let line = |(points, label, stroke): (&[[f64; 2]], &str, Stroke)| Self {
-            label: label.to_owned(),
-            points: points.to_vec(),
-            colour,
-            stroke,
-        };
-        let long = |part: &(&[[f64; 2]], &str, Stroke)| part.0.len() > 1 || part.2 == Stroke::Solid;
-        parts.into_iter().filter(long).map(line).collect()
-    }
-
     fn rgb(&self) -> RGBColor {
         let [red, green, blue] = self.colour;
         RGBColor(red, green, blue)

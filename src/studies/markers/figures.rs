@@ -3,10 +3,7 @@
 use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::mesh::Mesh;
-use crate::output::picture::Scale;
-use crate::output::picture::fields::{Colours, FieldCell, FieldFigure, Panel};
-use crate::output::{cells, deformed, mesh_picture};
-use crate::results::Figure;
+use crate::results::{Drawing, FieldCell, FieldFigure, Figure, Panel, mesh_outlines};
 use crate::studies::markers::MeasuredField;
 
 use super::written::{left, nominal_stress};
@@ -18,34 +15,37 @@ pub fn figures(field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -
         at: format!("frame {}", frame.number),
         estimate,
     };
+    let stress = |cell: usize| largest(nominal_stress(&estimate.cells[cell]));
+    let stress = pictures.in_cells("Nominal stress", "largest component [MPa]", &stress);
+    let thickness = |cell: usize| estimate.cells[cell].thickness;
+    let thickness = pictures.in_cells("Thickness", "thickness [mm]", &thickness);
+    let multipliers = &estimate.multipliers;
+    let multipliers = pictures.at_nodes("Multipliers of equilibrium", "|ζ| [mm²/N]", multipliers);
     let mut all = vec![
-        pictures.along("displacement_x.png", 0),
-        pictures.along("displacement_y.png", 1),
-        pictures.in_cells(
-            ("stress.png", "Largest component of the nominal stress in every cell."),
-            ("Nominal stress", "largest component [MPa]"),
-            &|cell| largest(nominal_stress(&estimate.cells[cell])),
+        pictures.along(0),
+        pictures.along(1),
+        Figure::new(
+            "stress.png",
+            "Largest component of the nominal stress in every cell.",
+            stress,
         ),
-        pictures.in_cells(
-            ("thickness.png", "Thickness of the deformed sheet."),
-            ("Thickness", "thickness [mm]"),
-            &|cell| estimate.cells[cell].thickness,
+        Figure::new(
+            "thickness.png",
+            "Thickness of the deformed sheet.",
+            thickness,
         ),
-        pictures.at_nodes(
-            ("multipliers.png", "The multipliers of equilibrium: where the data pull the field away from the physics."),
-            ("Multipliers of equilibrium", "|ζ| [mm²/N]"),
-            &estimate.multipliers,
+        Figure::new(
+            "multipliers.png",
+            "The multipliers of equilibrium: where the data pull the field away from the physics.",
+            multipliers,
         ),
     ];
     match field.coarse {
         None => all.extend(pictures.uncertainty(frame)),
         Some(_) => all.push(pictures.correction(frame)),
     }
-    all.push(Figure {
-        name: "mesh.png".into(),
-        caption: "The mesh at rest.".into(),
-        png: mesh_picture("The mesh", &field.mesh),
-    });
+    let mesh: Drawing = mesh_outlines("The mesh", &field.mesh);
+    all.push(Figure::new("mesh.png", "The mesh at rest.", mesh));
     all
 }
 
@@ -55,96 +55,83 @@ struct Pictures<'a> {
     estimate: &'a FieldEstimate,
 }
 
-/// File name and caption.
-type Named<'a> = (&'a str, &'a str);
-
-/// Heading and quantity.
-type Headed<'a> = (&'a str, &'a str);
-
 impl Pictures<'_> {
-    fn figure(
-        &self,
-        (name, caption): Named,
-        (title, quantity): Headed,
-        cells: Vec<FieldCell>,
-        colours: Colours,
-    ) -> Figure {
-        let figure = FieldFigure {
-            title: title.to_owned(),
-            quantity: quantity.to_owned(),
-            scale: Scale::Linear,
-            colours,
-            panels: vec![Panel {
-                label: self.at.clone(),
-                cells,
-            }],
-        };
-        Figure {
-            name: name.to_owned(),
-            caption: caption.to_owned(),
-            png: figure.png(),
-        }
-    }
-
-    fn along(&self, name: &str, axis: usize) -> Figure {
+    fn along(&self, axis: usize) -> Figure {
         let u = &self.estimate.displacement;
-        let caption = format!("The corrected displacement along {}.", ["x", "y"][axis]);
-        let quantity = format!("u{} [mm]", ["x", "y"][axis]);
-        let cells = cells(self.mesh, u, &|node| u[2 * node + axis]);
-        let headed = ("Corrected displacement", quantity.as_str());
-        self.figure((name, &caption), headed, cells, Colours::Diverging)
+        let name = ["x", "y"][axis];
+        let panel = Panel::at_nodes(&self.at, self.mesh, u, &|node| u[2 * node + axis]);
+        let quantity = format!("u{name} [mm]");
+        let figure = FieldFigure::new("Corrected displacement", quantity, [panel]).diverging();
+        let caption = format!("The corrected displacement along {name}.");
+        Figure::new(format!("displacement_{name}.png"), caption, figure)
     }
 
-    fn in_cells(&self, named: Named, headed: Headed, value: &dyn Fn(usize) -> f64) -> Figure {
-        let cells = deformed(self.mesh, &self.estimate.displacement, value);
-        self.figure(named, headed, cells, Colours::Sequential)
+    fn in_cells(&self, title: &str, quantity: &str, value: &dyn Fn(usize) -> f64) -> FieldFigure {
+        let panel = Panel::in_cells(&self.at, self.mesh, &self.estimate.displacement, value);
+        FieldFigure::new(title, quantity, [panel])
     }
 
     /// The lengths of vectors at the nodes.
-    fn at_nodes(&self, named: Named, headed: Headed, vectors: &[f64]) -> Figure {
+    fn at_nodes(&self, title: &str, quantity: &str, vectors: &[f64]) -> FieldFigure {
         let length = |node: usize| vectors[2 * node].hypot(vectors[2 * node + 1]);
-        let cells = cells(self.mesh, &self.estimate.displacement, &length);
-        self.figure(named, headed, cells, Colours::Sequential)
+        let panel = Panel::at_nodes(&self.at, self.mesh, &self.estimate.displacement, &length);
+        FieldFigure::new(title, quantity, [panel])
+    }
+
+    /// A value of each marker where it was measured.
+    fn at_markers(&self, title: &str, quantity: &str, cells: Vec<FieldCell>) -> FieldFigure {
+        let label = self.at.clone();
+        FieldFigure::new(title, quantity, [Panel { label, cells }])
     }
 
     fn uncertainty(&self, frame: &Frame) -> [Figure; 3] {
         let estimate = self.estimate;
+        let displacement = self.at_nodes(
+            "Standard error of the displacement",
+            "standard error [mm]",
+            &estimate.displacement_error,
+        );
+        let stress = self.in_cells(
+            "Standard error of the nominal stress",
+            "largest component [MPa]",
+            &|cell| largest(estimate.cells[cell].stress_error),
+        );
         let residuals = left(estimate).map(|left| left.standardised.min(LARGEST_RESIDUAL));
-        let squares = marker_squares(frame, residuals);
+        let residuals = self.at_markers(
+            "Standardised residuals of the markers",
+            "standardised residual [–]",
+            marker_squares(frame, residuals),
+        );
         [
-            self.at_nodes(
-                ("displacement_error.png", "Standard error of the displacement from the noise of the markers."),
-                ("Standard error of the displacement", "standard error [mm]"),
-                &estimate.displacement_error,
+            Figure::new(
+                "displacement_error.png",
+                "Standard error of the displacement from the noise of the markers.",
+                displacement,
             ),
-            self.in_cells(
-                ("stress_error.png", "Standard error of the nominal stress from the noise of the markers."),
-                ("Standard error of the nominal stress", "largest component [MPa]"),
-                &|cell| largest(estimate.cells[cell].stress_error),
+            Figure::new(
+                "stress_error.png",
+                "Standard error of the nominal stress from the noise of the markers.",
+                stress,
             ),
-            self.figure(
-                (
-                    "residuals.png",
-                    "What is left of every marker in units of its standard deviation, shown up to 5; normal noise leaves more \
-                     than 3.7 in one of a thousand.",
-                ),
-                ("Standardised residuals of the markers", "standardised residual [–]"),
-                squares,
-                Colours::Sequential,
+            Figure::new(
+                "residuals.png",
+                "What is left of every marker in units of its standard deviation, shown up to 5; normal noise leaves more \
+                 than 3.7 in one of a thousand.",
+                residuals,
             ),
         ]
     }
 
     fn correction(&self, frame: &Frame) -> Figure {
         let lengths = left(self.estimate).map(|left| left.residual[0].hypot(left.residual[1]));
-        self.figure(
-            (
-                "correction.png",
-                "How far the correction has moved the nodes of the given field.",
+        Figure::new(
+            "correction.png",
+            "How far the correction has moved the nodes of the given field.",
+            self.at_markers(
+                "Distance to the given field",
+                "distance [mm]",
+                marker_squares(frame, lengths),
             ),
-            ("Distance to the given field", "distance [mm]"),
-            marker_squares(frame, lengths),
-            Colours::Sequential,
         )
     }
 }

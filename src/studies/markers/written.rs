@@ -13,8 +13,8 @@
 use crate::corrector::estimation::{FieldEstimate, StressEstimate};
 use crate::error::Error;
 use crate::markers::Frame;
-use crate::output::vtk::{self, Array};
-use crate::output::{ResultFolder, write_document, write_pictures};
+use crate::output::{ResultFolder, write_document, write_grids};
+use crate::results::{Array, Grid, GridSeries, Sheet};
 use crate::studies::markers::MeasuredField;
 
 pub use super::report::summary;
@@ -30,51 +30,53 @@ pub fn write(
     folder: &mut ResultFolder,
 ) -> Result<(), Error> {
     let frames = || field.measurement.frames.iter().zip(estimates);
-    let mut put = |name: String, bytes: &[u8]| folder.add(&name, bytes);
+    for series in [
+        series("corrected", field, estimates, corrected),
+        series("markers", field, estimates, markers),
+    ] {
+        write_grids(folder, &series)?;
+    }
+    let mut put = |name: String, text: String| folder.add(&name, text.as_bytes());
     for (frame, estimate) in frames() {
-        let number = format!("{:03}", frame.number);
+        let number = frame.number;
         put(
-            format!("vtk/corrected_{number}.vtu"),
-            &corrected(field, frame, estimate),
+            format!("nodes_{number:03}.csv"),
+            tables::nodes(field, estimate),
         )?;
         put(
-            format!("vtk/markers_{number}.vtu"),
-            &markers(field, frame, estimate),
+            format!("cells_{number:03}.csv"),
+            tables::cells(field, estimate),
         )?;
         put(
-            format!("nodes_{number}.csv"),
-            tables::nodes(field, estimate).as_bytes(),
-        )?;
-        put(
-            format!("cells_{number}.csv"),
-            tables::cells(field, estimate).as_bytes(),
-        )?;
-        put(
-            format!("markers_{number}.csv"),
-            tables::markers(frame, estimate).as_bytes(),
+            format!("markers_{number:03}.csv"),
+            tables::markers(frame, estimate),
         )?;
     }
-    for name in ["corrected", "markers"] {
-        let file = |frame: &Frame| {
-            let time = frame.time.unwrap_or(frame.number as f64);
-            (time, format!("{name}_{:03}.vtu", frame.number))
-        };
-        let files: Vec<_> = field.measurement.frames.iter().map(file).collect();
-        put(format!("vtk/{name}.pvd"), &vtk::collection(&files))?;
-    }
-    put(
-        "forces.csv".into(),
-        tables::forces(field, estimates).as_bytes(),
-    )?;
+    put("forces.csv".into(), tables::forces(field, estimates))?;
     let json = json::json(field, estimates);
-    put("report.json".into(), format!("{json:#}\n").as_bytes())?;
+    put("report.json".into(), format!("{json:#}\n"))?;
     let figures = frames()
         .next_back()
         .map(|(frame, estimate)| figures::figures(field, frame, estimate));
     let figures = figures.unwrap_or_default();
-    write_pictures(folder, &figures)?;
     let blocks = report::report(field, estimates, &figures);
     write_document(folder, "report", &blocks, &figures)
+}
+
+type OfFrame = fn(&MeasuredField, &Frame, &FieldEstimate) -> Grid;
+
+fn series(
+    name: &str,
+    field: &MeasuredField,
+    estimates: &[FieldEstimate],
+    grid: OfFrame,
+) -> GridSeries {
+    let frames = field.measurement.frames.iter().zip(estimates);
+    let frames = frames.map(|(frame, estimate)| {
+        let time = frame.time.unwrap_or(frame.number as f64);
+        (frame.number, time, grid(field, frame, estimate))
+    });
+    GridSeries::numbered(name, 3, frames)
 }
 
 /// The heading of a report.
@@ -85,53 +87,37 @@ pub(super) fn title(field: &MeasuredField) -> String {
     }
 }
 
-fn corrected(field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> Vec<u8> {
+fn corrected(field: &MeasuredField, _frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let law = field.law(estimate);
-    let sheet = vtk::Sheet {
+    let sheet = Sheet {
         law: &*law,
         thickness: field.thickness,
     };
-    let array = |name, components, values| Array {
-        name,
-        values,
-        components,
-    };
-    let nodal = |name, values: &Vec<f64>| array(name, 2, values.clone());
-    let mut at_nodes = vec![
+    let nodal = |name, values: &Vec<f64>| Array::vectors(name, values.iter().copied());
+    let mut grid = Grid::sheet(sheet, &field.mesh, &estimate.displacement).with([
         nodal("reaction_N", &estimate.reactions),
         nodal(
             "multiplier_zeta_equilibrium_mm2_per_N",
             &estimate.multipliers,
         ),
-    ];
+    ]);
     if estimate.interior_forces.len() == estimate.displacement.len() {
-        at_nodes.push(nodal("interior_force_N", &estimate.interior_forces));
+        grid = grid.with([nodal("interior_force_N", &estimate.interior_forces)]);
     }
-    let mut in_cells = Vec::new();
-    if field.coarse.is_none() {
-        at_nodes.push(nodal(
-            "displacement_standard_error_mm",
-            &estimate.displacement_error,
-        ));
-        let errors = estimate
-            .cells
-            .iter()
-            .flat_map(|cell| nominal(cell.stress_error));
-        let thickness = estimate.cells.iter().map(|cell| cell.thickness_error);
-        in_cells = vec![
-            array("nominal_stress_standard_error_MPa", 4, errors.collect()),
-            array("thickness_standard_error_mm", 1, thickness.collect()),
-        ];
+    if field.coarse.is_some() {
+        return grid;
     }
-    let title = format!("{}, frame {}", title(field), frame.number);
-    vtk::arrays_file(
-        &title,
-        &sheet,
-        &field.mesh,
-        &estimate.displacement,
-        at_nodes,
-        in_cells,
-    )
+    let cells = estimate.cells.iter();
+    let stress = cells.clone().flat_map(|cell| nominal(cell.stress_error));
+    let thickness = cells.map(|cell| cell.thickness_error);
+    grid.with([nodal(
+        "displacement_standard_error_mm",
+        &estimate.displacement_error,
+    )])
+    .with_in_cells([
+        Array::tensors("nominal_stress_standard_error_MPa", stress),
+        Array::scalars("thickness_standard_error_mm", thickness),
+    ])
 }
 
 /// The components xx, xy, yx, yy of the nominal stress from those of the first Piola–Kirchhoff stress, its transpose.
@@ -168,32 +154,18 @@ pub(super) fn left(estimate: &FieldEstimate) -> impl Iterator<Item = Left> {
     })
 }
 
-fn markers(field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> Vec<u8> {
-    let array = |name, components, values| Array {
-        name,
-        values,
-        components,
-    };
+fn markers(_field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let all = &frame.markers;
     let places: Vec<[f64; 2]> = all.iter().map(|marker| marker.place).collect();
-    let measured = all.iter().flat_map(|marker| marker.displacement);
+    let measured: Vec<f64> = all.iter().flat_map(|marker| marker.displacement).collect();
     let numbers = all.iter().map(|marker| marker.number as f64);
-    let title = format!("{}, markers of frame {}", title(field), frame.number);
-    let of = |value: fn(Left) -> f64| left(estimate).map(value).collect();
-    vtk::markers_file(
-        &title,
-        &places,
-        vec![
-            array("displacement_mm", 2, measured.collect()),
-            array(
-                "residual_mm",
-                2,
-                left(estimate).flat_map(|left| left.residual).collect(),
-            ),
-            array("standardised_residual_1", 1, of(|left| left.standardised)),
-            array("trust_1", 1, of(|left| left.trust)),
-            array("outlier_1", 1, of(|left| left.outlier)),
-            array("number_1", 1, numbers.collect()),
-        ],
-    )
+    let of = |name, value: fn(Left) -> f64| Array::scalars(name, left(estimate).map(value));
+    let residuals = left(estimate).flat_map(|left| left.residual);
+    Grid::scattered(&places, &measured).with([
+        Array::vectors("residual_mm", residuals),
+        of("standardised_residual_1", |left| left.standardised),
+        of("trust_1", |left| left.trust),
+        of("outlier_1", |left| left.outlier),
+        Array::scalars("number_1", numbers),
+    ])
 }

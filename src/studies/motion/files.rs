@@ -1,36 +1,36 @@
-//! Pictures, VTK files and tables of a motion.
+//! Pictures, grids and tables of a motion.
 
 use super::Moved;
 use super::corrected::Corrected;
 use super::read::{MovingPlate, Probe};
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::Mesh;
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::output::picture::{PALETTE, Scale};
-use crate::output::series::{self, Series};
-use crate::output::{self, vtk};
-use crate::results::Figure;
+use crate::results::{
+    Animation, Array, Axis, Colours, Content, Drawing, FieldFigure, Figure, Frame, Grid,
+    GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv,
+};
 
 /// How a model's lines are drawn.
 const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];
 
-fn line(label: String, points: Vec<[f64; 2]>, colour: usize, stroke: Stroke) -> Line {
-    Line {
-        label,
-        points,
-        colour: PALETTE[colour % PALETTE.len()],
-        stroke,
-    }
+fn chart(title: &str, x: &str, y: &str, lines: Vec<Line>) -> LineChart {
+    LineChart::new(title, Axis::linear(x), Axis::linear(y), lines)
 }
 
-fn chart(title: &str, x: &str, y: &str, lines: Vec<Line>) -> LineChart {
-    LineChart {
-        title: title.to_owned(),
-        x: Axis::linear(x),
-        y: Axis::linear(y),
-        lines,
-        band: None,
-    }
+/// Two charts of the same height, one below the other.
+fn pair(upper: LineChart, lower: LineChart) -> Drawing {
+    const HEIGHT: u32 = 380;
+    Drawing::Charts(vec![(upper, HEIGHT), (lower, HEIGHT)])
+}
+
+/// A line for each model through a pair of figures of all instants.
+fn lines(models: &[Moved; 2], point: impl Fn(&Moved, &Instant) -> [f64; 2]) -> Vec<Line> {
+    let models = models.iter().zip(STROKES).zip(PALETTE);
+    let line = |((model, stroke), colour): ((&Moved, _), _)| {
+        let points = model.points(|now| point(model, now));
+        Line::new(model.name, points, colour, stroke)
+    };
+    models.map(line).collect()
 }
 
 impl Moved {
@@ -46,119 +46,80 @@ impl Moved {
 
 /// Displacement of the probes, phase of the first, energies, force of the grip, and the plates at the end.
 pub fn figures(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> Vec<Figure> {
+    let [springs, elements] = models;
+    let last = springs.history.instants.len() - 1;
+    let plates = speeds(&shown(models, corrected), last);
+    let plates = FieldFigure::new("Plates at the last instant", "speed [mm/s]", plates);
     let mut figures = vec![
         Figure::new(
             "motion_probes.png",
             "Displacement of the probes along the plate.",
-            probes(plate, models, corrected).png(),
+            probes(plate, models, corrected),
         ),
         Figure::new(
             "motion_energy.png",
             "Where the energy is: springs above, finite elements below.",
-            output::picture::lines::stacked(&[
-                (energy(&models[0]), 380),
-                (energy(&models[1]), 380),
-            ]),
+            pair(energy(springs), energy(elements)),
         ),
         Figure::new(
             "motion_plates.png",
             "The plates at the last instant, with the size of their velocity.",
-            plates(models, corrected),
+            plates,
         ),
     ];
     if plate.release != Some(0.0) {
+        let over_time = force(models, "time [s]", |_, now| now.time);
+        let over_place = force(models, "displacement of the right side [mm]", right_side);
         figures.push(Figure::new(
             "motion_force.png",
             "Force of the right grip along the plate over its displacement and over time.",
-            output::picture::lines::stacked(&[
-                (force(models, "time [s]", |_, now| now.time), 380),
-                (
-                    force(models, "displacement of the right side [mm]", right_side),
-                    380,
-                ),
-            ]),
+            pair(over_time, over_place),
         ));
     }
-    if let Some(probe) = plate.probes.first() {
-        let phase = models
-            .iter()
-            .zip(STROKES)
-            .zip(0..)
-            .map(|((model, stroke), colour)| {
-                let points = model.points(|now| {
-                    [
-                        model.at(&now.displacement, probe)[0],
-                        model.at(&now.velocity, probe)[0],
-                    ]
-                });
-                line(model.name.to_owned(), points, colour, stroke)
-            });
+    figures.extend(plate.probes.first().map(|probe| {
+        let phase = lines(models, |model, now| {
+            [&now.displacement, &now.velocity].map(|field| model.at(field, probe)[0])
+        });
         let title = format!("Phase of the probe `{}`", probe.name);
-        let chart = chart(
-            &title,
-            "displacement [mm]",
-            "velocity [mm/s]",
-            phase.collect(),
-        );
         let caption = "Velocity over displacement of the first probe along the plate.";
-        figures.push(Figure::new("motion_phase.png", caption, chart.png()));
-    }
+        let chart = chart(&title, "displacement [mm]", "velocity [mm/s]", phase);
+        Figure::new("motion_phase.png", caption, chart)
+    }));
     figures
 }
 
 fn probes(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> LineChart {
     let mut lines = Vec::new();
     let [springs, _] = models;
-    for (colour, probe) in plate.probes.iter().enumerate() {
-        let times = springs.history.times();
-        let fields = corrected.displacement.iter();
-        let points = times
-            .iter()
-            .zip(fields)
-            .map(|(time, field)| [*time, springs.at(field, probe)[0]]);
-        let points: Vec<_> = points.collect();
-        if !points.is_empty() {
-            let label = format!("{}, corrected", probe.name);
-            lines.push(line(label, points, colour, Stroke::Marked));
-        }
-        for (model, stroke) in models.iter().zip(STROKES) {
+    let times = springs.history.times();
+    for (probe, colour) in plate.probes.iter().zip(PALETTE.into_iter().cycle()) {
+        let fields = times.iter().zip(&corrected.displacement);
+        let points = fields.map(|(time, field)| [*time, springs.at(field, probe)[0]]);
+        let label = format!("{}, corrected", probe.name);
+        let between = Line::new(label, points, colour, Stroke::Marked);
+        lines.extend((!between.points.is_empty()).then_some(between));
+        lines.extend(models.iter().zip(STROKES).map(|(model, stroke)| {
             let points = model.points(|now| [now.time, model.at(&now.displacement, probe)[0]]);
-            lines.push(line(
-                format!("{}, {}", probe.name, model.name),
-                points,
-                colour,
-                stroke,
-            ));
-        }
+            let label = format!("{}, {}", probe.name, model.name);
+            Line::new(label, points, colour, stroke)
+        }));
     }
-    chart(
-        "Displacement of the probes",
-        "time [s]",
-        "displacement along the plate [mm]",
-        lines,
-    )
+    let along = "displacement along the plate [mm]";
+    chart("Displacement of the probes", "time [s]", along, lines)
 }
 
 fn energy(model: &Moved) -> LineChart {
-    let names = [
-        "kinetic",
-        "stored",
-        "dissipated",
-        "work of grips and loads",
-        "balance",
+    type Part = fn(&EnergyBalance) -> f64;
+    let parts: [(_, Part); 5] = [
+        ("kinetic", |energy| energy.kinetic),
+        ("stored", |energy| energy.stored),
+        ("dissipated", |energy| energy.dissipated),
+        ("work of grips and loads", |energy| energy.external_work),
+        ("balance", EnergyBalance::total),
     ];
-    let parts = |energy: &EnergyBalance| {
-        let EnergyBalance {
-            kinetic,
-            stored,
-            dissipated,
-            external_work,
-        } = *energy;
-        [kinetic, stored, dissipated, external_work, energy.total()]
-    };
-    let lines = names.iter().enumerate().map(|(part, name)| {
-        let points = model.points(|now| [now.time, parts(&now.energy)[part]]);
-        line((*name).to_owned(), points, part, Stroke::Solid)
+    let lines = parts.iter().zip(PALETTE).map(|((name, part), colour)| {
+        let points = model.points(|now| [now.time, part(&now.energy)]);
+        Line::new(*name, points, colour, Stroke::Solid)
     });
     let title = format!("Energies of the {}", model.name);
     chart(&title, "time [s]", "energy [mJ]", lines.collect())
@@ -166,26 +127,15 @@ fn energy(model: &Moved) -> LineChart {
 
 fn right_side(model: &Moved, now: &Instant) -> f64 {
     let [length, width] = model.mesh.grid().size;
-    model
-        .mesh
-        .displacement_at(&now.displacement, [length, 0.5 * width])[0]
+    let middle = [length, 0.5 * width];
+    model.mesh.displacement_at(&now.displacement, middle)[0]
 }
 
 fn force(models: &[Moved; 2], axis: &str, x: fn(&Moved, &Instant) -> f64) -> LineChart {
-    let lines = models
-        .iter()
-        .zip(STROKES)
-        .zip(0..)
-        .map(|((model, stroke), colour)| {
-            let points = model.points(|now| [x(model, now), now.support_forces[1][0]]);
-            line(model.name.to_owned(), points, colour, stroke)
-        });
-    chart(
-        "Force of the right grip",
-        axis,
-        "force [N]",
-        lines.collect(),
-    )
+    let lines = lines(models, |model, now| {
+        [x(model, now), now.support_forces[1][0]]
+    });
+    chart("Force of the right grip", axis, "force [N]", lines)
 }
 
 /// A plate whose motion is shown.
@@ -224,66 +174,69 @@ fn shown<'a>(models: &'a [Moved; 2], corrected: &'a Corrected) -> Vec<Shown<'a>>
 }
 
 /// The plates at an instant, with the size of their velocity.
-fn speeds<'a>(plates: &[Shown<'a>], instant: usize) -> Vec<output::Field<'a>> {
-    let field = |plate: &Shown<'a>| {
+fn speeds(plates: &[Shown], instant: usize) -> Vec<Panel> {
+    let panel = |plate: &Shown| {
         let [displacement, velocity] = *plate.motion.get(instant)?;
-        let speeds = velocity.chunks_exact(2).map(|v| v[0].hypot(v[1]));
-        Some((plate.name, plate.mesh, displacement, speeds.collect()))
+        let speed = |node: usize| velocity[2 * node].hypot(velocity[2 * node + 1]);
+        Some(Panel::at_nodes(
+            plate.name,
+            plate.mesh,
+            displacement,
+            &speed,
+        ))
     };
-    plates.iter().filter_map(field).collect()
+    plates.iter().filter_map(panel).collect()
 }
 
 /// The plates in motion: a picture that plays in every browser.
-pub fn animation(models: &[Moved; 2], corrected: &Corrected) -> (String, Vec<u8>) {
+pub fn animation(models: &[Moved; 2], corrected: &Corrected) -> Animation {
     const FRAMES: usize = 60;
     const MILLISECONDS: u16 = 80;
     let times = models[0].history.times();
     let every = times.len().div_ceil(FRAMES).max(1);
     let plates = shown(models, corrected);
     let count = plates.iter().map(|plate| plate.motion.len()).min();
-    let frames: Vec<_> = (0..count.unwrap_or(0))
-        .step_by(every)
-        .map(|instant| (times[instant], speeds(&plates, instant)))
-        .collect();
-    let png = output::field_animation("Plates in motion", "speed [mm/s]", &frames, MILLISECONDS);
-    ("motion.png".into(), png)
+    let instants = (0..count.unwrap_or(0)).step_by(every);
+    let frame = |instant: usize| Frame {
+        time: times[instant],
+        panels: speeds(&plates, instant),
+    };
+    Animation {
+        title: "Plates in motion".into(),
+        quantity: "speed [mm/s]".into(),
+        colours: Colours::Sequential,
+        frames: instants.map(frame).collect(),
+        milliseconds: MILLISECONDS,
+    }
 }
 
-fn plates(models: &[Moved; 2], corrected: &Corrected) -> Vec<u8> {
-    let last = models[0].history.instants.len() - 1;
-    output::field_figure(
-        "Plates at the last instant",
-        "speed [mm/s]",
-        Scale::Linear,
-        &speeds(&shown(models, corrected), last),
-    )
-}
-
-/// A series of VTK files for each model and the corrected motion; those on the lattice hold the difference to the
-/// `expected` displacements.
-pub fn vtk_files(
+/// The fields of each model and of the corrected motion; those on the lattice hold the difference to the `expected`
+/// displacements.
+pub fn grids(
     plate: &MovingPlate,
     models: &[Moved; 2],
     corrected: &Corrected,
     expected: &[Vec<f64>],
-) -> Vec<(String, Vec<u8>)> {
+) -> Vec<GridSeries> {
     let [springs, elements] = models;
-    let sheet = vtk::Sheet {
+    let sheet = Sheet {
         law: &*plate.problem.law,
         thickness: plate.problem.thickness,
     };
     let times = springs.history.times();
-    let plates = shown(models, corrected);
-    let series = plates.iter().flat_map(|plate| {
-        let (sheet, times) = (&sheet, &times);
-        let file = move |instant: usize| {
-            let reference = (plate.file != elements.file).then(|| &expected[instant][..]);
-            let title = format!("{} at {} s", plate.name, times[instant]);
-            vtk::moving_file(&title, sheet, plate.mesh, plate.motion[instant], reference)
-        };
-        series::vtk_files(plate.file, &times[..plate.motion.len()], file)
-    });
-    series.collect()
+    let series = |plate: &Shown| {
+        let instants = plate.motion.iter().zip(&times).zip(expected);
+        let grid =
+            |(([displacement, velocity], time), expected): ((&[&[f64]; 2], &f64), &Vec<f64>)| {
+                let velocity = Array::vectors("velocity_mm_per_s", velocity.iter().copied());
+                let difference = (plate.file != elements.file)
+                    .then(|| Array::to_finite_elements(displacement, expected));
+                let grid = Grid::sheet(sheet, plate.mesh, displacement);
+                (*time, grid.with([velocity]).with(difference))
+            };
+        GridSeries::instants(plate.file, instants.map(grid))
+    };
+    shown(models, corrected).iter().map(series).collect()
 }
 
 /// Probes, energies and the grip's force over time, one table for each model.
@@ -291,59 +244,61 @@ pub fn tables(
     plate: &MovingPlate,
     models: &[Moved; 2],
     corrected: &Corrected,
-) -> Vec<(String, Vec<u8>)> {
-    let table = |model: &Moved| {
-        let column = |name: &str, unit: &str, value: &dyn Fn(&Instant) -> f64| {
-            let values = model.history.instants.iter().map(value);
-            Series::new(name, unit, values.collect())
-        };
-        let mut columns = vec![
-            column("kinetic energy", "mJ", &|now| now.energy.kinetic),
-            column("stored energy", "mJ", &|now| now.energy.stored),
-            column("dissipated energy", "mJ", &|now| now.energy.dissipated),
-            column("external work", "mJ", &|now| now.energy.external_work),
-            column("grip force x", "N", &|now| now.support_forces[1][0]),
-            column("grip force y", "N", &|now| now.support_forces[1][1]),
+) -> Vec<(String, Content)> {
+    let [springs, _] = models;
+    let times = springs.history.times();
+    let of_model = |model: &Moved| {
+        let instants = &model.history.instants;
+        type Column = fn(&Instant) -> f64;
+        let columns: [(_, _, Column); 6] = [
+            ("kinetic energy", "mJ", |now| now.energy.kinetic),
+            ("stored energy", "mJ", |now| now.energy.stored),
+            ("dissipated energy", "mJ", |now| now.energy.dissipated),
+            ("external work", "mJ", |now| now.energy.external_work),
+            ("grip force x", "N", |now| now.support_forces[1][0]),
+            ("grip force y", "N", |now| now.support_forces[1][1]),
         ];
-        for probe in &plate.probes {
-            for (axis, direction) in ["x", "y"].into_iter().enumerate() {
-                let place = |now: &Instant| model.at(&now.displacement, probe)[axis];
-                let speed = |now: &Instant| model.at(&now.velocity, probe)[axis];
-                let head = |what: &str| format!("{} {what} {direction}", probe.name);
-                columns.push(column(&head("displacement"), "mm", &place));
-                columns.push(column(&head("velocity"), "mm/s", &speed));
-            }
-        }
-        let text = series::csv(&model.history.times(), &columns);
-        (format!("motion_{}.csv", model.file), text.into_bytes())
+        let columns = columns.into_iter().map(|(name, unit, value)| {
+            Series::new(name, unit, instants.iter().map(value).collect())
+        });
+        let fields = instants
+            .iter()
+            .map(|now| [&now.displacement, &now.velocity]);
+        let columns = columns.chain(of_probes(plate, model, fields)).collect();
+        table(model.file, &model.history.times(), columns)
     };
-    let own =
-        (!corrected.displacement.is_empty()).then(|| corrected_table(plate, models, corrected));
-    models.iter().map(table).chain(own).collect()
+    let mut all: Vec<_> = models.iter().map(of_model).collect();
+    if !corrected.displacement.is_empty() {
+        let fields = corrected.displacement.iter().zip(&corrected.velocity);
+        let columns = of_probes(plate, springs, fields.map(|(u, v)| [u, v]));
+        let times = &times[..corrected.displacement.len()];
+        all.push(table("corrected", times, columns));
+    }
+    all
 }
 
-/// The probes of the corrected motion over time.
-fn corrected_table(
+fn table(model: &str, times: &[f64], columns: Vec<Series>) -> (String, Content) {
+    let text = csv(times, &columns);
+    (format!("motion_{model}.csv"), Content::Text(text))
+}
+
+/// Displacements and velocities of the probes, from those of all nodes at every instant.
+fn of_probes<'a>(
     plate: &MovingPlate,
-    [springs, _]: &[Moved; 2],
-    corrected: &Corrected,
-) -> (String, Vec<u8>) {
+    model: &Moved,
+    fields: impl Iterator<Item = [&'a Vec<f64>; 2]> + Clone,
+) -> Vec<Series> {
     let mut columns = Vec::new();
     for probe in &plate.probes {
         for (axis, direction) in ["x", "y"].into_iter().enumerate() {
-            for (what, unit, fields) in [
-                ("displacement", "mm", &corrected.displacement),
-                ("velocity", "mm/s", &corrected.velocity),
-            ] {
-                let values = fields.iter().map(|field| springs.at(field, probe)[axis]);
+            for (which, what, unit) in [(0, "displacement", "mm"), (1, "velocity", "mm/s")] {
+                let values = fields
+                    .clone()
+                    .map(|pair| model.at(pair[which], probe)[axis]);
                 let head = format!("{} {what} {direction}", probe.name);
                 columns.push(Series::new(&head, unit, values.collect()));
             }
         }
     }
-    let times = &springs.history.times()[..corrected.displacement.len()];
-    (
-        "motion_corrected.csv".into(),
-        series::csv(times, &columns).into_bytes(),
-    )
+    columns
 }

@@ -2,13 +2,12 @@
 
 use super::Moved;
 use super::corrected::Corrected;
-use super::files::{animation, figures, tables, vtk_files};
+use super::files::{animation, figures, grids, tables};
 use super::read::MovingPlate;
 use super::statement;
 use crate::dynamics::lumped_mass;
 use crate::mesh::Mesh;
-use crate::results::Block;
-use crate::results::{Check, Outcome, Wanted, number};
+use crate::results::{Block, Check, Content, Drawing, Outcome, Wanted, number};
 
 /// Instants in the table of deviations.
 const ROWS: usize = 12;
@@ -82,6 +81,9 @@ pub fn outcome(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) 
             in_time(models, &deviations),
         ];
     blocks.extend(statement::blocks(plate));
+    let mut files = tables(plate, models, corrected);
+    let animation = Drawing::Animation(animation(models, corrected));
+    files.push(("motion.png".into(), Content::Picture(animation)));
     Outcome {
         checks: checks(plate, models, &deviations),
         blocks,
@@ -89,11 +91,8 @@ pub fn outcome(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) 
             .into_iter()
             .collect(),
         figures: figures(plate, models, corrected),
-        vtk: vtk_files(plate, models, corrected, &expected),
-        files: tables(plate, models, corrected)
-            .into_iter()
-            .chain([animation(models, corrected)])
-            .collect(),
+        grids: grids(plate, models, corrected, &expected),
+        files,
         times: times.collect(),
         ..Outcome::default()
     }

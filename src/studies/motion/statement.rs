@@ -5,10 +5,7 @@ use serde_json::{Value, json};
 use super::read::MovingPlate;
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
-use crate::output::material_json;
-use crate::results::Block;
-use crate::results::number;
-use crate::studies::material_statement;
+use crate::results::{Block, material_json, material_statement, number};
 
 /// The plate, what moves and loads it, what springs and dashpots follow, its material.
 pub fn blocks(plate: &MovingPlate) -> Vec<Block> {

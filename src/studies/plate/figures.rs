@@ -4,12 +4,10 @@ use super::results::{MODELS, Results};
 use super::study::Study;
 use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
-use crate::output::picture::fields::{Colours, FieldFigure, Panel};
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
-use crate::output::picture::{PALETTE, Scale};
-use crate::output::{cell_figure, cells, material_chart};
 use crate::problem::plate::{Problem, Solution};
-use crate::results::Figure;
+use crate::results::{
+    Axis, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, material_chart,
+};
 
 const CORRECTED: [u8; 3] = PALETTE[0];
 const MASS_SPRING: [u8; 3] = PALETTE[1];
@@ -17,66 +15,53 @@ const FINITE_ELEMENT: [u8; 3] = [30, 30, 30];
 
 /// All pictures of a run, in the order of the report.
 pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
-    let mut all = vec![Figure::new(
-        "material.png",
-        "The material: nominal stress over stretch.",
-        material_chart(&study.card).png(),
-    )];
+    let material = material_chart(&study.card);
+    let caption = "The material: nominal stress over stretch.";
+    let mut all = vec![Figure::new("material.png", caption, material)];
     for (step, stretch) in study.problem.stretches.iter().enumerate() {
-        all.extend(step_figures(
-            results,
-            step,
-            &Problem::describe_step(*stretch),
-        ));
+        let at = Problem::describe_step(*stretch);
+        all.extend(step_figures(results, step, &at));
     }
-    all.extend([
-        Figure::new(
-            "errors.png",
-            "Deviation from the finite elements over stretch.",
-            errors(results).png(),
-        ),
-        Figure::new(
-            "force.png",
-            "Grip force over stretch.",
-            force(results).png(),
-        ),
-        Figure::new(
-            "residuals.png",
-            "Residual over iteration, at the last stretch with a solution.",
-            residuals(results).png(),
-        ),
-    ]);
-    all.extend(estimated_error(results).map(|png| {
+    let caption = "Deviation from the finite elements over stretch.";
+    all.push(Figure::new("errors.png", caption, errors(results)));
+    let caption = "Grip force over stretch.";
+    all.push(Figure::new("force.png", caption, force(results)));
+    let caption = "Residual over iteration, at the last stretch with a solution.";
+    all.push(Figure::new("residuals.png", caption, residuals(results)));
+    all.extend(estimated_error(results).map(|figure| {
         let caption = "Estimated error of every finite element at the last stretch, in % of the solution's energy norm.";
-        Figure::new("estimated_error.png", caption, png)
+        Figure::new("estimated_error.png", caption, figure)
     }));
     all
 }
 
 /// The pictures of one stretch, of those models that have a solution there.
 fn step_figures(results: &Results, step: usize, at: &str) -> Vec<Figure> {
-    let mut all = Vec::new();
     let plates = plates(results, step, at);
-    if !plates.panels.is_empty() {
-        let models = match plates.panels.len() {
-            3 => "in all three models",
-            _ => "in the models that have a solution there",
-        };
-        let caption = format!("The plate at {at} {models}, on one colour scale.");
-        let name = format!("plates_{:03}.png", step + 1);
-        all.push(Figure::new(&name, &caption, plates.png()));
-    }
+    let models = match plates.panels.len() {
+        3 => "in all three models",
+        _ => "in the models that have a solution there",
+    };
+    let plates_caption = format!("The plate at {at} {models}, on one colour scale.");
     let error = error_map(results, step, at);
-    if !error.panels.is_empty() {
-        let models = match error.panels.len() {
-            2 => ", before and after the correction",
-            _ => "",
-        };
-        let caption = format!("Distance to the finite elements at {at}{models}.");
-        let name = format!("error_{:03}.png", step + 1);
-        all.push(Figure::new(&name, &caption, error.png()));
-    }
-    all
+    let models = match error.panels.len() {
+        2 => ", before and after the correction",
+        _ => "",
+    };
+    let error_caption = format!("Distance to the finite elements at {at}{models}.");
+    let figures = [
+        ("plates", plates_caption, plates),
+        ("error", error_caption, error),
+    ];
+    let drawn = figures
+        .into_iter()
+        .filter(|(.., figure)| !figure.panels.is_empty());
+    let number = step + 1;
+    drawn
+        .map(|(name, caption, figure)| {
+            Figure::new(format!("{name}_{number:03}.png"), caption, figure)
+        })
+        .collect()
 }
 
 fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
@@ -85,117 +70,82 @@ fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
         MODELS[1].to_owned(),
         format!("{} ({})", MODELS[2], results.finest().model.describe()),
     ];
-    let models = labels
-        .into_iter()
-        .zip(results.meshes())
-        .zip(results.models(step));
+    let meshes = labels.into_iter().zip(results.meshes());
     let panel = |((label, mesh), solution): ((String, &Mesh), Option<&Solution>)| {
         let u = &solution?.displacement;
-        let cells = cells(mesh, u, &|node| u[2 * node + 1]);
-        Some(Panel { label, cells })
+        Some(Panel::at_nodes(label, mesh, u, &|node| u[2 * node + 1]))
     };
-    FieldFigure {
-        title: format!("Plate at {at}"),
-        quantity: "transverse displacement [mm]".into(),
-        scale: Scale::Linear,
-        colours: Colours::Diverging,
-        panels: models.filter_map(panel).collect(),
-    }
+    let panels = meshes.zip(results.models(step)).filter_map(panel);
+    let quantity = "transverse displacement [mm]";
+    FieldFigure::new(format!("Plate at {at}"), quantity, panels).diverging()
 }
 
 fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
     let mesh = &results.springs.mesh;
-    let [springs, corrected, _] = results.models(step);
+    let models = MODELS.into_iter().zip(results.models(step)).take(2);
     let distance = |(label, solution): (&str, Option<&Solution>)| {
-        let (u, v) = (
+        let reference = results.reference_on_lattice.get(step)?;
+        Some(Panel::distance(
+            label,
+            mesh,
             &solution?.displacement,
-            results.reference_on_lattice.get(step)?,
-        );
-        let distance =
-            |node: usize| (u[2 * node] - v[2 * node]).hypot(u[2 * node + 1] - v[2 * node + 1]);
-        Some(Panel {
-            label: label.to_owned(),
-            cells: cells(mesh, u, &distance),
-        })
+            reference,
+        ))
     };
-    let models = [(MODELS[0], springs), (MODELS[1], corrected)];
-    FieldFigure {
-        title: format!("Distance to the finite elements at {at}"),
-        quantity: "distance [mm]".into(),
-        scale: Scale::Logarithmic,
-        colours: Colours::Sequential,
-        panels: models.into_iter().filter_map(distance).collect(),
-    }
+    let title = format!("Distance to the finite elements at {at}");
+    FieldFigure::new(title, "distance [mm]", models.filter_map(distance)).logarithmic()
 }
 
-fn estimated_error(results: &Results) -> Option<Vec<u8>> {
+fn estimated_error(results: &Results) -> Option<FieldFigure> {
     let finest = results.finest();
     let (last, estimate) = results.estimates.iter().enumerate().next_back()?;
-    let at = Problem::describe_step(finest.solutions[last].stretch);
-    Some(cell_figure(
-        (&format!("Estimated error at {at}"), "error of a cell [%]"),
-        Scale::Logarithmic,
-        &finest.model.mesh,
-        &finest.solutions[last].displacement,
-        &estimate.as_ref()?.energy.cell_percents(),
+    let solution = &finest.solutions[last];
+    let at = Problem::describe_step(solution.stretch);
+    let energy = &estimate.as_ref()?.energy;
+    let mesh = &finest.model.mesh;
+    Some(FieldFigure::estimated_error(
+        &at,
+        mesh,
+        &solution.displacement,
+        energy,
     ))
 }
 
 fn errors(results: &Results) -> LineChart {
-    type OfStep = fn(&StepComparison) -> Option<Deviation>;
     type Measure = fn(&Deviation) -> f64;
-    let before: (OfStep, _) = (|step| step.mass_spring, MASS_SPRING);
-    let after: (OfStep, _) = (|step| step.corrected, CORRECTED);
     let departure: Measure = |deviation| deviation.departure_percent;
     let displacement: Measure = |deviation| deviation.displacement_percent;
-    let line = |(label, (deviation, colour), stroke, value): (&str, (OfStep, _), _, Measure)| {
-        let point = |step: &StepComparison| Some([100.0 * step.stretch, value(&deviation(step)?)]);
-        let points: Vec<[f64; 2]> = results.comparison.iter().filter_map(point).collect();
-        Line {
-            label: label.to_owned(),
+    let measures = [
+        ("departure from affine", departure, Stroke::Marked),
+        ("displacement", displacement, Stroke::Dashed),
+    ];
+    type OfStep = fn(&StepComparison) -> Option<Deviation>;
+    let before: OfStep = |step| step.mass_spring;
+    let after: OfStep = |step| step.corrected;
+    let models = [
+        (MODELS[0], before, MASS_SPRING),
+        (MODELS[1], after, CORRECTED),
+    ];
+    let lines = models.into_iter().flat_map(|(model, deviation, colour)| {
+        measures.map(|(name, value, stroke)| {
+            let point =
+                |step: &StepComparison| Some([100.0 * step.stretch, value(&deviation(step)?)]);
+            let points: Vec<[f64; 2]> = results.comparison.iter().filter_map(point).collect();
             // A single point has no line to be seen by.
-            stroke: if points.len() == 1 {
+            let stroke = if points.len() == 1 {
                 Stroke::Points
             } else {
                 stroke
-            },
-            points,
-            colour,
-        }
-    };
-    let lines = [
-        (
-            "mass-spring: departure from affine",
-            before,
-            Stroke::Marked,
-            departure,
-        ),
-        (
-            "mass-spring: displacement",
-            before,
-            Stroke::Dashed,
-            displacement,
-        ),
-        (
-            "corrected: departure from affine",
-            after,
-            Stroke::Marked,
-            departure,
-        ),
-        (
-            "corrected: displacement",
-            after,
-            Stroke::Dashed,
-            displacement,
-        ),
-    ];
-    LineChart {
-        title: "Deviation from the finite elements".into(),
-        x: Axis::linear("stretch of the plate [%]"),
-        y: Axis::logarithmic("deviation, relative L2 [%]"),
-        lines: with_points(lines.map(line), 1),
-        band: None,
-    }
+            };
+            Line::new(format!("{model}: {name}"), points, colour, stroke)
+        })
+    });
+    LineChart::new(
+        "Deviation from the finite elements",
+        Axis::linear("stretch of the plate [%]"),
+        Axis::logarithmic("deviation, relative L2 [%]"),
+        with_points(lines, 1),
+    )
 }
 
 /// The lines with so many points at least: a model without solutions has no place in a legend.
@@ -205,29 +155,28 @@ fn with_points(lines: impl IntoIterator<Item = Line>, fewest: usize) -> Vec<Line
 }
 
 fn force(results: &Results) -> LineChart {
-    let line = |model: usize, colour, stroke| {
+    let line = |(model, colour, stroke): (usize, _, _)| {
         let steps = 0..results.comparison.len();
         let solutions = steps.filter_map(|step| results.models(step)[model]);
         let points = solutions.map(|solution| [100.0 * solution.stretch, solution.force]);
-        Line {
-            label: MODELS[model].to_owned(),
-            points: std::iter::once([0.0, 0.0]).chain(points).collect(),
+        Line::new(
+            MODELS[model],
+            [[0.0, 0.0]].into_iter().chain(points),
             colour,
             stroke,
-        }
+        )
     };
     let lines = [
-        line(2, FINITE_ELEMENT, Stroke::Solid),
-        line(0, MASS_SPRING, Stroke::Marked),
-        line(1, CORRECTED, Stroke::Points),
+        (2, FINITE_ELEMENT, Stroke::Solid),
+        (0, MASS_SPRING, Stroke::Marked),
+        (1, CORRECTED, Stroke::Points),
     ];
-    LineChart {
-        title: "Grip force".into(),
-        x: Axis::linear("stretch of the plate [%]"),
-        y: Axis::linear("force [N]"),
-        lines: with_points(lines, 2),
-        band: None,
-    }
+    LineChart::new(
+        "Grip force",
+        Axis::linear("stretch of the plate [%]"),
+        Axis::linear("force [N]"),
+        with_points(lines.map(line), 2),
+    )
 }
 
 /// The residuals of the models that have a solution at the last stretch that one of them has reached.
@@ -237,19 +186,14 @@ fn residuals(results: &Results) -> LineChart {
     let models = MODELS.into_iter().zip(colours).zip(results.models(last));
     let line = |((label, colour), solution): ((&str, _), Option<&Solution>)| {
         let residuals = solution?.convergence.residuals.iter().enumerate();
-        Some(Line {
-            label: label.to_owned(),
-            points: residuals.map(|(i, r)| [i as f64, *r]).collect(),
-            colour,
-            stroke: Stroke::Marked,
-        })
+        let points = residuals.map(|(i, r)| [i as f64, *r]);
+        Some(Line::new(label, points, colour, Stroke::Marked))
     };
     let at = Problem::describe_step(results.comparison[last].stretch);
-    LineChart {
-        title: format!("Residual at {at}"),
-        x: Axis::linear("iteration"),
-        y: Axis::logarithmic("relative residual [–]"),
-        lines: models.filter_map(line).collect(),
-        band: None,
-    }
+    LineChart::new(
+        format!("Residual at {at}"),
+        Axis::linear("iteration"),
+        Axis::logarithmic("relative residual [–]"),
+        models.filter_map(line).collect(),
+    )
 }

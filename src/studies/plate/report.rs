@@ -7,8 +7,7 @@ use crate::studies::plate::results::{MODELS, Requirement, Results, verdict};
 use crate::studies::plate::study::Study;
 
 use super::warnings::warnings;
-use crate::results::{Block, Figure};
-use crate::studies::material_statement;
+use crate::results::{Block, Figure, material_statement};
 
 mod accuracy;
 

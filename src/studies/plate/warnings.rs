@@ -4,7 +4,7 @@ use crate::problem::plate::Problem;
 use crate::studies::plate::results::{MODELS, Results};
 use crate::studies::plate::study::Study;
 
-use crate::output::wrinkling;
+use crate::results::wrinkling;
 
 /// Reactions further from balance than this, relative to the largest, deserve a word.
 const BALANCED: f64 = 1e-9;

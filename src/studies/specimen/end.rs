@@ -5,10 +5,8 @@ use super::read::Specimen;
 use super::solved::{GroupState, group_states};
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
-use crate::output::vtk;
 use crate::problem::Discretised;
-use crate::results::Block;
-use crate::results::{Check, Outcome};
+use crate::results::{Block, Check, Grid, GridSeries, Outcome};
 use crate::solve::{PathEnd, State};
 
 /// Where the path of one model ended, and why.
@@ -44,7 +42,7 @@ impl End {
             step: end.describe(),
             fault: end.fault.clone(),
             last: state.map(|state| Last {
-                file: format!("{file}_end.vtu"),
+                file: format!("{file}_end"),
                 mesh: mesh.clone(),
                 groups: group_states(specimen, model, state),
                 state: state.clone(),
@@ -93,19 +91,20 @@ pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &
             .checks
             .push(Check::fault(quantity, "the whole path"));
         let Some(last) = end.last else { continue };
-        let file = if last.between { &*last.file } else { "–" };
+        let file = match last.between {
+            true => format!("{}.vtu", last.file),
+            false => "–".to_owned(),
+        };
         rows.push(vec![
             end.model,
             format!("{:.4}", last.state.factor),
             end.fault.to_string(),
             format!("{:.5}", measured.of(&last.groups)),
-            file.to_owned(),
+            file,
         ]);
         if last.between {
-            let displacement = &last.state.displacement;
-            let sheet = specimen.sheet();
-            let content = vtk::field_file(&specimen.name, &sheet, &last.mesh, displacement, None);
-            outcome.vtk.push((last.file, content));
+            let grid = Grid::sheet(specimen.sheet(), &last.mesh, &last.state.displacement);
+            outcome.grids.push(GridSeries::single(&last.file, grid));
         }
     }
     if !rows.is_empty() {

@@ -1,13 +1,8 @@
-//! Pictures and VTK files of a specimen.
+//! Pictures and grids of a specimen.
 
 use super::{Models, Specimen};
-use crate::output::picture::Scale;
-use crate::output::{self, vtk};
-use crate::results::Figure;
-
-fn sizes(u: &[f64]) -> Vec<f64> {
-    u.chunks_exact(2).map(|u| u[0].hypot(u[1])).collect()
-}
+use crate::mesh::Mesh;
+use crate::results::{Array, FieldFigure, Figure, Grid, GridSeries, Panel, mesh_outlines};
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
 fn shown(models: &Models) -> Option<usize> {
@@ -17,125 +12,93 @@ fn shown(models: &Models) -> Option<usize> {
     shown.checked_sub(1)
 }
 
-/// Pictures of the largest load factor of which most can be shown.
+/// Pictures of the largest load factor of which most can be shown; `expected` are the finite elements' displacements at
+/// the lattice's nodes.
 pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec<Figure> {
     let lattice = &models.on_lattice.springs.mesh;
-    let name = |what: &str| format!("{}_{what}.png", specimen.name);
-    let cells = output::mesh_picture("Lattice", lattice);
-    let mesh = Figure::new(&name("mesh"), "The cells of the lattice.", cells);
+    let figure = |what: &str, caption: String, drawing| {
+        Figure::new(format!("{}_{what}.png", specimen.name), caption, drawing)
+    };
+    let cells = mesh_outlines("Lattice", lattice);
+    let mesh = figure("mesh", "The cells of the lattice.".into(), cells);
     let Some(step) = shown(models) else {
         return vec![mesh];
     };
     let at = format!("load factor {}", specimen.factors[step]);
-    let fields = models
-        .named()
-        .into_iter()
-        .filter_map(|(name, _, mesh, solved)| {
-            let u = &*solved.states.get(step)?.displacement;
-            Some((name, mesh, u))
-        });
-    let fields: Vec<_> = fields.collect();
-    let displacements = fields
-        .iter()
-        .map(|(name, mesh, u)| (*name, *mesh, *u, sizes(u)));
-    let mut figures = vec![Figure {
-        name: name("displacement"),
-        caption: format!("Displacement at {at}, on one colour scale."),
-        png: output::field_figure(
-            &format!("Displacement at {at}"),
-            "displacement [mm]",
-            Scale::Linear,
-            &displacements.collect::<Vec<_>>(),
-        ),
-    }];
-    if let Some(expected) = expected.get(step) {
-        let on_lattice = fields
-            .iter()
-            .filter(|(_, mesh, _)| std::ptr::eq(*mesh, lattice));
-        let distances = on_lattice.map(|(name, mesh, u)| {
-            let pairs = u.iter().zip(expected);
-            let distance = sizes(&pairs.map(|(u, v)| u - v).collect::<Vec<_>>());
-            (*name, *mesh, *u, distance)
-        });
-        figures.push(Figure {
-            name: name("error"),
-            caption: format!("Distance to the finite elements at {at}."),
-            png: output::field_figure(
-                &format!("Distance to the finite elements at {at}"),
-                "distance [mm]",
-                Scale::Logarithmic,
-                &distances.collect::<Vec<_>>(),
-            ),
-        });
+    let fields = || {
+        let models = models.named().into_iter();
+        models.filter_map(|(name, _, mesh, solved)| {
+            Some((name, mesh, &*solved.states.get(step)?.displacement))
+        })
+    };
+    let size = |(name, mesh, u): (&str, &Mesh, &[f64])| {
+        Panel::at_nodes(name, mesh, u, &|node| u[2 * node].hypot(u[2 * node + 1]))
+    };
+    let title = format!("Displacement at {at}");
+    let caption = format!("{title}, on one colour scale.");
+    let displacement = FieldFigure::new(title, "displacement [mm]", fields().map(size));
+    let mut figures = vec![figure("displacement", caption, displacement.into())];
+    if let Some(v) = expected.get(step) {
+        let on_lattice = fields().filter(|(_, mesh, _)| std::ptr::eq(*mesh, lattice));
+        let distances = on_lattice.map(|(name, mesh, u)| Panel::distance(name, mesh, u, v));
+        let title = format!("Distance to the finite elements at {at}");
+        let caption = format!("{title}.");
+        let distance = FieldFigure::new(title, "distance [mm]", distances).logarithmic();
+        figures.push(figure("error", caption, distance.into()));
     }
     figures.push(mesh);
-    figures.extend(estimated_error(models, step, &at).map(|png| Figure {
-        name: name("estimated_error"),
-        caption: format!(
+    figures.extend(estimated_error(models, step, &at).map(|drawing| {
+        let caption = format!(
             "Estimated error of every finite element at {at}, in % of the solution's energy norm."
-        ),
-        png,
+        );
+        figure("estimated_error", caption, drawing.into())
     }));
     figures
 }
 
-fn estimated_error(models: &Models, step: usize, at: &str) -> Option<Vec<u8>> {
+fn estimated_error(models: &Models, step: usize, at: &str) -> Option<FieldFigure> {
     let reference = &models.reference;
-    let estimate = reference.estimates.get(step)?.as_ref()?;
-    Some(output::cell_figure(
-        (&format!("Estimated error at {at}"), "error of a cell [%]"),
-        Scale::Logarithmic,
+    let energy = &reference.estimates.get(step)?.as_ref()?.energy;
+    let displacement = &reference.solved.states.get(step)?.displacement;
+    Some(FieldFigure::estimated_error(
+        at,
         &reference.mesh,
-        &reference.solved.states.get(step)?.displacement,
-        &estimate.energy.cell_percents(),
+        displacement,
+        energy,
     ))
 }
 
-/// A series of VTK files for each model, as far as it goes; `expected` are the finite elements' displacements at the
-/// lattice's nodes.
-pub fn files(
-    specimen: &Specimen,
-    models: &Models,
-    expected: &[Vec<f64>],
-) -> Vec<(String, Vec<u8>)> {
+/// The fields of each model, as far as it goes; `expected` are the finite elements' displacements at the lattice's nodes.
+pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec<GridSeries> {
     let (on_lattice, reference) = (&models.on_lattice, &models.reference);
-    let sheet = specimen.sheet();
     let lattice = &on_lattice.springs.mesh;
-    let title = &specimen.name;
-    let mut files = Vec::new();
-    let mut series = |name: &str, reached: usize, file: &dyn Fn(usize) -> Vec<u8>| {
-        if reached == 0 {
-            return;
-        }
+    let field = |mesh, u: &[f64]| Grid::sheet(specimen.sheet(), mesh, u);
+    let series = |name: &str, reached: usize, grid: &dyn Fn(usize) -> Grid| {
         let steps = specimen.factors.iter().take(reached).enumerate();
-        let named: Vec<(f64, String)> = steps
-            .map(|(step, factor)| (*factor, format!("{name}_{:03}.vtu", step + 1)))
-            .collect();
-        for (step, (_, file_name)) in named.iter().enumerate() {
-            files.push((file_name.clone(), file(step)));
-        }
-        files.push((format!("{name}.pvd"), vtk::collection(&named)));
+        let steps = steps.map(|(step, factor)| (*factor, grid(step)));
+        (reached > 0).then(|| GridSeries::steps(name, steps))
     };
     let (uncorrected, corrected) = (&on_lattice.uncorrected, &on_lattice.corrected);
-    for (name, model) in [("mass_spring", uncorrected), ("corrected", corrected)] {
+    let on_lattice_of = |name, model: &super::Solved| {
         series(name, model.reached(), &|step| {
             let u = &model.states[step].displacement;
-            let expected = expected.get(step).map(Vec::as_slice);
-            vtk::field_file(title, &sheet, lattice, u, expected)
-        });
-    }
-    series("springs", uncorrected.reached(), &|step| {
-        let u = &uncorrected.states[step].displacement;
-        vtk::springs_file(title, &on_lattice.springs, u)
+            let difference = expected.get(step).map(|v| Array::to_finite_elements(u, v));
+            field(lattice, u).with(difference)
+        })
+    };
+    let springs = series("springs", uncorrected.reached(), &|step| {
+        Grid::springs(&on_lattice.springs, &uncorrected.states[step].displacement)
     });
-    series("finite_element", reference.reached(), &|step| {
-        let u = &reference.solved.states[step].displacement;
-        match &reference.estimates[step] {
-            Some(estimate) => {
-                vtk::finite_element_file(title, &sheet, &reference.mesh, u, &estimate.energy)
-            }
-            None => vtk::field_file(title, &sheet, &reference.mesh, u, None),
-        }
+    let elements = series("finite_element", reference.reached(), &|step| {
+        let error = reference.estimates[step].as_ref();
+        let error = error.map(|estimate| Array::estimated_error(&estimate.energy));
+        field(&reference.mesh, &reference.solved.states[step].displacement).with_in_cells(error)
     });
-    files
+    let all = [
+        on_lattice_of("mass_spring", uncorrected),
+        on_lattice_of("corrected", corrected),
+        springs,
+        elements,
+    ];
+    all.into_iter().flatten().collect()
 }

@@ -1,6 +1,6 @@
 //! What is told about a specimen: what the study says, deviations, own errors, forces, warnings.
 
-use super::files::{figures, files};
+use super::files::{figures, grids};
 use super::paths::Start;
 use super::verdict::{Deviation, checks};
 use super::warnings::warnings;
@@ -34,7 +34,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         checks: checks(specimen, models, &judged),
         blocks,
         figures: figures(specimen, models, &expected),
-        vtk: files(specimen, models, &expected),
+        grids: grids(specimen, models, &expected),
         warnings,
         balance: forces::worst_balance(models),
         json: json.into_iter().collect(),

@@ -3,10 +3,8 @@
 use serde_json::{Value, json};
 
 use super::Specimen;
-use crate::output::material_json;
 use crate::problem::{Drive, Load, Support};
-use crate::results::Block;
-use crate::studies::material_statement;
+use crate::results::{Block, material_json, material_statement};
 use crate::units::Linear;
 
 /// The specimen, its supports and loads, its material.

@@ -7,7 +7,7 @@ use crate::material::Card;
 use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
-use crate::output::wrinkling;
+use crate::results::wrinkling;
 
 /// All warnings, each in a sentence.
 pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {

@@ -12,9 +12,8 @@ use super::{distorted, misfit, sheet, solve, stress};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, GAUSS_5, Mesh};
-use crate::output::picture::PALETTE;
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::problem::{BoundaryProblem, Support};
+use crate::results::{Axis, Line, LineChart, PALETTE, Stroke};
 use crate::solve::State;
 use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, figure};
 

@@ -11,11 +11,8 @@ use crate::finite_element::error_estimate::{EnergyError, ErrorEstimate, Solved, 
 use crate::finite_element::recovery::Recovery;
 use crate::finite_element::{Element, FiniteElements};
 use crate::mesh::{CellShape, Mesh, Shape};
-use crate::output::mesh_picture;
-use crate::output::picture::PALETTE;
-use crate::output::picture::lines::{Axis, Line, LineChart, Stroke};
 use crate::problem::plate::{Problem, Solution};
-use crate::results::{Block, Figure};
+use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Stroke, mesh_outlines};
 use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, figure, number};
 
 const SIZE: [f64; 2] = [150.0, 50.0];
@@ -393,10 +390,10 @@ fn pictures(uniform: &[Round], adaptive: &[Round]) -> [Figure; 2] {
             "Error of the plate's force over the number of cells.",
             &chart,
         ),
-        Figure {
-            name: "own_error_mesh.png".into(),
-            caption: "The last mesh of the local refinement.".into(),
-            png: mesh_picture("Refined where the estimated error is", last),
-        },
+        Figure::new(
+            "own_error_mesh.png",
+            "The last mesh of the local refinement.",
+            mesh_outlines("Refined where the estimated error is", last),
+        ),
     ]
 }

@@ -1,10 +1,31 @@
-//! The part of a report on the material.
+//! The material of a study, in the report's words and for machines.
 
+use serde_json::{Map, Value, json};
+
+use super::Block;
 use crate::material::Card;
 use crate::material::curve::Mode;
 use crate::material::law::HyperelasticLaw;
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::results::Block;
+
+/// A card: its law, every parameter with value and unit, its range and its text.
+pub fn material_json(card: &Card) -> Value {
+    let parameters = card.parameters.iter().map(|parameter| {
+        let value = json!({ "value": parameter.value, "unit": parameter.unit() });
+        (parameter.key.to_owned(), value)
+    });
+    let choices = card.choices.iter();
+    let choices = choices.map(|(key, name)| ((*key).to_owned(), json!(name)));
+    json!({
+        "card": card.name,
+        "law": card.law_name,
+        "formula": card.formula,
+        "parameters": parameters.chain(choices).collect::<Map<_, _>>(),
+        "youngs_modulus_MPa": card.law.youngs_modulus(),
+        "stretch_range": card.stretch_range,
+        "text": card.text,
+    })
+}
 
 /// The card of a study: law, parameters, measures, ranges, source.
 pub fn material_statement(card: &Card) -> Vec<Block> {

@@ -1,8 +1,6 @@
-//! Quantities over time: tables and the files of a motion.
+//! Quantities over time as a table.
 
 use std::fmt::Write;
-
-use super::vtk;
 
 /// A quantity at all instants.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,23 +51,6 @@ pub fn csv(times: &[f64], series: &[Series]) -> String {
     text
 }
 
-/// The files of a model that moves: `MODEL_00001.vtu` and so on, and `MODEL.pvd`, which plays them with their times in s.
-pub fn vtk_files<'a>(
-    model: &'a str,
-    times: &'a [f64],
-    file: impl Fn(usize) -> Vec<u8> + 'a,
-) -> impl Iterator<Item = (String, Vec<u8>)> + 'a {
-    let name = move |instant: usize| format!("{model}_{:05}.vtu", instant + 1);
-    let named: Vec<(f64, String)> = times
-        .iter()
-        .enumerate()
-        .map(|(instant, time)| (*time, name(instant)))
-        .collect();
-    let collection = (format!("{model}.pvd"), vtk::collection(&named));
-    let files = (0..times.len()).map(move |instant| (name(instant), file(instant)));
-    files.chain([collection])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,25 +68,5 @@ mod tests {
         assert_eq!(table.columns[1].unit.as_deref(), Some("mm"));
         assert_eq!(table.rows[0].0, [0.0, 0.0, -1e-7]);
         assert_eq!(table.rows[1].0, [0.1, 0.5, 2.5]);
-    }
-
-    #[test]
-    fn files_of_a_motion_have_stable_names_and_a_collection_of_their_times() {
-        let files: Vec<_> =
-            vtk_files("corrected", &[0.0, 0.25], |instant| vec![instant as u8]).collect();
-        let names: Vec<&str> = files.iter().map(|(name, _)| &**name).collect();
-        assert_eq!(
-            names,
-            [
-                "corrected_00001.vtu",
-                "corrected_00002.vtu",
-                "corrected.pvd"
-            ]
-        );
-        let collection = String::from_utf8(files[2].1.clone()).unwrap();
-        assert!(
-            collection.contains("timestep=\"0.25\" part=\"0\" file=\"corrected_00002.vtu\""),
-            "{collection}"
-        );
     }
 }

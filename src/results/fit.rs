@@ -4,8 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::picture::lines::{Axis, Line, LineChart, Stroke, stacked};
-use super::picture::{PALETTE, Scale};
+use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
 use crate::calibration::{Fit, Observation, Test, TestData};
 use crate::material::curve::{Mode, samples};
 
@@ -70,98 +69,94 @@ impl Group<'_> {
 }
 
 /// Data with the fitted curve and its 95 % band, and the residuals below.
-pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Vec<u8> {
-    let (mut bands, mut curves, mut points) = (Vec::new(), Vec::new(), Vec::new());
-    let mut residuals = vec![Line {
-        label: String::new(),
-        points: vec![
-            [fit.quality.stretch_range[0], 0.0],
-            [fit.quality.stretch_range[1], 0.0],
-        ],
-        colour: INK,
-        stroke: Stroke::Solid,
-    }];
-    let (mut any_band, mut any_unstable) = (false, false);
-    for group in groups(tests) {
-        let path = group.data.path(group.axis, 120);
-        let stress = |one: &Observation| group.data.stress_of(&*fit.fitted, one);
-        let curve: Vec<[f64; 2]> = path
-            .iter()
-            .map(|one| [group.stretch(one), stress(one)])
-            .collect();
-        let halves = fit.half_widths(group.data, &path);
-        let edge = |sign: f64| {
-            let pairs = curve.iter().zip(&halves);
-            pairs
-                .map(move |([x, y], half)| [*x, y + sign * half])
-                .collect::<Vec<_>>()
-        };
-        if halves.iter().all(|half| half.is_finite()) && !fit.parameters.is_empty() {
-            let mut outline = edge(1.0);
-            outline.extend(edge(-1.0).into_iter().rev());
-            bands.push(line("", outline, group.colour, Stroke::Filled));
-            any_band = true;
-        }
-        let [low, high] = group.stable(fit);
-        any_unstable |= curve
-            .iter()
-            .any(|[stretch, _]| !(low..=high).contains(stretch));
-        // Darker than the markers that it lies on.
-        let colour = group.colour.map(|part| part / 2);
-        curves.extend(Line::within("", &curve, colour, [low, high]));
-        let shown = thinned(group.observations().copied().collect());
-        let measured = shown
-            .iter()
-            .map(|one| [group.stretch(one), one.stress])
-            .collect();
-        points.push(line(&group.label, measured, group.colour, Stroke::Points));
-        let left = |one: &Observation| [group.stretch(one), one.stress - stress(one)];
-        residuals.push(line(
-            "",
-            shown.iter().map(left).collect(),
-            group.colour,
-            Stroke::Points,
-        ));
-    }
-    let mut lines = bands;
-    lines.extend(points);
-    lines.extend(curves);
-    for (shown, label, stroke) in [
-        (true, "fitted curve", Stroke::Solid),
-        (any_unstable, "unstable (Drucker)", Stroke::Dashed),
-        (any_band, "95 % band of the curve", Stroke::Filled),
-    ] {
-        if shown {
-            lines.push(line(label, Vec::new(), INK, stroke));
-        }
-    }
-    let highest = tests
-        .iter()
-        .fold(0.0, |most: f64, test| most.max(test.largest_stress));
-    let unit = readable(highest);
+pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
+    let zero = fit.quality.stretch_range.map(|stretch| [stretch, 0.0]);
+    let mut drawn = Drawn {
+        residuals: vec![Line::new("", zero, INK, Stroke::Solid)],
+        ..Drawn::default()
+    };
+    groups(tests).iter().for_each(|group| drawn.add(group, fit));
+    let mut lines = drawn.lines();
+    let largest = tests.iter().map(|test| test.largest_stress);
+    let unit = readable(largest.fold(0.0, f64::max));
     unit.scale(&mut lines);
     let stress = format!("{} stress [{}]", fit.stress_measure().title(), unit.name);
+    let mut residuals = drawn.residuals;
     let left = residuals.iter().flat_map(|line| &line.points);
     let unit = readable(left.fold(0.0, |most: f64, point| most.max(point[1].abs())));
     unit.scale(&mut residuals);
-    let upper = LineChart {
-        title: format!("{} fitted to {}", fit.law.name, names(tests)),
-        x: Axis::stretch(),
-        y: Axis::linear(&stress),
-        lines,
-        band: None,
-    };
-    let lower = LineChart {
-        title: "Residuals: measured less fitted".into(),
-        x: Axis::stretch(),
-        y: Axis {
-            label: format!("stress [{}]", unit.name),
-            scale: Scale::Linear,
-        },
-        lines: residuals,
-        band: None,
-    };
-    stacked(&[(upper, 460), (lower, 250)])
+    let title = format!("{} fitted to {}", fit.law.name, names(tests));
+    let upper = LineChart::new(title, Axis::stretch(), Axis::linear(&stress), lines);
+    let title = "Residuals: measured less fitted";
+    let stress = Axis::linear(&format!("stress [{}]", unit.name));
+    let lower = LineChart::new(title, Axis::stretch(), stress, residuals);
+    Drawing::Charts(vec![(upper, 460), (lower, 250)])
+}
+
+/// The lines of a picture.
+#[derive(Default)]
+struct Drawn {
+    bands: Vec<Line>,
+    points: Vec<Line>,
+    curves: Vec<Line>,
+    residuals: Vec<Line>,
+    any_unstable: bool,
+}
+
+impl Drawn {
+    fn add(&mut self, group: &Group, fit: &Fit) {
+        let path = group.data.path(group.axis, 120);
+        let stress = |one: &Observation| group.data.stress_of(&*fit.fitted, one);
+        let curve = path.iter().map(|one| [group.stretch(one), stress(one)]);
+        let curve: Vec<[f64; 2]> = curve.collect();
+        let halves = fit.half_widths(group.data, &path);
+        let edge = |sign: f64| {
+            let pairs = curve.iter().zip(&halves);
+            pairs.map(move |([x, y], half)| [*x, y + sign * half])
+        };
+        if halves.iter().all(|half| half.is_finite()) && !fit.parameters.is_empty() {
+            let outline = edge(1.0).chain(edge(-1.0).rev());
+            let band = Line::new("", outline, group.colour, Stroke::Filled);
+            self.bands.push(band);
+        }
+        let [low, high] = group.stable(fit);
+        let stable = |[stretch, _]: &[f64; 2]| (low..=high).contains(stretch);
+        self.any_unstable |= !curve.iter().all(stable);
+        // Darker than the markers that it lies on.
+        let colour = group.colour.map(|part| part / 2);
+        self.curves
+            .extend(Line::within("", &curve, colour, [low, high]));
+        let shown = thinned(group.observations().copied().collect());
+        let measured = shown.iter().map(|one| [group.stretch(one), one.stress]);
+        let measured = Line::new(&group.label, measured, group.colour, Stroke::Points);
+        self.points.push(measured);
+        let left = shown
+            .iter()
+            .map(|one| [group.stretch(one), one.stress - stress(one)]);
+        self.residuals
+            .push(Line::new("", left, group.colour, Stroke::Points));
+    }
+
+    /// Bands, data and curves, and what they are for the legend.
+    fn lines(&mut self) -> Vec<Line> {
+        let legend = [
+            (true, "fitted curve", Stroke::Solid),
+            (self.any_unstable, "unstable (Drucker)", Stroke::Dashed),
+            (
+                !self.bands.is_empty(),
+                "95 % band of the curve",
+                Stroke::Filled,
+            ),
+        ];
+        let legend = legend.into_iter().filter(|(shown, ..)| *shown);
+        let legend = legend.map(|(_, label, stroke)| Line::new(label, [], INK, stroke));
+        let drawn = [&mut self.bands, &mut self.points, &mut self.curves];
+        drawn
+            .into_iter()
+            .flat_map(std::mem::take)
+            .chain(legend)
+            .collect()
+    }
 }
 
 /// A unit of stress in which numbers are neither long nor tiny.
@@ -186,15 +181,6 @@ fn readable(largest_mpa: f64) -> Unit {
         .into_iter()
         .find(|unit| unit.per_mpa * largest_mpa >= 0.1);
     large.unwrap_or(units[2])
-}
-
-fn line(label: &str, points: Vec<[f64; 2]>, colour: [u8; 3], stroke: Stroke) -> Line {
-    Line {
-        label: label.to_owned(),
-        points,
-        colour,
-        stroke,
-    }
 }
 
 /// At most a thousand observations: more markers than that are a blot.

@@ -1,0 +1,153 @@
+//! Line charts as data: what is drawn, not how.
+
+/// Colours that most people tell apart (Okabe and Ito).
+pub const PALETTE: [[u8; 3]; 6] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+];
+
+/// How numbers lie on an axis or a colour bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// Evenly, with zero only where the values reach it: an axis of stretches.
+    Interval,
+    /// By their decimal logarithm.
+    Logarithmic,
+}
+
+/// One axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What is shown, with its unit.
+    pub label: String,
+    /// How numbers lie on it.
+    pub scale: Scale,
+}
+
+impl Axis {
+    /// An axis with a label.
+    pub fn new(label: &str, scale: Scale) -> Self {
+        Self {
+            label: label.to_owned(),
+            scale,
+        }
+    }
+
+    /// An even axis.
+    pub fn linear(label: &str) -> Self {
+        Self::new(label, Scale::Linear)
+    }
+
+    /// An axis of stretches.
+    pub fn stretch() -> Self {
+        Self::new("stretch λ [–]", Scale::Interval)
+    }
+
+    /// A logarithmic axis.
+    pub fn logarithmic(label: &str) -> Self {
+        Self::new(label, Scale::Logarithmic)
+    }
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    /// A line with a marker at each point.
+    Marked,
+    /// A line.
+    Solid,
+    /// A broken line.
+    Dashed,
+    /// Markers alone.
+    Points,
+    /// A pale area, its points the outline.
+    Filled,
+}
+
+/// One line of a chart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Its name in the legend; an empty one is left out there.
+    pub label: String,
+    /// Its points.
+    pub points: Vec<[f64; 2]>,
+    /// Its colour as red, green, blue.
+    pub colour: [u8; 3],
+    /// How it is drawn.
+    pub stroke: Stroke,
+}
+
+impl Line {
+    /// A line through points.
+    pub fn new(
+        label: impl Into<String>,
+        points: impl IntoIterator<Item = [f64; 2]>,
+        colour: [u8; 3],
+        stroke: Stroke,
+    ) -> Self {
+        Self {
+            label: label.into(),
+            points: points.into_iter().collect(),
+            colour,
+            stroke,
+        }
+    }
+
+    /// A curve that is solid within a range of x and dashed outside of it.
+    pub fn within(
+        label: &str,
+        points: &[[f64; 2]],
+        colour: [u8; 3],
+        [low, high]: [f64; 2],
+    ) -> Vec<Self> {
+        let below = points.iter().take_while(|point| point[0] < low).count();
+        let inside = points.iter().filter(|point| point[0] <= high).count();
+        let above = inside.max(below);
+        // The dashed parts begin where the solid one ends.
+        let parts = [
+            (&points[..(below + 1).min(points.len())], "", Stroke::Dashed),
+            (&points[below..above], label, Stroke::Solid),
+            (&points[above.saturating_sub(1)..], "", Stroke::Dashed),
+        ];
+        let drawn = parts
+            .into_iter()
+            .filter(|(points, _, stroke)| points.len() > 1 || *stroke == Stroke::Solid);
+        drawn
+            .map(|(points, label, stroke)| Self::new(label, points.iter().copied(), colour, stroke))
+            .collect()
+    }
+}
+
+/// A line chart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineChart {
+    /// Heading.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// The lines; later ones lie above.
+    pub lines: Vec<Line>,
+    /// A band along x that is shaded, with its name.
+    pub band: Option<([f64; 2], String)>,
+}
+
+impl LineChart {
+    /// A chart without a band.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis, lines: Vec<Line>) -> Self {
+        Self {
+            title: title.into(),
+            x,
+            y,
+            lines,
+            band: None,
+        }
+    }
+}

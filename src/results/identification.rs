@@ -1,0 +1,151 @@
+//! Picture and figures of an identified spring.
+
+use serde_json::{Value, json};
+
+use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
+use crate::identification::{Argument, Function, Identification, Recording};
+
+const INK: [u8; 3] = [60, 60, 60];
+const GREY: [u8; 3] = [190, 190, 190];
+
+/// Points of a drawn curve.
+const POINTS: usize = 201;
+
+/// K(·) and D(·) with their bands over what every instant asks for, and what is left of force and motion.
+pub fn identification_picture(found: &Identification, recording: &Recording) -> Drawing {
+    let motion = &found.motion;
+    let (over, label) = match found.settings.argument {
+        Argument::Extension => (&motion.extension, "extension x [mm]"),
+        Argument::Rate => (&motion.rate, "rate of extension [mm/s]"),
+    };
+    let elastic = |i: usize| found.stiffness.at(motion.extension[i]).value * motion.extension[i];
+    let viscous = |i: usize| found.damping.at(over[i]).value * motion.rate[i];
+    let force = |i: usize| recording.force[i] - recording.mass * motion.acceleration[i];
+    let stiffness = secants(&motion.extension, &motion.extension, &|i| {
+        force(i) - viscous(i)
+    });
+    let damping = secants(&motion.rate, over, &|i| force(i) - elastic(i));
+    let chart = |title: &str, x: &str, y: &str, lines| {
+        LineChart::new(title, Axis::linear(x), Axis::linear(y), lines)
+    };
+    let stiffness = curves(&found.stiffness, stiffness, PALETTE[0]);
+    let damping = curves(&found.damping, damping, PALETTE[1]);
+    Drawing::Charts(vec![
+        (
+            chart("Spring K(·)", "extension x [mm]", "K [N/mm]", stiffness),
+            340,
+        ),
+        (chart("Dashpot D(·)", label, "D [N·s/mm]", damping), 340),
+        (residuals(found, recording), 260),
+    ])
+}
+
+/// The share of the force in N over what it is proportional to, at every instant where that is large; near zero a
+/// secant is noise alone.
+fn secants(own: &[f64], argument: &[f64], force: &dyn Fn(usize) -> f64) -> Vec<[f64; 2]> {
+    const LEAST: f64 = 0.25;
+    let most = own
+        .iter()
+        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let instants = (0..own.len()).filter(|i| own[*i].abs() > LEAST * most);
+    instants.map(|i| [argument[i], force(i) / own[i]]).collect()
+}
+
+fn curves(function: &Function, points: Vec<[f64; 2]>, colour: [u8; 3]) -> Vec<Line> {
+    let places = function.places(POINTS);
+    let edge = |side: usize| places.iter().map(move |x| [*x, function.band(*x)[side]]);
+    let end = |side: usize| {
+        let places = places.iter();
+        places.map(move |x| [*x, function.at(*x).interval[side]])
+    };
+    let curve = places.iter().map(|x| [*x, function.at(*x).value]);
+    let darker = colour.map(|part| part / 2);
+    vec![
+        Line::new("from force and motion", points, GREY, Stroke::Points),
+        Line::new(
+            "95 % band",
+            edge(0).chain(edge(1).rev()),
+            colour,
+            Stroke::Filled,
+        ),
+        Line::new("95 % at one place", end(0), colour, Stroke::Dashed),
+        Line::new("", end(1), colour, Stroke::Dashed),
+        Line::new("identified", curve, darker, Stroke::Solid),
+    ]
+}
+
+fn residuals(found: &Identification, recording: &Recording) -> LineChart {
+    let Recording {
+        times,
+        force,
+        extension,
+        ..
+    } = recording;
+    let left = |label: &str, [measured, fitted]: [&[f64]; 2], noise: f64, colour| {
+        let pairs = measured.iter().zip(fitted).zip(times);
+        let points = pairs.map(|((measured, fitted), t)| [*t, (measured - fitted) / noise]);
+        Line::new(label, points, colour, Stroke::Points)
+    };
+    let [noise, force_noise] = found.noise;
+    let lines = vec![
+        left(
+            "extension",
+            [extension, &found.motion.extension],
+            noise,
+            PALETTE[5],
+        ),
+        left("force", [force, &found.motion.force], force_noise, INK),
+    ];
+    let title = "Residuals: measured less fitted, over the noise";
+    LineChart::new(
+        title,
+        Axis::linear("time [s]"),
+        Axis::linear("residual [–]"),
+        lines,
+    )
+}
+
+/// All figures of an identification. Numbers that do not exist are `null`.
+pub fn identification_json(found: &Identification, recording: &Recording, file: &str) -> Value {
+    let function = |(symbol, unit, function): (&str, &str, &Function)| {
+        let curve = function.places(41).into_iter().map(|x| {
+            let estimate = function.at(x);
+            json!({
+                "at": x,
+                "value": estimate.value,
+                "standard_error": estimate.standard_error,
+                "interval_95_percent": estimate.interval,
+                "band_95_percent": function.band(x),
+            })
+        });
+        json!({
+            "function": symbol,
+            "unit": unit,
+            "effective_coefficients": function.degrees,
+            "coefficients_of_powers": function.powers().iter().map(|one| json!({
+                "value": one.value,
+                "standard_error": one.standard_error,
+                "interval_95_percent": one.interval,
+            })).collect::<Vec<_>>(),
+            "curve": curve.collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "gelbench": env!("CARGO_PKG_VERSION"),
+        "data": file,
+        "instants": recording.times.len(),
+        "mass_tonne": recording.mass,
+        "length_mm": recording.length,
+        "noise_of_extension_mm": found.noise[0],
+        "noise_of_force_N": found.noise[1],
+        "misfit": found.misfit,
+        "degrees_of_freedom": found.freedom,
+        "functions": found.functions().into_iter().map(function).collect::<Vec<_>>(),
+        "residuals": recording.times.iter().enumerate().map(|(i, t)| json!({
+            "time_s": t,
+            "extension_mm": recording.extension[i] - found.motion.extension[i],
+            "force_N": recording.force[i] - found.motion.force[i],
+        })).collect::<Vec<_>>(),
+        "warnings": found.warnings,
+    })
+}
