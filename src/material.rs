@@ -5,6 +5,7 @@
 
 mod arruda_boyce;
 pub mod card;
+pub mod code;
 pub mod curve;
 mod exponential;
 mod fung_demiray;
@@ -31,6 +32,7 @@ mod battery;
 
 pub use arruda_boyce::ArrudaBoyce;
 pub use card::Card;
+pub use code::{Code, CodeLaw};
 pub use fung_demiray::FungDemiray;
 pub use gent::Gent;
 pub use holzapfel_gasser_ogden::HolzapfelGasserOgden;

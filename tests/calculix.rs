@@ -1,4 +1,4 @@
-//! The finite elements beside CalculiX, which solves what gelbench hands over.
+//! The finite elements beside CalculiX, which solves what gelbench exports.
 //!
 //! Needs `ccx` on the path (Debian: `calculix-ccx`). Without it every test is listed as ignored, with the reason: what was
 //! not run has not passed.
@@ -10,7 +10,7 @@ use libtest_mimic::{Arguments, Completion, Failed, Trial};
 
 mod common;
 
-use common::handed_over::{ADAPTIVE, GRIPPED, HOLE, PLATE, PULLED, deviation};
+use common::exports::{ADAPTIVE, GRIPPED, HOLE, PLATE, PULLED, deviation};
 use common::{folder_with, gelbench, words};
 
 /// What the tests do where CalculiX is installed.

@@ -1,4 +1,4 @@
-//! Studies handed over to other codes, and fields taken back from them, as a user meets them.
+//! Studies exported to other codes, and fields taken back from them, as a user meets them.
 //!
 //! Runs of another code are in `calculix.rs`.
 
@@ -6,7 +6,7 @@ use std::fs;
 
 mod common;
 
-use common::handed_over::{ADAPTIVE, GRIPPED, HOLE, PLATE, PULLED, deviation};
+use common::exports::{ADAPTIVE, GRIPPED, HOLE, PLATE, PULLED, deviation};
 use common::{SMALL, folder_with, gelbench, words};
 
 /// The mesh that goes out is the one that the other models are compared with.
@@ -70,10 +70,10 @@ fn every_code_gets_a_file_of_every_kind_of_study() {
 }
 
 #[test]
-fn what_cannot_be_handed_over_is_refused_before_anything_is_written() {
+fn what_cannot_be_exported_is_refused_before_anything_is_written() {
     let gripped = format!("{HOLE}{GRIPPED}");
     for (study, arguments, told) in [
-        (&*gripped, vec!["--to", "febio"], "hand over to Abaqus"),
+        (&*gripped, vec!["--to", "febio"], "export to Abaqus"),
         (SMALL, vec!["--to", "calculix"], "fit such a card"),
         (PLATE, vec!["--to", "calculx"], "did you mean `calculix`"),
         (

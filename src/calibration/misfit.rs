@@ -6,7 +6,7 @@ use super::fit::{MEASURE, Weighting};
 use super::least_squares::{self, Residuals};
 use super::test_data::{Observation, TestData};
 use crate::material::HyperelasticLaw;
-use crate::material::parameters::Asked;
+use crate::material::parameters::CardEntries;
 use crate::material::registry::Law;
 
 /// The residuals of a law at some observations, or at means of many neighbouring ones.
@@ -61,7 +61,7 @@ impl<'a> Misfit<'a> {
         }
     }
 
-    pub fn build(&self, values: &[f64]) -> (Box<dyn HyperelasticLaw>, Asked) {
+    pub fn build(&self, values: &[f64]) -> (Box<dyn HyperelasticLaw>, CardEntries) {
         let measure = self.tests[0].stress_measure;
         self.law.with_values(values, measure, MEASURE)
     }

@@ -142,7 +142,7 @@ fn every_card_with_data_is_found_again() {
         };
         let tests: Vec<TestData> = record.data.iter().map(read).collect();
         let again = fit(
-            Law::named(card.law_name).unwrap(),
+            Law::named(&card.law_name).unwrap(),
             &tests,
             &FitSettings::default(),
         )

@@ -7,9 +7,10 @@ use clap::{Args, ValueEnum};
 use super::terminal::{Outcome, print, warn};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::finite_element::FiniteElements;
+use crate::material::Code;
 use crate::mesh::Side;
 use crate::output;
-use crate::output::export::{Code, HandOver, Written, hand_over};
+use crate::output::export::{Export, InputFile};
 use crate::problem::{BoundaryProblem, Support};
 use crate::studies::plate::study::{self, Study};
 use crate::studies::specimen::Specimen;
@@ -92,7 +93,7 @@ pub fn not_for_other_codes(case: &Kind) -> Error {
     )
 }
 
-fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<Written, Error> {
+fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<InputFile, Error> {
     let mesh = match (specimen.refinement, options.level) {
         (_, Level::Fine) => specimen::finest_mesh(specimen)?,
         (None, level) => specimen.outline.reference_meshes()[level as usize].clone(),
@@ -101,7 +102,7 @@ fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<Written,
             return Err(Error::input(message, "leave out --mesh"));
         }
     };
-    let given = HandOver {
+    let export = Export {
         title,
         problem: &specimen.problem,
         card: &specimen.card,
@@ -109,10 +110,10 @@ fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<Written,
         factors: &specimen.factors,
         bulk_ratio: options.bulk_ratio,
     };
-    hand_over(&given, options.code)
+    export.input_file(options.code)
 }
 
-fn plate(path: &Path, text: String, options: &Options) -> Result<Written, Error> {
+fn plate(path: &Path, text: String, options: &Options) -> Result<InputFile, Error> {
     let study = Study::of_file(path, text)?;
     warn(&study.warnings);
     let plate = &study.problem;
@@ -129,7 +130,7 @@ fn plate(path: &Path, text: String, options: &Options) -> Result<Written, Error>
         supports: vec![grip(Side::Left, 0.0), grip(Side::Right, plate.size[0])],
         loads: Vec::new(),
     };
-    let given = HandOver {
+    let export = Export {
         title: &study.title,
         problem: &problem,
         card: &study.card,
@@ -137,7 +138,7 @@ fn plate(path: &Path, text: String, options: &Options) -> Result<Written, Error>
         factors: &plate.stretches,
         bulk_ratio: options.bulk_ratio,
     };
-    hand_over(&given, options.code)
+    export.input_file(options.code)
 }
 
 /// A code by its name.

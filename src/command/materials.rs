@@ -390,7 +390,7 @@ fn refit(name: &str) -> Outcome {
         bounds: bounds(&record.bounds)?,
         starts: record.starts,
     };
-    let fit = calibration::fit(law(card.law_name)?, &tests, &settings)?;
+    let fit = calibration::fit(law(&card.law_name)?, &tests, &settings)?;
     let (text, same) = fit_message::refit(&card, &fit, &tests);
     print(&text)?;
     Ok(u8::from(!same))

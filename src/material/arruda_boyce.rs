@@ -1,5 +1,6 @@
 //! The eight-chain law of Arruda and Boyce.
 
+use super::code::{Code, CodeLaw};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
@@ -68,5 +69,14 @@ impl InvariantLaw for ArrudaBoyce {
             shrink /= self.lambda_m * self.lambda_m;
         }
         sum
+    }
+
+    /// In FEBio's law of this name the coefficients are i times those of the publication.
+    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+        let (mu, lambda) = (("mu", self.mu), ("lambda_m", self.lambda_m));
+        match code {
+            Code::FeBio => None,
+            _ => CodeLaw::named("ARRUDA-BOYCE", [mu, lambda, ("D", 2.0 / bulk)]),
+        }
     }
 }

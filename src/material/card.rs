@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::curve::Mode;
 use super::law::HyperelasticLaw;
+use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS};
 use super::viscosity::{Relaxation, ViscousMaterial};
@@ -19,8 +20,8 @@ pub struct Card {
     pub name: String,
     /// One line for people.
     pub title: String,
-    /// The law's name in the registry.
-    pub law_name: &'static str,
+    /// The law's name: in the registry, or that of a law that a program brings along.
+    pub law_name: String,
     /// The law's formula.
     pub formula: &'static str,
     /// The law with its parameters.
@@ -29,7 +30,7 @@ pub struct Card {
     pub parameters: Vec<Parameter>,
     /// What else the law's card states: key and choice.
     pub choices: Vec<(&'static str, String)>,
-    /// Mass density in tonne/mm³; nothing where the card does not say it.
+    /// Mass density in tonne/mm³; `None` where the card does not say it.
     pub density: Option<f64>,
     /// The viscous part; none at all where the card does not say it.
     pub viscosity: ViscousMaterial,
@@ -51,7 +52,7 @@ pub struct Card {
     pub specimen: String,
     /// Anything a user must know; may be empty.
     pub note: String,
-    /// How the card was fitted; nothing where it was not.
+    /// How the card was fitted; `None` where it was not.
     pub fit: Option<FitRecord>,
     /// The card's text as it was read.
     pub text: String,
@@ -109,81 +110,88 @@ impl Card {
         let faults = Faults::default();
         let document = Document::parse(file, text, &faults);
         let root = document.root(None, &faults);
-        let title = root.text("title");
+        let unread = Arc::new(NeoHooke { c10: f64::NAN });
+        let mut card = Self::of_law(name, unread, [1.0, 1.0]);
+        card.text = text.to_owned();
+        card.title = root.text("title");
         let laws: Vec<_> = LAWS.iter().map(|law| (law.name, law)).collect();
         let law = root.choice("law", &laws);
-
-        let density = root
+        card.density = root
             .has("density")
             .then(|| root.quantity("density", Dimension::Density, Bound::Positive));
-        let viscosity = match root.has("viscosity") {
-            true => read_viscosity(&root.section("viscosity")),
-            false => ViscousMaterial::default(),
-        };
-
-        let data = root.section("data");
-        let stress_measure = data
-            .choice("stress_measure", &StressMeasure::NAMES)
-            .unwrap_or(StressMeasure::Nominal);
-        let strain_measure = data
-            .choice("strain_measure", &StrainMeasure::NAMES)
-            .unwrap_or(StrainMeasure::Nominal);
-        let offset = data
-            .choice("offset", &OffsetTreatment::NAMES)
-            .unwrap_or(OffsetTreatment::Subtract);
-        let test = data.text("test");
-        let range = data.quantities("stretch_range", Dimension::Ratio, Bound::Positive);
-        let stretch_range = match range[..] {
-            [low, high] if low < high => [low, high],
-            _ => {
-                data.fault(
-                    "stretch_range",
-                    "must be two increasing stretches",
-                    "such as [1.0, 2.0]",
-                );
-                [1.0, 1.0]
-            }
-        };
-        data.unknown_keys();
-
-        let source = root.section("source");
-        let citation = source.text("citation");
-        let doi = source.optional_text("doi");
-        let specimen = source.text("specimen");
-        let note = source.optional_text("note");
-        source.unknown_keys();
-        let fit = root.has("fit").then(|| read_fit(&root.section("fit")));
+        if root.has("viscosity") {
+            card.viscosity = read_viscosity(&root.section("viscosity"));
+        }
+        card.read_data(&root.section("data"));
+        card.read_source(&root.section("source"));
+        card.fit = root.has("fit").then(|| read_fit(&root.section("fit")));
         let parameters = root.section("parameters");
         root.unknown_keys();
-        let Some(law_entry) = law else {
+        let Some(law) = law else {
             return Err(faults.finish().expect_err("an unknown law is a fault"));
         };
-        let parameters = Parameters::of_card(parameters, stress_measure, strain_measure);
-        let law: Arc<dyn HyperelasticLaw> = (law_entry.read)(&parameters).into();
-        let asked = parameters.finish();
+        let parameters = Parameters::of_card(parameters, card.stress_measure, card.strain_measure);
+        card.law = (law.read)(&parameters).into();
+        (card.law_name, card.formula) = (law.name.to_owned(), law.formula);
+        let entries = parameters.finish();
+        (card.parameters, card.choices) = (entries.parameters, entries.choices);
         faults.finish()?;
-        Ok(Self {
+        Ok(card)
+    }
+
+    /// A card of any law, in the registry or not, for the stretches within `stretch_range`: studies run with it as with a
+    /// card that was read. What else a card may state (density, viscosity, formula, source) is set in its fields.
+    pub fn of_law(name: &str, law: Arc<dyn HyperelasticLaw>, stretch_range: [f64; 2]) -> Self {
+        let unstated = || "not stated".to_owned();
+        Self {
             name: name.to_owned(),
-            title,
-            law_name: law_entry.name,
-            formula: law_entry.formula,
+            title: name.to_owned(),
+            law_name: name.to_owned(),
+            formula: "not stated",
             law,
-            parameters: asked.parameters,
-            choices: asked.choices,
-            density,
-            viscosity,
-            stress_measure,
-            strain_measure,
-            offset,
-            test,
+            parameters: Vec::new(),
+            choices: Vec::new(),
+            density: None,
+            viscosity: ViscousMaterial::default(),
+            stress_measure: StressMeasure::Nominal,
+            strain_measure: StrainMeasure::Nominal,
+            offset: OffsetTreatment::Subtract,
+            test: "no".to_owned(),
             stretch_range,
-            citation,
-            doi,
-            specimen,
-            note,
-            fit,
-            text: text.to_owned(),
-        })
+            citation: unstated(),
+            doi: String::new(),
+            specimen: unstated(),
+            note: String::new(),
+            fit: None,
+            text: String::new(),
+        }
+    }
+
+    fn read_data(&mut self, data: &Section) {
+        let stress = data.choice("stress_measure", &StressMeasure::NAMES);
+        self.stress_measure = stress.unwrap_or(StressMeasure::Nominal);
+        let strain = data.choice("strain_measure", &StrainMeasure::NAMES);
+        self.strain_measure = strain.unwrap_or(StrainMeasure::Nominal);
+        let offset = data.choice("offset", &OffsetTreatment::NAMES);
+        self.offset = offset.unwrap_or(OffsetTreatment::Subtract);
+        self.test = data.text("test");
+        let range = data.quantities("stretch_range", Dimension::Ratio, Bound::Positive);
+        match range[..] {
+            [low, high] if low < high => self.stretch_range = [low, high],
+            _ => {
+                let message = "must be two increasing stretches";
+                data.fault("stretch_range", message, "such as [1.0, 2.0]");
+            }
+        }
+        data.unknown_keys();
+    }
+
+    fn read_source(&mut self, source: &Section) {
+        self.citation = source.text("citation");
+        self.doi = source.optional_text("doi");
+        self.specimen = source.text("specimen");
+        self.note = source.optional_text("note");
+        source.unknown_keys();
     }
 
     /// The value of a parameter in internal units.
@@ -195,7 +203,7 @@ impl Card {
     }
 
     /// The published tension curve σ₀ + A e^{b ε} behind the card as nominal stress in MPa, with its
-    /// stress at rest; nothing for cards that are not made from such a curve.
+    /// stress at rest; `None` for cards that are not made from such a curve.
     pub fn published_nominal_stress(&self, stretch: f64) -> Option<f64> {
         let [amplitude, exponent, offset] =
             ["amplitude", "exponent", "offset"].map(|key| self.parameter(key));

@@ -30,7 +30,7 @@ impl Mode {
         name_of(&Self::ALL, self)
     }
 
-    /// The displacement gradient of the test at λ = 1 + `strain`; nothing where the edges of a strip find
+    /// The displacement gradient of the test at λ = 1 + `strain`; `None` where the edges of a strip find
     /// no equilibrium.
     pub fn gradient(self, law: &dyn HyperelasticLaw, strain: f64) -> Option<Gradient> {
         match self {

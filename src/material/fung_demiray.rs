@@ -1,5 +1,6 @@
 //! The exponential law of Fung and Demiray.
 
+use super::code::{Code, CodeLaw};
 use super::exponential::{exponential, exponential_less_one};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
@@ -50,5 +51,9 @@ impl InvariantLaw for FungDemiray {
             d11: 0.5 * self.mu * self.b * growth,
             ..EnergyDerivatives::default()
         }
+    }
+
+    fn in_code(&self, code: Code, _: f64) -> Option<CodeLaw> {
+        CodeLaw::of_first_invariant(code)
     }
 }

@@ -1,5 +1,6 @@
 //! Gent's law of limited chain extensibility.
 
+use super::code::{Code, CodeLaw};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
@@ -48,6 +49,13 @@ impl InvariantLaw for Gent {
             d1: 0.5 * self.mu / left,
             d11: 0.5 * self.mu / (self.jm * left * left),
             ..EnergyDerivatives::default()
+        }
+    }
+
+    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+        match code {
+            Code::FeBio => CodeLaw::named("Gent", [("G", self.mu), ("Jm", self.jm), ("k", bulk)]),
+            _ => CodeLaw::of_first_invariant(code),
         }
     }
 }

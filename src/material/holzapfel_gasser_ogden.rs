@@ -1,5 +1,6 @@
 //! The law of Holzapfel, Gasser and Ogden for sheets with fibres.
 
+use super::code::{Code, CodeLaw};
 use super::curve;
 use super::law::{HyperelasticLaw, TensionResponse};
 use super::parameters::Parameters;
@@ -158,5 +159,31 @@ impl HyperelasticLaw for HolzapfelGasserOgden {
 
     fn is_isotropic(&self) -> bool {
         self.k1 == 0.0
+    }
+
+    /// FEBio has two families at ±γ always: one goes out as two of half the stiffness at γ = 0 in turned axes.
+    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+        let febio = |k1: f64, gamma: f64, axis: &[[f64; 2]]| {
+            let matrix = [
+                ("c", self.mu),
+                ("k1", k1),
+                ("k2", self.k2),
+                ("kappa", self.kappa),
+            ];
+            let all = matrix.into_iter().chain([("gamma", gamma), ("k", bulk)]);
+            CodeLaw::directed("Holzapfel-Gasser-Ogden", all, axis)
+        };
+        match (code, &self.fibres[..]) {
+            (Code::Abaqus, fibres @ [_, ..]) => {
+                let matrix = [("C10", self.mu / 2.0), ("D", 2.0 / bulk)];
+                let fibre = [("k1", self.k1), ("k2", self.k2), ("kappa", self.kappa)];
+                CodeLaw::directed("HOLZAPFEL", matrix.into_iter().chain(fibre), fibres)
+            }
+            (Code::FeBio, fibres @ [_]) => febio(self.k1 / 2.0, 0.0, fibres),
+            (Code::FeBio, [[x, y], other]) if *other == [*x, -y] => {
+                febio(self.k1, y.atan2(*x).to_degrees(), &[])
+            }
+            _ => None,
+        }
     }
 }

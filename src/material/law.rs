@@ -3,6 +3,7 @@
 use nalgebra::Matrix4;
 use pulp::{Arch, NullaryFnOnce};
 
+use super::code::{Code, CodeLaw};
 use super::sheet::{Gradient, Kinematics, SheetResponse};
 
 /// An incompressible hyperelastic law, as a thin sheet in plane stress sees it.
@@ -67,6 +68,14 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
             }
         }
         true
+    }
+
+    /// The law in the words of another code; `None` where that code has no law that equals it.
+    ///
+    /// `bulk_modulus` in MPa stands for incompressibility; it is infinite for a code that has incompressible sheets, so
+    /// that D = 2/K vanishes.
+    fn in_code(&self, _code: Code, _bulk_modulus: f64) -> Option<CodeLaw> {
+        None
     }
 
     /// Whether all directions of the sheet are alike.
@@ -139,6 +148,11 @@ pub struct EnergyDerivatives {
 pub trait InvariantLaw: Send + Sync + std::fmt::Debug {
     /// Ψ and its derivatives at the given invariants.
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives;
+
+    /// As [`HyperelasticLaw::in_code`].
+    fn in_code(&self, _code: Code, _bulk_modulus: f64) -> Option<CodeLaw> {
+        None
+    }
 }
 
 /// The components on and below the diagonal, column by column.
@@ -198,6 +212,10 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
             nominal_stress: 2.0 * secant * h,
             slope: 2.0 * (secant * dh + secant_slope * h),
         }
+    }
+
+    fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {
+        InvariantLaw::in_code(self, code, bulk_modulus)
     }
 
     /// μ₀ = 2 (Ψ₁ + Ψ₂) at rest.

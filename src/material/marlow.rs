@@ -26,6 +26,7 @@
 //! # References
 //! R. S. Marlow, in: Constitutive Models for Rubber III, Balkema (2003), p. 157, ISBN 90-5809-566-5
 
+use super::code::{Code, CodeLaw};
 use super::law::{EnergyDerivatives, InvariantLaw, Invariants};
 
 mod exponential;
@@ -72,6 +73,10 @@ impl<C: TensionCurve> InvariantLaw for Marlow<C> {
             },
             ..EnergyDerivatives::default()
         }
+    }
+
+    fn in_code(&self, code: Code, _: f64) -> Option<CodeLaw> {
+        CodeLaw::of_first_invariant(code)
     }
 }
 

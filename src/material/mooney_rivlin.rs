@@ -1,7 +1,9 @@
 //! The two-parameter Mooney–Rivlin law.
 
+use super::code::{Code, CodeLaw};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
+use super::polynomial::Polynomial;
 use crate::document::Bound;
 
 /// Mooney–Rivlin law: energy linear in both invariants.
@@ -48,5 +50,14 @@ impl InvariantLaw for MooneyRivlin {
             d2: self.c01,
             ..EnergyDerivatives::default()
         }
+    }
+
+    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+        let equal = Polynomial {
+            c10: self.c10,
+            c01: self.c01,
+            ..Polynomial::default()
+        };
+        InvariantLaw::in_code(&equal, code, bulk)
     }
 }

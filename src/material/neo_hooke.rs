@@ -1,7 +1,9 @@
 //! The neo-Hooke law.
 
+use super::code::{Code, CodeLaw};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
+use super::polynomial::Polynomial;
 use crate::document::Bound;
 
 /// Neo-Hooke law: energy linear in the first invariant, the entropy elasticity of an ideal network.
@@ -42,5 +44,13 @@ impl InvariantLaw for NeoHooke {
             d1: self.c10,
             ..EnergyDerivatives::default()
         }
+    }
+
+    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+        let equal = Polynomial {
+            c10: self.c10,
+            ..Polynomial::default()
+        };
+        InvariantLaw::in_code(&equal, code, bulk)
     }
 }

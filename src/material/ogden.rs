@@ -1,5 +1,6 @@
 //! Ogden's law.
 
+use super::code::{Code, CodeLaw};
 use super::law::{HyperelasticLaw, TensionResponse};
 use super::parameters::Parameters;
 use super::sheet::{Gradient, Kinematics, SheetResponse, cofactor, cofactor_derivative};
@@ -237,5 +238,30 @@ impl HyperelasticLaw for Ogden {
 
     fn youngs_modulus(&self) -> f64 {
         3.0 * self.shear_modulus()
+    }
+
+    /// FEBio writes Σ c/m² (…).
+    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+        let ([mu, alpha], factor) = match code {
+            Code::FeBio => (["c", "m"], 2.0),
+            _ => (["mu_", "alpha_"], 1.0),
+        };
+        let count = self.terms.len();
+        let term = |([value, exponent], i): ([f64; 2], usize)| {
+            [
+                (format!("{mu}{i}"), factor * value),
+                (format!("{alpha}{i}"), exponent),
+            ]
+        };
+        let terms = self.terms.iter().copied().zip(1..=count).flat_map(term);
+        let volume = |i: usize| (format!("D{i}"), 2.0 / bulk);
+        match code {
+            Code::FeBio => CodeLaw::named("Ogden", terms.chain([("k".into(), bulk)])),
+            Code::CalculiX if count > 3 => None,
+            _ => CodeLaw::named(
+                &format!("OGDEN, N={count}"),
+                terms.chain((1..=count).map(volume)),
+            ),
+        }
     }
 }

@@ -141,9 +141,9 @@ impl Parameter {
     }
 }
 
-/// What a law asked for.
+/// What a law reads of a card.
 #[derive(Clone, Debug, Default)]
-pub struct Asked {
+pub struct CardEntries {
     /// Its parameters.
     pub parameters: Vec<Parameter>,
     /// Its choices: key and name.
@@ -277,11 +277,11 @@ impl<'a> Parameters<'a> {
     }
 
     /// Reports unknown keys and returns what was asked for.
-    pub fn finish(self) -> Asked {
+    pub fn finish(self) -> CardEntries {
         if let Origin::Card(section) = &self.origin {
             section.unknown_keys();
         }
-        Asked {
+        CardEntries {
             parameters: self.asked.into_inner(),
             choices: self.choices.into_inner(),
         }

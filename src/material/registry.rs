@@ -2,7 +2,7 @@
 
 use super::law::HyperelasticLaw;
 use super::marlow::{ExponentialCurve, TableCurve};
-use super::parameters::{Asked, Parameters, StrainMeasure, StressMeasure};
+use super::parameters::{CardEntries, Parameters, StrainMeasure, StressMeasure};
 use super::{
     ArrudaBoyce, FungDemiray, Gent, HolzapfelGasserOgden, MooneyRivlin, NeoHooke, Ogden,
     Polynomial, VerondaWestmann, Yeoh,
@@ -45,13 +45,13 @@ impl Law {
         LAWS.iter().find(|law| law.name == name)
     }
 
-    /// The law with parameter values in internal units, and what it asked for.
+    /// The law with parameter values in internal units, and what it read of a card.
     pub fn with_values(
         &self,
         values: &[f64],
         stress_measure: StressMeasure,
         strain_measure: StrainMeasure,
-    ) -> (Box<dyn HyperelasticLaw>, Asked) {
+    ) -> (Box<dyn HyperelasticLaw>, CardEntries) {
         let parameters = Parameters::of_values(values, stress_measure, strain_measure);
         let law = (self.read)(&parameters);
         (law, parameters.finish())

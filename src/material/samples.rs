@@ -53,31 +53,39 @@ pub const SAMPLES: &[(&str, &str)] = &[
     ),
 ];
 
-/// A law with parameters as a card states them.
+/// A card of a law with parameters as a card states them.
 ///
 /// # Panics
 /// When the text is none of that law's parameters.
-pub fn sample(law: &str, parameters: &str) -> Arc<dyn HyperelasticLaw> {
+pub fn card(law: &str, parameters: &str) -> Card {
     let card = CARDS[0].1;
     let (head, rest) = card.split_once("[parameters]").unwrap();
     let (_, rest) = rest.split_once("[data]").unwrap();
     let head = head.replace("marlow-exponential", law);
     let text = format!("{head}[parameters]\n{parameters}\n[data]{rest}");
-    Card::parse(law, law, &text).unwrap().law
+    Card::parse(law, law, &text).unwrap()
 }
 
-/// All shipped cards and all [`SAMPLES`] by name.
+/// All shipped cards and a card of each of [`SAMPLES`].
 ///
 /// # Panics
 /// Never: the battery of law tests reads all of them.
+pub fn cards() -> Vec<Card> {
+    let shipped =
+        |(name, _): &(&str, &str)| Card::load(name, Path::new(".")).expect("a shipped card");
+    let samples = SAMPLES
+        .iter()
+        .map(|(law, parameters)| card(law, parameters));
+    CARDS.iter().map(shipped).chain(samples).collect()
+}
+
+/// The laws of all [`cards`] by name.
+///
+/// # Panics
+/// Never, as [`cards`].
 pub fn all() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>)> {
-    let card = |name| {
-        Card::load(name, Path::new("."))
-            .expect("a shipped card")
-            .law
-    };
-    let cards = CARDS.iter().map(|(name, _)| (*name, card(*name)));
-    let samples = SAMPLES.iter();
-    let samples = samples.map(|(law, parameters)| (*law, sample(law, parameters)));
-    cards.chain(samples).collect()
+    let names = CARDS.iter().chain(SAMPLES).map(|(name, _)| *name);
+    names
+        .zip(cards().into_iter().map(|card| card.law))
+        .collect()
 }

@@ -59,7 +59,7 @@ pub fn is_stable(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> bool {
     tangent(law, kinematics).is_some_and(|tangent| tangent.cholesky().is_some())
 }
 
-/// D by the components ε₁₁, ε₂₂ and √2 ε₁₂; nothing where it is not finite.
+/// D by the components ε₁₁, ε₂₂ and √2 ε₁₂; `None` where it is not finite.
 fn tangent(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> Option<Matrix3<f64>> {
     let response = law.response(kinematics);
     let matrix = |v: &Gradient| Matrix2::new(v[0], v[1], v[2], v[3]);

@@ -1,5 +1,6 @@
 //! The law of Veronda and Westmann.
 
+use super::code::{Code, CodeLaw};
 use super::exponential::{exponential, exponential_less_one};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
@@ -52,6 +53,14 @@ impl InvariantLaw for VerondaWestmann {
             d2: -0.5 * slope,
             d11: slope * self.beta * growth,
             ..EnergyDerivatives::default()
+        }
+    }
+
+    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+        let (c, beta) = (("c1", self.c), ("c2", self.beta));
+        match code {
+            Code::FeBio => CodeLaw::named("Veronda-Westmann", [c, beta, ("k", bulk)]),
+            _ => None,
         }
     }
 }

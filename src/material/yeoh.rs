@@ -1,5 +1,6 @@
 //! Yeoh's law.
 
+use super::code::{Code, CodeLaw};
 use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
 use super::parameters::Parameters;
 use crate::document::Bound;
@@ -49,6 +50,16 @@ impl InvariantLaw for Yeoh {
             d1: c1 + y * (2.0 * c2 + 3.0 * y * c3),
             d11: 2.0 * c2 + 6.0 * y * c3,
             ..EnergyDerivatives::default()
+        }
+    }
+
+    /// FEBio's law of this name is left out: in some versions its stress is not that of its energy.
+    fn in_code(&self, code: Code, bulk: f64) -> Option<CodeLaw> {
+        let ([c1, c2, c3], d) = (self.coefficients, 2.0 / bulk);
+        let [d1, d2, d3] = [("D1", d), ("D2", d), ("D3", d)];
+        match code {
+            Code::FeBio => None,
+            _ => CodeLaw::named("YEOH", [("C10", c1), ("C20", c2), ("C30", c3), d1, d2, d3]),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A boundary value problem handed over to Abaqus, CalculiX or FEBio, so that it can be solved by a code that is
+//! A boundary-value problem exported to Abaqus, CalculiX or FEBio, so that it can be solved by a code that is
 //! trusted already.
 //!
 //! What the codes share is worked out here once: node sets of the named groups, what holds which nodes, nodal
@@ -16,63 +16,17 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use crate::document::name_of;
 use crate::error::{Diagnostic, Error};
-use crate::material::Card;
+use crate::material::{Card, Code, CodeLaw};
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Drive, Load, Support};
 
 mod abaqus;
 mod febio;
-mod material;
 
-use material::Material;
-
-/// A code that a problem is handed over to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Code {
-    /// Abaqus/Standard.
-    Abaqus,
-    /// CalculiX.
-    CalculiX,
-    /// FEBio 4.
-    FeBio,
-}
-
-impl Code {
-    /// The codes by the names that the command line uses.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("abaqus", Self::Abaqus),
-        ("calculix", Self::CalculiX),
-        ("febio", Self::FeBio),
-    ];
-
-    /// The name that the command line uses.
-    pub fn key(self) -> &'static str {
-        name_of(&Self::NAMES, self)
-    }
-
-    /// The code's name as its makers write it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Abaqus => "Abaqus",
-            Self::CalculiX => "CalculiX",
-            Self::FeBio => "FEBio",
-        }
-    }
-
-    /// The ending of its files.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Abaqus | Self::CalculiX => "inp",
-            Self::FeBio => "feb",
-        }
-    }
-}
-
-/// What is handed over.
+/// What is exported.
 #[derive(Clone, Copy)]
-pub struct HandOver<'a> {
+pub struct Export<'a> {
     /// The heading.
     pub title: &'a str,
     /// Thickness, supports and loads.
@@ -87,36 +41,59 @@ pub struct HandOver<'a> {
     pub bulk_ratio: f64,
 }
 
-/// A file for another code.
+/// An input file of another code.
 #[derive(Clone, Debug)]
-pub struct Written {
+pub struct InputFile {
     /// Its text.
     pub text: String,
     /// Where it differs from the study.
     pub remarks: Vec<String>,
 }
 
-/// Writes a problem for a code.
-///
-/// # Errors
-/// [`Error::Input`] when the code lacks the law, or when a support or a load cannot be expressed in it.
-pub fn hand_over(given: &HandOver, code: Code) -> Result<Written, Error> {
-    let model = Model::new(given, code).map_err(|fault| Error::Input(vec![fault]))?;
-    let text = match code {
-        Code::Abaqus | Code::CalculiX => abaqus::write(&model)?,
-        Code::FeBio => febio::write(&model)?,
-    };
-    Ok(Written {
-        text,
-        remarks: model.remarks(),
-    })
+impl Export<'_> {
+    /// The problem as an input file of a code.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the code lacks the law, or when a support or a load cannot be expressed in it.
+    pub fn input_file(&self, code: Code) -> Result<InputFile, Error> {
+        let model = Model::new(self, code).map_err(|fault| Error::Input(vec![fault]))?;
+        let text = match code {
+            Code::Abaqus | Code::CalculiX => abaqus::write(&model),
+            Code::FeBio => febio::write(&model),
+        };
+        Ok(InputFile {
+            text,
+            remarks: model.remarks(),
+        })
+    }
+
+    /// The bulk modulus in MPa that stands for incompressibility; infinite where the code has incompressible sheets.
+    fn bulk_modulus(&self, code: Code) -> f64 {
+        match code {
+            Code::Abaqus => f64::INFINITY,
+            _ => self.bulk_ratio * self.card.law.shear_modulus(),
+        }
+    }
+
+    fn law(&self, code: Code) -> Result<CodeLaw, Diagnostic> {
+        let law = self.card.law.in_code(code, self.bulk_modulus(code));
+        let known = law.filter(|law| code == Code::Abaqus || *law != CodeLaw::TensionCurve);
+        known.ok_or_else(|| {
+            let (name, card) = (code.name(), self.card);
+            let message = format!("{name} has no law that equals `{}` of the card `{}`", card.law_name, card.name);
+            Diagnostic::error("", message).hint(format!(
+                "it has {}; fit such a card to the same data, as with `gelbench materials fit DATA.csv --law ogden-2`",
+                code.laws()
+            ))
+        })
+    }
 }
 
 /// The problem in the words that all codes share; nodes and cells are numbered as in the mesh.
 struct Model<'a> {
-    given: &'a HandOver<'a>,
+    given: &'a Export<'a>,
     code: Code,
-    material: Material,
+    law: CodeLaw,
     /// Kind and nodes of the cells; those in the middle of quadrilaterals only where the code knows them.
     cells: Vec<(CellShape, &'a [usize])>,
     /// The nodes of the cells, ascending.
@@ -178,7 +155,7 @@ impl Held {
 }
 
 impl<'a> Model<'a> {
-    fn new(given: &'a HandOver<'a>, code: Code) -> Result<Self, Diagnostic> {
+    fn new(given: &'a Export<'a>, code: Code) -> Result<Self, Diagnostic> {
         let mesh = given.mesh;
         let all = || (0..mesh.cell_count()).map(|cell| (mesh.shape(cell), mesh.cell(cell)));
         // A nine-node face fits no six-node triangle's neighbour in space.
@@ -208,7 +185,7 @@ impl<'a> Model<'a> {
         let mut model = Self {
             given,
             code,
-            material: Material::of(given.card),
+            law: given.law(code)?,
             cells,
             nodes: nodes.into_iter().collect(),
             sets,
@@ -254,9 +231,9 @@ impl<'a> Model<'a> {
     fn tie(&mut self) -> Result<(), Diagnostic> {
         let ties = self.given.problem.ties(self.given.mesh)?;
         if self.code == Code::FeBio && !ties.is_empty() {
-            let message = "a grip with a given force cannot be handed over to FEBio";
+            let message = "a grip with a given force cannot be exported to FEBio";
             return Err(Diagnostic::error("support", message)
-                .hint("give the grip a displacement, or hand over to Abaqus or CalculiX"));
+                .hint("give the grip a displacement, or export to Abaqus or CalculiX"));
         }
         let ties = ties.into_iter().map(|(unknown, follows)| Tie {
             node: unknown / 2,
@@ -297,11 +274,6 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
-    /// The bulk modulus in MPa that stands for incompressibility.
-    fn bulk_modulus(&self) -> f64 {
-        self.given.bulk_ratio * self.given.card.law.shear_modulus()
-    }
-
     /// Where the file differs from the study, in ASCII.
     fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
@@ -321,7 +293,7 @@ impl<'a> Model<'a> {
         if self.code != Code::Abaqus {
             remarks.push(format!(
                 "{code} has no incompressible sheet: the bulk modulus is {} MPa, {} times the initial shear modulus",
-                number(self.bulk_modulus()),
+                number(self.given.bulk_modulus(self.code)),
                 self.given.bulk_ratio
             ));
         }
@@ -333,7 +305,9 @@ impl<'a> Model<'a> {
                 ),
             });
         }
-        remarks.extend(self.material.remark(self.code).map(String::from));
+        if self.law == CodeLaw::TensionCurve {
+            remarks.push("the law depends on the first invariant alone and goes out as Marlow's law with points of its tension curve".into());
+        }
         remarks
     }
 

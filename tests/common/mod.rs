@@ -9,7 +9,7 @@ use assert_cmd::assert::Assert;
 use serde_json::Value;
 use tempfile::TempDir;
 
-pub mod handed_over;
+pub mod exports;
 pub mod mesh_files;
 
 pub fn gelbench(folder: &Path, arguments: &[&str]) -> Assert {

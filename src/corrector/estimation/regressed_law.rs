@@ -47,7 +47,7 @@ impl RegressedLaw {
             let message = format!("{} parameters cannot be found with a field", places.len());
             return fault(message, "name one or two");
         }
-        let law = Law::named(card.law_name);
+        let law = Law::named(&card.law_name);
         let all = law.map(|law| Self {
             law,
             measures: (card.stress_measure, card.strain_measure),

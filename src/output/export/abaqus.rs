@@ -1,11 +1,5 @@
 //! The `.inp` files of Abaqus and of CalculiX, which has taken over most of Abaqus' keywords.
 //!
-//! | law | Abaqus | CalculiX |
-//! |---|---|---|
-//! | neo-Hooke, Mooney–Rivlin, polynomial, Yeoh, Ogden, Arruda–Boyce | the same, D = 0 | the same, D₁ = 2/K; Ogden to three terms |
-//! | Gent, Fung–Demiray, Marlow | `MARLOW` with the tension curve | – |
-//! | Holzapfel–Gasser–Ogden | `ANISOTROPIC HYPERELASTIC` | – |
-//!
 //! Both codes write Ogden's law as Σ 2 μ/α² (…) and a neo-Hookean volume energy as (J − 1)²/D₁, so that the bulk
 //! modulus is K = 2/D₁. Abaqus' plane-stress elements are incompressible with D = 0. CalculiX makes solids of them
 //! and needs a finite K; its eight-node elements go out with reduced integration (`CPS8R`). On a strip with a hole
@@ -15,9 +9,8 @@
 //! # References
 //! Abaqus 2016 Analysis User's Guide, 22.5.1 and 22.5.3; G. Dhondt, CalculiX `CrunchiX` User's Manual 2.20, `*HYPERELASTIC`
 
-use super::material::{Material, refused};
-use super::{Code, Held, Model, ascii, number};
-use crate::error::Error;
+use super::{Held, Model, ascii, number};
+use crate::material::{Card, Code, CodeLaw};
 use crate::mesh::CellShape;
 
 /// Lines of an input file.
@@ -39,11 +32,7 @@ impl Deck {
 }
 
 /// The input file of a model.
-///
-/// # Errors
-/// [`Error::Input`] when the code lacks the law.
-pub fn write(model: &Model) -> Result<String, Error> {
-    let material = material(model)?;
+pub fn write(model: &Model) -> String {
     let given = model.given;
     let mut deck = Deck::default();
     deck.line("*HEADING");
@@ -53,11 +42,8 @@ pub fn write(model: &Model) -> Result<String, Error> {
     }
     mesh(model, &mut deck);
     ties(model, &mut deck);
-    deck.line("*MATERIAL, NAME=MATERIAL_1");
-    for line in &material {
-        deck.line(line);
-    }
-    let orientation = orientation(&model.material, &mut deck);
+    material(model, &mut deck);
+    let orientation = orientation(&model.law, &mut deck);
     deck.line(&format!(
         "*SOLID SECTION, ELSET=SPECIMEN, MATERIAL=MATERIAL_1{orientation}"
     ));
@@ -67,7 +53,7 @@ pub fn write(model: &Model) -> Result<String, Error> {
         step(model, before, *factor, &mut deck);
         before = *factor;
     }
-    Ok(deck.0)
+    deck.0
 }
 
 fn mesh(model: &Model, deck: &mut Deck) {
@@ -230,89 +216,65 @@ fn output(model: &Model, deck: &mut Deck) {
 }
 
 /// Names the directions of fibres and returns what the section says about them.
-fn orientation(material: &Material, deck: &mut Deck) -> &'static str {
-    let Material::HolzapfelGasserOgden {
-        angle, families, ..
-    } = material
-    else {
+fn orientation(law: &CodeLaw, deck: &mut Deck) -> &'static str {
+    let CodeLaw::Named { directions, .. } = law else {
         return "";
     };
+    if directions.is_empty() {
+        return "";
+    }
     deck.line(&format!(
-        "*ORIENTATION, NAME=FIBRES, SYSTEM=RECTANGULAR, LOCAL DIRECTIONS={families}"
+        "*ORIENTATION, NAME=FIBRES, SYSTEM=RECTANGULAR, LOCAL DIRECTIONS={}",
+        directions.len()
     ));
     deck.line("1., 0., 0., 0., 1., 0.");
     deck.line("3, 0.");
-    for sign in [1.0, -1.0].into_iter().take(*families) {
-        let (sine, cosine) = (sign * angle).sin_cos();
-        deck.line(&format!("{}, {}, 0.", number(cosine), number(sine)));
+    for [x, y] in directions {
+        deck.line(&format!("{}, {}, 0.", number(*x), number(*y)));
     }
     ", ORIENTATION=FIBRES"
 }
 
 /// The material's keyword and data.
-fn material(model: &Model) -> Result<Vec<String>, Error> {
-    let data = |values: &[f64]| -> Vec<String> {
-        let values: Vec<_> = values.iter().map(|value| number(*value)).collect();
-        values.chunks(8).map(|line| line.join(", ")).collect()
-    };
-    let calculix = model.code == Code::CalculiX;
-    let d = if calculix {
-        2.0 / model.bulk_modulus()
-    } else {
-        0.0
-    };
-    let (keyword, values) = match &model.material {
-        Material::Polynomial([c10, 0.0, 0.0, 0.0, 0.0]) => ("NEO HOOKE".into(), vec![*c10, d]),
-        Material::Polynomial([c10, c01, 0.0, 0.0, 0.0]) => {
-            ("MOONEY-RIVLIN".into(), vec![*c10, *c01, d])
+fn material(model: &Model, deck: &mut Deck) {
+    deck.line("*MATERIAL, NAME=MATERIAL_1");
+    match &model.law {
+        CodeLaw::Named {
+            keyword,
+            parameters,
+            directions,
+        } => {
+            match directions.len() {
+                0 => deck.line(&format!("*HYPERELASTIC, {keyword}")),
+                count => deck.line(&format!(
+                    "*ANISOTROPIC HYPERELASTIC, {keyword}, LOCAL DIRECTIONS={count}"
+                )),
+            }
+            let values = parameters.iter().map(|(_, value)| number(*value));
+            for line in values.collect::<Vec<_>>().chunks(8) {
+                deck.line(&line.join(", "));
+            }
         }
-        Material::Polynomial(c) => ("POLYNOMIAL, N=2".into(), [&c[..], &[d, d]].concat()),
-        Material::Yeoh(c) => ("YEOH".into(), [&c[..], &[d, d, d]].concat()),
-        Material::Ogden(terms) if !calculix || terms.len() <= 3 => {
-            let volume = vec![d; terms.len()];
-            let values = [terms.concat(), volume].concat();
-            (format!("OGDEN, N={}", terms.len()), values)
+        CodeLaw::TensionCurve => {
+            deck.line("*HYPERELASTIC, MARLOW");
+            deck.line("*UNIAXIAL TEST DATA");
+            for [strain, stress] in tension_curve(model.given.card) {
+                deck.line(&format!("{}, {}", number(stress), number(strain)));
+            }
         }
-        Material::ArrudaBoyce([mu, lambda]) => ("ARRUDA-BOYCE".into(), vec![*mu, *lambda, d]),
-        Material::TensionCurve(curve) if !calculix => return Ok(marlow(curve)),
-        Material::Gent(_) if !calculix => {
-            return Ok(marlow(&super::material::tension_curve(model.given.card)));
-        }
-        Material::HolzapfelGasserOgden {
-            values: [mu, k1, k2, kappa],
-            families,
-            ..
-        } if !calculix => {
-            let keyword =
-                format!("*ANISOTROPIC HYPERELASTIC, HOLZAPFEL, LOCAL DIRECTIONS={families}");
-            let mut lines = vec![keyword];
-            lines.extend(data(&[mu / 2.0, d, *k1, *k2, *kappa]));
-            return Ok(lines);
-        }
-        _ => {
-            let has = if calculix {
-                "neo-Hooke, Mooney-Rivlin, polynomials, Yeoh, Ogden to three terms and Arruda-Boyce"
-            } else {
-                "neo-Hooke, Mooney-Rivlin, polynomials, Yeoh, Ogden, Arruda-Boyce, Holzapfel-Gasser-Ogden, and Marlow for laws of the first invariant"
-            };
-            return Err(refused(model.given.card, model.code, has));
-        }
-    };
-    let mut lines = vec![format!("*HYPERELASTIC, {keyword}")];
-    lines.extend(data(&values));
-    Ok(lines)
+    }
 }
 
-/// Marlow's law from nominal stress over nominal strain.
-fn marlow(curve: &[[f64; 2]]) -> Vec<String> {
-    let mut lines = vec![
-        "*HYPERELASTIC, MARLOW".to_owned(),
-        "*UNIAXIAL TEST DATA".to_owned(),
-    ];
-    lines.extend(
-        curve
-            .iter()
-            .map(|[strain, stress]| format!("{}, {}", number(*stress), number(*strain))),
-    );
-    lines
+/// Strain λ − 1 and nominal stress from rest to one and a half of the card's range and to a stretch of 3 at least, as far
+/// as the law has an energy.
+fn tension_curve(card: &Card) -> Vec<[f64; 2]> {
+    const POINTS: u32 = 400;
+    let most = (1.5 * card.stretch_range[1] - 1.0).max(2.0);
+    let strains = (0..=POINTS).map(|i| most * f64::from(i) / f64::from(POINTS));
+    let points = strains.map(|strain| (strain, card.law.tension([1.0, 0.0], strain)));
+    // Beyond a law's limit the stress may be a number, but the energy is none.
+    let points = points.take_while(|(_, test)| (test.energy + test.nominal_stress).is_finite());
+    points
+        .map(|(strain, test)| [strain, test.nominal_stress])
+        .collect()
 }

@@ -4,24 +4,11 @@
 //! held along z; the upper face is free. A column of nodes stands on each node of the sheet: two of them at linear
 //! cells and on the mid-sides of quadratic ones, three elsewhere.
 //!
-//! | law | FEBio | parameters |
-//! |---|---|---|
-//! | neo-Hooke, Mooney–Rivlin | `Mooney-Rivlin` | c1 = C₁₀, c2 = C₀₁ |
-//! | polynomial of second order | `polynomial` | cij = Cᵢⱼ, U = D1 (J − 1)², D1 = K/2 |
-//! | Ogden | `Ogden`, Σ c/m² (…) | c = 2 μ, m = α |
-//! | Gent | `Gent` | G = μ, Jm = Jₘ |
-//! | Veronda–Westmann | `Veronda-Westmann` | c1 = C, c2 = β |
-//! | Holzapfel–Gasser–Ogden | `Holzapfel-Gasser-Ogden` | c = μ; two families at ±γ, one as two of half the stiffness at γ = 0 in turned axes |
-//!
-//! Not handed over: Yeoh's law, of which FEBio 4 (sources of January 2026) computes another stress than its energy
-//! has, and Arruda and Boyce's, in which its coefficients are i times those of the publication.
-//!
 //! # References
 //! S. A. Maas et al., FEBio User's Manual 4.x; `FEBioMech` in <https://github.com/febiosoftware/FEBio>
 
-use super::material::{Material, refused};
 use super::{Held, Model, ascii, number};
-use crate::error::Error;
+use crate::material::CodeLaw;
 use crate::mesh::CellShape;
 
 mod columns;
@@ -35,11 +22,7 @@ use xml::Xml;
 /// Steps of time within a load factor to begin with.
 const TIME_STEPS: u32 = 10;
 /// The input file of a model.
-///
-/// # Errors
-/// [`Error::Input`] when FEBio lacks the law.
-pub fn write(model: &Model) -> Result<String, Error> {
-    let (law, parameters) = material(model)?;
+pub fn write(model: &Model) -> String {
     let columns = Columns::new(model);
     let mut file = Xml::new();
     for line in std::iter::once(ascii(model.given.title)).chain(model.head()) {
@@ -47,17 +30,7 @@ pub fn write(model: &Model) -> Result<String, Error> {
     }
     file.open("febio_spec", &[("version", "4.0")]);
     file.empty("Module", &[("type", "solid")]);
-    file.open("Material", &[]);
-    file.open(
-        "material",
-        &[("id", "1"), ("name", "material_1"), ("type", law)],
-    );
-    for (name, value) in &parameters {
-        file.text(name, &[], &number(*value));
-    }
-    material_axes(model, &mut file);
-    file.close("material");
-    file.close("Material");
+    material(model, &mut file);
     mesh(model, &columns, &mut file);
     let mut curves = Curves::default();
     boundary(model, &columns, &mut curves, &mut file);
@@ -75,79 +48,35 @@ pub fn write(model: &Model) -> Result<String, Error> {
     file.close("logfile");
     file.close("Output");
     file.close("febio_spec");
-    Ok(file.finish())
+    file.finish()
 }
 
-/// Parameters of a material by name.
-type Parameters = Vec<(String, f64)>;
-
-/// The material's type and parameters.
-fn material(model: &Model) -> Result<(&'static str, Parameters), Error> {
-    let bulk = model.bulk_modulus();
-    let named = |names: &[&str], values: &[f64]| -> Parameters {
-        let names = names.iter().map(|name| (*name).to_owned());
-        names.zip(values.iter().copied()).collect()
+/// The law with its parameters, and axes of which the first lies along its direction where it has one.
+fn material(model: &Model, file: &mut Xml) {
+    let CodeLaw::Named {
+        keyword,
+        parameters,
+        directions,
+    } = &model.law
+    else {
+        unreachable!("FEBio has no law of a tension curve");
     };
-    Ok(match &model.material {
-        Material::Polynomial([c10, c01, 0.0, 0.0, 0.0]) => (
-            "Mooney-Rivlin",
-            named(&["c1", "c2", "k"], &[*c10, *c01, bulk]),
-        ),
-        Material::Polynomial([c10, c01, c20, c11, c02]) => (
-            "polynomial",
-            named(
-                &["c10", "c01", "c20", "c11", "c02", "D1"],
-                &[*c10, *c01, *c20, *c11, *c02, bulk / 2.0],
-            ),
-        ),
-        Material::Ogden(terms) => {
-            let numbered = terms.iter().zip(1..);
-            let term = |([mu, alpha], i): (&[f64; 2], i32)| {
-                [(format!("c{i}"), 2.0 * mu), (format!("m{i}"), *alpha)]
-            };
-            let mut parameters: Vec<_> = numbered.flat_map(term).collect();
-            parameters.push(("k".into(), bulk));
-            ("Ogden", parameters)
-        }
-        Material::Gent([mu, jm]) => ("Gent", named(&["G", "Jm", "k"], &[*mu, *jm, bulk])),
-        Material::VerondaWestmann([c, beta]) => (
-            "Veronda-Westmann",
-            named(&["c1", "c2", "k"], &[*c, *beta, bulk]),
-        ),
-        Material::HolzapfelGasserOgden {
-            values: [mu, k1, k2, kappa],
-            angle,
-            families,
-        } => {
-            let (k1, gamma) = match families {
-                1 => (k1 / 2.0, 0.0),
-                _ => (*k1, angle.to_degrees()),
-            };
-            let names = ["c", "k1", "k2", "kappa", "gamma", "k"];
-            (
-                "Holzapfel-Gasser-Ogden",
-                named(&names, &[*mu, k1, *k2, *kappa, gamma, bulk]),
-            )
-        }
-        Material::Yeoh(_) | Material::ArrudaBoyce(_) | Material::TensionCurve(_) => {
-            let has = "neo-Hooke, Mooney-Rivlin to the second order, Ogden, Gent, Veronda-Westmann and Holzapfel-Gasser-Ogden";
-            return Err(refused(model.given.card, model.code, has));
-        }
-    })
-}
-
-/// Axes of which the first lies along the fibres, where there is one family of them.
-fn material_axes(model: &Model, file: &mut Xml) {
-    if let Material::HolzapfelGasserOgden {
-        angle, families: 1, ..
-    } = model.material
-    {
-        let (sine, cosine) = angle.sin_cos();
+    file.open("Material", &[]);
+    file.open(
+        "material",
+        &[("id", "1"), ("name", "material_1"), ("type", keyword)],
+    );
+    for (name, value) in parameters {
+        file.text(name, &[], &number(*value));
+    }
+    if let [[x, y], ..] = directions[..] {
         file.open("mat_axis", &[("type", "vector")]);
-        file.text("a", &[], &format!("{},{},0", number(cosine), number(sine)));
-        file.text("d", &[], &format!("{},{},0", number(-sine), number(cosine)));
+        file.text("a", &[], &format!("{},{},0", number(x), number(y)));
+        file.text("d", &[], &format!("{},{},0", number(-y), number(x)));
         file.close("mat_axis");
     }
+    file.close("material");
+    file.close("Material");
 }
 
 fn solid_name(shape: CellShape) -> &'static str {

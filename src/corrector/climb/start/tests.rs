@@ -218,10 +218,11 @@ fn springs_get_cells_that_they_bear() {
 /// Beyond the maximum of its stress no sheet of this law holds: the message says so, not that a cell folds.
 #[test]
 fn an_unstable_law_is_named_as_the_cause() {
-    let law = samples::sample(
+    let law = samples::card(
         "yeoh",
         "c10 = \"0.03 MPa\"\nc20 = \"-20 kPa\"\nc30 = \"0 kPa\"",
-    );
+    )
+    .law;
     let problem = Problem {
         law,
         ..problem("neo-hooke", [150.0, 50.0], 1.5)

@@ -1,4 +1,4 @@
-//! Studies that are handed over to other codes, and what `gelbench compare` says of their fields.
+//! Studies that are exported to other codes, and what `gelbench compare` says of their fields.
 
 /// A plate on few finite elements.
 pub const PLATE: &str = "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\ncells = [12, 4]\n[material]\ncard = \"neo-hooke\"\n\
