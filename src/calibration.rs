@@ -2,7 +2,7 @@
 //! be trusted.
 //!
 //! ```text
-//! file ─table─▶ columns ─test_data─▶ TestData ─fit─▶ Fit ─quality─▶ Quality ─▶ card, picture, JSON
+//! table ─test_data─▶ TestData ─fit─▶ Fit ─quality─▶ Quality ─▶ card, picture, JSON
 //! ```
 
 mod card_text;
@@ -11,15 +11,13 @@ mod fit;
 mod least_squares;
 mod misfit;
 mod quality;
-mod table;
 mod test_data;
 
 pub use card_text::{Provenance, card_text};
 pub use conversion::Conversion;
 pub use fit::{Bounds, Fit, FitSettings, Weighting, fit, rank};
 pub use quality::{Quality, StableRange};
-pub use table::{Column, Table};
-pub use test_data::{KEYS, Observation, Reading, StrainColumn, Test, TestData};
+pub use test_data::{KEYS, Observation, StrainColumn, Test, TestData};
 
 #[cfg(test)]
 mod quality_tests;

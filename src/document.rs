@@ -11,9 +11,14 @@ use toml::de::DeTable;
 
 use crate::error::{Diagnostic, Error, Severity, Source};
 
+mod decimals;
+mod head;
 mod section;
+mod table;
 
+pub use head::{Faulty, Head, Statements};
 pub use section::Section;
+pub use table::{Column, Table, plain_name};
 
 /// A parsed TOML file.
 #[derive(Debug)]

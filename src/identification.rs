@@ -41,7 +41,7 @@ pub use band::Function;
 pub use basis::{Basis, Form, Shape};
 pub use joint::Argument;
 pub use law_text::law_text;
-pub use recording::{Recording, Said};
+pub use recording::Recording;
 pub use sample::Sample;
 
 #[cfg(test)]

@@ -223,6 +223,18 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     }
 }
 
+/// The factor from a unit by its name alone, such as `"kPa"`, to the internal unit of `dimension`; a ratio may be
+/// written as `-`.
+///
+/// # Errors
+/// A [`QuantityFault`] when the unit is missing, unknown or of another dimension.
+pub fn factor(unit: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
+    match (dimension, unit) {
+        (Dimension::Ratio, "-" | "–" | "1" | "mm/mm" | "m/m" | "in/in") => Ok(1.0),
+        _ => parse(&format!("1 {unit}"), dimension),
+    }
+}
+
 /// Length in bytes of the decimal number at the beginning of `text`.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();

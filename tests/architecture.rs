@@ -33,7 +33,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("miette::", &["src/command"]),
     ("toml::", &["src/document"]),
     ("spade::", &["src/mesh/triangulate.rs"]),
-    ("csv::", &["src/calibration/table.rs"]),
+    ("csv::", &["src/document/table.rs"]),
     ("statrs::", &["src/statistics.rs"]),
     ("rmpfit::", &["src/calibration/least_squares.rs"]),
     (

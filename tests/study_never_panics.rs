@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use gelbench::calibration::{FitSettings, Reading, TestData, fit};
+use gelbench::calibration::{FitSettings, TestData, fit};
+use gelbench::document::Statements;
 use gelbench::material::Card;
 use gelbench::material::registry::{CARDS, DATA, Law};
 use gelbench::studies::plate::study::{DEFAULT, Study};
@@ -46,7 +47,7 @@ proptest! {
     #[test]
     fn test_data(file in 0..DATA.len(), at in 0_usize..3_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}|\\PC{0,6}") {
         let text = damaged(DATA[file].1, at, length, &piece);
-        if let Ok(data) = TestData::parse("name.csv", &text, &Reading::new()) {
+        if let Ok(data) = TestData::parse("name.csv", &text, &Statements::new()) {
             let law = Law::named("neo-hooke").unwrap();
             let _ = fit(law, &[data], &FitSettings::default());
         }

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::fit::Fit;
-use super::test_data::{Reading, TestData};
+use super::test_data::TestData;
+use crate::document::Statements;
 use crate::document::quoted;
 use crate::material::registry::MARLOW_TABLE;
 use crate::units::Dimension;
@@ -14,7 +15,7 @@ pub struct Provenance {
     /// The files of test data, as the card names them.
     pub files: Vec<String>,
     /// What was said about them beside their heads.
-    pub reading: Reading,
+    pub reading: Statements,
 }
 
 /// A card that `gelbench materials refit` can make again.

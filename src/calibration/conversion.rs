@@ -24,7 +24,7 @@ impl Conversion {
     /// # Errors
     /// [`Error::Input`] when the unit is no unit of stress.
     pub fn table(&self, data: &TestData) -> Result<String, Error> {
-        let factor = units::parse(&format!("1 {}", self.unit), Dimension::Stress);
+        let factor = units::factor(&self.unit, Dimension::Stress);
         let factor = factor.map_err(|fault| {
             let known: Vec<_> = Dimension::Stress.units().collect();
             let hint = format!("known units: {}", known.join(", "));
@@ -94,7 +94,7 @@ impl Conversion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::Reading;
+    use crate::document::Statements;
     use crate::material::parameters::StrainMeasure;
 
     /// Nominal to Cauchy, logarithmic and kPa, and back.
@@ -106,7 +106,7 @@ mod tests {
             "# test: planar; direction: 2\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n2,0.5\n",
             "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n1.5,1.25,0.5,0.25\n",
         ] {
-            let read = |text: &str| TestData::parse("a.csv", text, &Reading::new()).unwrap();
+            let read = |text: &str| TestData::parse("a.csv", text, &Statements::new()).unwrap();
             let data = read(text);
             let away = Conversion {
                 stress: StressMeasure::Cauchy,
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn another_unit_than_one_of_stress_is_refused() {
         let text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n";
-        let data = TestData::parse("a.csv", text, &Reading::new()).unwrap();
+        let data = TestData::parse("a.csv", text, &Statements::new()).unwrap();
         let conversion = Conversion {
             stress: StressMeasure::Nominal,
             strain: StrainColumn::Stretch,

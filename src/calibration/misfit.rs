@@ -141,13 +141,13 @@ impl Residuals for Misfit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::Reading;
+    use crate::document::Statements;
 
     const TEXT: &str =
         "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.2,0.05\n1.6,0.13\n2.0,0.15\n";
 
     fn tests() -> [TestData; 1] {
-        [TestData::parse("a.csv", TEXT, &Reading::new()).unwrap()]
+        [TestData::parse("a.csv", TEXT, &Statements::new()).unwrap()]
     }
 
     /// Σ w² f σ/Σ w² f² with the slope f = 2 (λ − λ⁻²), and the secant Σ |σ x|/Σ x².

@@ -2,14 +2,15 @@
 
 use super::fit::{Fit, FitSettings, Weighting, fit};
 use super::quality::{StableRange, differs};
-use super::test_data::{Reading, TestData};
+use super::test_data::TestData;
+use crate::document::Statements;
 use crate::material::curve::Mode;
 use crate::material::registry::Law;
 
 fn tests(points: &[(f64, f64)]) -> [TestData; 1] {
     let rows: String = points.iter().map(|(l, s)| format!("{l},{s}\n")).collect();
     let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-    [TestData::parse("a.csv", &text, &Reading::new()).unwrap()]
+    [TestData::parse("a.csv", &text, &Statements::new()).unwrap()]
 }
 
 fn fitted(law: &str, tests: &[TestData], settings: &FitSettings) -> Fit {

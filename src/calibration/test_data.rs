@@ -1,20 +1,28 @@
 //! Test data: what was stretched how far, and what stress was measured.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-pub use super::table::KEYS;
-use super::table::Table;
-use crate::document::name_of;
+use crate::document::{Head, Statements, Table, name_of};
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 
-mod head;
 mod layout;
 
-use head::Head;
 use layout::Layout;
+
+/// What a file or the command line must say about test data.
+pub const KEYS: [&str; 9] = [
+    "test",
+    "stress measure",
+    "strain measure",
+    "stress unit",
+    "strain unit",
+    "direction",
+    "strain ratio",
+    "area",
+    "length",
+];
 
 /// The kinds of test that a sheet can be put to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,20 +117,17 @@ pub struct TestData {
     /// The largest stress without its sign, in MPa.
     pub largest_stress: f64,
     /// What the head says about source, specimen, DOI and licence.
-    pub head: BTreeMap<String, String>,
+    pub head: Statements,
     /// What to look at before trusting the data.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// What stands in the head of a file, given for files that do not say it: keys of [`KEYS`] and values.
-pub type Reading = BTreeMap<String, String>;
-
 impl TestData {
-    /// Reads a file; `reading` says what the file does not.
+    /// Reads a file; `reading` says what the file does not, by [`KEYS`].
     ///
     /// # Errors
     /// [`Error::Input`] with file, line and reason; nothing is ever guessed.
-    pub fn read(path: &Path, reading: &Reading) -> Result<Self, Error> {
+    pub fn read(path: &Path, reading: &Statements) -> Result<Self, Error> {
         Self::of_table(&Table::read(path)?, reading)
     }
 
@@ -130,14 +135,16 @@ impl TestData {
     ///
     /// # Errors
     /// As [`Self::read`].
-    pub fn parse(name: &str, text: &str, reading: &Reading) -> Result<Self, Error> {
+    pub fn parse(name: &str, text: &str, reading: &Statements) -> Result<Self, Error> {
         Self::of_table(&Table::parse(name, text)?, reading)
     }
 
-    fn of_table(table: &Table, reading: &Reading) -> Result<Self, Error> {
-        let head = Head { table, reading };
-        let data = Layout::new(&head).and_then(|layout| layout.read(&head));
-        data.map_err(|fault| Error::Input(vec![*fault]))
+    fn of_table(table: &Table, reading: &Statements) -> Result<Self, Error> {
+        let head = Head::new(table, &KEYS, reading)?;
+        let layout = Layout::new(&head).map_err(input)?;
+        let hint = "every row holds finite numbers; units stand in the line of names";
+        table.check_numbers(layout.columns(), hint)?;
+        layout.read(&head).map_err(input)
     }
 
     /// The stress of a law at an observation, in the measure of the data, in MPa.
@@ -207,6 +214,10 @@ impl TestData {
         let share = |i: usize| low + (high - low) * i as f64 / count as f64;
         (0..=count).map(|i| at(share(i))).collect()
     }
+}
+
+fn input(fault: Box<Diagnostic>) -> Error {
+    Error::Input(vec![*fault])
 }
 
 /// The strain across at a strain along, between sorted observations.

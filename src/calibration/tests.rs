@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::*;
+use crate::document::Statements;
 use crate::material::Card;
 use crate::material::curve::Mode;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
@@ -11,7 +12,7 @@ use crate::material::registry::{CARDS, DATA, Law};
 fn data(names: &[&str]) -> Vec<TestData> {
     let read = |name: &&str| {
         let path = Path::new("materials/data").join(format!("{name}.csv"));
-        TestData::read(&path, &Reading::new()).unwrap()
+        TestData::read(&path, &Statements::new()).unwrap()
     };
     names.iter().map(read).collect()
 }
@@ -123,7 +124,7 @@ fn a_rising_cauchy_curve_is_found_unstable() {
     };
     let rows: String = (0..100).map(row).collect();
     let text = format!("# test: uniaxial\nnominal_strain [-],cauchy_stress [MPa]\n{rows}");
-    let tests = [TestData::parse("cauchy.csv", &text, &Reading::new()).unwrap()];
+    let tests = [TestData::parse("cauchy.csv", &text, &Statements::new()).unwrap()];
     let fit = fitted("veronda-westmann", &tests);
     let [_, high] = fit.quality.stable[0].stretches;
     assert!((high - 1.595).abs() < 1e-3, "{high}");
@@ -138,7 +139,7 @@ fn every_card_with_data_is_found_again() {
         let Some(record) = &card.fit else { continue };
         let read = |file: &String| {
             let (file, text) = DATA.iter().find(|(known, _)| known == file).unwrap();
-            TestData::parse(file, text, &Reading::new()).unwrap()
+            TestData::parse(file, text, &Statements::new()).unwrap()
         };
         let tests: Vec<TestData> = record.data.iter().map(read).collect();
         let again = fit(
@@ -191,7 +192,7 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
         let rows: String = (1..=40).map(row).collect();
         let head = format!("# test: uniaxial; direction: {direction}");
         let text = format!("{head}\nstretch [-],nominal_stress [MPa]\n{rows}");
-        TestData::parse("strip.csv", &text, &Reading::new()).unwrap()
+        TestData::parse("strip.csv", &text, &Statements::new()).unwrap()
     };
     let row = |i: i32| {
         let x = f64::from(i) / 60.0;
@@ -202,7 +203,7 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
     let text = format!(
         "# test: equibiaxial\nstretch [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n{rows}"
     );
-    let both = TestData::parse("both.csv", &text, &Reading::new()).unwrap();
+    let both = TestData::parse("both.csv", &text, &Statements::new()).unwrap();
     let tests = [file(1), file(2), both];
     let fit = fitted(law.name, &tests);
     for (found, expected) in values(&fit).iter().zip(truth) {
@@ -240,7 +241,7 @@ fn bounds_weights_and_few_points_are_respected() {
     assert!((weight - 100.0).abs() < 1e-9, "{weight}");
 
     let text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.1,0.1\n1.2,0.2\n";
-    let few = [TestData::parse("a.csv", text, &Reading::new()).unwrap()];
+    let few = [TestData::parse("a.csv", text, &Statements::new()).unwrap()];
     let refused = fit(gent, &few, &FitSettings::default())
         .unwrap_err()
         .to_string();
@@ -265,7 +266,7 @@ fn the_deviation_is_normalised_by_the_larger_mean() {
     };
     let rows: String = (1..=20).map(row).collect();
     let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-    let tests = [TestData::parse("a.csv", &text, &Reading::new()).unwrap()];
+    let tests = [TestData::parse("a.csv", &text, &Statements::new()).unwrap()];
     for c10 in [0.2, 0.05] {
         let settings = FitSettings {
             bounds: vec![("c10".into(), [c10, c10 * (1.0 + 1e-12)])],
@@ -303,7 +304,7 @@ fn many_points_are_gathered_without_loss() {
     let read = |step: usize| {
         let rows: String = (0..=60_000).step_by(step).map(row).collect();
         let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-        [TestData::parse("a.csv", &text, &Reading::new()).unwrap()]
+        [TestData::parse("a.csv", &text, &Statements::new()).unwrap()]
     };
     let (all, some) = (fitted("yeoh", &read(1)), fitted("yeoh", &read(40)));
     assert_eq!(all.quality.points, 60_001);
@@ -367,7 +368,7 @@ fn data_that_do_not_determine_a_parameter_give_it_no_certainty() {
     };
     let rows: String = (1..=20).map(row).collect();
     let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-    let tests = [TestData::parse("a.csv", &text, &Reading::new()).unwrap()];
+    let tests = [TestData::parse("a.csv", &text, &Statements::new()).unwrap()];
     let fit = fitted("gent", &tests);
     assert!(
         !fit.quality.is_identifiable(),
@@ -393,7 +394,7 @@ fn stress_measures_are_not_mixed() {
         let text = format!(
             "# test: uniaxial\nstretch [-],{measure}_stress [MPa]\n1.1,0.1\n1.2,0.2\n1.3,0.3\n"
         );
-        TestData::parse(name, &text, &Reading::new()).unwrap()
+        TestData::parse(name, &text, &Statements::new()).unwrap()
     };
     let tests = [read("a.csv", "nominal"), read("b.csv", "cauchy")];
     let refused = fit(

@@ -290,7 +290,7 @@ fn ratio(text: &str) -> Result<f64, String> {
 
 /// The length of a unit in mm.
 pub(super) fn length(unit: &str) -> Result<f64, String> {
-    units::parse(&format!("1 {unit}"), Dimension::Length).map_err(|_| {
+    units::factor(unit, Dimension::Length).map_err(|_| {
         let known: Vec<_> = Dimension::Length.units().collect();
         suggestion(unit, &known, "known units:")
     })

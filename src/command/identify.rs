@@ -8,8 +8,8 @@ use clap::{Args, ValueEnum};
 use super::terminal::{Outcome, print, warn};
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
-    Argument, Form, Function, Identification, IdentificationSettings, Recording, Said, Sample,
-    Shape, identify, law_text,
+    Argument, Form, Function, Identification, IdentificationSettings, Recording, Sample, Shape,
+    identify, law_text,
 };
 use crate::output::{self, ResultFolder};
 use crate::results::{identification_json, identification_picture, number};
@@ -112,12 +112,15 @@ pub fn run(options: Options) -> Outcome {
         return Ok(0);
     }
     let path = options.data.unwrap_or_default();
-    let said = Said {
-        mass: options.mass,
-        length: options.length,
-        area: options.area,
-    };
-    let recording = Recording::read(&path, &said)?;
+    let given = [
+        ("mass", options.mass),
+        ("length", options.length),
+        ("area", options.area),
+    ];
+    let given = given
+        .into_iter()
+        .filter_map(|(key, value)| Some((key.to_owned(), value?)));
+    let recording = Recording::read(&path, &given.collect())?;
     let settings = IdentificationSettings {
         forms: [options.stiffness, options.damping],
         shapes: [options.stiffness_shape.into(), options.damping_shape.into()],

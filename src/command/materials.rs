@@ -7,9 +7,9 @@ use clap::{ArgGroup, Args, Subcommand};
 use super::terminal::{Outcome, print, warn};
 use super::{fit_message, message};
 use crate::calibration::{
-    self, Bounds, Conversion, Fit, FitSettings, Provenance, Reading, StrainColumn, TestData,
-    Weighting,
+    self, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, TestData, Weighting,
 };
+use crate::document::Statements;
 use crate::error::{Error, suggestion};
 use crate::material::Card;
 use crate::material::card::FitRecord;
@@ -167,7 +167,7 @@ struct ReadingArguments {
 }
 
 impl ReadingArguments {
-    fn reading(self) -> Reading {
+    fn reading(self) -> Statements {
         let given = [
             self.test,
             self.stress,

@@ -11,8 +11,9 @@
 use std::path::Path;
 
 use super::{corner_areas, distance};
+use crate::document::Table;
 use crate::error::Error;
-use crate::markers::{columns, unit_ratio};
+use crate::markers::unit_ratio;
 use crate::mesh::{ImportedField, Mesh, import_field};
 
 mod table;
@@ -103,7 +104,7 @@ impl Imported {
             .extension()
             .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
         if is_table {
-            return table::read(&columns::read_table(path)?, settings);
+            return table::read(&Table::read(path)?, settings);
         }
         let field = import_field(
             path,

@@ -251,7 +251,7 @@ impl<'a> Section<'a> {
             return f64::NAN;
         };
         let named = match value.get_ref() {
-            DeValue::String(name) => units::parse(&format!("1 {name}"), dimension).ok(),
+            DeValue::String(name) => units::factor(name, dimension).ok(),
             _ => None,
         };
         named.unwrap_or_else(|| self.quantity_of(key, value, dimension, Bound::Positive))

@@ -1,21 +1,11 @@
 //! Recorded force and motion of one spring.
 
+use std::ops::Range;
 use std::path::Path;
 
-use crate::calibration::{Column, Table};
+use crate::document::{Faulty, Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
-use crate::units::{self, Dimension};
-
-/// What the command line says beside the file.
-#[derive(Clone, Debug, Default)]
-pub struct Said {
-    /// The mass that the force moves, such as `5 g`.
-    pub mass: Option<String>,
-    /// The length at rest, such as `50 mm`.
-    pub length: Option<String>,
-    /// The cross-section at rest, such as `20 mm^2`.
-    pub area: Option<String>,
-}
+use crate::units::{self, Dimension, QuantityFault};
 
 /// Force and motion at increasing instants.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,20 +41,26 @@ const MOTIONS: [(&str, Motion, Dimension); 3] = [
     ("stretch", Motion::Stretch, Dimension::Ratio),
 ];
 
+/// What a file or the command line may say about a recording: the mass that the force moves, length and cross-section at
+/// rest.
+const KEYS: [&str; 3] = ["mass", "length", "area"];
+
 impl Recording {
-    /// Reads a table with the columns `time`, `extension` or `length` or `stretch`, and `force`.
+    /// Reads a table with the columns `time`, `extension` or `length` or `stretch`, and `force`; `given` says what the
+    /// head does not: `mass`, `length`, `area`.
     ///
     /// # Errors
     /// [`Error::Input`] with all faults of the file.
-    pub fn read(path: &Path, said: &Said) -> Result<Self, Error> {
-        Self::of_table(&Table::read(path)?, said)
+    pub fn read(path: &Path, given: &Statements) -> Result<Self, Error> {
+        Self::of_table(&Table::read(path)?, given)
     }
 
     /// Takes the columns from a table.
     ///
     /// # Errors
     /// [`Error::Input`] with all faults of the table.
-    pub fn of_table(table: &Table, said: &Said) -> Result<Self, Error> {
+    pub fn of_table(table: &Table, given: &Statements) -> Result<Self, Error> {
+        let head = Head::new(table, &KEYS, given)?;
         let mut reader = Reader {
             table,
             faults: Vec::new(),
@@ -72,7 +68,7 @@ impl Recording {
         let times = reader.column("time", Dimension::Time);
         let motion = MOTIONS
             .iter()
-            .find(|(name, ..)| reader.index(name).is_some());
+            .find(|(name, ..)| table.column(name).is_some());
         let places = motion.map(|(name, _, dimension)| reader.column(name, *dimension));
         if motion.is_none() {
             let message = "there is no column of the motion";
@@ -80,18 +76,15 @@ impl Recording {
             reader.fault(table.columns_place.clone(), message, hint);
         }
         let force = reader.column("force", Dimension::Force);
-        let mass = reader.setting("mass", said.mass.as_deref(), Dimension::Mass);
-        let length = reader.setting("length", said.length.as_deref(), Dimension::Length);
-        let area = reader.setting("area", said.area.as_deref(), Dimension::Area);
+        let mass = reader.take(head.quantity("mass", Dimension::Mass));
         let kind = motion.map_or(Motion::Extension, |(_, kind, _)| *kind);
-        if kind != Motion::Extension && length.is_none() {
-            let message = "the length at rest is not stated";
-            reader.fault(
-                0..0,
-                message,
-                "write `# length: 50 mm` at the top of the file, or give --length \"50 mm\"",
-            );
-        }
+        let length = reader.take(match kind {
+            Motion::Extension => head.quantity("length", Dimension::Length),
+            _ => head
+                .required_quantity("length", Dimension::Length)
+                .map(Some),
+        });
+        let area = reader.take(head.quantity("area", Dimension::Area));
         reader.increasing(&times);
         if !reader.faults.is_empty() {
             return Err(Error::Input(reader.faults));
@@ -110,11 +103,11 @@ impl Recording {
             length,
             area,
         };
-        recording.moving(&reader)?;
+        recording.check_motion(table)?;
         Ok(recording)
     }
 
-    fn moving(&self, reader: &Reader) -> Result<(), Error> {
+    fn check_motion(&self, table: &Table) -> Result<(), Error> {
         let still = |values: &[f64]| values.iter().all(|value| *value == values[0]);
         let message = match () {
             () if self.times.len() < FEWEST => format!("{} instants are too few", self.times.len()),
@@ -125,7 +118,7 @@ impl Recording {
         let hint = format!(
             "record at least {FEWEST} instants of a motion that stretches and slackens the spring"
         );
-        Err(Error::Input(vec![reader.diagnostic(0..0, &message, &hint)]))
+        Err(table.refuse(0..0, message, &hint))
     }
 }
 
@@ -135,109 +128,60 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn diagnostic(&self, place: std::ops::Range<usize>, message: &str, hint: &str) -> Diagnostic {
-        Diagnostic::error("", message)
-            .hint(hint)
-            .at(&self.table.source, place)
+    fn fault(&mut self, place: Range<usize>, message: impl Into<String>, hint: &str) {
+        self.faults.push(self.table.fault(place, message, hint));
     }
 
-    fn fault(&mut self, place: std::ops::Range<usize>, message: &str, hint: &str) {
-        self.faults.push(self.diagnostic(place, message, hint));
-    }
-
-    fn index(&self, name: &str) -> Option<usize> {
-        self.table
-            .columns
-            .iter()
-            .position(|column| column.name == name)
+    fn take<T: Default>(&mut self, found: Faulty<T>) -> T {
+        found.unwrap_or_else(|fault| {
+            self.faults.push(*fault);
+            T::default()
+        })
     }
 
     /// A column in the internal unit.
     fn column(&mut self, name: &str, dimension: Dimension) -> Vec<f64> {
         let place = self.table.columns_place.clone();
-        let Some(index) = self.index(name) else {
+        let Some(index) = self.table.column(name) else {
             let unit = dimension.units().next().unwrap_or("-");
-            self.fault(
-                place,
-                &format!("there is no column `{name}`"),
-                &format!("name one `{name} [{unit}]`"),
-            );
+            let hint = format!("name one `{name} [{unit}]`");
+            self.fault(place, format!("there is no column `{name}`"), &hint);
             return Vec::new();
         };
-        if let Some((reason, row)) = self.table.fault(index) {
-            let reason = format!("{name}: {reason}");
-            self.fault(row, &reason, "every row needs a number in this column");
+        let hint = "every row needs a number in this column";
+        if let Err(Error::Input(faults)) = self.table.check_numbers([index], hint) {
+            self.faults.extend(faults);
         }
-        match factor(&self.table.columns[index], dimension) {
-            Ok(factor) => self
-                .table
-                .rows
-                .iter()
-                .map(|(row, _)| factor * row[index])
-                .collect(),
+        let factor = match (self.table.columns[index].unit.as_deref(), dimension) {
+            (None, Dimension::Ratio) => Ok(1.0),
+            (None, _) => Err(QuantityFault::MissingUnit),
+            (Some(unit), _) => units::factor(unit, dimension),
+        };
+        match factor {
+            Ok(factor) => {
+                let rows = self.table.rows.iter();
+                rows.map(|(row, _)| factor * row[index]).collect()
+            }
             Err(reason) => {
                 let units: Vec<_> = dimension.units().collect();
                 let hint = format!(
                     "write the unit in brackets behind the name; known: {}",
                     units.join(", ")
                 );
-                self.fault(place, &format!("the column `{name}` {reason}"), &hint);
+                self.fault(place, format!("the column `{name}` {reason}"), &hint);
                 Vec::new()
             }
         }
     }
 
-    /// A positive quantity of the head or the command line.
-    fn setting(&mut self, key: &str, said: Option<&str>, dimension: Dimension) -> Option<f64> {
-        let in_file = self.table.head.get(key).cloned();
-        if let (Some((value, place)), Some(said)) = (&in_file, said)
-            && value != said
-        {
-            let message =
-                format!("the {key} is {value} by the head and {said} by the command line");
-            self.fault(place.clone(), &message, "say it once, or alike");
-            return None;
-        }
-        let (value, place) = in_file.or_else(|| Some((said?.to_owned(), 0..0)))?;
-        let reason = match units::parse(&value, dimension) {
-            Ok(number) if number > 0.0 => return Some(number),
-            Ok(_) => "is not positive".to_owned(),
-            Err(fault) => fault.to_string(),
-        };
-        let message = format!("the {key} \"{value}\" {reason}");
-        self.fault(
-            place,
-            &message,
-            &format!("write it as {}", dimension.example()),
-        );
-        None
-    }
-
     fn increasing(&mut self, times: &[f64]) {
         let wrong = times.windows(2).position(|pair| pair[1] <= pair[0]);
         if let Some(row) = wrong {
-            let message = format!(
-                "time {} s does not come after {} s",
-                times[row + 1],
-                times[row]
-            );
+            let (first, second) = (times[row], times[row + 1]);
+            let message = format!("time {second} s does not come after {first} s");
             let place = self.table.rows[row + 1].1.clone();
-            self.fault(
-                place,
-                &message,
-                "sort the rows by time and leave out repeated ones",
-            );
-        }
-    }
-}
-
-fn factor(column: &Column, dimension: Dimension) -> Result<f64, String> {
-    match column.unit.as_deref() {
-        None if dimension == Dimension::Ratio => Ok(1.0),
-        None => Err("has no unit".to_owned()),
-        Some("-" | "–" | "1" | "mm/mm") if dimension == Dimension::Ratio => Ok(1.0),
-        Some(unit) => {
-            units::parse(&format!("1 {unit}"), dimension).map_err(|fault| fault.to_string())
+            let hint = "sort the rows by time and leave out repeated ones";
+            self.fault(place, message, hint);
         }
     }
 }
@@ -252,7 +196,7 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<Recording, Error> {
-        Recording::of_table(&Table::parse("a.csv", text).unwrap(), &Said::default())
+        Recording::of_table(&Table::parse("a.csv", text).unwrap(), &Statements::new())
     }
 
     #[test]
@@ -293,17 +237,15 @@ mod tests {
         );
         assert!(
             told(&format!("time [s],stretch,force [N]\n{}", rows(40)))
-                .contains("length at rest is not stated")
+                .contains("the length is not stated")
         );
         assert!(
-            told(&format!("{head}{}x,1,2\n", rows(40))).contains("time: \"x\" is not a number")
+            told(&format!("{head}{}x,1,2\n", rows(40)))
+                .contains("column `time`: \"x\" is not a number")
         );
-        let said = Said {
-            length: Some("5 mm".into()),
-            ..Said::default()
-        };
+        let given = Statements::from([("length".to_owned(), "5 mm".to_owned())]);
         let table = Table::parse("a.csv", &format!("# length: 4 mm\n{head}{}", rows(40))).unwrap();
-        let told = Recording::of_table(&table, &said).unwrap_err().to_string();
+        let told = Recording::of_table(&table, &given).unwrap_err().to_string();
         assert!(
             told.contains("4 mm by the head and 5 mm by the command line"),
             "{told}"

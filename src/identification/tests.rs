@@ -1,5 +1,5 @@
 use super::*;
-use crate::calibration::Table;
+use crate::document::{Statements, Table};
 
 const PLACES: [f64; 9] = [-13.0, -10.0, -7.0, -4.0, -1.0, 2.0, 5.0, 8.0, 11.0];
 
@@ -170,6 +170,6 @@ fn the_recording_that_comes_along_is_the_one_of_its_seed() {
     let text = include_str!("../../examples/spring_dashpot.csv");
     assert_eq!(text, Sample::default().csv());
     let table = Table::parse("spring_dashpot.csv", text).unwrap();
-    let recording = Recording::of_table(&table, &Said::default()).unwrap();
+    let recording = Recording::of_table(&table, &Statements::new()).unwrap();
     assert!((recording.mass - 2e-4).abs() < 1e-12 && recording.length == Some(50.0));
 }

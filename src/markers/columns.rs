@@ -4,12 +4,9 @@
 //! ([`is_harmless`]) are passed over, and so are those that the user names; any other one is refused, because a column that
 //! nobody reads is a wish that nobody fulfils.
 
-use super::table::plain_text;
-use crate::calibration::Table;
+use crate::document::{Column, Table, plain_name};
 use crate::error::{Diagnostic, Error, nearest, suggestion};
 use crate::units::{self, Dimension};
-
-use std::path::Path;
 
 /// Names that a column may have.
 pub type Names = &'static [&'static str];
@@ -28,24 +25,9 @@ pub struct Units<'a> {
     pub pixels: bool,
 }
 
-/// Reads a table of displacements.
-///
-/// # Errors
-/// [`Error::Input`] with file, line and reason.
-pub fn read_table(path: &Path) -> Result<Table, Error> {
-    Table::parse(&path.display().to_string(), &plain_text(path)?)
-}
-
-/// A fault of the line that names the columns.
-pub fn refuse(table: &Table, message: String, hint: &str) -> Error {
-    let fault = Diagnostic::error("", message).hint(hint);
-    Error::Input(vec![fault.at(&table.source, table.columns_place.clone())])
-}
-
 /// The first column that has exactly one of the names.
 pub fn plain(table: &Table, names: Names) -> Option<usize> {
-    let of_name = |name: &&str| table.columns.iter().position(|c| c.name == **name);
-    names.iter().find_map(of_name)
+    names.iter().find_map(|name| table.column(name))
 }
 
 /// The first column of one of the names, and its unit: in brackets, or at the end of the name as in `ux_mm`.
@@ -69,7 +51,7 @@ fn is_pixel(unit: &str) -> bool {
 
 /// The length of a unit in mm.
 fn millimetres(unit: &str) -> Option<f64> {
-    units::parse(&format!("1 {unit}"), Dimension::Length).ok()
+    units::factor(unit, Dimension::Length).ok()
 }
 
 /// The unit that the heads of all these columns name, if it is one and the same.
@@ -96,7 +78,7 @@ pub fn length(table: &Table, names: Names, units: Units) -> Result<Length, Error
         let message = format!("there is no column `{}`: {found}", names[0]);
         let hint =
             "name the columns x [mm], y [mm], ux [mm] and uy [mm], with the unit of your own";
-        return Err(refuse(table, message, hint));
+        return Err(table.refuse_columns(message, hint));
     };
     let pixels = unit.as_deref().map_or(units.pixels, is_pixel);
     let known = unit.as_deref().filter(|_| !pixels);
@@ -105,16 +87,14 @@ pub fn length(table: &Table, names: Names, units: Units) -> Result<Length, Error
         (Some(unit), _) => millimetres(unit).map(|unit| (index, unit)).ok_or_else(|| {
             let known: Vec<_> = Dimension::Length.units().collect();
             let hint = suggestion(unit, &known, "known units:");
-            refuse(table, format!("`{unit}` is no unit of length"), &hint)
+            table.refuse_columns(format!("`{unit}` is no unit of length"), &hint)
         }),
         (None, Some(unit)) => Ok((index, unit)),
-        (None, None) if pixels => Err(refuse(
-            table,
+        (None, None) if pixels => Err(table.refuse_columns(
             format!("the column `{}` is in pixels", names[0]),
             "say how long a pixel is, such as --unit \"0.05 mm\"",
         )),
-        (None, None) => Err(refuse(
-            table,
+        (None, None) => Err(table.refuse_columns(
             format!("the column `{}` has no unit", names[0]),
             "write it in brackets, as in x [mm], or give --unit mm",
         )),
@@ -195,9 +175,8 @@ pub fn is_harmless(name: &str) -> bool {
 
 /// Whether the user passes over a column, by its name with or without its unit.
 fn is_ignored(name: &str, ignored: &[String]) -> bool {
-    let plain = |text: &String| text.trim().to_lowercase().replace([' ', '-'], "_");
-    ignored.iter().map(plain).any(|ignored| {
-        let rest = name.strip_prefix(&*ignored);
+    ignored.iter().any(|ignored| {
+        let rest = name.strip_prefix(&*plain_name(ignored));
         let unit = rest.map(|rest| rest.strip_prefix('_').unwrap_or(rest));
         rest == Some("") || unit.is_some_and(|unit| is_pixel(unit) || millimetres(unit).is_some())
     })
@@ -217,7 +196,7 @@ pub fn check_all(
         let passed = is_ignored(&column.name, ignored) || is_harmless(&column.name);
         !used.contains(index) && !passed
     });
-    let fault = |(_, column): (usize, &crate::calibration::Column)| {
+    let fault = |(_, column): (usize, &Column)| {
         let name = &column.name;
         let twice = known.contains(&&**name);
         let message = match (name.is_empty(), twice) {
@@ -231,9 +210,7 @@ pub fn check_all(
             "{meant}known columns: {}; --ignore-columns {name} passes over it",
             known.join(", ")
         );
-        Diagnostic::error("", message)
-            .hint(hint)
-            .at(&table.source, table.columns_place.clone())
+        table.fault(table.columns_place.clone(), message, &hint)
     };
     let faults: Vec<Diagnostic> = unknown.map(fault).collect();
     match faults.is_empty() {
@@ -290,7 +267,7 @@ pub fn check_flat(
             let hint = format!(
                 "a sheet is in plane stress and stays flat; --ignore-columns {name} takes the field as if it did"
             );
-            return Err(refuse(table, message, &hint));
+            return Err(table.refuse_columns(message, &hint));
         }
     }
     Ok(())

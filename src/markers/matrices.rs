@@ -12,9 +12,8 @@
 use std::path::{Path, PathBuf};
 
 use super::read::{Reading, Row, Rows};
-use super::table::plain_text;
-use crate::calibration::Table;
-use crate::error::{Diagnostic, Error};
+use crate::document::Table;
+use crate::error::Error;
 
 /// Files in the groups that make a frame: two whose names differ by `u` and `v` at their ends, else each alone.
 pub fn pairs(files: &[PathBuf]) -> Vec<Vec<&Path>> {
@@ -116,18 +115,11 @@ pub fn read(u: &Path, v: &Path, reading: &Reading) -> Result<Rows, Error> {
 }
 
 fn matrix(path: &Path) -> Result<Table, Error> {
-    let table = Table::parse(&path.display().to_string(), &plain_text(path)?)?;
-    let fault = (0..table.columns.len()).find_map(|column| table.nonsense(column));
-    if let Some((reason, place)) = fault {
-        let fault = Diagnostic::error("", reason).hint("a matrix holds numbers, or NaN");
-        return Err(Error::Input(vec![fault.at(&table.source, place)]));
-    }
+    let table = Table::read(path)?;
+    table.check_numbers_or_holes(0..table.columns.len(), "a matrix holds numbers, or NaN")?;
     if table.columns.iter().any(|column| !column.name.is_empty()) {
-        let fault = Diagnostic::error("", "a matrix has no names of columns")
-            .hint("give markers as one table, or matrices of numbers alone");
-        return Err(Error::Input(vec![
-            fault.at(&table.source, table.columns_place.clone()),
-        ]));
+        let hint = "give markers as one table, or matrices of numbers alone";
+        return Err(table.refuse_columns("a matrix has no names of columns", hint));
     }
     Ok(table)
 }

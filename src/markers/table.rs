@@ -19,9 +19,9 @@
 
 use std::path::Path;
 
-use super::columns::{self, Length, Names, Units, length, plain, read_table};
+use super::columns::{self, Length, Names, Units, length, plain};
 use super::read::{Reading, Row, Rows};
-use crate::calibration::Table;
+use crate::document::Table;
 use crate::error::{Diagnostic, Error};
 
 /// Where a layout keeps what.
@@ -83,7 +83,7 @@ const MUDIC: Layout = Layout {
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
 pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
-    let table = read_table(path)?;
+    let table = Table::read(path)?;
     let layout = layout(&table);
     let (columns, warning) = Columns::find(&table, layout, reading)?;
     let rows = (0..table.rows.len()).map(|row| columns.row(&table, layout, row));
@@ -101,7 +101,7 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
 pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, Error> {
-    let table = read_table(path)?;
+    let table = Table::read(path)?;
     let units = Units {
         given: unit,
         ..Units::default()
@@ -113,10 +113,7 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
     let number = plain(&table, &["line"]);
     let read: Vec<usize> = [x.0, y.0].into_iter().chain(number).collect();
     columns::check_all(&table, &read, &["x", "y", "line"], &[])?;
-    if let Some((reason, place)) = read.into_iter().find_map(|column| table.fault(column)) {
-        let fault = Diagnostic::error("", reason).hint("an outline has numbers x, y alone");
-        return Err(Error::Input(vec![fault.at(&table.source, place)]));
-    }
+    table.check_numbers(read, "an outline has numbers x, y alone")?;
     let mut lines: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
     for (row, _) in &table.rows {
         let (place, number) = (
@@ -129,27 +126,6 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
         }
     }
     Ok(lines.into_iter().map(|(_, line)| line).collect())
-}
-
-/// A file's text; the lines before DICe's columns become remarks.
-pub(super) fn plain_text(path: &Path) -> Result<String, Error> {
-    let name = path.display();
-    let refuse = |message: String| {
-        let hint = "markers are a table in UTF-8 with the columns x [mm], y [mm], ux [mm], uy [mm]";
-        Error::input(message, hint)
-    };
-    let bytes = std::fs::read(path);
-    let bytes = bytes.map_err(|cause| refuse(format!("cannot read {name}: {cause}")))?;
-    let text = String::from_utf8(bytes);
-    let text = text.map_err(|_| refuse(format!("{name} is not UTF-8 text")))?;
-    if !text.starts_with("***") {
-        return Ok(text);
-    }
-    let remark = |line: &str| match line.strip_prefix('*') {
-        Some(rest) => format!("#{rest}"),
-        None => line.to_owned(),
-    };
-    Ok(text.split_inclusive('\n').map(remark).collect())
 }
 
 fn layout(table: &Table) -> &'static Layout {
@@ -205,12 +181,8 @@ impl Columns {
             name: plain(table, NAME),
             mismatch: plain(table, &["match"]),
         };
-        let fault = columns.read().find_map(|column| table.nonsense(column));
-        if let Some((reason, place)) = fault {
-            let hint = "a field of this column is a number, or empty where nothing was found";
-            let fault = Diagnostic::error("", reason).hint(hint);
-            return Err(Error::Input(vec![fault.at(&table.source, place)]));
-        }
+        let hint = "a field of this column is a number, or empty where nothing was found";
+        table.check_numbers_or_holes(columns.read(), hint)?;
         columns.overlooks_none(table, layout, &reading.ignored_columns)?;
         let word = columns::correction(table, head.as_deref(), reading.unit);
         Ok((columns, word))
@@ -255,10 +227,7 @@ impl Columns {
 
     fn row(&self, table: &Table, layout: &Layout, row: usize) -> Result<Row, Error> {
         let (values, line) = &table.rows[row];
-        let refuse = |message: &str, hint: &str| {
-            let fault = Diagnostic::error("", message).hint(hint);
-            Error::Input(vec![fault.at(&table.source, line.clone())])
-        };
+        let refuse = |message: &str, hint: &str| table.refuse(line.clone(), message, hint);
         let up = if layout.downwards { -1.0 } else { 1.0 };
         let pair = |[x, y]: [Length; 2]| [values[x.0] * x.1, up * values[y.0] * y.1];
         let (mut place, mut displacement) = (pair(self.places), pair(self.displacements));

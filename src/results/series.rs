@@ -54,7 +54,7 @@ pub fn csv(times: &[f64], series: &[Series]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibration::Table;
+    use crate::document::Table;
 
     #[test]
     fn a_table_of_probes_is_read_back() {

@@ -1,7 +1,7 @@
 //! What the columns of a table mean, and the rows read by it.
 
-use super::head::{Faulty, Head};
 use super::{Observation, StrainColumn, Test, TestData};
+use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::units::Dimension;
@@ -91,10 +91,6 @@ fn of_kind(roles: &[Role], kind: Kind) -> impl Iterator<Item = (usize, &Role)> {
 impl Layout {
     /// Finds out what the columns mean.
     pub fn new(head: &Head) -> Faulty<Self> {
-        if let Some((key, place)) = head.table.contradictions.first() {
-            let message = format!("the {key} is said twice in different ways");
-            return Err(head.fault(place.clone(), message, "say it once"));
-        }
         let test = head.choice("test", None, &Test::NAMES)?;
         let roles = roles(head);
         check_columns(head, &roles, test)?;
@@ -113,6 +109,12 @@ impl Layout {
             stresses,
             strain_ratio,
         })
+    }
+
+    /// The columns that are read.
+    pub fn columns(&self) -> impl Iterator<Item = usize> {
+        let strains = self.strains.iter().flatten().map(|(column, _)| *column);
+        strains.chain(self.stresses.iter().map(|(column, ..)| *column))
     }
 
     /// Reads the rows.
@@ -148,7 +150,6 @@ impl Layout {
             let strains = observations.iter().map(|one| one.strains[axis].abs());
             strains.fold(0.0, f64::max)
         };
-        let said = table.head.iter();
         Ok(TestData {
             name: table.source.name.clone(),
             test: self.test,
@@ -157,9 +158,7 @@ impl Layout {
             drawn_axis: usize::from(widest(1) > widest(0)),
             observations,
             largest_stress,
-            head: said
-                .map(|(key, (value, _))| (key.clone(), value.clone()))
-                .collect(),
+            head: head.written(),
             warnings: turns.warning(head).into_iter().collect(),
         })
     }
@@ -218,7 +217,7 @@ fn roles(head: &Head) -> Vec<Role> {
 }
 
 /// Refuses columns that do not fit together: each axis has one strain and one stress, all strains and all
-/// stresses have one measure, and fields are numbers.
+/// stresses have one measure.
 fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
     let place = || head.table.columns_place.clone();
     for (kind, what) in [(Kind::Strain, "strain"), (Kind::Stress, "stress")] {
@@ -240,10 +239,6 @@ fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
                 return Err(head.fault(place(), message, &hint));
             }
             first = Some(role);
-            if let Some((reason, place)) = head.table.fault(column) {
-                let hint = "every row holds finite numbers; units stand in the line of names";
-                return Err(head.fault(place, format!("column `{name}`: {reason}"), hint));
-            }
         }
     }
     let strains = of_kind(roles, Kind::Strain).count();
@@ -282,7 +277,7 @@ fn strains(head: &Head, roles: &[Role]) -> Faulty<(StrainColumn, [Option<Scaled>
         let named = &head.table.columns[column];
         let factor = if displaced {
             let unit = head.factor("strain unit", named, Dimension::Length)?;
-            unit / head.quantity("length", Dimension::Length)?
+            unit / head.required_quantity("length", Dimension::Length)?
         } else {
             head.factor("strain unit", named, Dimension::Ratio)?
         };
@@ -318,7 +313,7 @@ fn stresses(head: &Head, roles: &[Role]) -> Faulty<(StressMeasure, Vec<StressCol
         let named = &head.table.columns[column];
         let factor = if loaded {
             let unit = head.factor("stress unit", named, Dimension::Force)?;
-            unit / head.quantity("area", Dimension::Area)?
+            unit / head.required_quantity("area", Dimension::Area)?
         } else {
             head.factor("stress unit", named, Dimension::Stress)?
         };

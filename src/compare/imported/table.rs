@@ -11,9 +11,9 @@
 //! Units stand in the names (`ux_mm`) or in brackets. Other columns are refused, see [`crate::markers::columns`].
 
 use super::{ImportSettings, Imported};
-use crate::calibration::Table;
-use crate::error::{Diagnostic, Error};
-use crate::markers::columns::{self, Names, Units, length, plain, refuse};
+use crate::document::Table;
+use crate::error::Error;
+use crate::markers::columns::{self, Names, Units, length, plain};
 use crate::units::{self, Dimension};
 
 const LENGTHS: [Names; 4] = [&["x"], &["y"], &["ux"], &["uy"]];
@@ -55,10 +55,7 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Imported, Error>
     let choices = choices(table, settings)?;
     let read = lengths.iter().map(|(column, _)| *column);
     let read: Vec<usize> = read.chain(choices.iter().map(|choice| choice.0)).collect();
-    if let Some((reason, place)) = read.iter().find_map(|column| table.fault(*column)) {
-        let fault = Diagnostic::error("", reason).hint("every field of a column is a number");
-        return Err(Error::Input(vec![fault.at(&table.source, place)]));
-    }
+    table.check_numbers(read.iter().copied(), "every field of a column is a number")?;
     let ignored = &settings.ignored_columns;
     let flat = columns::out_of_plane(table, ignored);
     let used = read.iter().copied().chain(flat).chain(plain(table, NAMES));
@@ -88,7 +85,7 @@ fn choices(table: &Table, settings: &ImportSettings) -> Result<Vec<Choice>, Erro
         choices.push((index, 1.0, wanted));
     } else if let Some(time) = settings.time {
         let message = format!("--time {time} is given, but there is no column `time`");
-        return Err(refuse(table, message, "leave it out, or name the column"));
+        return Err(table.refuse_columns(message, "leave it out, or name the column"));
     }
     Ok(choices)
 }
@@ -99,10 +96,10 @@ fn factor_column(table: &Table) -> Result<Option<(usize, f64)>, Error> {
         return Ok(None);
     };
     let scale = match table.columns[index].unit.as_deref() {
-        None | Some("-" | "" | "1") => 1.0,
-        Some(unit) => units::parse(&format!("1 {unit}"), Dimension::Ratio).map_err(|_| {
+        None | Some("") => 1.0,
+        Some(unit) => units::factor(unit, Dimension::Ratio).map_err(|_| {
             let message = format!("`{unit}` is no unit of a load factor");
-            refuse(table, message, "%, or none")
+            table.refuse_columns(message, "%, or none")
         })?,
     };
     Ok(Some((index, scale)))

@@ -235,5 +235,5 @@ fn choose<T>(mut arrays: Vec<(String, T)>, wanted: Option<&str>) -> Result<(Stri
 fn unit_of(name: &str) -> Option<f64> {
     let (_, unit) = name.rsplit_once(['_', '[', '(', ' '])?;
     let unit = unit.trim_end_matches([']', ')']);
-    units::parse(&format!("1 {unit}"), Dimension::Length).ok()
+    units::factor(unit, Dimension::Length).ok()
 }

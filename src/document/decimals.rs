@@ -1,0 +1,67 @@
+//! Numbers with decimal points or with decimal commas, but not both in one file.
+
+/// What the numbers of a file have shown so far.
+#[derive(Default)]
+pub(super) struct Decimals {
+    point: bool,
+    comma: bool,
+    /// A comma that cannot group thousands.
+    surely_decimal: bool,
+    /// A whole number of three digits or more without a comma.
+    ungrouped: bool,
+}
+
+impl Decimals {
+    /// The number in a field.
+    ///
+    /// # Errors
+    /// Says why it is none.
+    pub fn read(&mut self, field: &str) -> Result<f64, String> {
+        let value = number(field).ok_or_else(|| match field {
+            "" => "a field is empty".to_owned(),
+            _ => format!("\"{field}\" is not a number"),
+        })?;
+        if !value.is_finite() {
+            return Err(format!("{field} is not a finite number"));
+        }
+        self.point |= field.contains('.');
+        if let Some((whole, decimals)) = field.split_once(',') {
+            let whole = whole.trim_start_matches(['+', '-']);
+            self.comma = true;
+            self.surely_decimal |= decimals.len() != 3 || whole.len() > 3 || whole.starts_with('0');
+        } else {
+            self.ungrouped |= value.abs() >= 100.0;
+        }
+        match self.point && self.comma {
+            true => Err(format!(
+                "\"{field}\": decimal points and decimal commas are mixed in this file"
+            )),
+            false => Ok(value),
+        }
+    }
+
+    /// Whether commas may just as well group thousands.
+    pub fn are_ambiguous(&self) -> bool {
+        self.comma && !self.surely_decimal && self.ungrouped
+    }
+}
+
+/// A number with a decimal point or one decimal comma.
+fn number(field: &str) -> Option<f64> {
+    match field.matches(',').count() {
+        0 => field.parse().ok(),
+        1 if !field.contains('.') => field.replace(',', ".").parse().ok(),
+        _ => None,
+    }
+}
+
+/// Whether a field is a number.
+pub(super) fn is_number(field: &str) -> bool {
+    number(field).is_some()
+}
+
+/// Whether a field says that there is no number.
+pub(super) fn is_hole(field: &str) -> bool {
+    let unsigned = field.trim_start_matches(['+', '-']);
+    field.is_empty() || unsigned.eq_ignore_ascii_case("nan")
+}

@@ -1,0 +1,182 @@
+//! What a table says of itself in the lines above its rows, and what is said of it elsewhere.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::{Column, Table};
+use crate::error::{Diagnostic, Error, suggestion};
+use crate::units::{self, Dimension};
+
+/// What the head of a table would say, given for files that do not say it: keys and values.
+pub type Statements = BTreeMap<String, String>;
+
+/// The result of looking something up in a head.
+pub type Faulty<T> = Result<T, Box<Diagnostic>>;
+
+/// The head of a table together with what the command line says.
+pub struct Head<'a> {
+    /// The table.
+    pub table: &'a Table,
+    pairs: BTreeMap<String, (String, Range<usize>)>,
+    given: &'a Statements,
+}
+
+impl<'a> Head<'a> {
+    /// The head of a table whose `known` keys may share lines.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when one of them stands twice with different values.
+    pub fn new(table: &'a Table, known: &[&str], given: &'a Statements) -> Result<Self, Error> {
+        Ok(Self {
+            table,
+            pairs: table.pairs(known).map_err(Error::Input)?,
+            given,
+        })
+    }
+
+    /// The keys and values that stand in the file.
+    pub fn written(&self) -> Statements {
+        let pairs = self.pairs.iter();
+        pairs
+            .map(|(key, (value, _))| (key.clone(), value.clone()))
+            .collect()
+    }
+
+    /// A fault at a place of the table.
+    pub fn fault(
+        &self,
+        place: Range<usize>,
+        message: impl Into<String>,
+        hint: &str,
+    ) -> Box<Diagnostic> {
+        Box::new(self.table.fault(place, message, hint))
+    }
+
+    /// A fault for a key that is not stated.
+    pub fn missing(&self, key: &str, example: &str) -> Box<Diagnostic> {
+        let option = key.replace(" measure", "").replace(' ', "-");
+        let message = format!("{}: the {key} is not stated", self.table.source.name);
+        let quoted = match example.contains(' ') {
+            true => format!("\"{example}\""),
+            false => example.to_owned(),
+        };
+        let hint = format!(
+            "write `# {key}: {example}` at the top of the file, or give --{option} {quoted}"
+        );
+        Box::new(Diagnostic::error("", message).hint(hint))
+    }
+
+    /// What the file or the command line says about `key`; `named` is what a column's name says.
+    ///
+    /// # Errors
+    /// A fault where they contradict each other.
+    pub fn setting(&self, key: &str, named: Option<&str>) -> Faulty<Option<String>> {
+        let mut said: Vec<(&str, &str, Range<usize>)> = Vec::new();
+        if let Some(named) = named {
+            said.push((
+                "the name of a column",
+                named,
+                self.table.columns_place.clone(),
+            ));
+        }
+        if let Some((value, place)) = self.pairs.get(key) {
+            // A remark may follow the word: `nominal (first Piola-Kirchhoff)`.
+            let word = value.split(['(', ',']).next().unwrap_or_default().trim();
+            said.push(("the head", word, place.clone()));
+        }
+        if let Some(value) = self.given.get(key) {
+            said.push(("the command line", value.trim(), 0..0));
+        }
+        for pair in said.windows(2) {
+            let [(one, first, place), (other, second, _)] = pair else {
+                continue;
+            };
+            if first != second {
+                let message = format!("the {key} is {first} by {one} and {second} by {other}");
+                return Err(self.fault(place.clone(), message, "say it once, or alike"));
+            }
+        }
+        Ok(said.first().map(|(_, value, _)| (*value).to_owned()))
+    }
+
+    /// One of several names.
+    ///
+    /// # Errors
+    /// A fault where it is not stated or not known.
+    pub fn choice<T: Copy>(
+        &self,
+        key: &str,
+        named: Option<&str>,
+        names: &[(&'static str, T)],
+    ) -> Faulty<T> {
+        let value = self.setting(key, named)?;
+        let value = value.ok_or_else(|| self.missing(key, names[0].0))?;
+        if let Some((_, choice)) = names.iter().find(|(name, _)| *name == value) {
+            return Ok(*choice);
+        }
+        let known: Vec<_> = names.iter().map(|(name, _)| *name).collect();
+        let hint = suggestion(&value, &known, "it must be one of");
+        Err(self.fault(
+            self.place(key),
+            format!("the {key} `{value}` is not known"),
+            &hint,
+        ))
+    }
+
+    /// A positive quantity such as the specimen's area, where it is stated.
+    ///
+    /// # Errors
+    /// A fault where it is no positive quantity.
+    pub fn quantity(&self, key: &str, dimension: Dimension) -> Faulty<Option<f64>> {
+        let Some(value) = self.setting(key, None)? else {
+            return Ok(None);
+        };
+        let reason = match units::parse(&value, dimension) {
+            Ok(number) if number > 0.0 => return Ok(Some(number)),
+            Ok(_) => "is not positive".to_owned(),
+            Err(fault) => fault.to_string(),
+        };
+        let hint = format!("write it as {}", dimension.example());
+        Err(self.fault(
+            self.place(key),
+            format!("the {key} \"{value}\" {reason}"),
+            &hint,
+        ))
+    }
+
+    /// The same quantity where there must be one.
+    ///
+    /// # Errors
+    /// A fault where it is not stated, or no positive quantity.
+    pub fn required_quantity(&self, key: &str, dimension: Dimension) -> Faulty<f64> {
+        let example = dimension.example().trim_matches('"');
+        self.quantity(key, dimension)?
+            .ok_or_else(|| self.missing(key, example))
+    }
+
+    /// The factor from a column's unit to the internal one, where the column or the setting `key` says it.
+    ///
+    /// # Errors
+    /// A fault where it is not stated, or no unit of the dimension.
+    pub fn factor(&self, key: &str, column: &Column, dimension: Dimension) -> Faulty<f64> {
+        let example = if dimension == Dimension::Ratio {
+            "-"
+        } else {
+            "MPa"
+        };
+        let unit = self.setting(key, column.unit.as_deref())?;
+        let unit = unit.ok_or_else(|| self.missing(key, example))?;
+        units::factor(&unit, dimension).map_err(|fault| {
+            let units: Vec<_> = dimension.units().collect();
+            let hint = format!("known units: {}", units.join(", "));
+            let place = self.table.columns_place.clone();
+            self.fault(place, format!("the {key} {fault}"), &hint)
+        })
+    }
+
+    /// Where the head says something about `key`.
+    pub fn place(&self, key: &str) -> Range<usize> {
+        let pair = self.pairs.get(key);
+        pair.map_or(0..0, |(_, place)| place.clone())
+    }
+}

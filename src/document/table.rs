@@ -1,0 +1,457 @@
+//! Tables of numbers as laboratories write them: commas, semicolons or tabs, decimal points or commas, a head of
+//! `# key: value` lines, names with units in brackets.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::Faults;
+use super::decimals::{Decimals, is_hole, is_number};
+use crate::error::{Diagnostic, Error, Source};
+
+/// A column's name and unit.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Column {
+    /// Its name in lower case, with underscores for spaces; empty where the file names no columns.
+    pub name: String,
+    /// The unit in brackets, if there is one.
+    pub unit: Option<String>,
+}
+
+impl Column {
+    /// Name and unit of `nominal stress [MPa]` or `Stress (kPa)`.
+    fn new(field: &str) -> Self {
+        let (name, unit) = match field.split_once(['[', '(']) {
+            Some((name, unit)) => (name, Some(unit.trim_end_matches([']', ')']))),
+            None => (field, None),
+        };
+        Self {
+            name: plain_name(name),
+            unit: unit.map(|unit| unit.trim().to_owned()),
+        }
+    }
+}
+
+/// A name as columns have it: in lower case, with underscores for spaces.
+pub fn plain_name(name: &str) -> String {
+    name.trim().to_lowercase().replace([' ', '-'], "_")
+}
+
+/// A field that is no number: its row and what is wrong.
+type FieldFault = Option<(usize, String)>;
+
+/// A table as it stands in a file.
+#[derive(Debug)]
+pub struct Table {
+    /// The file, for messages.
+    pub source: Arc<Source>,
+    /// The columns.
+    pub columns: Vec<Column>,
+    /// The place of the line that names the columns.
+    pub columns_place: Range<usize>,
+    /// The rows; each with its place. What is no number is NaN here, and told by [`Self::check_numbers`].
+    pub rows: Vec<(Vec<f64>, Range<usize>)>,
+    /// The first field of each column that is no number.
+    faults: Vec<FieldFault>,
+    /// The same without fields that say that there is no number: empty ones and NaN.
+    nonsense: Vec<FieldFault>,
+}
+
+impl Table {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line and reason.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        const HINT: &str =
+            "a table is CSV in UTF-8: a line of names with units and rows of numbers";
+        let name = path.display().to_string();
+        let bytes = std::fs::read(path);
+        let bytes =
+            bytes.map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), HINT))?;
+        let text = String::from_utf8(bytes).map_err(|fault| {
+            let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
+            let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+            Error::input(format!("{name}: line {line} is not UTF-8 text"), HINT)
+        })?;
+        Self::parse(&name, &text)
+    }
+
+    /// Reads a text.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault and its place.
+    pub fn parse(name: &str, text: &str) -> Result<Self, Error> {
+        let text = plain_text(text);
+        let delimiter = delimiter(&text);
+        let mut table = Self {
+            source: Arc::new(Source {
+                name: name.to_owned(),
+                text: text.clone(),
+            }),
+            columns: Vec::new(),
+            columns_place: 0..0,
+            rows: Vec::new(),
+            faults: Vec::new(),
+            nonsense: Vec::new(),
+        };
+        let Some(delimiter) = delimiter else {
+            let hint = "a table has at least two columns, separated by commas, semicolons or tabs";
+            return Err(table.refuse(0..0, "there are no columns in this file", hint));
+        };
+        let faults = Faults::default();
+        table.read_records(&text, delimiter, &faults);
+        faults.finish()?;
+        match table.rows.is_empty() {
+            true => Err(table.refuse(
+                0..0,
+                "there are no rows of numbers",
+                "a table has a line of names with units and rows of numbers",
+            )),
+            false => Ok(table),
+        }
+    }
+
+    fn read_records(&mut self, text: &str, delimiter: u8, faults: &Faults) {
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter)
+            .has_headers(false)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let mut decimals = Decimals::default();
+        for record in reader.records() {
+            let record = match record {
+                Ok(record) => record,
+                Err(cause) => {
+                    return faults.push(self.fault(0..0, cause.to_string(), "mend this line"));
+                }
+            };
+            if record.iter().all(str::is_empty) {
+                continue;
+            }
+            let place = line_at(text, record.position().map_or(0, |at| at.byte() as usize));
+            if self.rows.is_empty() && record.iter().all(is_name) {
+                self.name_columns(&record, place);
+            } else {
+                self.add_row(&record, place, &mut decimals, faults);
+            }
+        }
+        if decimals.are_ambiguous() {
+            let hint = "write 1050 or 1.050 instead of 1,050, whichever is meant";
+            let message = "commas may be decimal commas or group thousands in this file";
+            faults.push(self.fault(0..0, message, hint));
+        }
+    }
+
+    /// The first line of names names the columns, a second one may hold their units.
+    fn name_columns(&mut self, record: &csv::StringRecord, place: Range<usize>) {
+        if self.columns.is_empty() {
+            self.columns = record.iter().map(Column::new).collect();
+            self.columns_place = place;
+            return;
+        }
+        for (column, field) in self.columns.iter_mut().zip(record) {
+            let unit = field.trim_matches(['(', ')', '[', ']', ' ']);
+            if column.unit.is_none() && !unit.is_empty() {
+                column.unit = Some(unit.to_owned());
+            }
+        }
+    }
+
+    fn add_row(
+        &mut self,
+        record: &csv::StringRecord,
+        place: Range<usize>,
+        decimals: &mut Decimals,
+        faults: &Faults,
+    ) {
+        let count = record.len();
+        if self.columns.is_empty() {
+            self.columns = vec![Column::default(); count];
+        }
+        let columns = self.columns.len();
+        if count != columns {
+            let message = format!("{count} fields where there are {columns} columns");
+            let hint = "numbers with decimal commas need semicolons or tabs between the columns";
+            return faults.push(self.fault(place, message, hint));
+        }
+        self.faults.resize(count, None);
+        self.nonsense.resize(count, None);
+        let row = record.iter().enumerate().map(|(column, field)| {
+            decimals.read(field).unwrap_or_else(|reason| {
+                let fault = (self.rows.len(), reason);
+                if !is_hole(field) {
+                    self.nonsense[column].get_or_insert(fault.clone());
+                }
+                self.faults[column].get_or_insert(fault);
+                f64::NAN
+            })
+        });
+        let row = row.collect();
+        self.rows.push((row, place));
+    }
+
+    /// The first column of this name.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column.name == name)
+    }
+
+    /// Checks that all fields of some columns are numbers.
+    ///
+    /// # Errors
+    /// The first field of each column that is none.
+    pub fn check_numbers(
+        &self,
+        columns: impl IntoIterator<Item = usize>,
+        hint: &str,
+    ) -> Result<(), Error> {
+        self.check(&self.faults, columns, hint)
+    }
+
+    /// Checks that all fields of some columns are numbers or holes in the data: empty, or NaN.
+    ///
+    /// # Errors
+    /// The first field of each column that is neither.
+    pub fn check_numbers_or_holes(
+        &self,
+        columns: impl IntoIterator<Item = usize>,
+        hint: &str,
+    ) -> Result<(), Error> {
+        self.check(&self.nonsense, columns, hint)
+    }
+
+    fn check(
+        &self,
+        faults: &[FieldFault],
+        columns: impl IntoIterator<Item = usize>,
+        hint: &str,
+    ) -> Result<(), Error> {
+        let first = |column: usize| {
+            let (row, reason) = faults[column].as_ref()?;
+            let name = match &*self.columns[column].name {
+                "" => String::new(),
+                name => format!("column `{name}`: "),
+            };
+            Some(self.fault(self.rows[*row].1.clone(), format!("{name}{reason}"), hint))
+        };
+        let found: Vec<Diagnostic> = columns.into_iter().filter_map(first).collect();
+        match found.is_empty() {
+            true => Ok(()),
+            false => Err(Error::Input(found)),
+        }
+    }
+
+    /// A fault at a place of the file.
+    pub fn fault(&self, place: Range<usize>, message: impl Into<String>, hint: &str) -> Diagnostic {
+        Diagnostic::error("", message)
+            .hint(hint)
+            .at(&self.source, place)
+    }
+
+    /// The refusal of the file for one fault.
+    pub fn refuse(&self, place: Range<usize>, message: impl Into<String>, hint: &str) -> Error {
+        Error::Input(vec![self.fault(place, message, hint)])
+    }
+
+    /// The refusal of the file for what its names of columns say.
+    pub fn refuse_columns(&self, message: impl Into<String>, hint: &str) -> Error {
+        self.refuse(self.columns_place.clone(), message, hint)
+    }
+
+    /// The `key: value` pairs of the lines that begin with `#`, the first of each key with its place; several with one
+    /// of the `known` keys first may stand on one line, separated by semicolons.
+    ///
+    /// # Errors
+    /// The known keys that stand twice with different values.
+    pub(super) fn pairs(
+        &self,
+        known: &[&str],
+    ) -> Result<BTreeMap<String, (String, Range<usize>)>, Vec<Diagnostic>> {
+        let (mut pairs, mut faults) = (BTreeMap::new(), Vec::new());
+        let known = |key: &str| known.contains(&&*plain_key(key));
+        let mut start = 0;
+        for line in self.source.text.split_inclusive('\n') {
+            let place = start..start + line.trim_end().len();
+            start += line.len();
+            let Some(comment) = line.strip_prefix('#') else {
+                continue;
+            };
+            let several = known(comment.split(':').next().unwrap_or_default());
+            let parts = comment.split(|letter| several && letter == ';');
+            for (key, value) in parts.filter_map(|part| part.split_once(':')) {
+                let (key, value) = (plain_key(key), value.trim().to_owned());
+                match pairs.get(&key) {
+                    Some((first, _)) if known(&key) && *first != value => {
+                        let message = format!("the {key} is said twice in different ways");
+                        faults.push(self.fault(place.clone(), message, "say it once"));
+                    }
+                    Some(_) => {}
+                    None => {
+                        pairs.insert(key, (value, place.clone()));
+                    }
+                }
+            }
+        }
+        match faults.is_empty() {
+            true => Ok(pairs),
+            false => Err(faults),
+        }
+    }
+}
+
+/// A text without byte-order mark and old line ends; lines that begin with stars, as some programs write them first,
+/// become remarks.
+fn plain_text(text: &str) -> String {
+    let text = text.trim_start_matches('\u{feff}');
+    let text = match text.contains('\n') {
+        true => text.to_owned(),
+        false => text.replace('\r', "\n"),
+    };
+    if !text.starts_with("***") {
+        return text;
+    }
+    let remark = |line: &str| match line.strip_prefix('*') {
+        Some(rest) => format!("#{rest}"),
+        None => line.to_owned(),
+    };
+    text.split_inclusive('\n').map(remark).collect()
+}
+
+/// The separator of the first line that is no comment.
+fn delimiter(text: &str) -> Option<u8> {
+    let line = text
+        .split(['\n', '\r'])
+        .find(|line| !line.trim().is_empty() && !line.starts_with('#'))?;
+    [b';', b'\t', b',']
+        .into_iter()
+        .find(|delimiter| line.as_bytes().contains(delimiter))
+}
+
+/// A key of the head in lower case with spaces.
+fn plain_key(key: &str) -> String {
+    key.trim().to_lowercase().replace('_', " ")
+}
+
+/// The line of a record: csv points to what stands before it, remarks and empty lines too.
+fn line_at(text: &str, from: usize) -> Range<usize> {
+    let mut start = from;
+    for line in text[from..].split_inclusive('\n') {
+        if !line.trim().is_empty() && !line.starts_with('#') {
+            return start..start + line.trim_end().len();
+        }
+        start += line.len();
+    }
+    from..from
+}
+
+/// Whether a field is a name or a unit: it does not begin as a number does.
+fn is_name(field: &str) -> bool {
+    let digits = field.trim_start_matches(['+', '-', '.', ',']);
+    !is_number(field) && !digits.starts_with(|first: char| first.is_ascii_digit())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(text: &str) -> Vec<Vec<f64>> {
+        let table = Table::parse("a.csv", text).unwrap();
+        table.rows.into_iter().map(|(row, _)| row).collect()
+    }
+
+    fn refusal(text: &str) -> String {
+        Table::parse("a.csv", text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn the_usual_ways_of_writing_a_table_are_read_alike() {
+        let expected = vec![vec![1.0, 0.0], vec![1.5, -0.25]];
+        for text in [
+            "stretch [-],stress [MPa]\n1,0\n1.5,-0.25\n",
+            "\u{feff}stretch [-],stress [MPa]\r\n1.0,0.0\r\n1.5,-2.5e-1\r\n",
+            "stretch [-];stress [MPa]\n1,0;0,0\n1,5;-0,25\n",
+            "stretch [-]\tstress [MPa]\n1\t0\n\n1,5\t-0,25",
+            "\"Stretch\",\"Stress\"\n\"(-)\",\"(MPa)\"\n\"1\",\"0\"\n\"1.5\",\"-0.25\"\n",
+            "# test: uniaxial\n1, 0\n# a remark\n1.5, -0.25\n",
+        ] {
+            assert_eq!(rows(text), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn names_units_and_head_are_found() {
+        let text =
+            "# test: uniaxial; direction: 2\n# A remark.\nNominal Stress (kPa),stretch\n1,2\n";
+        let table = Table::parse("a.csv", text).unwrap();
+        assert_eq!(table.columns[0].name, "nominal_stress");
+        assert_eq!(table.columns[0].unit.as_deref(), Some("kPa"));
+        assert_eq!(table.columns[1].unit, None);
+        let head = table.pairs(&["test"]).unwrap();
+        assert_eq!(head["test"].0, "uniaxial");
+        assert_eq!(head["direction"].0, "2");
+    }
+
+    #[test]
+    fn bad_tables_are_refused_with_line_and_reason() {
+        for (text, reason) in [
+            ("", "no columns"),
+            ("# only a head\n", "no columns"),
+            ("a,b\n", "no rows"),
+            (
+                "a,b\n1,5,0,2\n",
+                "a.csv:2: 4 fields where there are 2 columns",
+            ),
+            ("a\tb\n1,050\t2\n950\t3\n", "group thousands"),
+        ] {
+            let found = refusal(text);
+            assert!(found.contains(reason), "{text:?}: {found}");
+        }
+    }
+
+    #[test]
+    fn fields_that_are_no_numbers_are_told_by_their_column() {
+        for (text, line, reason) in [
+            (
+                "a,b\n1,0\n# pause\n\n2,NaN\n",
+                5,
+                "NaN is not a finite number",
+            ),
+            ("a,b\n1,0\n2,inf\n", 3, "inf is not a finite number"),
+            ("a,b\n1,0\n2,x\n", 3, "\"x\" is not a number"),
+            ("a,b\n1,0\n2,0.1 MPa\n", 3, "\"0.1 MPa\" is not a number"),
+            ("a,b\n1,0\n2,\n", 3, "a field is empty"),
+            ("a;b\n1,5;0,2\n1,6;0.3\n", 3, "are mixed in this file"),
+            ("a;b\n1,0;1.000,5\n", 2, "is not a number"),
+        ] {
+            let table = Table::parse("a.csv", text).unwrap();
+            let found = table.check_numbers([1], "").unwrap_err().to_string();
+            let place = format!("a.csv:{line}: column `b`: ");
+            assert!(
+                found.contains(&place) && found.contains(reason),
+                "{text:?}: {found}"
+            );
+            assert!(table.check_numbers([0], "").is_ok(), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn remarks_old_line_ends_and_citations_are_read() {
+        let text =
+            "#test:uniaxial\r# source: Smith A 2001; Jones B: Aorta tests\ra [-],b [MPa]\r1,2\r";
+        let table = Table::parse("a.csv", text).unwrap();
+        let head = table.pairs(&["test"]).unwrap();
+        assert_eq!(head["test"].0, "uniaxial");
+        assert_eq!(head["source"].0, "Smith A 2001; Jones B: Aorta tests");
+        assert_eq!(table.rows.len(), 1);
+        let twice = Table::parse("a.csv", "# test: planar\n# test: uniaxial\na,b\n1,2\n").unwrap();
+        let faults = twice.pairs(&["test"]).unwrap_err();
+        assert!(
+            faults[0]
+                .to_string()
+                .contains("a.csv:2: the test is said twice")
+        );
+    }
+}
