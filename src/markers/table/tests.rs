@@ -199,7 +199,7 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm]\n1,2,3,lost\n",
-            "a.csv:2: \"lost\" is not a number",
+            "a.csv:2: column `uy`: \"lost\" is not a number",
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm]\n1,NaN,3,4\n",
