@@ -23,7 +23,7 @@ use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
 use gelbench::material::Card;
 use gelbench::mesh::Side;
-use gelbench::problem::plate::{Model, Problem};
+use gelbench::problem::{ClampedPlate, Model};
 use gelbench::solve::NewtonSettings;
 
 /// SOFA's time of an implicit step over its nodes, in ms.
@@ -44,7 +44,7 @@ fn main() -> ExitCode {
 }
 
 fn bench() -> Result<(), Error> {
-    let problem = Problem {
+    let problem = ClampedPlate {
         size: [150.0, 50.0],
         thickness: 2.0,
         law: Card::load("pva-10", Path::new("."))?.law,
@@ -66,7 +66,7 @@ fn bench() -> Result<(), Error> {
         let springs = MassSpring::new(&problem, cells, LatticeSettings { area_term: false });
         let elements = FiniteElements::new(&problem, cells, Element::Q1);
         for tolerance in [1e-2, 1e-4] {
-            for model in [springs.model(), elements.model()] {
+            for model in [springs.model(&problem), elements.model(&problem)] {
                 measure(&problem, &model, tolerance)?;
             }
         }
@@ -80,17 +80,17 @@ fn unknowns(model: &Model, side: Side) -> Vec<usize> {
 }
 
 /// Prints the time of a frame.
-fn measure(problem: &Problem, model: &Model, tolerance: f64) -> Result<(), Error> {
+fn measure(problem: &ClampedPlate, model: &Model, tolerance: f64) -> Result<(), Error> {
     let newton = NewtonSettings {
         tolerance: 1e-10,
         max_iterations: 40,
     };
-    let start = problem.follow(model, newton, &|_| ())?.remove(0);
+    let start = model.reach(&problem.stretches, newton)?;
     let mass = lumped_mass(model.mesh, 1.02e-9, problem.thickness);
     let right = unknowns(model, Side::Right);
     let weight = (0..mass.len()).map(|i| if i % 2 == 1 { -9810.0 * mass[i] } else { 0.0 });
     let motion = Motion {
-        energy: model.potential,
+        energy: model.energy,
         viscosity: None,
         supports: vec![
             MovingSupport::fixed(unknowns(model, Side::Left)),

@@ -14,12 +14,12 @@ use gelbench::corrector::plate::{KnownConditions, PlateCorrector};
 use gelbench::corrector::{CorrectorSettings, DifferenceScheme};
 use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
-use gelbench::{material::Card, problem::plate::Problem, solve::NewtonSettings};
+use gelbench::{material::Card, problem::ClampedPlate, problem::Measures, solve::NewtonSettings};
 
 const STRETCH: f64 = 0.5;
 
 pub fn report() -> Result<String, Box<dyn Error>> {
-    let plate = Problem {
+    let plate = ClampedPlate {
         size: [150.0, 50.0],
         thickness: 2.0,
         law: Card::load("pva-10", Path::new("."))?.law,
@@ -41,13 +41,14 @@ pub fn report() -> Result<String, Box<dyn Error>> {
         .displacement_on(&reference.displacement, lattice);
     let affine = plate.affine(lattice, STRETCH);
 
+    let expected = Measures::of(&elements.mesh, reference).force;
     let mut text = String::new();
     for (model, state) in [
         ("mass-spring", uncorrected),
-        ("corrected", &corrected.solution),
+        ("corrected", &corrected.state),
     ] {
         let departure = departure_percent(lattice, &state.displacement, &exact, &affine);
-        let force = 100.0 * (state.force / reference.force - 1.0);
+        let force = 100.0 * (Measures::of(lattice, state).force / expected - 1.0);
         text += &format!("{model:<12}departure {departure:>6.2} %   force {force:>5.2} %\n");
     }
     Ok(text)

@@ -17,7 +17,7 @@ use clap::{Parser, Subcommand};
 use crate::error::{Diagnostic, Error};
 use crate::output;
 use crate::output::ResultFolder;
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::results::Computed;
 use crate::studies::Kind;
 use crate::studies::plate::study::{self, DEFAULT, Study};
@@ -171,7 +171,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
 
     let bar = progress_bar(run::progress_steps(&study) as u64);
     let progress = |model: &str, stretch: f64| {
-        bar.set_message(format!("{model}, {}", Problem::describe_step(stretch)));
+        bar.set_message(format!("{model}, {}", ClampedPlate::describe_step(stretch)));
         bar.inc(1);
     };
     let results = run::run(&study, &progress);

@@ -21,7 +21,8 @@ use crate::finite_element::FiniteElements;
 use crate::finite_element::convergence::{Richardson, of_distances, richardson};
 use crate::material::sheet::Kinematics;
 use crate::mesh::Mesh;
-use crate::problem::plate::{Problem, Solution};
+use crate::problem::{ClampedPlate, Measures};
+use crate::solve::State;
 
 pub mod imported;
 pub mod judgement;
@@ -86,13 +87,13 @@ impl StepComparison {
 
 /// Converged finite elements: the same problem on three meshes, each twice as fine as the one before.
 pub struct Reference<'a> {
-    problem: &'a Problem,
-    meshes: [(&'a Mesh, &'a [Solution]); 3],
+    problem: &'a ClampedPlate,
+    meshes: [(&'a Mesh, &'a [State]); 3],
 }
 
 impl<'a> Reference<'a> {
     /// The reference from three meshes, coarse to fine, and their solutions at all stretches.
-    pub fn new(problem: &'a Problem, meshes: [(&'a FiniteElements, &'a [Solution]); 3]) -> Self {
+    pub fn new(problem: &'a ClampedPlate, meshes: [(&'a FiniteElements, &'a [State]); 3]) -> Self {
         Self {
             problem,
             meshes: meshes.map(|(model, solutions)| (&model.mesh, solutions)),
@@ -100,20 +101,27 @@ impl<'a> Reference<'a> {
     }
 
     /// Compares a field on `mesh` with the finest mesh at stretch number `step`; nothing where that has no solution.
-    pub fn deviation(&self, mesh: &Mesh, solution: &Solution, step: usize) -> Option<Deviation> {
+    pub fn deviation(
+        &self,
+        mesh: &Mesh,
+        state: &State,
+        measures: Measures,
+        step: usize,
+    ) -> Option<Deviation> {
         let (fine, solutions) = self.meshes[2];
         let reference = solutions.get(step)?;
         let expected = fine.displacement_on(&reference.displacement, mesh);
-        let affine = self.problem.affine(mesh, solution.stretch);
-        let field = &solution.displacement;
+        let affine = self.problem.affine(mesh, state.factor);
+        let field = &state.displacement;
+        let expected_measures = Measures::of(fine, reference);
         let percent = |value: f64, expected: f64| 100.0 * (value / expected - 1.0);
         Some(Deviation {
             displacement_percent: displacement_percent(mesh, field, &expected),
             departure_percent: departure_percent(mesh, field, &expected, &affine),
-            max_difference: largest_distance(&solution.displacement, &expected),
-            force_percent: percent(solution.force, reference.force),
-            width_percent: percent(solution.mid_width, reference.mid_width),
-            nominal_stress_percent: self.stress_deviation(mesh, &solution.displacement, step),
+            max_difference: largest_distance(field, &expected),
+            force_percent: percent(measures.force, expected_measures.force),
+            width_percent: percent(measures.mid_width, expected_measures.mid_width),
+            nominal_stress_percent: self.stress_deviation(mesh, field, step),
         })
     }
 
@@ -129,10 +137,11 @@ impl<'a> Reference<'a> {
     /// The reference's own error at stretch number `step`; nothing where one of its meshes has no solution.
     pub fn self_convergence(&self, step: usize) -> Option<SelfConvergence> {
         let of_mesh =
-            |(mesh, solutions): (&'a Mesh, &'a [Solution])| Some((mesh, solutions.get(step)?));
+            |(mesh, solutions): (&'a Mesh, &'a [State])| Some((mesh, solutions.get(step)?));
         let [coarse, middle, fine] = self.meshes.map(of_mesh);
         let meshes = [coarse?, middle?, fine?];
-        let of = |value: fn(&Solution) -> f64| richardson(meshes.map(|(_, state)| value(state)));
+        let measures = meshes.map(|(mesh, state)| Measures::of(mesh, state));
+        let of = |value: fn(Measures) -> f64| richardson(measures.map(value));
         // At the nodes of the finest mesh a coarser field is seen between its own nodes too, where its error is larger.
         let common = meshes[2].0;
         let [first, second, third] =
@@ -140,11 +149,11 @@ impl<'a> Reference<'a> {
         let areas = common.nodal_areas();
         let size = |field: &[f64]| distance(&areas, &third, field);
         let nothing = vec![0.0; third.len()];
-        let affine = self.problem.affine(common, meshes[2].1.stretch);
+        let affine = self.problem.affine(common, meshes[2].1.factor);
         let (error, order) = of_distances(distance(&areas, &first, &second), size(&second));
         Some(SelfConvergence {
-            force: of(|state| state.force),
-            width: of(|state| state.mid_width),
+            force: of(|measures| measures.force),
+            width: of(|measures| measures.mid_width),
             displacement_percent: 100.0 * error / size(&nothing),
             departure_percent: 100.0 * error / size(&affine),
             displacement_order: order,
@@ -247,7 +256,7 @@ mod tests {
 
     #[test]
     fn a_known_deviation_is_measured_as_stated() {
-        let problem = Problem {
+        let problem = ClampedPlate {
             size: [30.0, 20.0],
             thickness: 2.0,
             law: Card::load("neo-hooke", Path::new(".")).unwrap().law,
@@ -268,21 +277,27 @@ mod tests {
 
         let lattice = Mesh::plate(problem.size, [12, 8], CellShape::Quad4);
         let exact = reference.displacements_on(&lattice).remove(0);
-        let same = Solution {
+        let same = State {
             displacement: exact.clone(),
             ..fine.1[0].clone()
         };
-        let zero = reference.deviation(&lattice, &same, 0).unwrap();
+        let measures = Measures::of(&fine.0.mesh, &fine.1[0]);
+        let zero = reference.deviation(&lattice, &same, measures, 0).unwrap();
         assert_eq!(zero.displacement_percent, 0.0);
         assert_eq!((zero.max_difference, zero.force_percent), (0.0, 0.0));
 
         // Everything 1 % larger: 1 % in displacement and force, more in the departure from affine.
-        let larger = Solution {
+        let larger = State {
             displacement: exact.iter().map(|u| 1.01 * u).collect(),
-            force: 1.01 * same.force,
             ..same
         };
-        let found = reference.deviation(&lattice, &larger, 0).unwrap();
+        let increased = Measures {
+            force: 1.01 * measures.force,
+            ..measures
+        };
+        let found = reference
+            .deviation(&lattice, &larger, increased, 0)
+            .unwrap();
         assert!((found.displacement_percent - 1.0).abs() < 1e-10);
         assert!((found.force_percent - 1.0).abs() < 1e-10);
         assert!((found.max_difference - 0.06).abs() < 1e-12);

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::error::Error;
-use crate::mesh::{CellShape, Grid, Mesh};
-use crate::problem::plate::{Model, Problem, Solution};
+use crate::error::{Error, SolveFault};
+use crate::mesh::{CellShape, Grid, Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::solve::NewtonSettings;
+use crate::problem::{ClampedPlate, Model};
+use crate::solve::{NewtonSettings, State};
 
 use error_estimate::{ErrorEstimate, Solved};
 use recovery::Recovery;
@@ -57,19 +57,19 @@ pub struct FiniteElements {
 
 impl FiniteElements {
     /// Meshes the problem with `cells` elements.
-    pub fn new(problem: &Problem, cells: [usize; 2], element: Element) -> Self {
-        Self::graded(problem, cells, element, 1.0)
+    pub fn new(plate: &ClampedPlate, cells: [usize; 2], element: Element) -> Self {
+        Self::graded(plate, cells, element, 1.0)
     }
 
     /// Meshes the problem with `cells` elements that become smaller towards the corners; see [`Grid`].
-    pub fn graded(problem: &Problem, cells: [usize; 2], element: Element, grading: f64) -> Self {
+    pub fn graded(plate: &ClampedPlate, cells: [usize; 2], element: Element, grading: f64) -> Self {
         let grid = Grid {
-            size: problem.size,
+            size: plate.size,
             cells,
             grading,
         };
         let mesh = Mesh::of_grid(grid, element.shape());
-        let energy = SheetEnergy::of_mesh(Arc::clone(&problem.law), &mesh, problem.thickness);
+        let energy = SheetEnergy::of_mesh(Arc::clone(&plate.law), &mesh, plate.thickness);
         Self {
             mesh,
             element,
@@ -77,15 +77,10 @@ impl FiniteElements {
         }
     }
 
-    /// The model as the solver sees it.
-    pub fn model(&self) -> Model<'_> {
+    /// The plate on this mesh.
+    pub fn model(&self, plate: &ClampedPlate) -> Model<'_> {
         let name = format!("finite elements ({})", self.describe());
-        Model {
-            name,
-            mesh: &self.mesh,
-            potential: &self.energy,
-            describe: Box::new(|cell| self.mesh.describe_cell(cell)),
-        }
+        plate.on(&self.mesh, &self.energy).named(name)
     }
 
     /// The strain energy.
@@ -98,36 +93,38 @@ impl FiniteElements {
         format!("{}, {}", self.element.name(), self.mesh.describe())
     }
 
-    /// The estimated error of a solution, by the recovery on this mesh.
+    /// The estimated error of a state, by the recovery on this mesh.
     ///
     /// # Errors
-    /// [`Error::Solve`] when the tangent at the solution cannot be factorised.
+    /// A [`SolveFault`] when the tangent at the state cannot be factorised.
     pub fn estimate(
         &self,
-        problem: &Problem,
-        solution: &Solution,
+        plate: &ClampedPlate,
+        state: &State,
         recovery: &Recovery,
-    ) -> Result<ErrorEstimate, Error> {
-        let influence = problem.influence(&self.model(), solution)?;
+    ) -> Result<ErrorEstimate, SolveFault> {
+        let influence = self.model(plate).influence(state, Side::Right.name(), 0)?;
         let solved = Solved {
-            law: &*problem.law,
-            thickness: problem.thickness,
+            law: &*plate.law,
+            thickness: plate.thickness,
             mesh: &self.mesh,
-            displacement: &solution.displacement,
+            displacement: &state.displacement,
         };
         Ok(solved.estimate(recovery, &influence))
     }
 
-    /// Solves all stretches of the problem, one after the other.
+    /// Solves all stretches of the plate, one after the other.
     ///
     /// # Errors
     /// [`Error::Solve`] with the stretch at which no solution was found.
     pub fn solve(
         &self,
-        problem: &Problem,
+        plate: &ClampedPlate,
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
-    ) -> Result<Vec<Solution>, Error> {
-        problem.follow(&self.model(), settings, progress)
+    ) -> Result<Vec<State>, Error> {
+        let model = self.model(plate);
+        let states = model.solve(&plate.stretches, settings, progress);
+        states.map_err(|end| model.error(&end))
     }
 }

@@ -11,11 +11,11 @@
 //! ```
 //! use std::path::Path;
 //! use gelbench::corrector::{DifferenceScheme, climb::{Climb, ClimbSettings}};
-//! use gelbench::{material::Card, problem::plate::Problem};
+//! use gelbench::{material::Card, problem::ClampedPlate};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let law = Card::load("pva-10", Path::new("."))?.law;
-//! let plate = Problem { size: [150.0, 50.0], thickness: 2.0, law, stretches: vec![0.5] };
+//! let plate = ClampedPlate { size: [150.0, 50.0], thickness: 2.0, law, stretches: vec![0.5] };
 //! let scheme = DifferenceScheme::default();
 //! let mut climb = Climb::even(&plate, [60, 20], scheme, ClimbSettings::default());
 //! let corrected = climb.correct(0.5)?;

@@ -26,8 +26,8 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::plate::{Model, Problem, Solution};
-use crate::solve::{Connectivity, Inadmissible, Local, NewtonSettings, Potential};
+use crate::problem::{ClampedPlate, Model};
+use crate::solve::{Connectivity, Inadmissible, Local, NewtonSettings, Potential, State};
 
 /// One spring.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,7 +122,7 @@ impl MassSpring {
     ///
     /// The ratio of a cell's sides must not exceed [`LARGEST_ASPECT`]; beyond it, an isotropic lattice
     /// would need edges of negative stiffness.
-    pub fn new(problem: &Problem, cells: [usize; 2], settings: LatticeSettings) -> Self {
+    pub fn new(problem: &ClampedPlate, cells: [usize; 2], settings: LatticeSettings) -> Self {
         let mesh = Mesh::plate(problem.size, cells, CellShape::Quad4);
         let scale = if settings.area_term { 8.0 / 9.0 } else { 1.0 };
         let [hx, hy] = mesh.cell_size();
@@ -187,7 +187,7 @@ impl MassSpring {
 
     /// The lattice with other cross-sections in mm²; springs that get none are left out.
     #[must_use]
-    pub fn with_areas(self, problem: &Problem, mut area: impl FnMut(&Spring) -> f64) -> Self {
+    pub fn with_areas(self, problem: &ClampedPlate, mut area: impl FnMut(&Spring) -> f64) -> Self {
         let change = |spring: Spring| Spring {
             area: area(&spring),
             ..spring
@@ -228,15 +228,11 @@ impl MassSpring {
         &self.lattice
     }
 
-    /// The model as the solver sees it.
-    pub fn model(&self) -> Model<'_> {
+    /// The plate on this lattice.
+    pub fn model(&self, plate: &ClampedPlate) -> Model<'_> {
         let name = format!("mass-spring ({})", self.mesh.describe());
-        Model {
-            name,
-            mesh: &self.mesh,
-            potential: &self.lattice,
-            describe: Box::new(|element| self.describe_element(element)),
-        }
+        let model = plate.on(&self.mesh, &self.lattice).named(name);
+        model.describing(|element| self.describe_element(element))
     }
 
     /// A spring by its ends, or a cell, for messages.
@@ -264,17 +260,19 @@ impl MassSpring {
         self.springs.iter().enumerate().map(state).collect()
     }
 
-    /// Solves all stretches of the problem.
+    /// Solves all stretches of the plate.
     ///
     /// # Errors
     /// [`Error::Solve`] with the stretch at which no equilibrium was found.
     pub fn solve(
         &self,
-        problem: &Problem,
+        plate: &ClampedPlate,
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
-    ) -> Result<Vec<Solution>, Error> {
-        problem.follow(&self.model(), settings, progress)
+    ) -> Result<Vec<State>, Error> {
+        let model = self.model(plate);
+        let states = model.solve(&plate.stretches, settings, progress);
+        states.map_err(|end| model.error(&end))
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::material::{Card, HyperelasticLaw};
-use gelbench::problem::plate::Problem;
+use gelbench::problem::{ClampedPlate, Measures};
 use gelbench::solve::NewtonSettings;
 
 const SETTINGS: NewtonSettings = NewtonSettings {
@@ -12,13 +12,13 @@ const SETTINGS: NewtonSettings = NewtonSettings {
     max_iterations: 30,
 };
 
-fn plate(material: &str) -> Problem {
+fn plate(material: &str) -> ClampedPlate {
     let card = match material {
         "nh" => "neo-hooke",
         _ => "pva-10",
     };
     let law: Arc<dyn HyperelasticLaw> = Card::load(card, ".".as_ref()).unwrap().law;
-    Problem {
+    ClampedPlate {
         size: [150.0, 50.0],
         thickness: 2.0,
         law,
@@ -64,9 +64,10 @@ fn compare(material: &str, cells: [usize; 2], element: Element) {
     for (code, stretch, values) in rows {
         let solution = solutions
             .iter()
-            .find(|solution| solution.stretch == stretch)
+            .find(|solution| solution.factor == stretch)
             .unwrap();
-        let computed = [solution.force, solution.mid_width, solution.energy];
+        let found = Measures::of(&model.mesh, solution);
+        let computed = [found.force, found.mid_width, found.energy];
         for (name, (computed, expected)) in ["force", "width", "energy"]
             .iter()
             .zip(computed.iter().zip(values))
@@ -137,7 +138,7 @@ fn q2_reproduces_the_displacements_of_another_code() {
             };
             let solution = solutions
                 .iter()
-                .find(|solution| solution.stretch == stretch)
+                .find(|solution| solution.factor == stretch)
                 .unwrap();
             let found = model.mesh.displacement_at(&solution.displacement, [x, y]);
             let largest = 150.0 * stretch;

@@ -6,31 +6,36 @@ use gelbench::compare::{Reference, departure_percent, displacement_percent};
 use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, Mesh};
-use gelbench::problem::plate::{Problem, Solution};
+use gelbench::problem::{ClampedPlate, Measures};
 use gelbench::solve::NewtonSettings;
+use gelbench::solve::State;
 
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-11,
     max_iterations: 40,
 };
 
-type Solved = (FiniteElements, Vec<Solution>);
+type Solved = (FiniteElements, Vec<State>);
 
-fn solve(problem: &Problem, cells: [usize; 2], grading: f64) -> Solved {
+fn solve(problem: &ClampedPlate, cells: [usize; 2], grading: f64) -> Solved {
     let model = FiniteElements::graded(problem, cells, Element::Q2, grading);
     let solutions = model.solve(problem, SETTINGS, &|_| ()).unwrap();
     (model, solutions)
 }
 
 /// Stated over true errors of displacement, departure and force at the last stretch.
-fn effectivities(problem: &Problem, cells: [usize; 2], grading: f64, truth: &Solved) -> [f64; 3] {
+fn effectivities(
+    problem: &ClampedPlate,
+    cells: [usize; 2],
+    grading: f64,
+    truth: &Solved,
+) -> [f64; 3] {
     let meshes = [4, 2, 1].map(|part| solve(problem, cells.map(|n| n / part), grading));
     let pairs = meshes.each_ref().map(|(model, found)| (model, &found[..]));
     let last = problem.stretches.len() - 1;
     let stated = Reference::new(problem, pairs)
         .self_convergence(last)
         .unwrap();
-    let found = &meshes[2].1;
     let lattice = Mesh::plate(problem.size, cells.map(|n| 2 * n), CellShape::Quad4);
     let on_lattice = |(model, found): &Solved| {
         model
@@ -39,7 +44,8 @@ fn effectivities(problem: &Problem, cells: [usize; 2], grading: f64, truth: &Sol
     };
     let (field, exact) = (on_lattice(&meshes[2]), on_lattice(truth));
     let affine = problem.affine(&lattice, problem.stretches[last]);
-    let force = 100.0 * (found[last].force / truth.1[last].force - 1.0).abs();
+    let force_of = |(model, found): &Solved| Measures::of(&model.mesh, &found[last]).force;
+    let force = 100.0 * (force_of(&meshes[2]) / force_of(truth) - 1.0).abs();
     [
         stated.displacement_percent / displacement_percent(&lattice, &field, &exact),
         stated.departure_percent / departure_percent(&lattice, &field, &exact, &affine),
@@ -47,8 +53,8 @@ fn effectivities(problem: &Problem, cells: [usize; 2], grading: f64, truth: &Sol
     ]
 }
 
-fn plate(card: &str, size: [f64; 2], stretches: &[f64]) -> Problem {
-    Problem {
+fn plate(card: &str, size: [f64; 2], stretches: &[f64]) -> ClampedPlate {
+    ClampedPlate {
         size,
         thickness: 2.0,
         law: Card::load(card, Path::new(".")).unwrap().law,

@@ -28,7 +28,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::error::Error;
 use gelbench::material::Card;
 use gelbench::output;
-use gelbench::problem::plate::Problem;
+use gelbench::problem::ClampedPlate;
 use peak_alloc::PeakAlloc;
 use rayon::ThreadPoolBuilder;
 
@@ -85,7 +85,7 @@ fn main() -> ExitCode {
 
 /// Measures everything; the number of aims that are not met.
 fn bench(quick: bool) -> Result<usize, Error> {
-    let problem = Problem {
+    let problem = ClampedPlate {
         size: [150.0, 50.0],
         thickness: 2.0,
         law: Card::load("pva-10", Path::new("."))?.law,

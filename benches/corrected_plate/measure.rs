@@ -6,7 +6,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::Field;
 use gelbench::error::Error;
 use gelbench::finite_element::Element;
-use gelbench::problem::plate::Problem;
+use gelbench::problem::ClampedPlate;
 use rayon::ThreadPool;
 
 use super::MEMORY;
@@ -49,7 +49,7 @@ impl Run {
 
 /// What all runs share.
 pub struct Bench<'a> {
-    pub problem: &'a Problem,
+    pub problem: &'a ClampedPlate,
     pub reference: &'a Reference,
     pub stretch: f64,
     /// Pools of one and two threads.

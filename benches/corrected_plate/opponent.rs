@@ -16,7 +16,7 @@
 
 use gelbench::corrector::climb::{Field, Grid};
 use gelbench::finite_element::{Element, FiniteElements};
-use gelbench::problem::plate::Problem;
+use gelbench::problem::ClampedPlate;
 use gelbench::solve::{Assembly, Cholesky};
 
 /// Where the iteration begins.
@@ -40,7 +40,7 @@ impl Guess {
 
 /// Finite elements prepared on one grid of nodes.
 pub struct Opponent<'a> {
-    problem: &'a Problem,
+    problem: &'a ClampedPlate,
     pub grid: Grid,
     element: Element,
     model: FiniteElements,
@@ -63,11 +63,11 @@ fn degree(element: Element) -> usize {
 
 impl<'a> Opponent<'a> {
     /// Meshes the plate so that the nodes are those of a grid with `cells` cells.
-    pub fn new(problem: &'a Problem, cells: [usize; 2], element: Element) -> Self {
+    pub fn new(problem: &'a ClampedPlate, cells: [usize; 2], element: Element) -> Self {
         let elements = cells.map(|cells| cells / degree(element));
         let model = FiniteElements::new(problem, elements, element);
-        let assembly = Assembly::new(model.model().potential, &problem.held(&model.mesh));
-        let cholesky = assembly.analyse(model.model().potential);
+        let assembly = Assembly::new(model.energy(), &problem.held(&model.mesh));
+        let cholesky = assembly.analyse(model.energy());
         Self {
             problem,
             grid: Grid::even(problem.size, cells),
@@ -113,7 +113,7 @@ impl<'a> Opponent<'a> {
 
     /// One Newton iteration; the norm of its step.
     pub fn iterate(&mut self, u: &mut [f64]) -> f64 {
-        let potential = self.model.model().potential;
+        let potential = self.model.energy();
         let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
         self.assembly
             .linearise(potential, u, &mut residual, &mut stiffness)
@@ -149,7 +149,7 @@ impl<'a> Opponent<'a> {
     /// iteration left far less than the sum of the reactions does.
     pub fn force(&self, u: &[f64]) -> f64 {
         let mut residual = vec![0.0; u.len()];
-        let potential = self.model.model().potential;
+        let potential = self.model.energy();
         Assembly::residual(potential, u, &mut residual).expect("admissible fields");
         let nodes = self.model.mesh.nodes.iter().zip(residual.chunks_exact(2));
         let length = self.problem.size[0];

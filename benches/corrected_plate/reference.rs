@@ -3,7 +3,7 @@
 use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Climb, ClimbSettings, Field, Grid};
 use gelbench::error::Error;
-use gelbench::problem::plate::Problem;
+use gelbench::problem::ClampedPlate;
 
 /// The published converged force at 100 % in N, with five digits after the point: Richardson's extrapolation of
 /// finite elements by dolfinx and scikit-fem.
@@ -24,14 +24,14 @@ pub struct Reference {
 }
 
 impl Reference {
-    pub fn new(problem: &Problem, stretch: f64) -> Result<Self, Error> {
+    pub fn new(problem: &ClampedPlate, stretch: f64) -> Result<Self, Error> {
         let [fine, coarse] = ELEMENTS.map(|elements| Self::on(problem, stretch, elements));
         let (mut fine, coarse) = (fine?, coarse?);
         fine.own_percent = fine.departure_percent(&coarse.grid, &coarse.field);
         Ok(fine)
     }
 
-    fn on(problem: &Problem, stretch: f64, elements: usize) -> Result<Self, Error> {
+    fn on(problem: &ClampedPlate, stretch: f64, elements: usize) -> Result<Self, Error> {
         let boundaries = [
             graded(problem.size[0], elements),
             graded(problem.size[1], elements / 2),

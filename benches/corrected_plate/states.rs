@@ -6,7 +6,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Climb, ClimbSettings, Grips, Interactive, RigidMotion};
 use gelbench::error::Error;
 use gelbench::finite_element::FiniteElements;
-use gelbench::problem::plate::Problem;
+use gelbench::problem::ClampedPlate;
 use gelbench::solve::NewtonSettings;
 
 use super::opponent::Opponent;
@@ -33,7 +33,7 @@ const REPETITIONS: usize = 5;
 
 /// Follows a path in all three ways, side by side. `error` is the mesh's own error at the last stretch.
 pub fn path(
-    problem: &Problem,
+    problem: &ClampedPlate,
     cells: [usize; 2],
     scheme: DifferenceScheme,
     stretches: &[f64],
@@ -71,12 +71,12 @@ pub fn path(
 }
 
 fn built_in(
-    problem: &Problem,
+    problem: &ClampedPlate,
     cells: [usize; 2],
     scheme: DifferenceScheme,
     stretches: &[f64],
 ) -> Result<(), Error> {
-    let problem = Problem {
+    let problem = ClampedPlate {
         stretches: stretches.to_vec(),
         ..problem.clone()
     };
@@ -91,7 +91,7 @@ fn built_in(
 
 /// The forces and the number of iterations.
 fn tuned(
-    problem: &Problem,
+    problem: &ClampedPlate,
     cells: [usize; 2],
     scheme: DifferenceScheme,
     stretches: &[f64],
@@ -143,7 +143,7 @@ pub struct Frames {
 }
 
 /// Moves the right grip by a few mm and turns it a little in every frame.
-pub fn frames(problem: &Problem, cells: [usize; 2], count: usize) -> Result<Frames, Error> {
+pub fn frames(problem: &ClampedPlate, cells: [usize; 2], count: usize) -> Result<Frames, Error> {
     let climb = Climb::even(
         problem,
         cells,

@@ -6,7 +6,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Climb, ClimbSettings, Field, Grid};
 use gelbench::error::Error;
 use gelbench::finite_element::Element;
-use gelbench::problem::plate::Problem;
+use gelbench::problem::ClampedPlate;
 
 use super::opponent::{Guess, Opponent};
 
@@ -68,7 +68,7 @@ const EVALUATIONS: usize = 3;
 /// finite elements and plain Newton when to stop; the climb finds it out for itself.
 pub fn go(
     way: Way,
-    problem: &Problem,
+    problem: &ClampedPlate,
     cells: [usize; 2],
     stretch: f64,
     error: f64,

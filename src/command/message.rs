@@ -13,7 +13,7 @@ use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::results::{Computed, Wanted, limit, number};
 use crate::studies::plate::results::{Requirement, Results};
 use crate::studies::plate::study::Study;
@@ -98,7 +98,7 @@ pub fn summary(results: &Results, requirements: &[Requirement]) -> String {
         let [u, departure, force] = row(step.mass_spring.as_ref(), [3, 2, 2]);
         text += &format!(
             "{:>5} %  {u:>12}  {departure:>9}  {force:>5}   ",
-            Problem::percent(step.stretch)
+            ClampedPlate::percent(step.stretch)
         );
         let [u, departure, force] = row(step.corrected.as_ref(), [4, 3, 3]);
         text += &format!("{u:>12}  {departure:>9}  {force:>5}\n");

@@ -14,7 +14,7 @@
 use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};
 use crate::multigrid::{Multigrid, NotPositiveDefinite};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 
 mod ascent;
 mod fall;
@@ -103,7 +103,7 @@ impl Climbed {
 /// A plate's grids, ready to correct at any stretch.
 #[derive(Debug)]
 pub struct Climb<'a> {
-    problem: &'a Problem,
+    problem: &'a ClampedPlate,
     scheme: DifferenceScheme,
     settings: ClimbSettings,
     levels: Vec<Level>,
@@ -130,7 +130,7 @@ impl<'a> Climb<'a> {
     /// # Panics
     /// When the scheme takes cells two by two and their number is odd.
     pub fn even(
-        problem: &'a Problem,
+        problem: &'a ClampedPlate,
         cells: [usize; 2],
         scheme: DifferenceScheme,
         settings: ClimbSettings,
@@ -146,7 +146,7 @@ impl<'a> Climb<'a> {
     /// Prepares the grids of a plate between the given coordinates of element boundaries along X and Y, which
     /// begin at zero and end at the plate's size.
     pub fn new(
-        problem: &'a Problem,
+        problem: &'a ClampedPlate,
         boundaries: [Vec<f64>; 2],
         scheme: DifferenceScheme,
         settings: ClimbSettings,
@@ -288,7 +288,7 @@ impl<'a> Climb<'a> {
 fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error + Copy {
     move |fault| Error::Solve {
         model: "corrector (climb)".into(),
-        step: Problem::describe_step(stretch),
+        step: ClampedPlate::describe_step(stretch),
         fault,
     }
 }

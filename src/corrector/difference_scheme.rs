@@ -26,7 +26,7 @@
 use std::sync::Arc;
 
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
 
 /// Where in a cell the differences are taken.
@@ -73,7 +73,7 @@ impl DifferenceScheme {
     ///
     /// # Panics
     /// When the scheme takes cells two by two and their number is odd.
-    pub fn energy(self, problem: &Problem, mesh: &Mesh) -> SheetEnergy {
+    pub fn energy(self, problem: &ClampedPlate, mesh: &Mesh) -> SheetEnergy {
         let s = match self {
             Self::Corners => 1.0,
             Self::Gauss => 1.0 / 3.0_f64.sqrt(),

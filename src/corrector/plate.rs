@@ -8,13 +8,12 @@
 
 use super::climb::{Climb, Way};
 use super::condition::{Condition, Equilibrium, Linear};
-use super::{
-    Correction, Corrector, CorrectorSettings, Describe, DifferenceScheme, Multipliers, Step,
-};
+use super::{Corrector, CorrectorSettings, Describe, DifferenceScheme, Multipliers, Step};
 use crate::error::Error;
 use crate::mesh::{Mesh, Side};
-use crate::problem::plate::{Problem, Solution};
 use crate::problem::sheet_energy::SheetEnergy;
+use crate::problem::{ClampedPlate, Measures};
+use crate::solve::State;
 use crate::solve::vector::largest;
 use crate::solve::{Assembly, Convergence, SparseRows};
 
@@ -45,8 +44,10 @@ impl KnownConditions {
 /// A corrected plate at one stretch.
 #[derive(Debug)]
 pub struct CorrectedState {
-    /// The corrected field and what follows from it; its residual is that of the difference scheme.
-    pub solution: Solution,
+    /// The corrected field; its residual is that of the difference scheme.
+    pub state: State,
+    /// What is measured of it.
+    pub measures: Measures,
     /// The start and the field after each step of the direct method; none where the field climbed.
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
@@ -57,7 +58,7 @@ pub struct CorrectedState {
 
 /// The difference scheme of a plate on the nodes of a lattice, ready to correct fields on them.
 pub struct PlateCorrector<'a> {
-    problem: &'a Problem,
+    problem: &'a ClampedPlate,
     mesh: &'a Mesh,
     energy: SheetEnergy,
     assembly: Assembly,
@@ -98,7 +99,7 @@ pub fn measured_points(name: &str, mesh: &Mesh, points: &[([f64; 2], [f64; 2])])
 impl<'a> PlateCorrector<'a> {
     /// Prepares the corrector on a mesh of four-node cells.
     pub fn new(
-        problem: &'a Problem,
+        problem: &'a ClampedPlate,
         mesh: &'a Mesh,
         scheme: DifferenceScheme,
         settings: CorrectorSettings,
@@ -132,18 +133,19 @@ impl<'a> PlateCorrector<'a> {
     ) -> Result<CorrectedState, Error> {
         let fault = |fault| Error::Solve {
             model: "corrector".into(),
-            step: Problem::describe_step(stretch),
+            step: ClampedPlate::describe_step(stretch),
             fault,
         };
         let correction = self
             .corrector(stretch, known)
             .correct(data, data)
             .map_err(fault)?;
+        let convergence = correction.convergence(f64::NAN);
+        let corrected = self.corrected(correction.field().to_vec(), stretch, convergence);
         Ok(CorrectedState {
-            solution: self.solution(&correction, stretch),
             steps: correction.steps,
             multipliers: correction.multipliers,
-            way: None,
+            ..corrected
         })
     }
 
@@ -219,41 +221,38 @@ impl<'a> PlateCorrector<'a> {
             residuals: climbed.corrections.iter().map(|z| z / size).collect(),
             ..Convergence::default()
         };
-        let mut solution = self.solved(field, stretch, convergence);
-        solution.force = climbed.force;
+        let mut corrected = self.corrected(field, stretch, convergence);
+        corrected.measures.force = climbed.force;
         Ok(CorrectedState {
-            solution,
-            steps: Vec::new(),
             multipliers,
             way: Some(way),
+            ..corrected
         })
     }
 
-    fn solution(&self, correction: &Correction, stretch: f64) -> Solution {
-        let convergence = correction.convergence(f64::NAN);
-        self.solved(correction.field().to_vec(), stretch, convergence)
-    }
-
     /// What follows from a corrected field.
-    fn solved(
+    fn corrected(
         &self,
         displacement: Vec<f64>,
         stretch: f64,
         mut convergence: Convergence,
-    ) -> Solution {
+    ) -> CorrectedState {
         let mut residual = vec![0.0; displacement.len()];
-        let energy = Assembly::residual(&self.energy, &displacement, &mut residual)
+        convergence.energy = Assembly::residual(&self.energy, &displacement, &mut residual)
             .expect("a corrected field is admissible");
-        convergence.energy = energy;
-        Solution {
-            stretch,
-            force: self.problem.grip_force(self.mesh, &residual),
-            mid_width: self.mesh.mid_width(&displacement),
+        let state = State {
+            factor: stretch,
             displacement,
             residual,
-            energy,
             load_steps: 1,
             convergence,
+        };
+        CorrectedState {
+            measures: Measures::of(self.mesh, &state),
+            state,
+            steps: Vec::new(),
+            multipliers: Vec::new(),
+            way: None,
         }
     }
 }

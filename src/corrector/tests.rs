@@ -6,7 +6,8 @@ use super::*;
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::Card;
 use crate::mesh::Mesh;
-use crate::problem::plate::{Problem, Solution};
+use crate::problem::ClampedPlate;
+use crate::solve::State;
 use crate::solve::{Newton, NewtonSettings};
 
 use plate::KnownConditions;
@@ -22,8 +23,8 @@ const SETTINGS: CorrectorSettings = CorrectorSettings {
 };
 const STRETCH: f64 = 0.5;
 
-fn problem() -> Problem {
-    Problem {
+fn problem() -> ClampedPlate {
+    ClampedPlate {
         size: [30.0, 20.0],
         thickness: 2.0,
         law: Card::load("pva-10", Path::new(".")).unwrap().law,
@@ -31,7 +32,7 @@ fn problem() -> Problem {
     }
 }
 
-fn lattice(problem: &Problem) -> (MassSpring, Solution) {
+fn lattice(problem: &ClampedPlate) -> (MassSpring, State) {
     let plate = MassSpring::new(problem, [9, 6], LatticeSettings { area_term: false });
     let newton = NewtonSettings {
         tolerance: 1e-10,
@@ -49,7 +50,7 @@ fn noise(size: usize) -> Vec<f64> {
         .collect()
 }
 
-fn plate_corrector<'a>(problem: &'a Problem, mesh: &'a Mesh) -> PlateCorrector<'a> {
+fn plate_corrector<'a>(problem: &'a ClampedPlate, mesh: &'a Mesh) -> PlateCorrector<'a> {
     PlateCorrector::new(problem, mesh, DifferenceScheme::Gauss, SETTINGS)
 }
 
@@ -107,21 +108,17 @@ fn the_corrected_plate_is_the_equilibrium_of_the_difference_scheme() {
             &|_| String::new(),
         )
         .unwrap();
-    assert!(largest_difference(&corrected.solution.displacement, &affine) < 1e-9);
+    assert!(largest_difference(&corrected.state.displacement, &affine) < 1e-9);
     assert!(
         largest_difference(data, &affine) > 0.1,
         "the springs were wrong"
     );
 
     let again = corrector
-        .correct(
-            &corrected.solution.displacement,
-            STRETCH,
-            KnownConditions::ALL,
-        )
+        .correct(&corrected.state.displacement, STRETCH, KnownConditions::ALL)
         .unwrap();
     assert_eq!(again.steps.len(), 1, "idempotent");
-    assert!(largest_difference(&again.solution.displacement, &affine) < 1e-9);
+    assert!(largest_difference(&again.state.displacement, &affine) < 1e-9);
 }
 
 #[test]
@@ -218,7 +215,7 @@ fn the_free_edges_are_needed() {
         corrector
             .correct(data, STRETCH, known)
             .unwrap()
-            .solution
+            .state
             .displacement
     };
     let exact = correct(KnownConditions::ALL);

@@ -45,7 +45,7 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 /// The fastest vibration ω in rad/s by Lanczos' method on M^−½ K M^−½: the largest Ritz value with its error bound.
 ///
 /// # References
-/// B. N. Parlett, The Symmetric Eigenvalue Problem, SIAM (1998), § 13.2, doi:10.1137/1.9781611971163
+/// B. N. Parlett, The Symmetric Eigenvalue ClampedPlate, SIAM (1998), § 13.2, doi:10.1137/1.9781611971163
 pub(super) fn fastest(pattern: &SymmetricPattern, stiffness: &[f64], mass: &[f64]) -> f64 {
     const STEPS: usize = 24;
     let roots: Vec<f64> = mass.iter().map(|m| m.sqrt()).collect();

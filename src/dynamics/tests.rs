@@ -9,7 +9,7 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::Card;
 use crate::mesh::{Mesh, Side};
-use crate::problem::plate::{Model, Problem};
+use crate::problem::ClampedPlate;
 use crate::solve::{NewtonSettings, Potential};
 
 fn motion(spring: &Spring, start: f64) -> Motion<'_> {
@@ -238,23 +238,18 @@ fn dead_forces_push() {
 }
 
 /// A plate in equilibrium between its grips.
-pub fn solved(problem: &Problem, mesh: &Mesh, potential: &dyn Potential, stretch: f64) -> Vec<f64> {
-    let problem = Problem {
-        stretches: vec![stretch],
-        ..problem.clone()
-    };
+pub fn solved(
+    problem: &ClampedPlate,
+    mesh: &Mesh,
+    potential: &dyn Potential,
+    stretch: f64,
+) -> Vec<f64> {
     let newton = NewtonSettings {
         tolerance: 1e-11,
         max_iterations: 50,
     };
-    let model = Model {
-        name: String::new(),
-        mesh,
-        potential,
-        describe: Box::new(|element| element.to_string()),
-    };
-    let solution = problem.follow(&model, newton, &|_| ()).unwrap().remove(0);
-    solution.displacement
+    let state = problem.on(mesh, potential).reach(&[stretch], newton);
+    state.unwrap().displacement
 }
 
 pub fn clamp(mesh: &Mesh) -> MovingSupport {
@@ -262,8 +257,8 @@ pub fn clamp(mesh: &Mesh) -> MovingSupport {
     MovingSupport::fixed(nodes.flat_map(|node| [2 * node, 2 * node + 1]).collect())
 }
 
-pub fn plate() -> Problem {
-    Problem {
+pub fn plate() -> ClampedPlate {
+    ClampedPlate {
         size: [30.0, 10.0],
         thickness: 2.0,
         law: Card::load("pva-10", Path::new(".")).unwrap().law,
@@ -278,14 +273,14 @@ fn the_energy_of_an_undamped_plate_stays_for_ten_thousand_steps() {
     let problem = plate();
     let springs = MassSpring::new(&problem, [12, 4], LatticeSettings { area_term: false });
     let elements = FiniteElements::new(&problem, [6, 2], Element::Q1);
-    for model in [springs.model(), elements.model()] {
+    for model in [springs.model(&problem), elements.model(&problem)] {
         let body = Motion {
-            energy: model.potential,
+            energy: model.energy,
             viscosity: None,
             mass: lumped_mass(model.mesh, DENSITY, problem.thickness),
             supports: vec![clamp(model.mesh)],
             forces: Vec::new(),
-            start: Start::held_at(solved(&problem, model.mesh, model.potential, 0.3)),
+            start: Start::held_at(solved(&problem, model.mesh, model.energy, 0.3)),
             describe: Box::new(|element| model.mesh.describe_cell(element)),
         };
         let step = 2e-6;

@@ -1,5 +1,7 @@
 //! The balance of all forces on a body, and of their moments.
 
+use crate::mesh::Mesh;
+
 /// Forces and their moment about a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Resultant {
@@ -59,12 +61,10 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// The balance of a body with its nodes at deformed places, in mm, under the forces of its supports, one for each
-    /// unknown in N, alone.
-    pub fn of_supports(places: &[[f64; 2]], supports: &[f64]) -> Self {
-        let body = Body::new(places);
-        let supports = Resultant::of_nodes(places, supports, body.centre);
-        body.balance(supports, Resultant::default(), 0.0)
+    /// The balance of a mesh with displacements under the forces of its supports, one for each unknown in N, alone.
+    pub fn of_supports(mesh: &Mesh, displacement: &[f64], supports: &[f64]) -> Self {
+        let body = Body::new(mesh, displacement);
+        body.balance(body.resultant(supports), Resultant::default(), 0.0)
     }
 
     /// The largest unbalanced force or moment over the largest of all.
@@ -76,25 +76,42 @@ impl Balance {
     }
 }
 
-/// The box around the deformed nodes of a body.
+/// A deformed body, and the point about which its moments are taken.
 pub struct Body {
-    /// Its centre.
-    pub centre: [f64; 2],
+    /// The deformed nodes in mm.
+    places: Vec<[f64; 2]>,
+    /// The centre of the box around them.
+    centre: [f64; 2],
+    /// The centre relative to the middle of the mesh at rest.
+    pub from_middle: [f64; 2],
     half_diagonal: f64,
 }
 
 impl Body {
-    /// Around some places.
-    pub fn new(places: &[[f64; 2]]) -> Self {
+    /// A mesh with displacements.
+    pub fn new(mesh: &Mesh, displacement: &[f64]) -> Self {
+        let moved = mesh.nodes.iter().zip(displacement.chunks_exact(2));
+        let places: Vec<[f64; 2]> = moved.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]).collect();
         let limit = |axis: usize, pick: fn(f64, f64) -> f64, start: f64| {
             places.iter().map(|place| place[axis]).fold(start, pick)
         };
         let low = [0, 1].map(|axis| limit(axis, f64::min, f64::INFINITY));
         let high = [0, 1].map(|axis| limit(axis, f64::max, f64::NEG_INFINITY));
+        let (centre, middle) = (
+            [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])),
+            mesh.middle(),
+        );
         Self {
-            centre: [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])),
+            places,
+            centre,
+            from_middle: [0, 1].map(|axis| centre[axis] - middle[axis]),
             half_diagonal: 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]),
         }
+    }
+
+    /// The resultant of nodal forces in N, one for each unknown.
+    pub fn resultant(&self, forces: &[f64]) -> Resultant {
+        Resultant::of_nodes(&self.places, forces, self.centre)
     }
 
     /// The balance of supports and loads about the centre; forces below `negligible` in N are rounding.
@@ -113,16 +130,19 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::CellShape;
 
     #[test]
     fn a_couple_has_a_moment_and_no_force() {
-        let places = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]];
-        let balance = Balance::of_supports(&places, &[0.0, -2.0, 0.0, 2.0, 0.0, 0.0]);
+        let places = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]];
+        let mesh = Mesh::new(places, [(CellShape::Triangle3, vec![0, 1, 2])]);
+        let of = |forces: [f64; 6]| Balance::of_supports(&mesh, &[0.0; 6], &forces);
+        let balance = of([0.0, -2.0, 0.0, 2.0, 0.0, 0.0]);
         assert_eq!(balance.force, [0.0; 2]);
         assert_eq!(balance.moment, 8.0);
         assert_eq!(balance.largest_force, 4.0);
         assert_eq!(balance.largest_moment, 10.0);
         assert_eq!(balance.relative(), 0.8);
-        assert_eq!(Balance::of_supports(&places, &[0.0; 6]).relative(), 0.0);
+        assert_eq!(of([0.0; 6]).relative(), 0.0);
     }
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::supports::{Motion, Supported};
-use super::{BoundaryProblem, Support};
+use super::boundary_conditions::Support;
+use super::constraints::{Constraints, Motion};
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 use crate::units::Linear;
@@ -32,14 +32,15 @@ enum Conflict {
 /// # Errors
 /// The [`Diagnostic`] of a support that suits no group.
 pub fn contradictions(
-    problem: &BoundaryProblem,
+    supports: &[(String, Support)],
     mesh: &Mesh,
 ) -> Result<Vec<Diagnostic>, Diagnostic> {
     let [low, high] = mesh.bounding_box();
     let rounding = 1e-12 * (high[0] - low[0]).hypot(high[1] - low[1]);
     let mut demands: BTreeMap<usize, Vec<(usize, Demand)>> = BTreeMap::new();
-    for number in 0..problem.supports.len() {
-        let Supported { held, ties, forces } = problem.supported(mesh, number..number + 1)?;
+    for (number, support) in supports.iter().enumerate() {
+        let own = Constraints::of(mesh, std::slice::from_ref(support))?;
+        let Constraints { held, ties, forces } = own;
         let held = held.into_iter();
         let held = held.map(|(unknown, motion)| (unknown, Demand::Motion(motion)));
         let tied = ties
@@ -62,8 +63,19 @@ pub fn contradictions(
     }
     let told = found
         .into_iter()
-        .map(|(pair, unknowns)| tell(problem, mesh, pair, &unknowns));
+        .map(|(pair, unknowns)| tell(supports, mesh, pair, &unknowns));
     Ok(told.collect())
+}
+
+/// What all supports do to the unknowns of a mesh.
+///
+/// # Errors
+/// The first contradiction, or the [`Diagnostic`] of a support that suits no group.
+pub fn agreeing(supports: &[(String, Support)], mesh: &Mesh) -> Result<Constraints, Diagnostic> {
+    match contradictions(supports, mesh)?.into_iter().next() {
+        Some(fault) => Err(fault),
+        None => Constraints::of(mesh, supports),
+    }
 }
 
 fn conflict(a: Demand, b: Demand, rounding: f64) -> Option<Conflict> {
@@ -81,13 +93,13 @@ fn conflict(a: Demand, b: Demand, rounding: f64) -> Option<Conflict> {
 }
 
 fn tell(
-    problem: &BoundaryProblem,
+    supports: &[(String, Support)],
     mesh: &Mesh,
     (earlier, later, conflict): (usize, usize, Conflict),
     unknowns: &[usize],
 ) -> Diagnostic {
     let [one, other] = [earlier, later].map(|number| {
-        let (group, support) = &problem.supports[number];
+        let (group, support) = &supports[number];
         let what = describe(support);
         format!("support {} on the group `{group}` ({what})", number + 1)
     });
@@ -117,7 +129,7 @@ fn tell(
 }
 
 /// What a support does, in a few words.
-pub fn describe(support: &Support) -> String {
+fn describe(support: &Support) -> String {
     let axes = |values: [Option<String>; 2]| {
         let named = ["x", "y"].iter().zip(values);
         let given = named.filter_map(|(axis, value)| Some(format!("{axis} = {}", value?)));
@@ -150,7 +162,7 @@ mod tests {
     use super::*;
     use crate::material::NeoHooke;
     use crate::mesh::{CellShape, Shape};
-    use crate::problem::Drive;
+    use crate::problem::{BoundaryProblem, Drive};
 
     fn told(supports: &[(&str, Support)]) -> Vec<String> {
         let mesh = Shape::Strip { size: [30.0, 10.0] }.mesh(4, CellShape::Quad4);
@@ -163,7 +175,7 @@ mod tests {
             supports: owned.collect(),
             loads: Vec::new(),
         };
-        let found = contradictions(&problem, &mesh).unwrap();
+        let found = contradictions(&problem.supports, &mesh).unwrap();
         let refused = problem.held_by(&mesh).err().map(|fault| fault.message);
         assert_eq!(refused, found.first().map(|first| first.message.clone()));
         found.into_iter().map(|fault| fault.message).collect()

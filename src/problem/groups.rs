@@ -1,9 +1,25 @@
-//! What happens at a group of a mesh: its mean displacement, and the moment of its supports.
+//! Groups of a mesh: found by their names, and means over them.
 
-use super::Discretised;
-use super::loads::edge_lengths;
+use crate::error::Diagnostic;
 use crate::mesh::{Group, Mesh};
-use crate::solve::State;
+
+/// The group of a name.
+///
+/// # Errors
+/// A [`Diagnostic`] about a support or a load, `what`, when the mesh has no such group.
+pub fn named<'a>(what: &str, mesh: &'a Mesh, name: &str) -> Result<&'a Group, Diagnostic> {
+    let groups = mesh.groups();
+    groups.get(name).ok_or_else(|| {
+        let known: Vec<_> = groups.keys().map(String::as_str).collect();
+        let fault = Diagnostic::error(what, format!("the mesh has no group `{name}`"));
+        fault.hint(format!("its groups are {}", known.join(", ")))
+    })
+}
+
+/// A support or a load, `what`, that does not suit a group.
+pub fn refused(what: &str, group: &str, reason: &str) -> Diagnostic {
+    Diagnostic::error(what, format!("the group `{group}` {reason}"))
+}
 
 /// The share of each node in the mean of a group: over the length of its edges, or over its nodes where it has none.
 ///
@@ -26,40 +42,37 @@ pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
         .collect()
 }
 
-impl Discretised<'_> {
-    /// The mean displacement of a group in mm, over the length of its edges, from a state.
-    ///
-    /// # Panics
-    /// When the mesh has no such group.
-    pub fn displacement(&self, state: &State, name: &str) -> [f64; 2] {
-        let mut sum = [0.0; 2];
-        for (node, share) in shares(self.mesh, &self.mesh.groups()[name]) {
-            for (axis, sum) in sum.iter_mut().enumerate() {
-                *sum += share * state.displacement[2 * node + axis];
-            }
-        }
-        sum
-    }
-
-    /// The moment of the supports' forces on a group about the middle of its deformed nodes in N·mm,
-    /// counter-clockwise, from a state.
-    ///
-    /// # Panics
-    /// When the mesh has no such group.
-    pub fn reaction_moment(&self, state: &State, name: &str) -> f64 {
-        let nodes = &self.mesh.groups()[name].nodes;
-        let place = |node: usize, axis: usize| {
-            self.mesh.nodes[node][axis] + state.displacement[2 * node + axis]
-        };
-        let middle = [0, 1].map(|axis| {
-            let places = nodes.iter().map(|node| place(*node, axis));
-            places.sum::<f64>() / nodes.len() as f64
+/// The share of an edge's length that belongs to each of its nodes, in mm.
+pub fn edge_lengths(mesh: &Mesh, edge: &[usize]) -> Vec<(usize, f64)> {
+    const GAUSS: [(f64, f64); 3] = [
+        (-0.774_596_669_241_483_4, 5.0 / 9.0),
+        (0.0, 8.0 / 9.0),
+        (0.774_596_669_241_483_4, 5.0 / 9.0),
+    ];
+    let mut shares: Vec<(usize, f64)> = edge.iter().map(|node| (*node, 0.0)).collect();
+    for (x, weight) in GAUSS {
+        let (values, slopes) = edge_functions(edge.len(), x);
+        let tangent = [0, 1].map(|axis| {
+            let nodes = edge.iter().zip(&slopes);
+            nodes
+                .map(|(node, slope)| slope * mesh.nodes[*node][axis])
+                .sum::<f64>()
         });
-        let forces = self.support_forces(state);
-        let moment = |node: &usize| {
-            let [x, y] = [0, 1].map(|axis| place(*node, axis) - middle[axis]);
-            x * forces[2 * node + 1] - y * forces[2 * node]
-        };
-        nodes.iter().map(moment).sum()
+        let length = tangent[0].hypot(tangent[1]);
+        for (share, value) in shares.iter_mut().zip(values) {
+            share.1 += weight * value * length;
+        }
     }
+    shares
+}
+
+/// Values and derivatives of an edge's functions at −1 ≤ x ≤ 1: both ends, then the middle.
+fn edge_functions(nodes: usize, x: f64) -> (Vec<f64>, Vec<f64>) {
+    if nodes == 2 {
+        return (vec![0.5 * (1.0 - x), 0.5 * (1.0 + x)], vec![-0.5, 0.5]);
+    }
+    (
+        vec![0.5 * x * (x - 1.0), 0.5 * x * (x + 1.0), 1.0 - x * x],
+        vec![x - 0.5, x + 0.5, -2.0 * x],
+    )
 }

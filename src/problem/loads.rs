@@ -6,16 +6,18 @@
 //!
 //! Pressures have a module of their own.
 
-use super::Load;
-use super::balance::Resultant;
+use super::balance::{Body, Resultant};
+use super::boundary_conditions::Load;
+use super::constraints::Constraints;
+use super::groups::{edge_lengths, named, refused};
 use super::pressure::Pressures;
-use super::supports::Supported;
-use crate::mesh::{Group, Mesh};
+use crate::error::Diagnostic;
+use crate::mesh::Mesh;
 use crate::solve::{DeadForces, Potential, Sum};
 
 /// All loads of a problem at load factor 1.
 #[derive(Clone, Debug, Default)]
-pub struct Loaded {
+pub struct Loads {
     /// Dead force in N on each unknown, without those of grips.
     forces: Vec<f64>,
     /// Forces of grips: unknown, force in N.
@@ -25,13 +27,25 @@ pub struct Loaded {
     pressures: Pressures,
 }
 
-impl Loaded {
-    /// No loads on so many unknowns.
-    pub fn new(unknowns: usize) -> Self {
-        Self {
-            forces: vec![0.0; unknowns],
+impl Loads {
+    /// Loads by group on a mesh.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a load names no group of the mesh, or when a group cannot carry it.
+    pub fn of(mesh: &Mesh, loads: &[(String, Load)], thickness: f64) -> Result<Self, Diagnostic> {
+        let mut sum = Self {
+            forces: vec![0.0; 2 * mesh.nodes.len()],
             ..Self::default()
+        };
+        for own in loads {
+            let forces = dead_forces(mesh, own, thickness)?;
+            if let (name, Load::Pressure(pressure)) = own {
+                let group = named("load", mesh, name)?;
+                sum.pressures.add(mesh, group, pressure * thickness);
+            }
+            sum.add_forces(&forces);
         }
+        Ok(sum)
     }
 
     /// Whether there are none.
@@ -59,30 +73,11 @@ impl Loaded {
         self.forces[unknown] + own.map(|(_, force)| force).sum::<f64>()
     }
 
-    /// Adds a load on a group.
-    ///
-    /// # Errors
-    /// Says why the group cannot carry it.
-    pub fn add(
-        &mut self,
-        mesh: &Mesh,
-        group: &Group,
-        load: &Load,
-        thickness: f64,
-    ) -> Result<(), String> {
-        let forces = dead_forces(mesh, group, load, thickness)?;
-        if let Load::Pressure(pressure) = load {
-            self.pressures.add(mesh, group, pressure * thickness);
-        }
-        self.add_forces(&forces);
-        Ok(())
-    }
-
     /// Adds the forces on rigid grips, and finds where pressures end; all loads must be known.
-    pub fn close(&mut self, supported: &Supported) {
-        self.pulls.clone_from(&supported.forces);
+    pub fn close(&mut self, constraints: &Constraints) {
+        self.pulls.clone_from(&constraints.forces);
         self.find_pushed();
-        let is_held = |unknown| supported.held.contains_key(&unknown);
+        let is_held = |unknown| constraints.held.contains_key(&unknown);
         self.pressures.close(&is_held);
     }
 
@@ -96,18 +91,12 @@ impl Loaded {
         loads
     }
 
-    /// The resultant of all loads but the pulls of grips about a point, at a load factor; `places` are the deformed
-    /// ones of the nodes, `middle` the point to which the mesh's own coordinates are relative.
-    pub fn resultant(
-        &self,
-        factor: f64,
-        (places, u): (&[[f64; 2]], &[f64]),
-        (centre, middle): ([f64; 2], [f64; 2]),
-    ) -> Resultant {
+    /// The resultant of all loads but the pulls of grips about the centre of the body with the displacements `u`, at a
+    /// load factor.
+    pub fn resultant(&self, factor: f64, u: &[f64], body: &Body) -> Resultant {
         let forces: Vec<f64> = self.forces.iter().map(|force| factor * force).collect();
-        let dead = Resultant::of_nodes(places, &forces, centre);
-        let about = [0, 1].map(|axis| centre[axis] - middle[axis]);
-        dead.plus(self.pressures.resultant(factor, u, about))
+        let dead = body.resultant(&forces);
+        dead.plus(self.pressures.resultant(factor, u, body.from_middle))
     }
 
     /// The potential of an energy with these loads at a load factor.
@@ -120,16 +109,23 @@ impl Loaded {
     }
 }
 
-/// The forces in N of a dead load on the unknowns of a mesh; a pressure has none.
+/// The forces in N of a dead load of a group on the unknowns of a mesh; a pressure has none.
 ///
 /// # Errors
-/// Says why the group cannot carry the load.
+/// A [`Diagnostic`] when the mesh has no such group, or when it cannot carry the load.
 pub fn dead_forces(
     mesh: &Mesh,
-    group: &Group,
-    load: &Load,
+    (name, load): &(String, Load),
     thickness: f64,
-) -> Result<Vec<f64>, String> {
+) -> Result<Vec<f64>, Diagnostic> {
+    let group = named("load", mesh, name)?;
+    let need_edges = |what: &str| match group.edges.is_empty() {
+        true => {
+            let reason = format!("has no edges of the boundary, which {what} needs");
+            Err(refused("load", name, &reason))
+        }
+        false => Ok(()),
+    };
     let mut forces = vec![0.0; 2 * mesh.nodes.len()];
     match load {
         Load::Force(force) => {
@@ -140,7 +136,7 @@ pub fn dead_forces(
             }
         }
         Load::Traction(traction) => {
-            need_edges(group, "a traction")?;
+            need_edges("a traction")?;
             for edge in &group.edges {
                 for (node, length) in edge_lengths(mesh, edge) {
                     forces[2 * node] += traction[0] * thickness * length;
@@ -148,49 +144,7 @@ pub fn dead_forces(
                 }
             }
         }
-        Load::Pressure(_) => need_edges(group, "a pressure")?,
+        Load::Pressure(_) => need_edges("a pressure")?,
     }
     Ok(forces)
-}
-
-fn need_edges(group: &Group, what: &str) -> Result<(), String> {
-    if group.edges.is_empty() {
-        return Err(format!("has no edges of the boundary, which {what} needs"));
-    }
-    Ok(())
-}
-
-/// The share of an edge's length that belongs to each of its nodes, in mm.
-pub fn edge_lengths(mesh: &Mesh, edge: &[usize]) -> Vec<(usize, f64)> {
-    const GAUSS: [(f64, f64); 3] = [
-        (-0.774_596_669_241_483_4, 5.0 / 9.0),
-        (0.0, 8.0 / 9.0),
-        (0.774_596_669_241_483_4, 5.0 / 9.0),
-    ];
-    let mut shares: Vec<(usize, f64)> = edge.iter().map(|node| (*node, 0.0)).collect();
-    for (x, weight) in GAUSS {
-        let (values, slopes) = edge_functions(edge.len(), x);
-        let tangent = [0, 1].map(|axis| {
-            let nodes = edge.iter().zip(&slopes);
-            nodes
-                .map(|(node, slope)| slope * mesh.nodes[*node][axis])
-                .sum::<f64>()
-        });
-        let length = tangent[0].hypot(tangent[1]);
-        for (share, value) in shares.iter_mut().zip(values) {
-            share.1 += weight * value * length;
-        }
-    }
-    shares
-}
-
-/// Values and derivatives of an edge's functions at −1 ≤ x ≤ 1: both ends, then the middle.
-fn edge_functions(nodes: usize, x: f64) -> (Vec<f64>, Vec<f64>) {
-    if nodes == 2 {
-        return (vec![0.5 * (1.0 - x), 0.5 * (1.0 + x)], vec![-0.5, 0.5]);
-    }
-    (
-        vec![0.5 * x * (x - 1.0), 0.5 * x * (x + 1.0), 1.0 - x * x],
-        vec![x - 0.5, x + 0.5, -2.0 * x],
-    )
 }

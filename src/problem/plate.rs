@@ -1,19 +1,21 @@
-//! The mechanical problem: a sheet, its material, how it is held and how far it is stretched.
+//! A rectangular plate between two rigid grips: the boundary value problem that the models are compared on.
 
 use std::sync::Arc;
 
-use crate::error::Error;
+use super::boundary::BoundaryProblem;
+use super::boundary_conditions::Support;
+use super::deformed::DeformedSheet;
+use super::model::Model;
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Mesh, Side};
-use crate::problem::DeformedSheet;
-use crate::solve::{Convergence, Loading, NewtonSettings, Potential, State, follow, influence};
+use crate::solve::{PathEnd, Potential, State};
 
 /// A rectangular plate between two rigid grips that clamp its short sides.
 ///
 /// The left grip rests, the right one moves along X; the long sides are free. Free of any
-/// discretisation: every model meshes it for itself.
+/// discretisation: every model meshes it for itself. Its load factor is the stretch.
 #[derive(Clone, Debug)]
-pub struct Problem {
+pub struct ClampedPlate {
     /// Length between the grips and width in mm.
     pub size: [f64; 2],
     /// Thickness in mm.
@@ -25,84 +27,34 @@ pub struct Problem {
     pub stretches: Vec<f64>,
 }
 
-/// A discretised plate, as the solver sees it.
-pub struct Model<'a> {
-    /// The model's name for messages, such as `mass-spring (60 × 20 cells)`.
-    pub name: String,
-    /// Its mesh.
-    pub mesh: &'a Mesh,
-    /// Its strain energy.
-    pub potential: &'a dyn Potential,
-    /// Names an element of the potential with its place, for messages.
-    pub describe: Box<dyn Fn(usize) -> String + Sync + 'a>,
-}
-
-/// A model's equilibrium at one stretch.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
-    /// Grip displacement divided by the length.
-    pub stretch: f64,
-    /// ux, uy of node after node in mm.
-    pub displacement: Vec<f64>,
-    /// Residual ∂Π/∂u in N: reactions at held unknowns.
-    pub residual: Vec<f64>,
-    /// Force on the moving grip in N.
-    pub force: f64,
-    /// Strain energy in mJ.
-    pub energy: f64,
-    /// Width at mid length in mm.
-    pub mid_width: f64,
-    /// Equilibria on the way from the stretch before, this one included; 1 when it was reached in one go.
-    pub load_steps: usize,
-    /// How the last of them was reached.
-    pub convergence: Convergence,
-}
-
-/// A model of the plate between its grips; the load factor is the stretch.
-struct PlateLoading<'a> {
-    problem: &'a Problem,
-    model: &'a Model<'a>,
-}
-
-impl Loading for PlateLoading<'_> {
-    fn held(&self) -> Vec<bool> {
-        self.problem.held(self.model.mesh)
-    }
-
-    fn impose(&self, stretch: f64, displacement: &mut [f64]) {
-        let mesh = self.model.mesh;
-        for node in 0..mesh.nodes.len() {
-            if let Some(held) = self.problem.grip_displacement(mesh, node, stretch) {
-                displacement[2 * node..2 * node + 2].copy_from_slice(&held);
-            }
+impl ClampedPlate {
+    /// The supports that the grips are.
+    pub fn boundary_problem(&self) -> BoundaryProblem {
+        let grip = |side: Side, along: f64| {
+            let support = Support::Displacement([Some(along), Some(0.0)]);
+            (side.name().to_owned(), support)
+        };
+        BoundaryProblem {
+            thickness: self.thickness,
+            law: Arc::clone(&self.law),
+            supports: vec![grip(Side::Left, 0.0), grip(Side::Right, self.size[0])],
+            loads: Vec::new(),
         }
     }
 
-    fn potential(&self, _: f64) -> Box<dyn Potential + '_> {
-        Box::new(self.model.potential)
+    /// The plate on a mesh of it with an energy of its nodes; every first guess is a multiple of the state before, or the
+    /// affine stretch.
+    ///
+    /// # Panics
+    /// When the mesh is none of the plate.
+    pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Potential) -> Model<'a> {
+        let model = self.boundary_problem().on(mesh, energy);
+        let model = model.expect("the sides of a plate are groups of its mesh");
+        model
+            .guessing(self.affine(mesh, 1.0))
+            .telling_ends(describe_end)
     }
 
-    /// The state before, scaled with the grips' motion, or the affine stretch.
-    fn guess(&self, stretch: f64, previous: Option<&State>) -> Option<Vec<f64>> {
-        Some(match previous {
-            Some(previous) => {
-                let ratio = stretch / previous.factor;
-                previous.displacement.iter().map(|u| ratio * u).collect()
-            }
-            None => self.problem.affine(self.model.mesh, stretch),
-        })
-    }
-
-    fn describe(&self, element: usize) -> String {
-        (self.model.describe)(element)
-    }
-
-    fn describe_unknown(&self, unknown: usize) -> String {
-        self.model.mesh.describe_unknown(unknown)
-    }
-}
-
-impl Problem {
     /// Marks the unknowns of `mesh` that the grips hold.
     pub fn held(&self, mesh: &Mesh) -> Vec<bool> {
         (0..2 * mesh.nodes.len())
@@ -128,100 +80,9 @@ impl Problem {
             .collect()
     }
 
-    /// Force on the moving grip: the sum of its reactions along X, in N.
-    pub fn grip_force(&self, mesh: &Mesh, residual: &[f64]) -> f64 {
-        let on_right = (0..mesh.nodes.len()).filter(|node| mesh.on(Side::Right, *node));
-        on_right.map(|node| residual[2 * node]).sum()
-    }
-
-    /// Solves all stretches, one after the other, with any model of the plate. A stretch that cannot be
-    /// reached from the one before in one go is approached by halves.
-    ///
-    /// # Errors
-    /// [`Error::Solve`] with the stretch at which no solution was found.
-    pub fn follow(
-        &self,
-        model: &Model,
-        settings: NewtonSettings,
-        progress: &dyn Fn(f64),
-    ) -> Result<Vec<Solution>, Error> {
-        match self.follow_as_far(model, settings, progress) {
-            (solutions, None) => Ok(solutions),
-            (_, Some(end)) => Err(end),
-        }
-    }
-
-    /// The same as far as there are solutions: those that were found, and why there are no more of them.
-    pub fn follow_as_far(
-        &self,
-        model: &Model,
-        settings: NewtonSettings,
-        progress: &dyn Fn(f64),
-    ) -> (Vec<Solution>, Option<Error>) {
-        let plate = PlateLoading {
-            problem: self,
-            model,
-        };
-        let (states, end) = match follow(&plate, &self.stretches, settings, progress) {
-            Ok(states) => (states, None),
-            Err(end) => {
-                let error = Error::Solve {
-                    model: model.name.clone(),
-                    step: format!(
-                        "{} (reached {} %)",
-                        Problem::describe_step(end.factor),
-                        Self::percent(end.reached())
-                    ),
-                    fault: end.fault,
-                };
-                (end.states, Some(error))
-            }
-        };
-        let solutions = states.into_iter();
-        let solutions = solutions.map(|state| self.solution(model.mesh, state));
-        (solutions.collect(), end)
-    }
-
-    /// The field in mm/mm that a motion of the right grip along X brings about, by the tangent at a solution.
-    ///
-    /// # Errors
-    /// [`Error::Solve`] when the tangent cannot be factorised.
-    pub fn influence(&self, model: &Model, solution: &Solution) -> Result<Vec<f64>, Error> {
-        let plate = PlateLoading {
-            problem: self,
-            model,
-        };
-        let nodes = 0..model.mesh.nodes.len();
-        let moves = |node| [f64::from(u8::from(model.mesh.on(Side::Right, node))), 0.0];
-        let motion: Vec<f64> = nodes.flat_map(moves).collect();
-        let state = (solution.stretch, &*solution.displacement);
-        influence(&plate, state, &motion).map_err(|fault| Error::Solve {
-            model: model.name.clone(),
-            step: Problem::describe_step(solution.stretch),
-            fault,
-        })
-    }
-
-    fn solution(&self, mesh: &Mesh, state: State) -> Solution {
-        Solution {
-            stretch: state.factor,
-            force: self.grip_force(mesh, &state.residual),
-            energy: state.convergence.energy,
-            mid_width: mesh.mid_width(&state.displacement),
-            displacement: state.displacement,
-            residual: state.residual,
-            load_steps: state.load_steps,
-            convergence: state.convergence,
-        }
-    }
-
-    /// A solution on a mesh, ready to be asked at any point of the plate.
-    pub fn deformed(&self, mesh: &Mesh, solution: &Solution) -> DeformedSheet {
-        DeformedSheet::new(
-            mesh.clone(),
-            solution.displacement.clone(),
-            Arc::clone(&self.law),
-        )
+    /// A state on a mesh, ready to be asked at any point of the plate.
+    pub fn deformed(&self, mesh: &Mesh, state: &State) -> DeformedSheet {
+        self.boundary_problem().deformed(mesh, state)
     }
 
     /// `50 % stretch`, for messages.
@@ -234,4 +95,36 @@ impl Problem {
         let text = format!("{:.4}", 100.0 * ratio);
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     }
+}
+
+/// What is measured of a plate in a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measures {
+    /// Force on the moving grip in N.
+    pub force: f64,
+    /// Width at mid length in mm.
+    pub mid_width: f64,
+    /// Strain energy in mJ.
+    pub energy: f64,
+}
+
+impl Measures {
+    /// Of a state on a mesh of the plate.
+    pub fn of(mesh: &Mesh, state: &State) -> Self {
+        let on_right = (0..mesh.nodes.len()).filter(|node| mesh.on(Side::Right, *node));
+        Self {
+            force: on_right.map(|node| state.residual[2 * node]).sum(),
+            mid_width: mesh.mid_width(&state.displacement),
+            energy: state.convergence.energy,
+        }
+    }
+}
+
+/// `50 % stretch (reached 43.2 %)`.
+fn describe_end(end: &PathEnd) -> String {
+    format!(
+        "{} (reached {} %)",
+        ClampedPlate::describe_step(end.factor),
+        ClampedPlate::percent(end.reached())
+    )
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::supports::Supported;
+use super::constraints::Constraints;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 
@@ -25,11 +25,11 @@ const TOGETHER: usize = 100;
 const MOST: usize = 8;
 
 /// The parts of a mesh that can move without strain, each told with its motion.
-pub fn free_motions(mesh: &Mesh, supported: &Supported) -> Vec<Diagnostic> {
+pub fn free_motions(mesh: &Mesh, constraints: &Constraints) -> Vec<Diagnostic> {
     let bodies = Bodies::of(mesh);
     let mut found = Vec::new();
-    for group in bodies.groups(supported) {
-        let motions = bodies.free(&group, supported);
+    for group in bodies.groups(constraints) {
+        let motions = bodies.free(&group, constraints);
         for (place, body) in group.iter().enumerate() {
             let own = motions.rows(3 * place, 3).into_owned();
             if let Some(motion) = bodies.describe(&own) {
@@ -99,7 +99,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// Bodies that hinges or ties couple, together; each alone where there are too many.
-    fn groups(&self, supported: &Supported) -> Vec<Vec<usize>> {
+    fn groups(&self, constraints: &Constraints) -> Vec<Vec<usize>> {
         let mut parents: Vec<usize> = (0..self.cells.len()).collect();
         if parents.len() > TOGETHER {
             return parents.into_iter().map(|body| vec![body]).collect();
@@ -111,7 +111,7 @@ impl<'a> Bodies<'a> {
         for own in &self.of_node {
             own.windows(2).for_each(|pair| join(pair[0], pair[1]));
         }
-        for (unknown, master) in &supported.ties {
+        for (unknown, master) in &constraints.ties {
             let [own, others] = [unknown, master].map(|unknown| self.of_node[unknown / 2].first());
             if let (Some(own), Some(other)) = (own, others) {
                 join(*own, *other);
@@ -128,7 +128,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// The motions of some bodies that satisfy all conditions: 3 rows a body, a column a motion.
-    fn free(&self, group: &[usize], supported: &Supported) -> DMatrix<f64> {
+    fn free(&self, group: &[usize], constraints: &Constraints) -> DMatrix<f64> {
         let count = 3 * group.len();
         let place = |body: &usize| group.binary_search(body).ok();
         let row = |unknown: usize, body: usize| {
@@ -142,12 +142,12 @@ impl<'a> Bodies<'a> {
         let first = |unknown: usize| self.of_node[unknown / 2].first().copied();
         let mut normal = DMatrix::<f64>::zeros(count, count);
         let mut impose = |row: DVector<f64>| normal.ger(1.0, &row, &row, 1.0);
-        for unknown in supported.held.keys() {
+        for unknown in constraints.held.keys() {
             first(*unknown)
                 .into_iter()
                 .for_each(|body| impose(row(*unknown, body)));
         }
-        for (unknown, master) in &supported.ties {
+        for (unknown, master) in &constraints.ties {
             if let (Some(own), Some(other)) = (first(*unknown), first(*master)) {
                 impose(row(*unknown, own) - row(*master, other));
             }

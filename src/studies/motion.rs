@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::mesh::{Mesh, Side};
-use crate::problem::plate::Model;
+use crate::problem::Model;
 use crate::results::Outcome;
 use crate::solve::NewtonSettings;
 use crate::studies::{Prepared, Progress};
@@ -64,14 +64,14 @@ fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error> {
     };
     progress("mass-spring");
     let dashpots = damped.then_some(&dashpots as &dyn Viscosity);
-    let model = springs.model();
+    let model = springs.model(&plate.problem);
     let springs_moved = plate.moved(["mass-spring", "mass_spring"], &model, dashpots)?;
     progress("finite elements");
     let (element, cells) = plate.element;
     let elements = FiniteElements::new(&plate.problem, cells, element);
     let sheet = SheetViscosity::new(elements.energy(), &plate.viscosity);
     let sheet = (!plate.viscosity.is_none()).then_some(&sheet as &dyn Viscosity);
-    let model = elements.model();
+    let model = elements.model(&plate.problem);
     let elements_moved = plate.moved(["finite elements", "finite_element"], &model, sheet)?;
     progress("corrector");
     let corrected = plate.corrected(&springs_moved)?;
@@ -123,13 +123,7 @@ impl MovingPlate {
         let mass = lumped_mass(mesh, self.density, self.problem.thickness);
         let start = match self.problem.stretches[..] {
             [] => vec![0.0; size],
-            _ => {
-                let solutions = self.problem.follow(model, NEWTON, &|_| ())?;
-                solutions
-                    .into_iter()
-                    .last()
-                    .map_or_else(Vec::new, |last| last.displacement)
-            }
+            _ => model.reach(&self.problem.stretches, NEWTON)?.displacement,
         };
         let weight = (0..size).map(|i| mass[i] * self.gravity[i % 2]).collect();
         let gravity = MovingForce {
@@ -141,7 +135,7 @@ impl MovingPlate {
             time: own.time.clone(),
         });
         Ok(Motion {
-            energy: model.potential,
+            energy: model.energy,
             viscosity,
             supports: vec![
                 MovingSupport::fixed(unknowns(mesh, Side::Left)),

@@ -6,7 +6,7 @@ use crate::compare::imported::ModelField;
 use crate::document::Section;
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
-use crate::problem::Discretised;
+use crate::problem::Model;
 use crate::results::{Outcome, Sheet};
 use crate::solve::Potential;
 use crate::studies::{Kind, Prepared, Progress};
@@ -66,7 +66,7 @@ impl Specimen {
     }
 
     /// The problem on a mesh; groups were checked when the study was read.
-    fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Potential) -> Result<Discretised<'a>, Error> {
+    fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Potential) -> Result<Model<'a>, Error> {
         let found = self.problem.on(mesh, energy);
         found.map_err(|fault| Error::Input(vec![fault]))
     }

@@ -81,7 +81,7 @@ fn compute(plate: &Plate, repetitions: usize, progress: Progress) -> Result<Outc
         corrected: measure("mass-spring, corrected directly", &mut || {
             let lattice = plate.lattice();
             let field = plate.solve(&lattice)?.displacement;
-            Ok(plate.corrected(&lattice, &field)?.solution.displacement)
+            Ok(plate.corrected(&lattice, &field)?.state.displacement)
         })?,
         elements: measure("finite elements, Q1, equal nodes", &mut || {
             on_nodes(plate.cells, Element::Q1)

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::{Diagnostic, Error};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
-use crate::problem::{BoundaryProblem, Discretised, Support};
+use crate::problem::{BoundaryProblem, Model, Support};
 use crate::solve::{NewtonSettings, PathEnd, State};
 
 pub mod cantilever;
@@ -66,7 +66,7 @@ fn misfit(fault: Diagnostic) -> Error {
 }
 
 /// Solves to load factor 1 in some steps; the last state.
-fn solve(model: &Discretised, name: &str, steps: usize) -> Result<State, Error> {
+fn solve(model: &Model, name: &str, steps: usize) -> Result<State, Error> {
     let factors: Vec<f64> = (1..=steps).map(|i| i as f64 / steps as f64).collect();
     let states = model.solve(&factors, NEWTON, &|_| ());
     let states = states.map_err(|end: PathEnd| Error::Solve {

@@ -15,8 +15,9 @@ use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::material::{HyperelasticLaw, samples};
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::plate::{Model, Problem, Solution};
+use crate::problem::ClampedPlate;
 use crate::results::Block;
+use crate::solve::State;
 use crate::units::Dimension;
 
 /// Reads a study of this case.
@@ -45,7 +46,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
 /// A plate whose law, size and cells are chosen.
 struct Plate {
     law: &'static str,
-    problem: Problem,
+    problem: ClampedPlate,
     cells: [usize; 2],
 }
 
@@ -69,7 +70,7 @@ impl Plate {
         let stretches = self.problem.stretches.iter().enumerate();
         let found = |(step, stretch): (usize, &f64)| {
             let climbed = climb.correct(*stretch);
-            let direct: Option<&Solution> = direct.get(step);
+            let direct: Option<&State> = direct.get(step);
             let share = match (&climbed, direct) {
                 (Ok(climbed), Some(direct)) => share(climbed, &direct.displacement),
                 _ => f64::NAN,
@@ -86,16 +87,12 @@ impl Plate {
     }
 
     /// The fields of the same equations by Newton's method from stretch to stretch, as far as there are any.
-    fn direct(&self) -> Vec<Solution> {
+    fn direct(&self) -> Vec<State> {
         let mesh = Mesh::plate(self.problem.size, self.cells, CellShape::Quad4);
         let energy = DifferenceScheme::Gauss.energy(&self.problem, &mesh);
-        let model = Model {
-            name: "direct".into(),
-            mesh: &mesh,
-            potential: &energy,
-            describe: Box::new(|cell| mesh.describe_cell(cell)),
-        };
-        self.problem.follow_as_far(&model, NEWTON, &|_| ()).0
+        let model = self.problem.on(&mesh, &energy);
+        let found = model.solve(&self.problem.stretches, NEWTON, &|_| ());
+        found.unwrap_or_else(|end| end.states)
     }
 
     fn describe(&self, stretch: f64) -> String {
@@ -103,7 +100,7 @@ impl Plate {
         format!(
             "{}, {length} × {width} mm, {along} × {across} cells, {}",
             self.law,
-            Problem::describe_step(stretch)
+            ClampedPlate::describe_step(stretch)
         )
     }
 }
@@ -139,8 +136,8 @@ fn compute(
     outcome(&found)
 }
 
-fn problem(law: &Arc<dyn HyperelasticLaw>, size: [f64; 2], stretches: &[f64]) -> Problem {
-    Problem {
+fn problem(law: &Arc<dyn HyperelasticLaw>, size: [f64; 2], stretches: &[f64]) -> ClampedPlate {
+    ClampedPlate {
         size,
         thickness: 2.0,
         law: Arc::clone(law),

@@ -19,7 +19,7 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::viscosity::ViscousMaterial;
 use crate::mesh::{Mesh, Side};
-use crate::problem::plate::{Model, Problem};
+use crate::problem::{ClampedPlate, Model};
 use crate::results::{Axis, Block, Line, LineChart, PALETTE, Stroke};
 use crate::solve::Potential;
 use crate::units::Dimension;
@@ -100,11 +100,11 @@ impl Settings {
         mesh: &'a Mesh,
         viscosity: &'a dyn Viscosity,
     ) -> Result<Body<'a>, Error> {
-        let held = self.plate.problem.follow(model, NEWTON, &|_| ())?.remove(0);
+        let held = model.reach(&self.plate.problem.stretches, NEWTON)?;
         let left = (0..mesh.nodes.len()).filter(|node| mesh.on(Side::Left, *node));
         let unknowns = left.flat_map(|node| [2 * node, 2 * node + 1]).collect();
         let motion = Motion {
-            energy: model.potential,
+            energy: model.energy,
             viscosity: Some(viscosity),
             mass: lumped_mass(mesh, self.density, self.plate.problem.thickness),
             supports: vec![MovingSupport::fixed(unknowns)],
@@ -176,19 +176,15 @@ fn every<T: Clone>(fields: &[T], stride: usize) -> Vec<T> {
 }
 
 fn corrected_energy(
-    problem: &Problem,
+    problem: &ClampedPlate,
     lattice: &MassSpring,
 ) -> crate::problem::sheet_energy::SheetEnergy {
     DifferenceScheme::Biquadratic.energy(problem, &lattice.mesh)
 }
 
-fn sheet_model<'a>(mesh: &'a Mesh, potential: &'a dyn Potential) -> Model<'a> {
-    Model {
-        name: "difference scheme".into(),
-        mesh,
-        potential,
-        describe: Box::new(|element| format!("cell {element}")),
-    }
+fn sheet_model<'a>(plate: &ClampedPlate, mesh: &'a Mesh, energy: &'a dyn Potential) -> Model<'a> {
+    let model = plate.on(mesh, energy).named("difference scheme");
+    model.describing(|element| format!("cell {element}"))
 }
 
 fn released(settings: &Settings, progress: Progress, outcome: &mut Outcome) -> Result<(), Error> {
@@ -198,13 +194,17 @@ fn released(settings: &Settings, progress: Progress, outcome: &mut Outcome) -> R
     let lattice = plate.lattice();
     let law = DashpotLaw::Material(settings.material.clone());
     let dashpots = Dashpots::new(&lattice, &law);
-    let springs = settings.body(&lattice.model(), &lattice.mesh, &dashpots)?;
+    let springs = settings.body(&lattice.model(&plate.problem), &lattice.mesh, &dashpots)?;
     let energy = corrected_energy(&plate.problem, &lattice);
     let sheet = SheetViscosity::new(&energy, &settings.material);
-    let scheme = settings.body(&sheet_model(&lattice.mesh, &energy), &lattice.mesh, &sheet)?;
+    let scheme = settings.body(
+        &sheet_model(&plate.problem, &lattice.mesh, &energy),
+        &lattice.mesh,
+        &sheet,
+    )?;
     let elements = FiniteElements::new(&plate.problem, plate.cells, Element::Q2);
     let viscosity = SheetViscosity::new(elements.energy(), &settings.material);
-    let reference = settings.body(&elements.model(), &elements.mesh, &viscosity)?;
+    let reference = settings.body(&elements.model(&plate.problem), &elements.mesh, &viscosity)?;
 
     let period = Settings::period(&reference)?;
     let (step, count) = (

@@ -9,7 +9,9 @@ use crate::error::Error;
 use crate::finite_element::convergence::richardson;
 use crate::finite_element::{Element, FiniteElements};
 use crate::material::Card;
-use crate::problem::plate::{Problem, Solution};
+use crate::mesh::Mesh;
+use crate::problem::{ClampedPlate, Measures};
+use crate::solve::State;
 
 /// Converged force in N and width at mid length in mm at the stretches, by Richardson's extrapolation of the same codes.
 const CONVERGED: &str = include_str!("../../validation/plate/converged.csv");
@@ -60,15 +62,16 @@ fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
             "{material}, {element}, {along} × {} cells",
             along / 3
         ));
-        let solutions = solve(&material, along, &element)?;
+        let (mesh, solutions) = solve(&material, along, &element)?;
         for row in rows {
             let Some(solution) = solutions
                 .iter()
-                .find(|solution| solution.stretch == row.stretch)
+                .find(|solution| solution.factor == row.stretch)
             else {
                 continue;
             };
-            let computed = [solution.force, solution.mid_width, solution.energy];
+            let found = Measures::of(&mesh, solution);
+            let computed = [found.force, found.mid_width, found.energy];
             let largest = worst.entry((row.code, element.clone())).or_insert(0.0);
             for (computed, expected) in computed.into_iter().zip(row.values) {
                 let error = expected.map_or(0.0, |expected| (computed / expected - 1.0).abs());
@@ -116,12 +119,13 @@ fn converged(material: &str, finest: usize, progress: Progress) -> Result<[Check
             .skip(1)
             .filter_map(|cell| cell.parse().ok())
             .collect();
-        let at = |solutions: &[Solution]| {
+        let at = |(mesh, solutions): &Solved| {
             let solution = solutions
                 .iter()
-                .find(|solution| solution.stretch == numbers[0]);
+                .find(|solution| solution.factor == numbers[0]);
             let solution = solution.expect("the published stretches are computed");
-            [solution.force, solution.mid_width]
+            let found = Measures::of(mesh, solution);
+            [found.force, found.mid_width]
         };
         let (coarse, middle, fine) = (at(&coarse), at(&middle), at(&fine));
         for (quantity, worst) in worst.iter_mut().enumerate() {
@@ -144,13 +148,16 @@ fn converged(material: &str, finest: usize, progress: Progress) -> Result<[Check
     )
 }
 
-fn solve(material: &str, along: usize, element: &str) -> Result<Vec<Solution>, Error> {
+/// A mesh, and the state at each stretch.
+type Solved = (Mesh, Vec<State>);
+
+fn solve(material: &str, along: usize, element: &str) -> Result<Solved, Error> {
     let card = if material == "nh" {
         "neo-hooke"
     } else {
         "pva-10"
     };
-    let problem = Problem {
+    let problem = ClampedPlate {
         size: [150.0, 50.0],
         thickness: 2.0,
         law: Card::load(card, Path::new("."))?.law,
@@ -162,5 +169,6 @@ fn solve(material: &str, along: usize, element: &str) -> Result<Vec<Solution>, E
         Element::Q2
     };
     let model = FiniteElements::new(&problem, [along, along / 3], element);
-    model.solve(&problem, super::plate::NEWTON, &|_| ())
+    let states = model.solve(&problem, super::plate::NEWTON, &|_| ())?;
+    Ok((model.mesh, states))
 }

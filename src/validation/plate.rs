@@ -8,8 +8,9 @@ use crate::document::{Bound, Section};
 use crate::error::{Error, SolveFault};
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
-use crate::problem::plate::{Problem, Solution};
+use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
+use crate::solve::State;
 use crate::studies::plate::study;
 use crate::units::Dimension;
 
@@ -17,7 +18,7 @@ use crate::units::Dimension;
 #[derive(Clone, Debug)]
 pub struct Plate {
     /// The problem with one stretch.
-    pub problem: Problem,
+    pub problem: ClampedPlate,
     /// Cells of the lattice.
     pub cells: [usize; 2],
 }
@@ -58,7 +59,7 @@ impl Plate {
         section.unknown_keys();
         let stretches = vec![stretch];
         Self {
-            problem: Problem {
+            problem: ClampedPlate {
                 stretches,
                 ..problem
             },
@@ -81,7 +82,7 @@ impl Plate {
     }
 
     /// A lattice in equilibrium.
-    pub fn solve(&self, lattice: &MassSpring) -> Result<Solution, Error> {
+    pub fn solve(&self, lattice: &MassSpring) -> Result<State, Error> {
         Ok(lattice.solve(&self.problem, NEWTON, &|_| ())?.remove(0))
     }
 
@@ -90,7 +91,7 @@ impl Plate {
         &self,
         cells: [usize; 2],
         element: Element,
-    ) -> Result<(FiniteElements, Solution), Error> {
+    ) -> Result<(FiniteElements, State), Error> {
         let model = FiniteElements::new(&self.problem, cells, element);
         let solution = model.solve(&self.problem, NEWTON, &|_| ())?.remove(0);
         Ok((model, solution))
@@ -124,7 +125,7 @@ impl Plate {
     pub fn fault(&self, fault: SolveFault) -> Error {
         Error::Solve {
             model: "corrector".into(),
-            step: Problem::describe_step(self.stretch()),
+            step: ClampedPlate::describe_step(self.stretch()),
             fault,
         }
     }

@@ -55,7 +55,7 @@ impl Fields {
         displacement_percent(
             &self.lattice.mesh,
             field,
-            &self.corrected.solution.displacement,
+            &self.corrected.state.displacement,
         ) / 100.0
     }
 }
@@ -134,7 +134,7 @@ fn known_conditions(
                 .get(step)
                 .map_or("–".into(), |value| number(*value))
         };
-        let displacement = fields.displacement(&corrected.solution.displacement);
+        let displacement = fields.displacement(&corrected.state.displacement);
         rows.push(vec![
             name.to_owned(),
             number(before),
@@ -201,7 +201,7 @@ fn known_conditions(
     outcome.blocks.push(Block::table(&head, rows));
     outcome.claims.push(Claim {
         claim: "Example 1, Part II: the corrected plate is within 5 % of non-linear finite elements",
-        reproduced: format!("departure from affine {} % before, {} % after; displacement within {} %", number(before), number(last), number(fields.displacement(&fields.corrected.solution.displacement))),
+        reproduced: format!("departure from affine {} % before, {} % after; displacement within {} %", number(before), number(last), number(fields.displacement(&fields.corrected.state.displacement))),
     });
     let chart = LineChart {
         title: "What is known decides".into(),
@@ -280,14 +280,14 @@ fn other_lattices(
         let corrected =
             corrector.correct(&field.displacement, plate.stretch(), KnownConditions::ALL)?;
         let steps = &corrected.steps;
-        let far = fields.far(&corrected.solution.displacement);
+        let far = fields.far(&corrected.state.displacement);
         worst = worst.max(far);
         rows.push(vec![
             name.to_owned(),
             number(fields.departure(&field.displacement)),
             number(fields.departure(&steps[1].field)),
             number(fields.departure(&steps[2.min(steps.len() - 1)].field)),
-            number(fields.departure(&corrected.solution.displacement)),
+            number(fields.departure(&corrected.state.displacement)),
             (steps.len() - 1).to_string(),
         ]);
     }

@@ -218,7 +218,7 @@ impl Fields<'_> {
         let (model, solution) = plate.finite_elements(self.settings.coarse, Element::Q1)?;
         let data = model.mesh.displacement_on(&solution.displacement, mesh);
         let departure = |field: &[f64]| departure_percent(mesh, field, &self.reference, &affine);
-        let known = plate.corrected(&self.lattice, &data)?.solution.displacement;
+        let known = plate.corrected(&self.lattice, &data)?.state.displacement;
         let rigid = self.correct(&data, &data, Grips::Rigid, CORRECTOR);
         let rigid = rigid.map_err(|fault| plate.fault(fault))?;
         Ok(Coarse {

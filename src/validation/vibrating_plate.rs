@@ -27,8 +27,8 @@ use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::viscosity::{Relaxation, ViscousMaterial};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::Mesh;
-use crate::problem::plate::{Model, Problem};
 use crate::problem::{BoundaryProblem, Load};
+use crate::problem::{ClampedPlate, Measures, Model};
 use crate::results::Block;
 use crate::solve::{Connectivity, Inadmissible, Local, Newton, Potential};
 use crate::units::Dimension;
@@ -70,8 +70,8 @@ fn law() -> Arc<dyn HyperelasticLaw> {
     Arc::new(NeoHooke { c10: 0.05 })
 }
 
-fn problem(stretches: Vec<f64>) -> Problem {
-    Problem {
+fn problem(stretches: Vec<f64>) -> ClampedPlate {
+    ClampedPlate {
         size: SIZE,
         thickness: THICKNESS,
         law: law(),
@@ -193,7 +193,7 @@ fn spring(outcome: &mut Outcome) -> Result<(), Error> {
 /// A motion of a model without loads, clamped on the left.
 fn clamped<'a>(model: &'a Model<'a>, start: Vec<f64>) -> Motion<'a> {
     Motion {
-        energy: model.potential,
+        energy: model.energy,
         viscosity: None,
         mass: lumped_mass(model.mesh, DENSITY, THICKNESS),
         supports: vec![MovingSupport::fixed(left(model.mesh))],
@@ -216,11 +216,11 @@ fn energy(outcome: &mut Outcome) -> Result<(), Error> {
     let springs = MassSpring::new(&problem, [15, 5], LatticeSettings { area_term: false });
     let elements = FiniteElements::new(&problem, [9, 3], Element::Q2);
     let models = [
-        ("springs", springs.model()),
-        ("finite elements", elements.model()),
+        ("springs", springs.model(&problem)),
+        ("finite elements", elements.model(&problem)),
     ];
     for (name, model) in models {
-        let start = problem.follow(&model, NEWTON, &|_| ())?.remove(0);
+        let start = model.reach(&problem.stretches, NEWTON)?;
         let motion = clamped(&model, start.displacement);
         for (method, integrator) in [("velocity Verlet", VERLET), ("generalised-α", NEWMARK)] {
             let history = run(&motion, integrator, 1e-5, (STEPS, 100))?;
@@ -244,7 +244,7 @@ struct Longitudinal {
 
 /// By inverse iteration; with `supports` held.
 fn longitudinal(model: &Model, supports: Vec<usize>) -> Result<Longitudinal, Error> {
-    let mut motion = clamped(model, vec![0.0; model.potential.unknowns()]);
+    let mut motion = clamped(model, vec![0.0; model.energy.unknowns()]);
     motion.supports = vec![MovingSupport::fixed(supports)];
     let held = motion.held(0.0);
     let rest = vec![0.0; held.len()];
@@ -262,9 +262,9 @@ fn longitudinal(model: &Model, supports: Vec<usize>) -> Result<Longitudinal, Err
     let respond = |newton: &mut Newton| {
         newton
             .tangent
-            .respond(model.potential, &rest, &forces, &|_| String::new())
+            .respond(model.energy, &rest, &forces, &|_| String::new())
     };
-    let field = Newton::new(model.potential, &held).and_then(|mut newton| respond(&mut newton));
+    let field = Newton::new(model.energy, &held).and_then(|mut newton| respond(&mut newton));
     let field = field.map_err(|found| fault("rest", found))?;
     // The displacement that the load works on: L' = E ū/σ.
     let work: f64 = field.iter().zip(&forces).map(|(u, f)| u * f).sum();
@@ -289,8 +289,9 @@ fn lateral_inertia() -> f64 {
 fn frequency(cells: &[usize], outcome: &mut Outcome) -> Result<(), Error> {
     let mut found = Vec::new();
     for along in cells {
-        let model = FiniteElements::new(&problem(Vec::new()), [*along, along / 3], Element::Q2);
-        let (model, mesh) = (model.model(), &model.mesh);
+        let rest = problem(Vec::new());
+        let elements = FiniteElements::new(&rest, [*along, along / 3], Element::Q2);
+        let (model, mesh) = (elements.model(&rest), &elements.mesh);
         let clamped = longitudinal(&model, left(mesh))?;
         let side = &mesh.groups()["left"].nodes;
         // Held across at its axis of symmetry, where no force is needed.
@@ -363,8 +364,9 @@ fn frequency(cells: &[usize], outcome: &mut Outcome) -> Result<(), Error> {
 /// The frequency of the clamped plate that starts in its mode, from five periods of 400 steps, less the error of
 /// the step (ω h)²/24.
 fn from_motion(along: usize, expected: f64) -> Result<f64, Error> {
-    let elements = FiniteElements::new(&problem(Vec::new()), [along, along / 3], Element::Q2);
-    let model = elements.model();
+    let rest = problem(Vec::new());
+    let elements = FiniteElements::new(&rest, [along, along / 3], Element::Q2);
+    let model = elements.model(&rest);
     let mode = longitudinal(&model, left(model.mesh))?.mode;
     let largest = mode.shape.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
     let start = mode.shape.iter().map(|u| 1e-6 * SIZE[0] * u / largest);
@@ -387,8 +389,8 @@ fn relaxation(outcome: &mut Outcome) -> Result<(), Error> {
     };
     let problem = problem(vec![0.3]);
     let elements = FiniteElements::new(&problem, [9, 3], Element::Q2);
-    let model = elements.model();
-    let solution = problem.follow(&model, NEWTON, &|_| ())?.remove(0);
+    let model = elements.model(&problem);
+    let solution = model.reach(&problem.stretches, NEWTON)?;
     let sheet = SheetViscosity::new(elements.energy(), &material);
     let right = model.mesh.groups()["right"].nodes.iter();
     let right: Vec<usize> = right.flat_map(|node| [2 * node, 2 * node + 1]).collect();
@@ -408,7 +410,8 @@ fn relaxation(outcome: &mut Outcome) -> Result<(), Error> {
     let history = run(&motion, NEWMARK, 0.2, (40, 1))?;
     let errors = history.instants.iter().map(|now| {
         let beta = share / (1.0 - share);
-        let expected = solution.force * (1.0 + beta * (-now.time / time).exp());
+        let expected =
+            Measures::of(model.mesh, &solution).force * (1.0 + beta * (-now.time / time).exp());
         (now.support_forces[1][0] / expected - 1.0).abs()
     });
     outcome.checks.push(Check::new(

@@ -9,7 +9,7 @@ use super::grid::{Field, Grid, Rule};
 use super::start::contracted_stretch;
 use super::{Climb, DifferenceScheme};
 use crate::error::{Error, SolveFault};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
 use crate::solve::{
     Assembly, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow,
@@ -33,7 +33,7 @@ pub(super) struct Equilibrium {
 
 /// A grid's plate between its grips; the load factor is the share of the stretch, so that its sign does not matter.
 struct GridLoading<'a> {
-    problem: &'a Problem,
+    problem: &'a ClampedPlate,
     grid: &'a Grid,
     energy: &'a SheetEnergy,
     stretch: f64,
@@ -124,8 +124,8 @@ impl Climb<'_> {
             model: "corrector (climb)".into(),
             step: format!(
                 "{} (reached {} %)",
-                Problem::describe_step(stretch),
-                Problem::percent(end.reached() * stretch)
+                ClampedPlate::describe_step(stretch),
+                ClampedPlate::percent(end.reached() * stretch)
             ),
             fault: end.fault,
         })
@@ -181,7 +181,7 @@ impl Climb<'_> {
 }
 
 /// The energy of a grid's elements in the scheme of the climb.
-fn energy(problem: &Problem, scheme: DifferenceScheme, grid: &Grid) -> SheetEnergy {
+fn energy(problem: &ClampedPlate, scheme: DifferenceScheme, grid: &Grid) -> SheetEnergy {
     match scheme {
         DifferenceScheme::Corners => sampled(problem, grid, &Rule::corners()),
         DifferenceScheme::Gauss => sampled(problem, grid, &Rule::linear()),
@@ -190,7 +190,11 @@ fn energy(problem: &Problem, scheme: DifferenceScheme, grid: &Grid) -> SheetEner
 }
 
 /// Π = Σ t hx hy wₐ w_b Ψ(H) over the points (a, b) of all elements, nodes line by line.
-fn sampled<const NODES: usize>(problem: &Problem, grid: &Grid, rule: &Rule<NODES>) -> SheetEnergy {
+fn sampled<const NODES: usize>(
+    problem: &ClampedPlate,
+    grid: &Grid,
+    rule: &Rule<NODES>,
+) -> SheetEnergy {
     let order = NODES - 1;
     let width = grid.lines().nodes;
     let [columns, rows] = [0, 1].map(|axis| (grid.coordinates[axis].len() - 1) / order);

@@ -2,7 +2,7 @@
 
 use super::{Climb, Climbed, Field};
 use crate::error::{Error, SolveFault};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 
 /// The multipliers' iteration ends at this share of its first correction.
 const TOLERANCE: f64 = 1e-7;
@@ -29,7 +29,7 @@ impl Climb<'_> {
         let found = self.solve_multipliers(data, &climbed.field);
         let fault = |fault| Error::Solve {
             model: "multipliers".into(),
-            step: Problem::describe_step(stretch),
+            step: ClampedPlate::describe_step(stretch),
             fault,
         };
         found.map(|field| field.to_nodes()).map_err(fault)

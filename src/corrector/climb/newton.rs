@@ -2,7 +2,7 @@
 
 use super::{Climb, Climbed, Field, Inverted, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 
 /// Newton steps allowed.
 const STEPS: usize = 30;
@@ -31,7 +31,7 @@ impl Climb<'_> {
         let found = self.newton(stretch, [tolerance, linear_tolerance]);
         found.map_err(|fault| Error::Solve {
             model: "corrector (Newton from the affine stretch)".into(),
-            step: Problem::describe_step(stretch),
+            step: ClampedPlate::describe_step(stretch),
             fault,
         })
     }
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn newton_and_the_climb_come_to_the_same_field() {
-        let problem = Problem {
+        let problem = ClampedPlate {
             size: [30.0, 10.0],
             thickness: 2.0,
             law: Card::load("pva-10", Path::new(".")).unwrap().law,

@@ -10,7 +10,7 @@ use super::ascent::Ascent;
 use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE, Work};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings, MassSpring};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
 
 /// What a corrected field was first made from, in the order in which it is tried.
@@ -222,7 +222,7 @@ impl Climb<'_> {
         if cells[0] * cells[1] > MOST_CELLS {
             return None;
         }
-        let problem = Problem {
+        let problem = ClampedPlate {
             size: self.problem.size,
             thickness: self.problem.thickness,
             law: Arc::clone(&self.problem.law),

@@ -16,9 +16,9 @@ const TIGHT: ClimbSettings = ClimbSettings {
     max_iterations: 60,
 };
 
-fn problem(card: &str, size: [f64; 2], stretch: f64) -> Problem {
+fn problem(card: &str, size: [f64; 2], stretch: f64) -> ClampedPlate {
     let card = Card::load(card, Path::new(".")).unwrap();
-    Problem {
+    ClampedPlate {
         size,
         thickness: 2.0,
         law: Arc::clone(&card.law),
@@ -32,7 +32,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The direct corrector's field and force; its multipliers are compared with the climb's.
-fn direct(problem: &Problem, cells: [usize; 2], scheme: DifferenceScheme) -> (Vec<f64>, f64) {
+fn direct(problem: &ClampedPlate, cells: [usize; 2], scheme: DifferenceScheme) -> (Vec<f64>, f64) {
     let springs = MassSpring::new(problem, cells, LatticeSettings { area_term: false });
     let newton = NewtonSettings {
         tolerance: 1e-10,
@@ -66,7 +66,7 @@ fn direct(problem: &Problem, cells: [usize; 2], scheme: DifferenceScheme) -> (Ve
         .collect();
     let most = own.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     assert!(largest_difference(&own, &multipliers) < 1e-4 * most);
-    (state.solution.displacement, state.solution.force)
+    (state.state.displacement, state.measures.force)
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::dynamics::{
 };
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Side};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::SheetEnergy;
 
 fn motion<'a>(
@@ -168,8 +168,8 @@ fn noise_is_removed_from_a_recorded_motion_with_an_unknown_start() {
     assert!(error(&stretches) > error(&smoothed) && error(&stretches) < error(&data));
 }
 
-fn plate() -> (Problem, Mesh, SheetEnergy) {
-    let problem = Problem {
+fn plate() -> (ClampedPlate, Mesh, SheetEnergy) {
+    let problem = ClampedPlate {
         size: [30.0, 10.0],
         thickness: 2.0,
         law: Card::load("pva-10", Path::new(".")).unwrap().law,

@@ -6,7 +6,6 @@ use crate::corrector::DifferenceScheme;
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::dynamics::{Instant, SheetViscosity, Viscosity};
 use crate::error::Error;
-use crate::problem::plate::Model;
 
 /// The corrected motion at the instants that are written.
 pub struct Corrected {
@@ -36,12 +35,8 @@ impl MovingPlate {
         let energy = self.scheme().energy(&self.problem, mesh);
         let viscosity = SheetViscosity::new(&energy, &self.viscosity);
         let viscosity = (!self.viscosity.is_none()).then_some(&viscosity as &dyn Viscosity);
-        let model = Model {
-            name: "corrector".into(),
-            mesh,
-            potential: &energy,
-            describe: Box::new(|element| format!("cell {element}")),
-        };
+        let model = self.problem.on(mesh, &energy).named("corrector");
+        let model = model.describing(|element| format!("cell {element}"));
         let motion = self.motion(&model, viscosity)?;
         let interval = self.time.interval;
         let within = (STEPS * interval * springs.frequency).ceil().max(1.0) as usize;

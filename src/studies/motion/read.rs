@@ -11,7 +11,7 @@ use crate::material::Card;
 use crate::material::card::read_viscosity;
 use crate::material::scalar_function::ScalarFunction;
 use crate::material::viscosity::ViscousMaterial;
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::studies::plate::study;
 use crate::units::Dimension;
 
@@ -45,7 +45,7 @@ pub struct Tolerances {
 /// A plate that moves.
 pub struct MovingPlate {
     /// The plate; its stretches are that of the start, or none at rest.
-    pub problem: Problem,
+    pub problem: ClampedPlate,
     /// The card of its material.
     pub card: Card,
     /// In tonne/mm³.
@@ -172,7 +172,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     };
     let card = card?;
     Some(MovingPlate {
-        problem: Problem {
+        problem: ClampedPlate {
             law: Arc::clone(&card.law),
             stretches,
             ..problem
@@ -296,7 +296,7 @@ fn ascending(
 }
 
 /// A point of the plate in mm.
-fn read_point(section: &Section, problem: &Problem) -> [f64; 2] {
+fn read_point(section: &Section, problem: &ClampedPlate) -> [f64; 2] {
     let at = section.quantities("at", Dimension::Length, Bound::NonNegative);
     let inside = |at: &[f64; 2]| at.iter().zip(problem.size).all(|(x, size)| *x <= size);
     match <[f64; 2]>::try_from(at) {
@@ -310,7 +310,7 @@ fn read_point(section: &Section, problem: &Problem) -> [f64; 2] {
     }
 }
 
-fn read_probe(section: &Section, problem: &Problem) -> Probe {
+fn read_probe(section: &Section, problem: &ClampedPlate) -> Probe {
     let probe = Probe {
         name: section.heading("name"),
         at: read_point(section, problem),
@@ -319,7 +319,7 @@ fn read_probe(section: &Section, problem: &Problem) -> Probe {
     probe
 }
 
-fn read_force(section: &Section, problem: &Problem) -> PointForce {
+fn read_force(section: &Section, problem: &ClampedPlate) -> PointForce {
     let force = ["x", "y"].map(|axis| section.quantity(axis, Dimension::Force, Bound::Any));
     let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
     let time = if section.has("begin") || section.has("end") {

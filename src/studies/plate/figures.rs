@@ -4,10 +4,11 @@ use super::results::{MODELS, Results};
 use super::study::Study;
 use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
-use crate::problem::plate::{Problem, Solution};
+use crate::problem::ClampedPlate;
 use crate::results::{
     Axis, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, material_chart,
 };
+use crate::solve::State;
 
 const CORRECTED: [u8; 3] = PALETTE[0];
 const MASS_SPRING: [u8; 3] = PALETTE[1];
@@ -19,7 +20,7 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
     let caption = "The material: nominal stress over stretch.";
     let mut all = vec![Figure::new("material.png", caption, material)];
     for (step, stretch) in study.problem.stretches.iter().enumerate() {
-        let at = Problem::describe_step(*stretch);
+        let at = ClampedPlate::describe_step(*stretch);
         all.extend(step_figures(results, step, &at));
     }
     let caption = "Deviation from the finite elements over stretch.";
@@ -71,7 +72,7 @@ fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
         format!("{} ({})", MODELS[2], results.finest().model.describe()),
     ];
     let meshes = labels.into_iter().zip(results.meshes());
-    let panel = |((label, mesh), solution): ((String, &Mesh), Option<&Solution>)| {
+    let panel = |((label, mesh), solution): ((String, &Mesh), Option<&State>)| {
         let u = &solution?.displacement;
         Some(Panel::at_nodes(label, mesh, u, &|node| u[2 * node + 1]))
     };
@@ -83,7 +84,7 @@ fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
 fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
     let mesh = &results.springs.mesh;
     let models = MODELS.into_iter().zip(results.models(step)).take(2);
-    let distance = |(label, solution): (&str, Option<&Solution>)| {
+    let distance = |(label, solution): (&str, Option<&State>)| {
         let reference = results.reference_on_lattice.get(step)?;
         Some(Panel::distance(
             label,
@@ -100,7 +101,7 @@ fn estimated_error(results: &Results) -> Option<FieldFigure> {
     let finest = results.finest();
     let (last, estimate) = results.estimates.iter().enumerate().next_back()?;
     let solution = &finest.solutions[last];
-    let at = Problem::describe_step(solution.stretch);
+    let at = ClampedPlate::describe_step(solution.factor);
     let energy = &estimate.as_ref()?.energy;
     let mesh = &finest.model.mesh;
     Some(FieldFigure::estimated_error(
@@ -157,8 +158,9 @@ fn with_points(lines: impl IntoIterator<Item = Line>, fewest: usize) -> Vec<Line
 fn force(results: &Results) -> LineChart {
     let line = |(model, colour, stroke): (usize, _, _)| {
         let steps = 0..results.comparison.len();
-        let solutions = steps.filter_map(|step| results.models(step)[model]);
-        let points = solutions.map(|solution| [100.0 * solution.stretch, solution.force]);
+        let solutions =
+            steps.filter_map(|step| results.models(step)[model].zip(results.measures(step)[model]));
+        let points = solutions.map(|(state, measures)| [100.0 * state.factor, measures.force]);
         Line::new(
             MODELS[model],
             [[0.0, 0.0]].into_iter().chain(points),
@@ -184,12 +186,12 @@ fn residuals(results: &Results) -> LineChart {
     let last = results.last_step().unwrap_or_default();
     let colours = [MASS_SPRING, CORRECTED, FINITE_ELEMENT];
     let models = MODELS.into_iter().zip(colours).zip(results.models(last));
-    let line = |((label, colour), solution): ((&str, _), Option<&Solution>)| {
+    let line = |((label, colour), solution): ((&str, _), Option<&State>)| {
         let residuals = solution?.convergence.residuals.iter().enumerate();
         let points = residuals.map(|(i, r)| [i as f64, *r]);
         Some(Line::new(label, points, colour, Stroke::Marked))
     };
-    let at = Problem::describe_step(results.comparison[last].stretch);
+    let at = ClampedPlate::describe_step(results.comparison[last].stretch);
     LineChart::new(
         format!("Residual at {at}"),
         Axis::linear("iteration"),

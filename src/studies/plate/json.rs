@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use crate::compare::{Deviation, SelfConvergence, StepComparison};
-use crate::problem::plate::Solution;
+use crate::problem::Measures;
+use crate::solve::State;
 use crate::studies::plate::results::{Requirement, Results, verdict};
 use crate::studies::plate::study::Study;
 
@@ -72,7 +73,8 @@ fn balance(results: &Results) -> Value {
 
 fn step(results: &Results, index: usize, step: &StepComparison) -> Value {
     let [springs, corrected, finest] = results.models(index);
-    let mut corrected = model(step.corrected.as_ref(), corrected);
+    let measures = results.measures(index);
+    let mut corrected = model(step.corrected.as_ref(), corrected.zip(measures[1]));
     if step.corrected.is_some() {
         corrected["correction_percent"] = json!(step.correction_percent(|d| d.departure_percent));
         corrected["displacement_correction_percent"] =
@@ -80,9 +82,9 @@ fn step(results: &Results, index: usize, step: &StepComparison) -> Value {
     }
     json!({
         "stretch": step.stretch,
-        "mass_spring": model(step.mass_spring.as_ref(), springs),
+        "mass_spring": model(step.mass_spring.as_ref(), springs.zip(measures[0])),
         "corrected": corrected,
-        "finite_element": finest.map(|finest| finite_element(results, index, step, finest)),
+        "finite_element": finest.zip(measures[2]).map(|finest| finite_element(results, index, step, finest)),
     })
 }
 
@@ -90,15 +92,15 @@ fn finite_element(
     results: &Results,
     index: usize,
     step: &StepComparison,
-    finest: &Solution,
+    (finest, measures): (&State, Measures),
 ) -> Value {
     let own = step.reference;
     let of = |value: fn(&SelfConvergence) -> f64| own.as_ref().map(value);
     let energy = results.estimates.get(index).and_then(Option::as_ref);
     json!({
-        "force_N": finest.force,
-        "width_mm": finest.mid_width,
-        "energy_mJ": finest.energy,
+        "force_N": measures.force,
+        "width_mm": measures.mid_width,
+        "energy_mJ": measures.energy,
         "discretisation_percent": of(|own| own.force.error_percent),
         "order": own.as_ref().and_then(|own| own.force.order),
         "extrapolated_force_N": of(|own| own.force.extrapolated),
@@ -116,8 +118,8 @@ fn finite_element(
 }
 
 /// A model beside the finite elements: what it has, and its deviation where they have a solution too.
-fn model(deviation: Option<&Deviation>, solution: Option<&Solution>) -> Value {
-    let Some(solution) = solution else {
+fn model(deviation: Option<&Deviation>, solution: Option<(&State, Measures)>) -> Value {
+    let Some((solution, measures)) = solution else {
         return Value::Null;
     };
     let of = |value: fn(&Deviation) -> f64| deviation.map(value);
@@ -128,9 +130,9 @@ fn model(deviation: Option<&Deviation>, solution: Option<&Solution>) -> Value {
         "force_percent": of(|deviation| deviation.force_percent),
         "width_percent": of(|deviation| deviation.width_percent),
         "nominal_stress_percent": of(|deviation| deviation.nominal_stress_percent),
-        "force_N": solution.force,
-        "width_mm": solution.mid_width,
-        "energy_mJ": solution.energy,
+        "force_N": measures.force,
+        "width_mm": measures.mid_width,
+        "energy_mJ": measures.energy,
         "residuals": solution.convergence.residuals,
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::compare::{Deviation, StepComparison};
 use crate::error::Error;
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::studies::plate::results::{MODELS, Requirement, Results, verdict};
 use crate::studies::plate::study::Study;
 
@@ -67,7 +67,7 @@ fn power(value: f64) -> String {
 
 /// `15 %, 30 % stretch`, for sentences.
 fn at_stretches(stretches: Vec<f64>) -> String {
-    let percent = |stretch: f64| format!("{} %", Problem::percent(stretch));
+    let percent = |stretch: f64| format!("{} %", ClampedPlate::percent(stretch));
     let all: Vec<String> = stretches.into_iter().map(percent).collect();
     format!("{} stretch", all.join(", "))
 }
@@ -178,7 +178,7 @@ fn problem(study: &Study) -> Vec<Block> {
 fn deviations(study: &Study, results: &Results) -> Vec<Block> {
     let row = |stretch: f64, model: &str, deviation: &Deviation, correction: String| {
         vec![
-            Problem::percent(stretch),
+            ClampedPlate::percent(stretch),
             model.to_owned(),
             format!("{:.4}", deviation.displacement_percent),
             format!("{:.3}", deviation.departure_percent),
@@ -227,11 +227,11 @@ fn deviations(study: &Study, results: &Results) -> Vec<Block> {
 
 fn forces(results: &Results) -> Vec<Block> {
     let row = |(index, step): (usize, &StepComparison)| {
-        let models = results.models(index);
-        let mut cells = vec![Problem::percent(step.stretch)];
-        cells.extend(models.map(|model| figure(model.map(|solution| solution.force), 5)));
-        cells.extend(models.map(|model| figure(model.map(|solution| solution.mid_width), 5)));
-        cells.extend(models.map(|model| figure(model.map(|solution| solution.energy), 4)));
+        let models = results.measures(index);
+        let mut cells = vec![ClampedPlate::percent(step.stretch)];
+        cells.extend(models.map(|model| figure(model.map(|measures| measures.force), 5)));
+        cells.extend(models.map(|model| figure(model.map(|measures| measures.mid_width), 5)));
+        cells.extend(models.map(|model| figure(model.map(|measures| measures.energy), 4)));
         cells
     };
     let head = [

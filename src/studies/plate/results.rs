@@ -7,8 +7,8 @@ use crate::finite_element::FiniteElements;
 use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
-use crate::problem::Balance;
-use crate::problem::plate::Solution;
+use crate::problem::{Balance, Measures};
+use crate::solve::State;
 
 mod requirement;
 
@@ -23,7 +23,7 @@ pub struct ReferenceMesh {
     /// The model.
     pub model: FiniteElements,
     /// One solution a stretch, as far as the path goes.
-    pub solutions: Vec<Solution>,
+    pub solutions: Vec<State>,
 }
 
 /// All fields and figures of a study. A model that has ended early has fewer states than the study has stretches; the
@@ -33,7 +33,7 @@ pub struct Results {
     /// The lattice; its mesh is that of the corrected fields too.
     pub springs: MassSpring,
     /// The lattice in equilibrium, one solution a stretch, as far as the path goes.
-    pub uncorrected: Vec<Solution>,
+    pub uncorrected: Vec<State>,
     /// The corrected field at every stretch; nothing where none was found.
     pub corrected: Vec<Option<CorrectedState>>,
     /// The finite elements on three meshes, coarse to fine; the last is the reference.
@@ -57,12 +57,24 @@ impl Results {
     }
 
     /// The mass-spring model, the corrected field and the finest finite elements at a stretch, each where it exists.
-    pub fn models(&self, step: usize) -> [Option<&Solution>; 3] {
+    pub fn models(&self, step: usize) -> [Option<&State>; 3] {
         let corrected = self.corrected[step].as_ref();
         [
             self.uncorrected.get(step),
-            corrected.map(|state| &state.solution),
+            corrected.map(|corrected| &corrected.state),
             self.finest().solutions.get(step),
+        ]
+    }
+
+    /// What is measured of each of them.
+    pub fn measures(&self, step: usize) -> [Option<Measures>; 3] {
+        let [springs, _, elements] = self.models(step);
+        let of = |mesh, state: Option<&State>| state.map(|state| Measures::of(mesh, state));
+        let corrected = self.corrected[step].as_ref();
+        [
+            of(&self.springs.mesh, springs),
+            corrected.map(|corrected| corrected.measures),
+            of(&self.finest().model.mesh, elements),
         ]
     }
 
@@ -75,7 +87,7 @@ impl Results {
     /// The stretches at which a model of [`MODELS`] has a solution.
     pub fn reached(&self, model: usize) -> Vec<f64> {
         let steps = 0..self.comparison.len();
-        let stretch = |step: usize| Some(self.models(step)[model]?.stretch);
+        let stretch = |step: usize| Some(self.models(step)[model]?.factor);
         steps.filter_map(stretch).collect()
     }
 
@@ -83,7 +95,7 @@ impl Results {
     pub fn stretches_without_springs(&self) -> Vec<f64> {
         let steps = 0..self.comparison.len();
         let stretch = |step: usize| match self.models(step) {
-            [None, Some(corrected), _] => Some(corrected.stretch),
+            [None, Some(corrected), _] => Some(corrected.factor),
             _ => None,
         };
         steps.filter_map(stretch).collect()
@@ -96,7 +108,7 @@ impl Results {
         let steps = 0..self.comparison.len();
         let of_step = |step: usize| {
             let solution = self.models(step)[model]?;
-            Some((balance(mesh, solution).relative(), solution.stretch))
+            Some((balance(mesh, solution).relative(), solution.factor))
         };
         let all = steps.filter_map(of_step);
         all.max_by(|(a, _), (b, _)| a.total_cmp(b))
@@ -111,7 +123,7 @@ impl Results {
             let residual = solution.residual.iter().enumerate();
             let free = residual.filter(|(unknown, _)| !mesh.on_grip(unknown / 2));
             let largest = free.fold(0.0, |most: f64, (_, force)| most.max(force.abs()));
-            Some(largest / solution.force.abs())
+            Some(largest / self.measures(step)[model]?.force.abs())
         };
         let steps = 0..self.comparison.len();
         steps.filter_map(of_step).reduce(f64::max)
@@ -126,7 +138,7 @@ impl Results {
     /// The estimated error of the finest mesh's force at a stretch in %, by recovery, without its sign.
     pub fn recovered_force_percent(&self, step: usize) -> Option<f64> {
         let estimate = self.estimates.get(step)?.as_ref()?;
-        Some(100.0 * (estimate.force / self.finest().solutions[step].force).abs())
+        Some(100.0 * (estimate.force / self.measures(step)[2]?.force).abs())
     }
 
     /// The finite elements' own error of the force at a stretch in %: that of three meshes, or the larger one of that and of
@@ -143,15 +155,12 @@ impl Results {
 }
 
 /// The balance of the reactions of both grips.
-fn balance(mesh: &Mesh, solution: &Solution) -> Balance {
-    let displacements = solution.displacement.chunks_exact(2);
-    let places = mesh.nodes.iter().zip(displacements);
-    let places: Vec<[f64; 2]> = places.map(|([x, y], u)| [x + u[0], y + u[1]]).collect();
-    let mut reactions = solution.residual.clone();
+fn balance(mesh: &Mesh, state: &State) -> Balance {
+    let mut reactions = state.residual.clone();
     for (unknown, reaction) in reactions.iter_mut().enumerate() {
         if !mesh.on_grip(unknown / 2) {
             *reaction = 0.0;
         }
     }
-    Balance::of_supports(&places, &reactions)
+    Balance::of_supports(mesh, &state.displacement, &reactions)
 }

@@ -12,7 +12,8 @@ use crate::finite_element::FiniteElements;
 use crate::finite_element::recovery::Recovery;
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
-use crate::problem::plate::Solution;
+use crate::problem::{Measures, Model};
+use crate::solve::{NewtonSettings, State};
 use crate::studies::plate::results::{ReferenceMesh, Results};
 use crate::studies::plate::study::Study;
 
@@ -33,9 +34,13 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let springs = MassSpring::new(problem, study.cells, study.lattice);
     let uncorrected = timed(&mut times, "mass-spring", || {
         let told = |stretch: f64| progress("mass-spring", stretch);
-        let (solutions, end) = problem.follow_as_far(&springs.model(), study.mass_spring, &told);
-        ends.extend(end);
-        solutions
+        as_far(
+            &springs.model(problem),
+            study,
+            study.mass_spring,
+            &mut ends,
+            &told,
+        )
     });
     let corrected = timed(&mut times, "corrector", || {
         let mut keep = |state: Result<_, Error>| state.map_err(|end| ends.push(end)).ok();
@@ -61,12 +66,14 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
             .map(|mesh| (&mesh.model, &mesh.solutions[..])),
     );
     let compare = |(step, stretch): (usize, &f64)| {
-        let deviation = |solution| measure.deviation(&springs.mesh, solution, step);
+        let lattice = &springs.mesh;
+        let springs = |state| measure.deviation(lattice, state, Measures::of(lattice, state), step);
         let state: Option<&CorrectedState> = corrected[step].as_ref();
         StepComparison {
             stretch: *stretch,
-            mass_spring: uncorrected.get(step).and_then(deviation),
-            corrected: state.and_then(|state| deviation(&state.solution)),
+            mass_spring: uncorrected.get(step).and_then(springs),
+            corrected: state
+                .and_then(|own| measure.deviation(lattice, &own.state, own.measures, step)),
             reference: measure.self_convergence(step),
         }
     };
@@ -89,7 +96,7 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
 fn correct(
     study: &Study,
     lattice: &Mesh,
-    springs: &[Solution],
+    springs: &[State],
     progress: Progress,
 ) -> Vec<Result<CorrectedState, Error>> {
     let problem = &study.problem;
@@ -130,7 +137,7 @@ pub fn fields(
     if let Some(end) = results.ends.pop() {
         return Err(end);
     }
-    let field = |model, mesh: &Mesh, solution: Option<&Solution>| ModelField {
+    let field = |model, mesh: &Mesh, solution: Option<&State>| ModelField {
         model,
         mesh: mesh.clone(),
         displacement: solution.expect("no model ended").displacement.clone(),
@@ -166,10 +173,31 @@ fn finite_elements(
         let problem = &study.problem;
         let model = FiniteElements::graded(problem, cells, study.element, study.grading);
         let told = |stretch: f64| progress(name, stretch);
-        let solve = || problem.follow_as_far(&model.model(), study.finite_element, &told);
-        let (solutions, end) = timed(times, name, solve);
-        ends.extend(end);
+        let solutions = timed(times, name, || {
+            as_far(
+                &model.model(problem),
+                study,
+                study.finite_element,
+                ends,
+                &told,
+            )
+        });
         ReferenceMesh { model, solutions }
+    })
+}
+
+/// The states of a model at the study's stretches as far as there are any; its end is told where there are no more.
+fn as_far(
+    model: &Model,
+    study: &Study,
+    settings: NewtonSettings,
+    ends: &mut Vec<Error>,
+    progress: &dyn Fn(f64),
+) -> Vec<State> {
+    let states = model.solve(&study.problem.stretches, settings, progress);
+    states.unwrap_or_else(|end| {
+        ends.push(model.error(&end));
+        end.states
     })
 }
 

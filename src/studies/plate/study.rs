@@ -11,7 +11,7 @@ use crate::error::{Diagnostic, Error};
 use crate::finite_element::Element;
 use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
 use crate::units::Dimension;
 
@@ -31,7 +31,7 @@ pub struct Study {
     /// The heading of the report.
     pub title: String,
     /// What is solved.
-    pub problem: Problem,
+    pub problem: ClampedPlate,
     /// Where its material comes from.
     pub card: Card,
     /// Cells of the lattice.
@@ -207,7 +207,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let study = Study {
         name: name.to_owned(),
         title,
-        problem: Problem {
+        problem: ClampedPlate {
             stretches,
             ..problem
         },

@@ -4,8 +4,8 @@ use super::results::Results;
 use super::study::Study;
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{CorrectedState, EQUILIBRIUM, FREE_EDGES, GRIPS};
-use crate::problem::plate::Solution;
 use crate::results::{Array, Grid, GridSeries, Sheet};
+use crate::solve::State;
 
 /// The fields of every model, as far as it has solutions.
 pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
@@ -15,7 +15,7 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
     };
     let lattice = &results.springs.mesh;
     let finest = results.finest();
-    let on_lattice = |step: usize, solution: &Solution| {
+    let on_lattice = |step: usize, solution: &State| {
         let u = &solution.displacement;
         let reference = results.reference_on_lattice.get(step);
         let difference = reference.map(|reference| Array::to_finite_elements(u, reference));
@@ -29,7 +29,7 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
     let bars = bars.map(|(step, own)| (step, Grid::springs(&results.springs, &own.displacement)));
     let corrected = steps().filter_map(|step| Some((step, results.corrected[step].as_ref()?)));
     let corrected = corrected.map(|(step, state)| {
-        let grid = on_lattice(step, &state.solution);
+        let grid = on_lattice(step, &state.state);
         (step, grid.with(multipliers(state)))
     });
     let elements = finest.solutions.iter().enumerate().map(|(step, solution)| {
@@ -56,7 +56,7 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
 
 /// The multipliers of every condition at the nodes; zero where the condition does not hold.
 fn multipliers(state: &CorrectedState) -> impl Iterator<Item = Array> {
-    let size = state.solution.displacement.len();
+    let size = state.state.displacement.len();
     let groups = state.multipliers.iter();
     groups.filter_map(move |group| multiplier_array(group, size))
 }

@@ -1,6 +1,6 @@
 //! What a reader of a plate's figures has to know about them.
 
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::studies::plate::results::{MODELS, Results};
 use crate::studies::plate::study::Study;
 
@@ -29,7 +29,7 @@ fn compression(study: &Study, results: &Results) -> Option<String> {
     let steps = 0..results.comparison.len();
     let states = steps.filter_map(|step| {
         let solution = results.models(step)[model]?;
-        let load = Problem::describe_step(solution.stretch);
+        let load = ClampedPlate::describe_step(solution.factor);
         Some((load, &*solution.displacement))
     });
     wrinkling::warning(&*study.problem.law, mesh, states)
@@ -44,7 +44,7 @@ fn instability(results: &Results) -> Option<String> {
                 continue;
             };
             if solution.convergence.shifted_steps > 0 {
-                let at = Problem::describe_step(solution.stretch);
+                let at = ClampedPlate::describe_step(solution.factor);
                 found.push(format!("{name} at {at}"));
             }
         }
@@ -64,7 +64,7 @@ fn imbalance(results: &Results) -> Vec<String> {
             format!(
                 "Warning: {name}: the reactions of the grips are out of balance by {relative:.1e} of the largest at {}; take a \
                  smaller tolerance",
-                Problem::describe_step(stretch)
+                ClampedPlate::describe_step(stretch)
             )
         })
     };

@@ -5,7 +5,7 @@ use super::read::Specimen;
 use super::solved::{GroupState, group_states};
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
-use crate::problem::Discretised;
+use crate::problem::Model;
 use crate::results::{Block, Check, Grid, GridSeries, Outcome};
 use crate::solve::{PathEnd, State};
 
@@ -33,7 +33,7 @@ impl End {
     pub fn of_path(
         [name, file]: [&str; 2],
         specimen: &Specimen,
-        (mesh, model): (&Mesh, &Discretised),
+        (mesh, model): (&Mesh, &Model),
         end: &PathEnd,
     ) -> Self {
         let state = end.last.as_deref().or(end.states.last());

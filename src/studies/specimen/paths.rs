@@ -8,7 +8,7 @@ use crate::corrector::{CorrectorSettings, Solver};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
-use crate::problem::Discretised;
+use crate::problem::Model;
 use crate::solve::{NewtonSettings, PathEnd, State};
 use crate::studies::Progress;
 
@@ -55,7 +55,7 @@ pub struct OnLattice {
 /// Solves as many load factors as can be reached; where others cannot, the end is told.
 pub fn solve(
     specimen: &Specimen,
-    model: &Discretised,
+    model: &Model,
     names: [&str; 2],
     mesh: &Mesh,
     ends: &mut Vec<End>,
@@ -83,7 +83,7 @@ impl OnLattice {
         let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
         let lattice = &springs.mesh;
         let model = specimen.on(lattice, springs.potential())?;
-        let model = model.named(|element| springs.describe_element(element));
+        let model = model.describing(|element| springs.describe_element(element));
         let uncorrected = solve(specimen, &model, SPRINGS, lattice, ends);
         drop(model);
 
@@ -105,14 +105,14 @@ impl OnLattice {
 /// The corrections at all load factors.
 struct Corrections<'a> {
     specimen: &'a Specimen,
-    model: &'a Discretised<'a>,
+    model: &'a Model<'a>,
     lattice: &'a Mesh,
     /// The equilibria of the lattice's cells by load steps from rest, once they are wanted.
     steps: Option<Result<Vec<State>, PathEnd>>,
 }
 
 impl<'a> Corrections<'a> {
-    fn new(specimen: &'a Specimen, model: &'a Discretised<'a>, lattice: &'a Mesh) -> Self {
+    fn new(specimen: &'a Specimen, model: &'a Model<'a>, lattice: &'a Mesh) -> Self {
         Self {
             specimen,
             model,

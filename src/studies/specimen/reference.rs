@@ -11,7 +11,7 @@ use crate::finite_element::convergence::richardson;
 use crate::finite_element::error_estimate::{self, ErrorEstimate, bulk};
 use crate::finite_element::recovery::Recovery;
 use crate::mesh::Mesh;
-use crate::problem::Discretised;
+use crate::problem::Model;
 use crate::results::Block;
 use crate::results::{Check, Wanted};
 
@@ -433,7 +433,7 @@ fn estimate_all(
     measured: &Measured,
 ) -> Result<Vec<Option<ErrorEstimate>>, Error> {
     let energy = specimen.problem.finite_elements(mesh);
-    let model: Discretised = specimen.on(mesh, &energy)?;
+    let model: Model = specimen.on(mesh, &energy)?;
     let recovery = Recovery::new(mesh);
     let estimate = |state| {
         let influence = model.influence(state, &measured.group, measured.axis);

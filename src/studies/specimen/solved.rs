@@ -3,7 +3,7 @@
 use super::forces::worse;
 use super::measured::Measured;
 use super::read::Specimen;
-use crate::problem::Discretised;
+use crate::problem::Model;
 use crate::solve::State;
 
 /// What happens at a group in one state.
@@ -29,7 +29,7 @@ pub struct Solved {
 
 impl Solved {
     /// The figures of a model's states.
-    pub fn new(specimen: &Specimen, model: &Discretised, states: Vec<State>) -> Self {
+    pub fn new(specimen: &Specimen, model: &Model, states: Vec<State>) -> Self {
         let balances = states.iter().map(|state| model.balance(state).relative());
         Self {
             balance: balances.reduce(worse),
@@ -63,12 +63,12 @@ impl Solved {
 }
 
 /// What happens at all [groups](Specimen::groups) in a state.
-pub fn group_states(specimen: &Specimen, model: &Discretised, state: &State) -> Vec<GroupState> {
+pub fn group_states(specimen: &Specimen, model: &Model, state: &State) -> Vec<GroupState> {
     let names = specimen.groups().into_iter();
     names.map(|name| group_state(model, state, name)).collect()
 }
 
-fn group_state(model: &Discretised, state: &State, name: &str) -> GroupState {
+fn group_state(model: &Model, state: &State, name: &str) -> GroupState {
     GroupState {
         force: model.reaction(state, name),
         moment: model.reaction_moment(state, name),

@@ -11,7 +11,7 @@ use crate::finite_element::error_estimate::{EnergyError, ErrorEstimate, Solved, 
 use crate::finite_element::recovery::Recovery;
 use crate::finite_element::{Element, FiniteElements};
 use crate::mesh::{CellShape, Mesh, Shape};
-use crate::problem::plate::{Problem, Solution};
+use crate::problem::{ClampedPlate, Measures};
 use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Stroke, mesh_outlines};
 use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, figure, number};
 
@@ -156,7 +156,7 @@ struct Plate {
     element: Element,
     grading: f64,
     describe: String,
-    solution: Solution,
+    measures: Measures,
     estimate: ErrorEstimate,
 }
 
@@ -178,13 +178,13 @@ fn graded_plates(
         let [coarse, middle, fine] = plates;
         series.push([coarse?, middle?, fine?]);
     }
-    let values = |value: fn(&Solution) -> f64, plates: &[Plate; 3]| {
-        richardson(plates.each_ref().map(|plate| value(&plate.solution)))
+    let values = |value: fn(&Measures) -> f64, plates: &[Plate; 3]| {
+        richardson(plates.each_ref().map(|plate| value(&plate.measures)))
     };
-    let force = |plates| values(|solution| solution.force, plates);
+    let force = |plates| values(|measures| measures.force, plates);
     let exact = Exact {
         force: force(&series[0]).extrapolated,
-        energy: values(|solution| solution.energy, &series[0]).extrapolated,
+        energy: values(|measures| measures.energy, &series[0]).extrapolated,
     };
     outcome.checks.push(Check::new(
         "plate, graded, extrapolated force",
@@ -224,32 +224,37 @@ impl Plate {
 }
 
 fn plate(across: usize, element: Element, grading: f64) -> Result<Plate, Error> {
-    let problem = Problem {
+    let problem = ClampedPlate {
         size: SIZE,
         thickness: sheet().thickness,
         law: sheet().law,
         stretches: vec![STRETCH],
     };
     let model = FiniteElements::graded(&problem, [3 * across, across], element, grading);
-    let solution = model.solve(&problem, super::NEWTON, &|_| ())?.remove(0);
+    let state = model.model(&problem).reach(&[STRETCH], super::NEWTON)?;
+    let estimate = model.estimate(&problem, &state, &Recovery::new(&model.mesh));
     Ok(Plate {
         element,
         grading,
         describe: model.describe(),
-        estimate: model.estimate(&problem, &solution, &Recovery::new(&model.mesh))?,
-        solution,
+        estimate: estimate.map_err(|fault| Error::Solve {
+            model: model.describe(),
+            step: ClampedPlate::describe_step(STRETCH),
+            fault,
+        })?,
+        measures: Measures::of(&model.mesh, &state),
     })
 }
 
 fn table(series: &[[Plate; 3]], exact: Exact) -> Vec<Block> {
     let row = |plate: &Plate| {
-        let solution = &plate.solution;
-        let surplus = 2.0 * (solution.energy - exact.energy);
+        let measures = &plate.measures;
+        let surplus = 2.0 * (measures.energy - exact.energy);
         let squared = plate.estimate.energy.squared();
         vec![
             plate.describe.clone(),
-            format!("{:.6}", solution.force),
-            number(100.0 * (solution.force / exact.force - 1.0)),
+            format!("{:.6}", measures.force),
+            number(100.0 * (measures.force / exact.force - 1.0)),
             number(100.0 * plate.estimate.force / exact.force),
             number(plate.estimate.energy.percent()),
             number((squared / surplus).sqrt()),

@@ -11,7 +11,7 @@ use crate::markers::Marker;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::Mesh;
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::problem::{BoundaryProblem, Support};
 use crate::validation::plate::NEWTON;
 
@@ -36,7 +36,7 @@ pub struct Markers {
 
 impl Truth {
     /// Solves the specimen of the plate's material with its ends pulled apart.
-    pub fn new(mesh: Mesh, plate: &Problem, stretch: f64) -> Result<Self, Error> {
+    pub fn new(mesh: Mesh, plate: &ClampedPlate, stretch: f64) -> Result<Self, Error> {
         let [low, high] = mesh.bounding_box();
         let clamp = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
         let problem = BoundaryProblem {

@@ -72,13 +72,17 @@ pub fn compute(
     let lattice = plate.lattice();
     let law = DashpotLaw::Material(settings.material.clone());
     let dashpots = Dashpots::new(&lattice, &law);
-    let springs = settings.body(&lattice.model(), &lattice.mesh, &dashpots)?;
+    let springs = settings.body(&lattice.model(&plate.problem), &lattice.mesh, &dashpots)?;
     let energy = corrected_energy(&plate.problem, &lattice);
     let sheet = SheetViscosity::new(&energy, &settings.material);
-    let scheme = settings.body(&sheet_model(&lattice.mesh, &energy), &lattice.mesh, &sheet)?;
+    let scheme = settings.body(
+        &sheet_model(&plate.problem, &lattice.mesh, &energy),
+        &lattice.mesh,
+        &sheet,
+    )?;
     let elements = FiniteElements::new(&plate.problem, settings.plate.cells, Element::Q2);
     let viscosity = SheetViscosity::new(elements.energy(), &settings.material);
-    let reference = settings.body(&elements.model(), &elements.mesh, &viscosity)?;
+    let reference = settings.body(&elements.model(&plate.problem), &elements.mesh, &viscosity)?;
     let step = Settings::period(&reference)? / recording.steps as f64;
     let run = |body: &Body, finer| integrate(body, step, recording.instants - 1, 1, finer);
     let exact = run(&reference, 8)?;

@@ -34,7 +34,7 @@ impl Pair {
     /// Distance of the fields over the departure from affine of the first, in %.
     fn fields_percent(&self, fields: &Fields) -> f64 {
         let [springs, affine] =
-            [&self.springs, &self.affine].map(|state| &state.solution.displacement[..]);
+            [&self.springs, &self.affine].map(|state| &state.state.displacement[..]);
         departure_percent(&fields.lattice.mesh, affine, springs, &fields.affine)
     }
 
@@ -52,7 +52,7 @@ impl Pair {
 
     fn row(&self, name: &str, fields: &Fields) -> Vec<String> {
         let departure =
-            |state: &CorrectedState| number(fields.departure(&state.solution.displacement));
+            |state: &CorrectedState| number(fields.departure(&state.state.displacement));
         vec![
             name.to_owned(),
             number(self.fields_percent(fields)),
@@ -87,8 +87,8 @@ pub fn side_by_side(plate: &Plate, fields: &Fields, outcome: &mut Outcome) -> Re
     outcome.blocks.push(Block::table(&head, rows));
     let far = displacement_percent(
         &fields.lattice.mesh,
-        &all.affine.solution.displacement,
-        &all.springs.solution.displacement,
+        &all.affine.state.displacement,
+        &all.springs.state.displacement,
     );
     let check =
         |quantity: &str, wanted, source, value| Check::new(quantity, "%", wanted, source, value);

@@ -8,11 +8,10 @@ use crate::corrector::DifferenceScheme;
 use crate::corrector::climb::{ClimbSettings, Climbed};
 use crate::material::samples;
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::plate::Model;
 
-fn problem(card: &str, size: [f64; 2], stretch: f64) -> Problem {
+fn problem(card: &str, size: [f64; 2], stretch: f64) -> ClampedPlate {
     let mut laws = samples::all().into_iter();
-    Problem {
+    ClampedPlate {
         size,
         thickness: 2.0,
         law: laws.find(|(name, _)| *name == card).expect("a sample").1,
@@ -22,24 +21,20 @@ fn problem(card: &str, size: [f64; 2], stretch: f64) -> Problem {
 
 /// The field of the same equations by Newton's method along the path of stretches, without any of the climb's code.
 fn direct(
-    problem: &Problem,
+    problem: &ClampedPlate,
     cells: [usize; 2],
     scheme: DifferenceScheme,
 ) -> Result<Vec<f64>, Error> {
     let mesh = Mesh::plate(problem.size, cells, CellShape::Quad4);
     let energy = scheme.energy(problem, &mesh);
-    let model = Model {
-        name: "direct".into(),
-        mesh: &mesh,
-        potential: &energy,
-        describe: Box::new(|cell| mesh.describe_cell(cell)),
-    };
     let newton = NewtonSettings {
         tolerance: 1e-10,
         max_iterations: 60,
     };
-    let mut solutions = problem.follow(&model, newton, &|_| ())?;
-    Ok(solutions.remove(0).displacement)
+    let state = problem
+        .on(&mesh, &energy)
+        .reach(&problem.stretches, newton)?;
+    Ok(state.displacement)
 }
 
 /// Root mean square over the nodes of the distance to the direct method's field in mm.
@@ -50,7 +45,7 @@ fn distance(climbed: &Climbed, direct: &[f64]) -> f64 {
 }
 
 fn check(
-    problem: &Problem,
+    problem: &ClampedPlate,
     cells: [usize; 2],
     scheme: DifferenceScheme,
 ) -> Result<Climbed, String> {
@@ -223,7 +218,7 @@ fn an_unstable_law_is_named_as_the_cause() {
         "c10 = \"0.03 MPa\"\nc20 = \"-20 kPa\"\nc30 = \"0 kPa\"",
     )
     .law;
-    let problem = Problem {
+    let problem = ClampedPlate {
         law,
         ..problem("neo-hooke", [150.0, 50.0], 1.5)
     };

@@ -5,8 +5,9 @@ use crate::compare::{Deviation, StepComparison};
 use crate::corrector::DifferenceScheme;
 use crate::corrector::plate::CorrectedState;
 use crate::finite_element::convergence::Richardson;
-use crate::problem::plate::{Problem, Solution};
+use crate::problem::ClampedPlate;
 use crate::results::Block;
+use crate::solve::State;
 use crate::studies::plate::results::{MODELS, Results};
 use crate::studies::plate::study::Study;
 
@@ -23,7 +24,7 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
         };
         let own = step.reference;
         vec![
-            Problem::percent(step.stretch),
+            ClampedPlate::percent(step.stretch),
             fit.clone(),
             departure(step.mass_spring),
             left.map_or("–".into(), |left| format!("{:.1e}", 100.0 * left)),
@@ -73,7 +74,7 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
     let row = |(index, step): (usize, &StepComparison)| {
         let own = step.reference;
         let energy = results.estimates.get(index).and_then(Option::as_ref);
-        let mut cells = vec![Problem::percent(step.stretch)];
+        let mut cells = vec![ClampedPlate::percent(step.stretch)];
         cells.extend(quantity(own.map(|own| own.force)));
         cells.extend(quantity(own.map(|own| own.width)));
         cells.extend([
@@ -127,7 +128,7 @@ pub fn balance(study: &Study, results: &Results) -> Vec<Block> {
         Some(vec![
             name.to_owned(),
             format!("{relative:.1e}"),
-            Problem::percent(stretch),
+            ClampedPlate::percent(stretch),
             power(results.worst_residual(model)?),
         ])
     };
@@ -158,11 +159,11 @@ pub fn balance(study: &Study, results: &Results) -> Vec<Block> {
 }
 
 pub fn convergence(study: &Study, results: &Results) -> Vec<Block> {
-    let row = |stretch: f64, model: &str, solution: &Solution| {
+    let row = |stretch: f64, model: &str, solution: &State| {
         let log = &solution.convergence;
         let cell = |residual: Option<&f64>| residual.map_or("–".into(), |r| format!("{r:.1e}"));
         vec![
-            Problem::percent(stretch),
+            ClampedPlate::percent(stretch),
             model.to_owned(),
             solution.load_steps.to_string(),
             log.iterations().to_string(),
@@ -219,7 +220,7 @@ pub fn convergence(study: &Study, results: &Results) -> Vec<Block> {
 fn starts(results: &Results) -> Option<Block> {
     let row = |(step, state): (&StepComparison, &Option<CorrectedState>)| {
         let way = state.as_ref()?.way.as_ref()?;
-        let stretch = Problem::percent(step.stretch);
+        let stretch = ClampedPlate::percent(step.stretch);
         Some(vec![stretch, way.to_string(), figure(Some(way.away), 3)])
     };
     let steps = results.comparison.iter().zip(&results.corrected);

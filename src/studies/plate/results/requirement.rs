@@ -3,7 +3,7 @@
 use super::Results;
 use crate::compare::judgement::{Judgement, ROUNDING_PERCENT, judge, judge_correction};
 use crate::compare::{Deviation, StepComparison};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::studies::plate::study::Study;
 
 /// How the reference becomes a better one.
@@ -153,7 +153,7 @@ impl Results {
     fn stretches_without(&self, is_missing: impl Fn(&StepComparison) -> bool) -> Vec<String> {
         let missing = self.comparison.iter().filter(|step| is_missing(step));
         missing
-            .map(|step| format!("{} %", Problem::percent(step.stretch)))
+            .map(|step| format!("{} %", ClampedPlate::percent(step.stretch)))
             .collect()
     }
 }

@@ -10,7 +10,7 @@ use crate::material::curve::Mode;
 use crate::material::parameters::OffsetTreatment;
 use crate::material::stability::{SEARCHED, stable_range};
 use crate::material::{Card, HyperelasticLaw, NeoHooke};
-use crate::problem::plate::Problem;
+use crate::problem::ClampedPlate;
 use crate::units::Dimension;
 
 /// Most cells of a mesh in one direction, and in all: more than this would not fit into common memories.
@@ -71,7 +71,7 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
 }
 
 /// The plate of a section without its stretches, and the cells of its lattice.
-pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (Problem, [usize; 2]) {
+pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, [usize; 2]) {
     let length = |key| section.quantity(key, Dimension::Length, LENGTHS);
     let size = [length("length"), length("width")];
     let thickness = length("thickness");
@@ -84,7 +84,7 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (Problem, [usiz
         Some(card) => Arc::clone(&card.law),
         None => Arc::new(NeoHooke { c10: 1.0 }),
     };
-    let problem = Problem {
+    let problem = ClampedPlate {
         size,
         thickness,
         law,
@@ -182,7 +182,7 @@ pub fn check_range(section: &Section<'_>, key: &'static str, stretch: f64, card:
             key,
             &format!(
                 "{} is beyond the stability of the card `{}`",
-                Problem::describe_step(stretch),
+                ClampedPlate::describe_step(stretch),
                 card.name
             ),
             &format!(
@@ -193,7 +193,7 @@ pub fn check_range(section: &Section<'_>, key: &'static str, stretch: f64, card:
     }
     if !card.covers(1.0 + stretch) {
         let [low, high] = card.stretch_range.map(|lambda| 100.0 * (lambda - 1.0));
-        let step = Problem::describe_step(stretch);
+        let step = ClampedPlate::describe_step(stretch);
         section.warning(
             key,
             &format!("{step} is outside the range of the card `{}`", card.name),

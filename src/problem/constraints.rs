@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{Drive, Support};
+use super::boundary_conditions::{Drive, Support};
+use super::groups::{named, refused};
+use crate::error::Diagnostic;
 use crate::mesh::{Group, Mesh};
 
 /// How a held unknown moves.
@@ -43,7 +45,7 @@ impl Support {
 
 /// All supports of a problem on the unknowns of a mesh.
 #[derive(Default)]
-pub struct Supported {
+pub struct Constraints {
     /// Motion of each unknown that is held.
     pub held: BTreeMap<usize, Motion>,
     /// The unknown that each tied one follows.
@@ -52,12 +54,22 @@ pub struct Supported {
     pub forces: Vec<(usize, f64)>,
 }
 
-impl Supported {
-    /// Adds a support of a group; on nodes that it shares with earlier ones they must agree.
+impl Constraints {
+    /// What supports by group do to the unknowns of a mesh; on nodes that they share they must agree.
     ///
     /// # Errors
-    /// Says why the group cannot be held so.
-    pub fn add(&mut self, mesh: &Mesh, group: &Group, support: &Support) -> Result<(), String> {
+    /// A [`Diagnostic`] when a support names no group of the mesh, or when a group cannot be held so.
+    pub fn of(mesh: &Mesh, supports: &[(String, Support)]) -> Result<Self, Diagnostic> {
+        let mut all = Self::default();
+        for (name, support) in supports {
+            let added = all.add(mesh, named("support", mesh, name)?, support);
+            added.map_err(|reason| refused("support", name, &reason))?;
+        }
+        Ok(all)
+    }
+
+    /// Adds a support of a group, or says why the group cannot be held so.
+    fn add(&mut self, mesh: &Mesh, group: &Group, support: &Support) -> Result<(), String> {
         if let Support::Radial { centre, .. } = support
             && group.nodes.iter().any(|node| mesh.nodes[*node] == *centre)
         {

@@ -1,34 +1,95 @@
 //! A boundary value problem on a mesh: its solution, and what follows from its states.
 
-use super::balance::{Balance, Body, Resultant};
+use super::balance::{Balance, Body};
+use super::constraints::{Constraints, Motion};
 use super::groups::shares;
-use super::loads::Loaded;
+use super::loads::Loads;
 use super::rigid::free_motions;
-use super::supports::{Motion, Supported};
 use super::ties::TiedPotential;
-use crate::error::{Diagnostic, SolveFault};
+use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::solve::{
     Assembly, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
 };
 
+/// Names an element or the end of a path.
+type Name<'a, T> = Box<dyn Fn(T) -> String + Sync + 'a>;
+
 /// A boundary value problem on a mesh, ready to be solved with any energy of its nodes.
-pub struct Discretised<'a> {
-    pub(super) mesh: &'a Mesh,
-    pub(super) energy: &'a dyn Potential,
-    pub(super) supported: Supported,
-    pub(super) loaded: Loaded,
+pub struct Model<'a> {
+    /// The model's name for messages, such as `mass-spring (60 × 20 cells)`.
+    pub name: String,
+    /// Its mesh.
+    pub mesh: &'a Mesh,
+    /// Its strain energy.
+    pub energy: &'a dyn Potential,
+    /// Names an element of the energy with its place, for messages.
+    pub describe: Name<'a, usize>,
+    constraints: Constraints,
+    loads: Loads,
     /// E t in N/mm.
-    pub(super) stiffness: f64,
-    pub(super) names: Box<dyn Fn(usize) -> String + 'a>,
+    stiffness: f64,
+    /// The field at load factor 1 of which every first guess is a multiple; `None` where the tangent predicts it.
+    guess: Option<Vec<f64>>,
+    /// What the load factor is called in messages.
+    describe_end: fn(&PathEnd) -> String,
 }
 
-impl<'a> Discretised<'a> {
+impl<'a> Model<'a> {
+    pub(super) fn new(
+        mesh: &'a Mesh,
+        energy: &'a dyn Potential,
+        constraints: Constraints,
+        mut loads: Loads,
+        stiffness: f64,
+    ) -> Self {
+        loads.close(&constraints);
+        Self {
+            name: format!("finite elements ({})", mesh.describe()),
+            mesh,
+            energy,
+            describe: Box::new(|cell| mesh.describe_cell(cell)),
+            constraints,
+            loads,
+            stiffness,
+            guess: None,
+            describe_end: PathEnd::describe,
+        }
+    }
+
+    /// With a name.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..self
+        }
+    }
+
     /// With names for the elements of an energy whose elements are not the cells.
     #[must_use]
-    pub fn named(self, names: impl Fn(usize) -> String + 'a) -> Self {
+    pub fn describing(self, describe: impl Fn(usize) -> String + Sync + 'a) -> Self {
         Self {
-            names: Box::new(names),
+            describe: Box::new(describe),
+            ..self
+        }
+    }
+
+    /// With first guesses that are the state before, scaled with the load factor, or at first a multiple of a field, which
+    /// is that at load factor 1.
+    #[must_use]
+    pub fn guessing(self, field: Vec<f64>) -> Self {
+        Self {
+            guess: Some(field),
+            ..self
+        }
+    }
+
+    /// With another name for the load factor in messages.
+    #[must_use]
+    pub(super) fn telling_ends(self, describe_end: fn(&PathEnd) -> String) -> Self {
+        Self {
+            describe_end,
             ..self
         }
     }
@@ -41,18 +102,28 @@ impl<'a> Discretised<'a> {
         for node in &self.mesh.groups()[name].nodes {
             for (axis, value) in field(self.mesh.nodes[*node]).into_iter().enumerate() {
                 let motion = Motion::Straight(value);
-                self.supported.held.insert(2 * node + axis, motion);
+                self.constraints.held.insert(2 * node + axis, motion);
             }
         }
-        self.loaded.close(&self.supported);
+        self.loads.close(&self.constraints);
     }
 
     /// Adds forces in N at load factor 1, one for each unknown: a body force, for instance.
     pub fn add_forces(&mut self, forces: &[f64]) {
-        self.loaded.add_forces(forces);
+        self.loads.add_forces(forces);
     }
 
-    /// Solves load factors, one after the other.
+    /// The end of a path as an error.
+    pub fn error(&self, end: &PathEnd) -> Error {
+        Error::Solve {
+            model: self.name.clone(),
+            step: (self.describe_end)(end),
+            fault: end.fault.clone(),
+        }
+    }
+
+    /// Solves load factors, one after the other. One that cannot be reached from the one before in one go is approached by
+    /// shorter steps.
     ///
     /// # Errors
     /// [`PathEnd`] with the load factor that could not be reached and the states before it.
@@ -75,9 +146,22 @@ impl<'a> Discretised<'a> {
         follow(self, factors, settings, progress)
     }
 
+    /// The state at the last of some load factors.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] with the load factor that could not be reached.
+    ///
+    /// # Panics
+    /// When there is no load factor.
+    pub fn reach(&self, factors: &[f64], settings: NewtonSettings) -> Result<State, Error> {
+        let states = self.solve(factors, settings, &|_| ());
+        let states = states.map_err(|end| self.error(&end))?;
+        Ok(states.into_iter().last().expect("a load factor"))
+    }
+
     /// The parts that can move without strain, each with its motion.
     pub fn free_motions(&self) -> Vec<Diagnostic> {
-        free_motions(self.mesh, &self.supported)
+        free_motions(self.mesh, &self.constraints)
     }
 
     /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
@@ -95,7 +179,7 @@ impl<'a> Discretised<'a> {
         name: &str,
         axis: usize,
     ) -> Result<Vec<f64>, SolveFault> {
-        let Supported { held, ties, forces } = &self.supported;
+        let Constraints { held, ties, forces } = &self.constraints;
         let nodes = self.mesh.groups()[name].nodes.iter();
         let mut unknowns = nodes.map(|node| 2 * node + axis);
         let pulled = |unknown: &usize| forces.iter().any(|(master, _)| master == unknown);
@@ -141,14 +225,50 @@ impl<'a> Discretised<'a> {
         [0, 1].map(|axis| nodes.iter().map(|node| forces[2 * node + axis]).sum())
     }
 
+    /// The mean displacement of a group in mm, over the length of its edges, from a state.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn displacement(&self, state: &State, name: &str) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for (node, share) in shares(self.mesh, &self.mesh.groups()[name]) {
+            for (axis, sum) in sum.iter_mut().enumerate() {
+                *sum += share * state.displacement[2 * node + axis];
+            }
+        }
+        sum
+    }
+
+    /// The moment of the supports' forces on a group about the middle of its deformed nodes in N·mm,
+    /// counter-clockwise, from a state.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn reaction_moment(&self, state: &State, name: &str) -> f64 {
+        let nodes = &self.mesh.groups()[name].nodes;
+        let place = |node: usize, axis: usize| {
+            self.mesh.nodes[node][axis] + state.displacement[2 * node + axis]
+        };
+        let middle = [0, 1].map(|axis| {
+            let places = nodes.iter().map(|node| place(*node, axis));
+            places.sum::<f64>() / nodes.len() as f64
+        });
+        let forces = self.support_forces(state);
+        let moment = |node: &usize| {
+            let [x, y] = [0, 1].map(|axis| place(*node, axis) - middle[axis]);
+            x * forces[2 * node + 1] - y * forces[2 * node]
+        };
+        nodes.iter().map(moment).sum()
+    }
+
     /// The forces of the supports in N at each unknown, from a state: those of grips that are pulled too. Not a number where
     /// the state is inverted.
     pub fn support_forces(&self, state: &State) -> Vec<f64> {
-        let Supported { held, ties, forces } = &self.supported;
+        let Constraints { held, ties, forces } = &self.constraints;
         let mut internal = vec![0.0; state.displacement.len()];
-        let loads = self.loaded.without_pulls();
-        let loaded = loads.at(self.energy, state.factor);
-        let known = Assembly::residual(&loaded, &state.displacement, &mut internal);
+        let loads = self.loads.without_pulls();
+        let loads = loads.at(self.energy, state.factor);
+        let known = Assembly::residual(&loads, &state.displacement, &mut internal);
         let masters = forces.iter().map(|(master, _)| master);
         let mut supports = vec![0.0; internal.len()];
         for unknown in held.keys().chain(ties.keys()).chain(masters) {
@@ -166,59 +286,61 @@ impl<'a> Discretised<'a> {
         /// Rounding of a body that moves without strain, relative to E t times its largest displacement.
         const NEGLIGIBLE: f64 = 1e-4;
         let u = &state.displacement;
-        let moved = self.mesh.nodes.iter().zip(u.chunks_exact(2));
-        let places: Vec<[f64; 2]> = moved.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]).collect();
-        let body = Body::new(&places);
-        let supports = Resultant::of_nodes(&places, &self.support_forces(state), body.centre);
-        let about = (body.centre, self.mesh.middle());
-        let loads = self.loaded.resultant(state.factor, (&places, u), about);
+        let body = Body::new(self.mesh, u);
+        let supports = body.resultant(&self.support_forces(state));
+        let loads = self.loads.resultant(state.factor, u, &body);
         let largest = u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
         body.balance(supports, loads, NEGLIGIBLE * self.stiffness * largest)
     }
 }
 
-impl Loading for Discretised<'_> {
+impl Loading for Model<'_> {
     fn held(&self) -> Vec<bool> {
         let unknowns = 0..2 * self.mesh.nodes.len();
         unknowns
             .map(|unknown| {
-                let Supported { held, ties, .. } = &self.supported;
+                let Constraints { held, ties, .. } = &self.constraints;
                 held.contains_key(&unknown) || ties.contains_key(&unknown)
             })
             .collect()
     }
 
     fn impose(&self, factor: f64, displacement: &mut [f64]) {
-        for (unknown, motion) in &self.supported.held {
+        for (unknown, motion) in &self.constraints.held {
             displacement[*unknown] = motion.at(factor);
         }
-        for (unknown, master) in &self.supported.ties {
+        for (unknown, master) in &self.constraints.ties {
             displacement[*unknown] = displacement[*master];
         }
     }
 
     fn potential(&self, factor: f64) -> Box<dyn Potential + '_> {
-        let loaded: Box<dyn Potential + '_> = if self.loaded.is_empty() {
+        let loads: Box<dyn Potential + '_> = if self.loads.is_empty() {
             Box::new(self.energy)
         } else {
-            Box::new(self.loaded.at(self.energy, factor))
+            Box::new(self.loads.at(self.energy, factor))
         };
-        if self.supported.ties.is_empty() {
-            loaded
+        if self.constraints.ties.is_empty() {
+            loads
         } else {
-            Box::new(TiedPotential::new(loaded, &self.supported.ties))
+            Box::new(TiedPotential::new(loads, &self.constraints.ties))
         }
     }
 
-    fn guess(&self, _: f64, _: Option<&State>) -> Option<Vec<f64>> {
-        None
+    fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
+        let first = self.guess.as_ref()?;
+        let (ratio, field) = match previous {
+            Some(previous) => (factor / previous.factor, &previous.displacement),
+            None => (factor, first),
+        };
+        Some(field.iter().map(|u| ratio * u).collect())
     }
 
     fn describe(&self, element: usize) -> String {
         if element < self.energy.elements() {
-            (self.names)(element)
+            (self.describe)(element)
         } else {
-            "a loaded edge".to_owned()
+            "a loads edge".to_owned()
         }
     }
 

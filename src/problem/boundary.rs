@@ -1,0 +1,126 @@
+//! The boundary value problem of a sheet of any shape: supports and loads on the named groups of its mesh.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::boundary_conditions::{Load, Support};
+use super::constraints::Constraints;
+use super::contradictions::{agreeing, contradictions};
+use super::deformed::DeformedSheet;
+use super::loads::{Loads, dead_forces};
+use super::model::Model;
+use super::rigid::free_motions;
+use super::sheet_energy::SheetEnergy;
+use crate::error::Diagnostic;
+use crate::material::HyperelasticLaw;
+use crate::mesh::Mesh;
+use crate::solve::{Potential, State};
+
+/// A sheet between its supports under its loads.
+#[derive(Clone, Debug)]
+pub struct BoundaryProblem {
+    /// Thickness in mm.
+    pub thickness: f64,
+    /// The material.
+    pub law: Arc<dyn HyperelasticLaw>,
+    /// Supports by group; those that share nodes must agree there.
+    pub supports: Vec<(String, Support)>,
+    /// Loads by group.
+    pub loads: Vec<(String, Load)>,
+}
+
+impl BoundaryProblem {
+    /// The finite-element energy of a mesh.
+    pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
+        SheetEnergy::of_mesh(Arc::clone(&self.law), mesh, self.thickness)
+    }
+
+    /// A state on a mesh, ready to be asked at any point of the sheet.
+    pub fn deformed(&self, mesh: &Mesh, state: &State) -> DeformedSheet {
+        DeformedSheet::new(
+            mesh.clone(),
+            state.displacement.clone(),
+            Arc::clone(&self.law),
+        )
+    }
+
+    /// Everything that keeps the problem from being solved on a mesh: supports and loads on groups that it does not have or
+    /// that cannot carry them, supports that contradict each other, parts that can move without strain.
+    ///
+    /// # Errors
+    /// All faults, each with its place and a remedy.
+    pub fn check(&self, mesh: &Mesh) -> Result<(), Vec<Diagnostic>> {
+        let supports = self.supports.iter().map(std::slice::from_ref);
+        let supports = supports.map(|support| Constraints::of(mesh, support).err());
+        let loads = self.loads.iter().map(std::slice::from_ref);
+        let loads = loads.map(|load| Loads::of(mesh, load, self.thickness).err());
+        let mut faults: Vec<Diagnostic> = supports.chain(loads).flatten().collect();
+        if faults.is_empty() {
+            faults = contradictions(&self.supports, mesh).unwrap_or_else(|fault| vec![fault]);
+        }
+        if faults.is_empty() {
+            let all = Constraints::of(mesh, &self.supports);
+            faults = all.map_or_else(|fault| vec![fault], |all| free_motions(mesh, &all));
+        }
+        match faults.is_empty() {
+            true => Ok(()),
+            false => Err(faults),
+        }
+    }
+
+    /// The unknowns of a mesh that are held, each with the number of the support that holds it: the first of
+    /// several, which agree.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support names no group of the mesh, or when supports contradict each other.
+    pub fn held_by(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+        agreeing(&self.supports, mesh)?;
+        let mut by = BTreeMap::new();
+        for (number, support) in self.supports.iter().enumerate().rev() {
+            let own = Constraints::of(mesh, std::slice::from_ref(support))?;
+            by.extend(own.held.into_keys().map(|unknown| (unknown, number)));
+        }
+        Ok(by)
+    }
+
+    /// The unknowns of a mesh that follow others, each with the one that it follows: those of grips with a given force.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support names no group of the mesh, when a group cannot be held so, or when supports contradict
+    /// each other.
+    pub fn ties(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
+        Ok(agreeing(&self.supports, mesh)?.ties)
+    }
+
+    /// The dead forces on the unknowns of a mesh in N at load factor 1: all loads but pressures, and the forces of grips.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a load names no group of the mesh, or when a group cannot carry it.
+    pub fn dead_forces(&self, mesh: &Mesh) -> Result<Vec<f64>, Diagnostic> {
+        let mut sum = vec![0.0; 2 * mesh.nodes.len()];
+        for load in &self.loads {
+            for (sum, force) in sum.iter_mut().zip(dead_forces(mesh, load, self.thickness)?) {
+                *sum += force;
+            }
+        }
+        for (unknown, force) in agreeing(&self.supports, mesh)?.forces {
+            sum[unknown] += force;
+        }
+        Ok(sum)
+    }
+
+    /// The problem on the nodes of a mesh with an energy of them.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support or a load names no group of the mesh, or when a group cannot carry it.
+    pub fn on<'a>(
+        &self,
+        mesh: &'a Mesh,
+        energy: &'a dyn Potential,
+    ) -> Result<Model<'a>, Diagnostic> {
+        let constraints = agreeing(&self.supports, mesh)?;
+        let loads = Loads::of(mesh, &self.loads, self.thickness)?;
+        let stiffness = self.law.youngs_modulus() * self.thickness;
+        Ok(Model::new(mesh, energy, constraints, loads, stiffness))
+    }
+}

@@ -1,0 +1,58 @@
+//! Supports and loads.
+
+use crate::units::Linear;
+
+/// What holds a group; everything grows with the load factor and is complete at 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Support {
+    /// Displacements ux, uy in mm; one that is not given is free. Both zero: a clamp; one zero: a roller or
+    /// an axis of symmetry.
+    Displacement([Option<f64>; 2]),
+    /// Displacements ux, uy in mm that are linear in the place at rest; one that is not given is free.
+    LinearDisplacement([Option<Linear>; 2]),
+    /// A displacement in mm along the line from a point in mm through the place at rest, away from the point; none
+    /// across it.
+    Radial {
+        /// The point.
+        centre: [f64; 2],
+        /// The displacement away from it.
+        displacement: f64,
+    },
+    /// Free to slide along the straight line on which the group lies, parallel to an axis: a roller, or an axis of
+    /// symmetry.
+    Roller,
+    /// A rigid turn about a point in mm by an angle in rad, counter-clockwise.
+    Rotation {
+        /// The point.
+        centre: [f64; 2],
+        /// The angle.
+        angle: f64,
+    },
+    /// A rigid grip that does not turn: all nodes have the same displacement along each axis.
+    Grip([Drive; 2]),
+}
+
+/// What moves a rigid grip along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive {
+    /// A displacement in mm.
+    Displacement(f64),
+    /// A total force in N of constant direction (dead).
+    Force(f64),
+}
+
+/// What loads a group; everything grows with the load factor and is complete at 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Load {
+    /// A traction in MPa on the reference area of the group's edges, of constant direction (dead).
+    Traction([f64; 2]),
+    /// A pressure in MPa on the group's edges that follows them: p t times the deformed length, t the thickness
+    /// at rest, against the outward normal. The forces are p t ∫ Nₐ n ds over the deformed edges at every node. Edges may
+    /// end anywhere.
+    ///
+    /// A fluid presses on the deformed thickness λ₃ t: its pressure q is p = λ₃ q here, less than q where
+    /// the edge is stretched.
+    Pressure(f64),
+    /// A force in N, shared equally by the group's nodes.
+    Force([f64; 2]),
+}
