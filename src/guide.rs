@@ -1,1 +1,72 @@
-//! The guide: from the first plate to a condition of your own in the corrector.
+//! The guide, page by page.
+//!
+//! # With the command
+//!
+//! | page | for |
+//! |---|---|
+//! | [plates] | a clamped plate in all three models: the study file, the report, the figures |
+//! | [specimens] | any shape, any mesh, supports and loads, adaptive refinement, paths that end early |
+//! | [motions] | a plate that is released, driven or relaxing: dashpots, viscosity, energy |
+//! | [measured_fields] | markers from image correlation: the nearest field in equilibrium, with intervals |
+//! | [materials] | cards, fits to your own tests, export of test data |
+//! | [springs_and_dashpots] | spring and dashpot functions from a recording of force and extension |
+//! | [other_codes] | the same problem in Abaqus, CalculiX or FEBio, and the way back |
+//! | [validation] | the claims of the publication, and what gelbench is checked against |
+//! | [performance] | why the corrected plate is fast, and how to measure it |
+//!
+//! # With the library
+//!
+//! The programs on these pages run whenever gelbench is tested.
+//!
+//! | page | for |
+//! |---|---|
+//! | [first_plate] | springs, corrected springs and finite elements of one plate |
+//! | [own_law] | a material law that gelbench does not have |
+//! | [own_shape] | a shape from measures, from an outline or from a file, with supports and loads |
+//! | [own_markers] | an equilibrium field from markers that are already in memory |
+//! | [own_condition] | a condition of your own in the corrector |
+//! | [own_study] | reading a study file and writing its results |
+
+#[doc = include_str!("guide/first_plate.md")]
+pub mod first_plate {}
+#[doc = include_str!("guide/own_law.md")]
+pub mod own_law {}
+#[doc = include_str!("guide/own_shape.md")]
+pub mod own_shape {}
+#[doc = include_str!("guide/own_markers.md")]
+pub mod own_markers {}
+#[doc = include_str!("guide/own_condition.md")]
+pub mod own_condition {}
+#[doc = include_str!("guide/own_study.md")]
+pub mod own_study {}
+
+#[doc = include_str!("guide/plates.md")]
+#[doc = "```toml"]
+#[doc = include_str!("../examples/pva_plate.toml")]
+#[doc = "```"]
+pub mod plates {}
+#[doc = include_str!("guide/specimens.md")]
+#[doc = "```toml"]
+#[doc = include_str!("../examples/strip_with_hole.toml")]
+#[doc = "```"]
+pub mod specimens {}
+#[doc = include_str!("guide/motions.md")]
+#[doc = "```toml"]
+#[doc = include_str!("../examples/released_plate.toml")]
+#[doc = "```"]
+pub mod motions {}
+#[doc = include_str!("guide/measured_fields.md")]
+#[doc = "```toml"]
+#[doc = include_str!("../examples/measured_plate.toml")]
+#[doc = "```"]
+pub mod measured_fields {}
+#[doc = include_str!("guide/materials.md")]
+pub mod materials {}
+#[doc = include_str!("guide/springs_and_dashpots.md")]
+pub mod springs_and_dashpots {}
+#[doc = include_str!("guide/other_codes.md")]
+pub mod other_codes {}
+#[doc = include_str!("guide/validation.md")]
+pub mod validation {}
+#[doc = include_str!("guide/performance.md")]
+pub mod performance {}

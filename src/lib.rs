@@ -81,3 +81,8 @@ pub mod statistics;
 pub mod studies;
 pub mod units;
 pub mod validation;
+
+/// The program in the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

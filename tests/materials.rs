@@ -9,7 +9,7 @@ mod common;
 
 use common::{SMALL, folder_with, gelbench, number, root, words};
 
-/// From a file of test data to a card that drives a study; the README shows what is printed.
+/// From a file of test data to a card that drives a study; the guide shows what is printed.
 #[test]
 fn a_law_is_fitted_and_its_card_is_used() {
     let folder = folder_with(&format!("{SMALL}[material]\ncard = \"pva.toml\"\n"));
@@ -17,12 +17,12 @@ fn a_law_is_fitted_and_its_card_is_used() {
     let data = data.to_str().unwrap();
     let fit = ["materials", "fit", data, "--law", "yeoh", "--name", "pva"];
     let printed = words(&gelbench(folder.path(), &fit).code(0).get_output().stdout);
-    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let guide = fs::read_to_string(root().join("src/guide/materials.md")).unwrap();
     let shown =
         |line: &&str| line.starts_with("  c") && line.contains('±') || line.contains("RMSE");
     assert_eq!(printed.lines().filter(shown).count(), 4);
     for line in printed.lines().filter(shown) {
-        assert!(readme.contains(line), "{line}");
+        assert!(guide.contains(line), "the guide does not show: {line}");
     }
     let figures = fs::read_to_string(folder.path().join("pva.json")).unwrap();
     let figures: Value = serde_json::from_str(&figures).unwrap();
