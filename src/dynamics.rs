@@ -7,129 +7,29 @@
 //! M is the lumped mass, Π the strain energy of springs or finite elements, f_v the viscous forces, f(t) the loads;
 //! supports move held unknowns as functions of time. Units are mm, s, tonne, N and mJ.
 
-use crate::error::SolveFault;
-
 mod central;
 mod dashpots;
 pub mod frequency;
+mod history;
 mod implicit;
 mod march;
 mod mass;
 mod motion;
 mod sheet;
-mod tangents;
+mod step_forces;
+mod stepper;
 mod time_function;
 pub mod viscosity;
 
 pub use dashpots::Dashpots;
+pub use history::{EnergyBalance, History, Instant};
 pub use march::{Integrator, MotionEnd, Step, TimeSettings, follow};
 pub use mass::lumped_mass;
 pub use motion::{Motion, MovingForce, MovingSupport, Start};
 pub use sheet::SheetViscosity;
+pub use step_forces::StepForces;
 pub use time_function::TimeFunction;
-pub use viscosity::Viscosity;
-
-/// Where the energy is, in mJ.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EnergyBalance {
-    /// ½ u̇ᵀ M u̇.
-    pub kinetic: f64,
-    /// Π, the energy of the springs or of the elastic material.
-    pub stored: f64,
-    /// Work done against the viscous forces since the start. What relaxing stresses keep for a while is part of it.
-    pub dissipated: f64,
-    /// Work of loads and supports since the start.
-    pub external_work: f64,
-}
-
-impl EnergyBalance {
-    /// Kinetic, stored and dissipated energy less the external work: constant in an exact motion.
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.stored + self.dissipated - self.external_work
-    }
-
-    /// The largest of the energies, which their errors are measured by.
-    pub fn largest(&self) -> f64 {
-        let parts = [self.stored, self.dissipated, self.external_work];
-        parts
-            .into_iter()
-            .fold(self.kinetic, |most, part| most.max(part.abs()))
-    }
-}
-
-/// A moving body at one time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Instant {
-    /// Time in s.
-    pub time: f64,
-    /// ux, uy of node after node in mm.
-    pub displacement: Vec<f64>,
-    /// In mm/s.
-    pub velocity: Vec<f64>,
-    /// In mm/s².
-    pub acceleration: Vec<f64>,
-    /// Where the energy is.
-    pub energy: EnergyBalance,
-    /// The force of each support on the body in N along both axes, the inertia of its own nodes included; nothing
-    /// after its release.
-    pub support_forces: Vec<[f64; 2]>,
-}
-
-/// A motion as it was computed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct History {
-    /// The instants in order, the start first.
-    pub instants: Vec<Instant>,
-    /// Steps that were taken, those between the instants included.
-    pub steps: usize,
-    /// Steps that were taken again with half the length.
-    pub halved: usize,
-    /// Factorisations of the tangent.
-    pub factorisations: usize,
-}
-
-impl History {
-    /// The times in s.
-    pub fn times(&self) -> Vec<f64> {
-        self.instants.iter().map(|instant| instant.time).collect()
-    }
-
-    /// One unknown at all instants, in mm.
-    pub fn displacement(&self, unknown: usize) -> Vec<f64> {
-        let instants = self.instants.iter();
-        instants
-            .map(|instant| instant.displacement[unknown])
-            .collect()
-    }
-
-    /// The force of a support along an axis at all instants, in N.
-    pub fn support_force(&self, support: usize, axis: usize) -> Vec<f64> {
-        let instants = self.instants.iter();
-        instants
-            .map(|instant| instant.support_forces[support][axis])
-            .collect()
-    }
-
-    /// How far the energy balance strays from its value at the start, relative to the largest energy of the motion.
-    pub fn energy_error(&self) -> f64 {
-        let Some(first) = self.instants.first() else {
-            return 0.0;
-        };
-        let energies = || self.instants.iter().map(|instant| instant.energy);
-        let largest = energies().fold(0.0, |most: f64, energy| most.max(energy.largest()));
-        let strays = energies().map(|energy| (energy.total() - first.energy.total()).abs());
-        strays.fold(0.0, f64::max) / largest.max(f64::MIN_POSITIVE)
-    }
-}
-
-/// The fault of a state that is no state of a body any more.
-fn finite(values: &[f64], what: &str) -> Result<(), SolveFault> {
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(())
-    } else {
-        Err(SolveFault::NotFinite(what.to_owned()))
-    }
-}
+pub use viscosity::{Memory, Viscosity};
 
 #[cfg(test)]
 mod forced_tests;

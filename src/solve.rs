@@ -6,6 +6,7 @@ pub mod assembly;
 mod connectivity;
 pub mod dissection;
 mod ending;
+pub mod krylov;
 mod loading;
 pub mod newton;
 pub mod path;

@@ -25,10 +25,9 @@
 use rayon::prelude::*;
 
 use super::{Condition, Corrector, CorrectorSettings, Linearised};
-use crate::dynamics::Motion;
-use crate::dynamics::viscosity::{Passing, ViscousLocal};
+use crate::dynamics::{Memory, Motion, StepForces};
 use crate::error::SolveFault;
-use crate::solve::{Assembly, Connectivity, Inadmissible, Local, Potential, SparseRows};
+use crate::solve::{Assembly, Inadmissible, SparseRows};
 
 mod window;
 
@@ -223,16 +222,19 @@ impl<'a> EquationOfMotion<'a> {
         let rate: Vec<f64> = pairs().map(|(a, b)| (b - a) / self.step).collect();
         let mut force = vec![0.0; from.len()];
         let mut by_end = |by_rate: f64| -> Result<Vec<f64>, Inadmissible> {
-            let step = ViscousStep {
+            let forces = StepForces {
                 energy: self.motion.energy,
-                viscosity,
-                rate: &rate,
+                viscosity: Some(viscosity),
+                velocity: &rate,
+                memory: &Memory::default(),
                 elapsed: self.step,
-                by_rate,
+                elastic: false,
+                by_displacement: 0.5,
+                by_velocity: by_rate,
             };
             let mut values = Vec::new();
             self.assembly
-                .linearise(&step, &middle, &mut force, &mut values)?;
+                .linearise(&forces, &middle, &mut force, &mut values)?;
             Ok(values)
         };
         let by_ends = [by_end(-1.0 / self.step)?, by_end(1.0 / self.step)?];
@@ -305,61 +307,6 @@ impl<'a> EquationOfMotion<'a> {
         SolveFault::Inverted {
             element: (self.motion.describe)(fault.element),
         }
-    }
-}
-
-/// Viscous forces in the middle of a step as if they were those of a potential, with the tangent by one of its ends.
-struct ViscousStep<'a> {
-    energy: &'a dyn Potential,
-    viscosity: &'a dyn crate::dynamics::Viscosity,
-    rate: &'a [f64],
-    elapsed: f64,
-    /// ∂rate/∂end in 1/s.
-    by_rate: f64,
-}
-
-impl Potential for ViscousStep<'_> {
-    fn connectivity(&self) -> &Connectivity {
-        self.energy.connectivity()
-    }
-
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
-        let velocity: Vec<f64> = self
-            .element_unknowns(element)
-            .iter()
-            .map(|i| self.rate[*i])
-            .collect();
-        let passing = Passing {
-            displacement: u,
-            velocity: &velocity,
-            memory: &[],
-            elapsed: self.elapsed,
-        };
-        let [mut by_place, mut by_rate] = [(); 2].map(|()| vec![0.0; u.len() * u.len()]);
-        let wanted = local.stiffness.is_some();
-        let tangents = wanted.then(|| [&mut by_place[..], &mut by_rate[..]]);
-        self.viscosity.add_element(
-            element,
-            passing,
-            ViscousLocal {
-                force: local.residual,
-                tangents,
-            },
-        )?;
-        for (sum, (k, c)) in local
-            .stiffness
-            .into_iter()
-            .flatten()
-            .zip(by_place.iter().zip(&by_rate))
-        {
-            *sum += 0.5 * k + self.by_rate * c;
-        }
-        Ok(0.0)
     }
 }
 

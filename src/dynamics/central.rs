@@ -11,12 +11,13 @@
 //! T. Belytschko, W. K. Liu, B. Moran, Nonlinear Finite Elements for Continua and Structures, Wiley (2000), § 6.2
 
 use super::frequency;
-use super::march::Stepper;
-use super::motion::{Motion, Moving};
-use super::tangents::Tangents;
-use super::viscosity::{Viscosity, Whole, inverted};
+use super::motion::{BodyState, Motion};
+use super::stepper::Stepper;
+use super::viscosity::Viscosity;
 use crate::error::SolveFault;
-use crate::solve::{Assembly, SymmetricPattern};
+use crate::solve::Assembly;
+use crate::solve::krylov::conjugate_gradients;
+use crate::solve::vector::{gather, largest};
 
 /// Share of the longest stable step that is taken: at one half the energy of the fastest vibrations is right to a third.
 const SHARE: f64 = 0.5;
@@ -45,15 +46,19 @@ impl Stepper for Central {
         Ok(())
     }
 
-    fn longest(&mut self, motion: &Motion, moving: &Moving) -> Result<Option<f64>, SolveFault> {
+    fn longest(&mut self, motion: &Motion, at: &BodyState) -> Result<Option<f64>, SolveFault> {
         if let Some((longest, age)) = self.longest
             && age < AGE
         {
             return Ok(Some(longest));
         }
         let assembly = self.assembly.as_ref().expect("prepared");
-        let tangents = Tangents::new(motion, moving, 0.0);
-        let omega = tangents.fastest(assembly)?;
+        let stiffness = motion.tangent(assembly, at, 0.0, 0.0)?;
+        let mass = gather(assembly.free(), &motion.mass);
+        let omega = frequency::fastest(assembly.pattern(), &stiffness, &mass);
+        if !omega.is_finite() {
+            return Err(SolveFault::NotFinite("the fastest frequency".into()));
+        }
         let longest = SHARE * 2.0 / omega;
         self.longest = Some((longest, 0));
         Ok(Some(longest))
@@ -62,10 +67,10 @@ impl Stepper for Central {
     fn step(
         &mut self,
         motion: &Motion,
-        before: &Moving,
+        before: &BodyState,
         step: f64,
         held: &[bool],
-    ) -> Result<Moving, SolveFault> {
+    ) -> Result<BodyState, SolveFault> {
         if let Some((_, age)) = &mut self.longest {
             *age += 1;
         }
@@ -75,18 +80,18 @@ impl Stepper for Central {
             after.displacement[i] += step * after.velocity[i];
         }
         motion.evaluate(&mut after, step)?;
-        if let Some(viscosity) = motion.viscosity.filter(|own| own.depends_on_rates()) {
+        let damped = motion.viscosity.is_some_and(Viscosity::depends_on_rates);
+        if damped {
             let assembly = self.assembly.as_ref().expect("prepared");
-            let end = Damped {
+            let end = DampedEnd {
                 motion,
-                viscosity,
                 assembly,
                 step,
             };
             end.solve(&mut after)?;
         }
         motion.accelerate(&mut after, held)?;
-        if motion.viscosity.is_none_or(|own| !own.depends_on_rates()) {
+        if !damped {
             for i in (0..held.len()).filter(|i| !held[*i]) {
                 after.velocity[i] += 0.5 * step * after.acceleration[i];
             }
@@ -104,22 +109,20 @@ impl Stepper for Central {
 }
 
 /// The end of a step with viscous forces: M (u̇₁ − u̇½) = ½ h (f − ∂Π/∂u − f_v(u₁, u̇₁)) for u̇₁.
-struct Damped<'a> {
+struct DampedEnd<'a> {
     motion: &'a Motion<'a>,
-    viscosity: &'a dyn Viscosity,
     assembly: &'a Assembly,
     step: f64,
 }
 
-impl Damped<'_> {
+impl DampedEnd<'_> {
     /// Newton's method with conjugate gradients; on entry the velocity is that of half the step.
-    fn solve(&self, after: &mut Moving) -> Result<(), SolveFault> {
+    fn solve(&self, after: &mut BodyState) -> Result<(), SolveFault> {
         const ITERATIONS: usize = 30;
         const TOLERANCE: f64 = 1e-12;
         let (motion, half) = (self.motion, 0.5 * self.step);
         let free = self.assembly.free();
         let start = after.velocity.clone();
-        let describe = &*motion.describe;
         let mut scale = 0.0_f64;
         for iteration in 0..ITERATIONS {
             let forces = &after.forces;
@@ -128,7 +131,7 @@ impl Damped<'_> {
                 motion.mass[i] * (after.velocity[i] - start[i]) - half * force
             };
             let defect: Vec<f64> = free.iter().map(|i| -defect(*i)).collect();
-            let most = defect.iter().fold(0.0_f64, |most, r| most.max(r.abs()));
+            let most = largest(&defect);
             let impulse =
                 |i: &usize| (motion.mass[*i] * start[*i]).abs() + half * forces.elastic[*i].abs();
             scale = free.iter().map(impulse).fold(scale, f64::max);
@@ -138,20 +141,12 @@ impl Damped<'_> {
             if !most.is_finite() || iteration + 1 == ITERATIONS {
                 break;
             }
-            let tangents = Tangents::new(motion, after, self.step);
-            let damping = tangents.damping(self.assembly)?;
+            let damping = motion.damping(self.assembly, after, self.step)?;
             let change = self.change(&damping, &defect);
             for (i, change) in free.iter().zip(change) {
                 after.velocity[*i] += change;
             }
-            let at = Whole {
-                displacement: &after.displacement,
-                velocity: &after.velocity,
-                elapsed: self.step,
-            };
-            after.forces.viscous =
-                super::viscosity::forces(motion.energy, self.viscosity, &after.memory, at)
-                    .map_err(inverted(describe))?;
+            motion.evaluate_viscous(after, self.step)?;
         }
         Err(SolveFault::Explodes {
             time: after.time,
@@ -161,12 +156,12 @@ impl Damped<'_> {
 
     /// (M + ½ h C)⁻¹ b by conjugate gradients with the diagonal as their preconditioner.
     fn change(&self, damping: &[f64], b: &[f64]) -> Vec<f64> {
-        let pattern: &SymmetricPattern = self.assembly.pattern();
+        let pattern = self.assembly.pattern();
         let half = 0.5 * self.step;
         let mut values: Vec<f64> = damping.iter().map(|c| half * c).collect();
         for (i, place) in self.assembly.free().iter().zip(pattern.diagonal()) {
             values[*place] += self.motion.mass[*i];
         }
-        frequency::conjugate_gradients(pattern, &values, b)
+        conjugate_gradients(pattern, &values, b)
     }
 }

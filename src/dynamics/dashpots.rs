@@ -1,6 +1,6 @@
 //! The viscous forces of a mass-spring lattice: a dashpot beside each spring.
 
-use super::viscosity::{Passing, Viscosity, ViscousLocal};
+use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
 use crate::mass_spring::{DashpotLaw, MassSpring, SpringPose};
 use crate::solve::Inadmissible;
 
@@ -61,15 +61,15 @@ impl Viscosity for Dashpots<'_> {
     fn add_element(
         &self,
         element: usize,
-        passing: Passing<'_>,
+        motion: ElementMotion<'_>,
         local: ViscousLocal<'_>,
     ) -> Result<(), Inadmissible> {
-        let Some(pose) = self.pose(element, passing.displacement)? else {
+        let Some(pose) = self.pose(element, motion.displacement)? else {
             return Ok(());
         };
         let spring = &self.springs.springs[element];
         let (area, length) = (spring.area, spring.rest_length);
-        let v = passing.velocity;
+        let v = motion.velocity;
         let relative = [v[2] - v[0], v[3] - v[1]];
         let unit = pose.unit;
         let rate = (unit[0] * relative[0] + unit[1] * relative[1]) / length;
@@ -78,11 +78,11 @@ impl Viscosity for Dashpots<'_> {
         if let Some(material) = self.law.relaxing() {
             let long = Self::long(&pose);
             let q: f64 = self
-                .branches(passing.memory, long, passing.elapsed)
+                .branches(motion.memory, long, motion.elapsed)
                 .iter()
                 .sum();
             let takes: f64 = material
-                .recursions(passing.elapsed)
+                .recursions(motion.elapsed)
                 .map(|own| own.takes)
                 .sum();
             relaxing = pose.stretch * q;
@@ -101,14 +101,14 @@ impl Viscosity for Dashpots<'_> {
     fn remember(
         &self,
         element: usize,
-        passing: Passing<'_>,
+        motion: ElementMotion<'_>,
         next: &mut [f64],
     ) -> Result<(), Inadmissible> {
-        if let Some(pose) = self.pose(element, passing.displacement)?
+        if let Some(pose) = self.pose(element, motion.displacement)?
             && self.law.relaxing().is_some()
         {
             let now = Self::long(&pose);
-            let branches = self.branches(passing.memory, now, passing.elapsed);
+            let branches = self.branches(motion.memory, now, motion.elapsed);
             next[0] = now;
             next[1..].copy_from_slice(&branches);
         }

@@ -2,12 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, DVectorView, Dyn, SymmetricEigen};
 
 use super::motion::Motion;
-use super::viscosity::{gather, inverted};
 use crate::error::SolveFault;
-use crate::solve::{Assembly, SymmetricPattern};
+use crate::solve::krylov::{irregular, largest_eigenvalue};
+use crate::solve::vector::{gather, spread};
+use crate::solve::{Assembly, Cholesky, SymmetricPattern};
 
 /// A free vibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,68 +31,16 @@ pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
     most.map(|(_, mode)| mode)
 }
 
-/// A vector without any symmetry.
-fn irregular(size: usize, seed: usize) -> Vec<f64> {
-    let entry = |i: usize| ((i + 1) as f64 * (2.0 + seed as f64).sqrt()).sin();
-    (0..size)
-        .map(|i| entry(i) + 0.3 * (i as f64).sqrt().sin())
-        .collect()
-}
-
-fn product(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// The fastest vibration ω in rad/s by Lanczos' method on M^−½ K M^−½: the largest Ritz value with its error bound.
-///
-/// # References
-/// B. N. Parlett, The Symmetric Eigenvalue ClampedPlate, SIAM (1998), § 13.2, doi:10.1137/1.9781611971163
+/// The fastest vibration ω in rad/s, or somewhat more: ω² is the largest eigenvalue of M^−½ K M^−½.
 pub(super) fn fastest(pattern: &SymmetricPattern, stiffness: &[f64], mass: &[f64]) -> f64 {
-    const STEPS: usize = 24;
     let roots: Vec<f64> = mass.iter().map(|m| m.sqrt()).collect();
-    let size = mass.len();
-    let mut now = irregular(size, 0);
-    let scale = product(&now, &now).sqrt();
-    now.iter_mut().for_each(|x| *x /= scale);
-    let mut last = vec![0.0; size];
-    let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
-    let mut beta = 0.0;
-    for _ in 0..STEPS.min(size) {
-        let scaled: Vec<f64> = now.iter().zip(&roots).map(|(x, root)| x / root).collect();
-        let mut next = pattern.multiply(stiffness, &scaled);
-        for ((next, root), last) in next.iter_mut().zip(&roots).zip(&last) {
-            *next = *next / root - beta * last;
-        }
-        let alpha = product(&next, &now);
-        next.iter_mut()
-            .zip(&now)
-            .for_each(|(next, now)| *next -= alpha * now);
-        diagonal.push(alpha);
-        beta = product(&next, &next).sqrt();
-        beside.push(beta);
-        if beta <= 1e-12 * alpha.abs() {
-            break;
-        }
-        next.iter_mut().for_each(|x| *x /= beta);
-        last = std::mem::replace(&mut now, next);
-    }
-    let count = diagonal.len();
-    let tridiagonal = DMatrix::from_fn(count, count, |i, j| match i.abs_diff(j) {
-        0 => diagonal[i],
-        1 => beside[i.min(j)],
-        _ => 0.0,
-    });
-    if tridiagonal.iter().any(|entry| !entry.is_finite()) {
-        return f64::NAN;
-    }
-    let eigen = SymmetricEigen::new(tridiagonal);
-    let bounds = (0..count).map(|i| {
-        eigen.eigenvalues[i].abs() + beside[count - 1] * eigen.eigenvectors[(count - 1, i)].abs()
-    });
-    bounds.fold(0.0, f64::max).sqrt()
+    let over_roots = |x: &[f64]| -> Vec<f64> { x.iter().zip(&roots).map(|(x, r)| x / r).collect() };
+    let apply = |x: &[f64]| over_roots(&pattern.multiply(stiffness, &over_roots(x)));
+    largest_eigenvalue(mass.len(), apply).sqrt()
 }
 
-/// The `count` slowest vibrations about a displacement in mm, by inverse iteration of a subspace, ascending.
+/// The `count` slowest vibrations about a displacement in mm, ascending, by inverse iteration of a subspace: with
+/// ψ = M^½ φ they are the largest eigenvalues 1/ω² of M^½ K⁻¹ M^½, several equal ones included.
 ///
 /// # Errors
 /// [`SolveFault`] when the body is not stable there, or when the iteration stalls.
@@ -107,48 +56,38 @@ pub fn slowest(
     const ITERATIONS: usize = 200;
     const TOLERANCE: f64 = 1e-11;
     let assembly = Assembly::new(motion.energy, held);
-    let size = assembly.free().len();
-    let (mut residual, mut stiffness) = (vec![0.0; held.len()], Vec::new());
-    assembly
-        .linearise(motion.energy, displacement, &mut residual, &mut stiffness)
-        .map_err(inverted(&*motion.describe))?;
-    let mut cholesky = assembly
-        .analyse(motion.energy)
-        .map_err(|_| SolveFault::Singular)?;
-    cholesky
-        .factorise(&stiffness)
-        .map_err(|_| SolveFault::NotPositiveDefinite)?;
+    let mut cholesky = factorised(motion, &assembly, displacement)?;
     let mass = gather(assembly.free(), &motion.mass);
-    let width = (2 * count).max(count + 6).min(size);
-    let mut space: Vec<Vec<f64>> = (0..width).map(|seed| irregular(size, seed)).collect();
+    let roots = DVector::from_iterator(mass.len(), mass.iter().map(|m| m.sqrt()));
+    let width = (2 * count).max(count + 6).min(mass.len());
+    let columns = (0..width).flat_map(|seed| irregular(mass.len(), seed));
+    let mut space = DMatrix::from_iterator(mass.len(), width, columns);
     let mut last = vec![f64::INFINITY; count.min(width)];
     for _ in 0..ITERATIONS {
-        for vector in &mut space {
-            let mut forces: Vec<f64> = vector.iter().zip(&mass).map(|(x, m)| x * m).collect();
-            cholesky.substitute(&mut forces);
-            *vector = forces;
-        }
-        orthonormalise(&mut space, &mass);
-        let squares = rotate(&mut space, assembly.pattern(), &stiffness);
-        let squares = &squares[..last.len()];
-        let pairs = squares.iter().zip(&last);
-        if pairs.fold(0.0, |most: f64, (now, last)| {
-            most.max((now / last - 1.0).abs())
-        }) < TOLERANCE
-        {
-            let mode = |(square, own): (&f64, &Vec<f64>)| {
-                let mut shape = vec![0.0; held.len()];
-                for (unknown, entry) in assembly.free().iter().zip(own) {
-                    shape[*unknown] = *entry;
-                }
+        let basis = space.qr().q();
+        let mut image = basis.clone();
+        times_rows(&mut image, &roots);
+        cholesky.substitute_columns(image.as_mut_slice(), width);
+        times_rows(&mut image, &roots);
+        let ritz = descending(SymmetricEigen::new(basis.tr_mul(&image)));
+        let values = &ritz.eigenvalues.as_slice()[..last.len()];
+        let changes = values
+            .iter()
+            .zip(&last)
+            .map(|(now, last)| (last / now - 1.0).abs());
+        if changes.fold(0.0, f64::max) < TOLERANCE {
+            let shapes = basis * &ritz.eigenvectors;
+            let mode = |(value, shape): (&f64, DVectorView<f64>)| {
+                let own = shape.component_div(&roots);
                 Mode {
-                    frequency: square.sqrt() / TAU,
-                    shape,
+                    frequency: 1.0 / (TAU * value.sqrt()),
+                    shape: spread(assembly.free(), own.as_slice(), held.len()),
                 }
             };
-            return Ok(squares.iter().zip(&space).map(mode).collect());
+            return Ok(values.iter().zip(shapes.column_iter()).map(mode).collect());
         }
-        last.copy_from_slice(squares);
+        last.copy_from_slice(values);
+        space = image * ritz.eigenvectors;
     }
     Err(SolveFault::Stalled {
         iterations: ITERATIONS,
@@ -157,94 +96,37 @@ pub fn slowest(
     })
 }
 
-/// Makes vectors orthonormal with the mass as their scalar product, twice for the digits.
-fn orthonormalise(space: &mut [Vec<f64>], mass: &[f64]) {
-    for i in 0..space.len() {
-        let (before, rest) = space.split_at_mut(i);
-        let own = &mut rest[0];
-        for _ in 0..2 {
-            for other in before.iter() {
-                let share: f64 = (0..own.len()).map(|k| own[k] * mass[k] * other[k]).sum();
-                own.iter_mut()
-                    .zip(other)
-                    .for_each(|(own, other)| *own -= share * other);
-            }
-            let square: f64 = own.iter().zip(mass).map(|(x, m)| m * x * x).sum();
-            let scale = square.sqrt().max(f64::MIN_POSITIVE);
-            own.iter_mut().for_each(|x| *x /= scale);
-        }
+/// The factor of the stiffness at a displacement.
+fn factorised(
+    motion: &Motion,
+    assembly: &Assembly,
+    displacement: &[f64],
+) -> Result<Cholesky, SolveFault> {
+    let (mut residual, mut stiffness) = (vec![0.0; displacement.len()], Vec::new());
+    assembly
+        .linearise(motion.energy, displacement, &mut residual, &mut stiffness)
+        .map_err(|fault| motion.inverted(fault))?;
+    let cholesky = assembly.analyse(motion.energy);
+    let mut cholesky = cholesky.map_err(|_| SolveFault::Singular)?;
+    let factor = cholesky.factorise(&stiffness);
+    factor.map_err(|_| SolveFault::NotPositiveDefinite)?;
+    Ok(cholesky)
+}
+
+fn times_rows(matrix: &mut DMatrix<f64>, factors: &DVector<f64>) {
+    for mut column in matrix.column_iter_mut() {
+        column.component_mul_assign(factors);
     }
 }
 
-/// Turns the vectors into the Ritz vectors of the stiffness in their span; ω², ascending.
-fn rotate(space: &mut [Vec<f64>], pattern: &SymmetricPattern, stiffness: &[f64]) -> Vec<f64> {
-    let forces: Vec<Vec<f64>> = space
-        .iter()
-        .map(|own| pattern.multiply(stiffness, own))
-        .collect();
-    let width = space.len();
-    let projected = DMatrix::from_fn(width, width, |i, j| {
-        0.5 * (product(&space[i], &forces[j]) + product(&space[j], &forces[i]))
-    });
-    let eigen = SymmetricEigen::new(projected);
-    let mut order: Vec<usize> = (0..width).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-    let turned: Vec<Vec<f64>> = order
-        .iter()
-        .map(|column| {
-            let mut own = vec![0.0; space[0].len()];
-            for (row, vector) in space.iter().enumerate() {
-                let factor = eigen.eigenvectors[(row, *column)];
-                own.iter_mut()
-                    .zip(vector)
-                    .for_each(|(own, x)| *own += factor * x);
-            }
-            own
-        })
-        .collect();
-    space
-        .iter_mut()
-        .zip(turned)
-        .for_each(|(own, turned)| *own = turned);
-    order.iter().map(|i| eigen.eigenvalues[*i]).collect()
-}
-
-/// x of A x = b for a positive definite matrix, to 14 digits or as near as rounding allows.
-pub(super) fn conjugate_gradients(
-    pattern: &SymmetricPattern,
-    values: &[f64],
-    b: &[f64],
-) -> Vec<f64> {
-    let diagonal: Vec<f64> = pattern
-        .diagonal()
-        .iter()
-        .map(|place| values[*place])
-        .collect();
-    let precondition =
-        |r: &[f64]| -> Vec<f64> { r.iter().zip(&diagonal).map(|(r, d)| r / d).collect() };
-    let (mut x, mut r) = (vec![0.0; b.len()], b.to_vec());
-    let mut z = precondition(&r);
-    let mut direction = z.clone();
-    let mut square = product(&r, &z);
-    let enough = 1e-28 * square;
-    for _ in 0..2 * b.len() + 20 {
-        if square <= enough || square.is_nan() {
-            break;
-        }
-        let image = pattern.multiply(values, &direction);
-        let length = square / product(&direction, &image);
-        for i in 0..x.len() {
-            x[i] += length * direction[i];
-            r[i] -= length * image[i];
-        }
-        z = precondition(&r);
-        let next = product(&r, &z);
-        for (direction, z) in direction.iter_mut().zip(&z) {
-            *direction = z + next / square * *direction;
-        }
-        square = next;
-    }
-    x
+/// Eigenvalues and eigenvectors, the largest first.
+fn descending(mut eigen: SymmetricEigen<f64, Dyn>) -> SymmetricEigen<f64, Dyn> {
+    let values = eigen.eigenvalues.clone();
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
+    eigen.eigenvectors = eigen.eigenvectors.select_columns(&order);
+    eigen.eigenvalues = values.select_rows(&order);
+    eigen
 }
 
 #[cfg(test)]

@@ -13,10 +13,8 @@
 //! J. Chung, G. M. Hulbert, J. Appl. Mech. 60, 371 (1993), doi:10.1115/1.2900803
 
 use super::frequency;
-use super::march::Stepper;
-use super::motion::{Motion, Moving};
-use super::tangents::Tangents;
-use super::viscosity::inverted;
+use super::motion::{BodyState, Motion};
+use super::stepper::Stepper;
 use crate::error::SolveFault;
 use crate::solve::{Assembly, Cholesky};
 
@@ -85,7 +83,7 @@ impl Implicit {
     }
 
     /// Factorises K + γ/(β h) C + (1 − αₘ)/((1 − α_f) β h²) M at a state.
-    fn factorise(&mut self, motion: &Motion, at: &Moving, step: f64) -> Result<(), SolveFault> {
+    fn factorise(&mut self, motion: &Motion, at: &BodyState, step: f64) -> Result<(), SolveFault> {
         let Constants {
             alpha_m,
             alpha_f,
@@ -93,8 +91,7 @@ impl Implicit {
             gamma,
         } = self.constants;
         let (assembly, cholesky) = self.system.as_mut().expect("prepared");
-        let tangents = Tangents::new(motion, at, step);
-        let mut values = tangents.combined(assembly, gamma / (beta * step))?;
+        let mut values = motion.tangent(assembly, at, step, gamma / (beta * step))?;
         let inertia = (1.0 - alpha_m) / ((1.0 - alpha_f) * beta * step * step);
         for (i, place) in assembly.free().iter().zip(assembly.pattern().diagonal()) {
             values[*place] += inertia * motion.mass[*i];
@@ -110,7 +107,7 @@ impl Implicit {
 
     /// Writes u₁ and u̇₁ of the free unknowns that follow from ü₁, which is the unknown: it would lose its digits in
     /// differences of displacements.
-    fn follow(&self, before: &Moving, after: &mut Moving, step: f64) {
+    fn follow(&self, before: &BodyState, after: &mut BodyState, step: f64) {
         let Constants { beta, gamma, .. } = self.constants;
         let (assembly, _) = self.system.as_ref().expect("prepared");
         for i in assembly.free().iter().copied() {
@@ -126,13 +123,13 @@ impl Implicit {
     }
 
     /// −1/(1 − α_f) times the residual of the free unknowns, and its size relative to the largest force.
-    fn defect(&self, motion: &Motion, before: &Moving, after: &Moving) -> (Vec<f64>, f64) {
+    fn defect(&self, motion: &Motion, before: &BodyState, after: &BodyState) -> (Vec<f64>, f64) {
         let Constants {
             alpha_m, alpha_f, ..
         } = self.constants;
         let (assembly, _) = self.system.as_ref().expect("prepared");
-        let imbalance = |moving: &Moving, i: usize| {
-            let forces = &moving.forces;
+        let imbalance = |at: &BodyState, i: usize| {
+            let forces = &at.forces;
             forces.elastic[i] + forces.viscous[i] - forces.external[i]
         };
         let defect = |i: &usize| {
@@ -160,10 +157,10 @@ impl Implicit {
     fn predict(
         &mut self,
         motion: &Motion,
-        before: &Moving,
+        before: &BodyState,
         step: f64,
         held: &[bool],
-    ) -> Result<Moving, SolveFault> {
+    ) -> Result<BodyState, SolveFault> {
         let beta = self.constants.beta;
         let mut after = before.moved(motion, step);
         let target = std::mem::replace(&mut after.displacement, before.displacement.clone());
@@ -179,7 +176,7 @@ impl Implicit {
         }
         let mut forces = vec![0.0; held.len()];
         Assembly::add_product(motion.energy, &after.displacement, &support, &mut forces)
-            .map_err(inverted(&*motion.describe))?;
+            .map_err(|fault| motion.inverted(fault))?;
         self.factorise(motion, &after, step)?;
         let (mut change, _) = self.defect(motion, before, &after);
         let (assembly, cholesky) = self.system.as_mut().expect("prepared");
@@ -200,16 +197,16 @@ impl Implicit {
     fn iterate(
         &mut self,
         motion: &Motion,
-        before: &Moving,
-        mut after: Moving,
+        before: &BodyState,
+        mut after: BodyState,
         step: f64,
-    ) -> Result<Moving, SolveFault> {
+    ) -> Result<BodyState, SolveFault> {
         let (mut last, mut fresh) = (f64::INFINITY, false);
         let by_acceleration = self.constants.beta * step * step;
         for iteration in 0..ITERATIONS {
             self.follow(before, &mut after, step);
             motion.evaluate(&mut after, step)?;
-            let (change, relative) = self.defect(motion, before, &after);
+            let (mut change, relative) = self.defect(motion, before, &after);
             let stagnant = fresh && relative > 0.5 * last;
             if relative <= self.tolerance || (stagnant && relative < ROUNDING_FLOOR) {
                 return Ok(after);
@@ -223,7 +220,6 @@ impl Implicit {
             }
             last = relative;
             let (assembly, cholesky) = self.system.as_mut().expect("prepared");
-            let mut change = change;
             cholesky.substitute(&mut change);
             for (i, change) in assembly.free().iter().zip(change) {
                 after.acceleration[*i] += change / by_acceleration;
@@ -236,7 +232,7 @@ impl Implicit {
     }
 }
 
-impl Moving {
+impl BodyState {
     /// The largest force on an unknown in N, reactions and inertia included.
     fn largest_force(&self, motion: &Motion) -> f64 {
         let forces = &self.forces;
@@ -262,10 +258,10 @@ impl Stepper for Implicit {
         Ok(())
     }
 
-    fn longest(&mut self, motion: &Motion, moving: &Moving) -> Result<Option<f64>, SolveFault> {
+    fn longest(&mut self, motion: &Motion, at: &BodyState) -> Result<Option<f64>, SolveFault> {
         if self.longest.is_none() {
-            let held = motion.held(moving.time);
-            let modes = frequency::slowest(motion, &held, &moving.displacement, 1)?;
+            let held = motion.held(at.time);
+            let modes = frequency::slowest(motion, &held, &at.displacement, 1)?;
             self.longest = modes
                 .first()
                 .map(|mode| 1.0 / (STEPS_IN_PERIOD * mode.frequency));
@@ -276,10 +272,10 @@ impl Stepper for Implicit {
     fn step(
         &mut self,
         motion: &Motion,
-        before: &Moving,
+        before: &BodyState,
         step: f64,
         held: &[bool],
-    ) -> Result<Moving, SolveFault> {
+    ) -> Result<BodyState, SolveFault> {
         let flying = before.moved(motion, step);
         match self.iterate(motion, before, flying, step) {
             // Supports that move far, or nodes that fly far, turn cells inside out where the tangent's answer does not.

@@ -1,9 +1,10 @@
 //! Steps from instant to instant, halved where they explode.
 
-use super::History;
 use super::central::Central;
+use super::history::History;
 use super::implicit::Implicit;
-use super::motion::{Motion, Moving};
+use super::motion::{BodyState, Motion};
+use super::stepper::Stepper;
 use crate::error::SolveFault;
 
 /// How a motion is integrated.
@@ -63,30 +64,6 @@ impl MotionEnd {
     }
 }
 
-/// One way to take a step.
-pub(super) trait Stepper {
-    /// Makes ready for the supports that hold after a time.
-    fn prepare(&mut self, motion: &Motion, held: &[bool]) -> Result<(), SolveFault>;
-
-    /// The longest step in s that is safe at a state; nothing where any is.
-    fn longest(&mut self, motion: &Motion, moving: &Moving) -> Result<Option<f64>, SolveFault>;
-
-    /// The state a step later. `held` are the unknowns that supports hold in the step.
-    fn step(
-        &mut self,
-        motion: &Motion,
-        before: &Moving,
-        step: f64,
-        held: &[bool],
-    ) -> Result<Moving, SolveFault>;
-
-    /// Whether an exact step would not change the sum of the energies; otherwise it may lose some.
-    fn conserves(&self) -> bool;
-
-    /// Factorisations so far.
-    fn factorisations(&self) -> usize;
-}
-
 /// Steps that are taken before the longest stable one is looked at again.
 const RUN: usize = 64;
 
@@ -109,80 +86,60 @@ pub fn follow(
     settings: TimeSettings,
     progress: &dyn Fn(f64),
 ) -> Result<History, MotionEnd> {
-    let mut history = History::default();
-    let outcome = march(motion, settings, &mut history, progress);
-    outcome.map_err(|fault| MotionEnd {
-        time: history.instants.last().map_or(0.0, |last| last.time),
-        fault,
-        history: history.clone(),
-    })?;
-    Ok(history)
-}
-
-fn march(
-    motion: &Motion,
-    settings: TimeSettings,
-    history: &mut History,
-    progress: &dyn Fn(f64),
-) -> Result<(), SolveFault> {
-    let mut moving = motion.begin()?;
-    history.instants.push(motion.instant(&moving));
-    let mut stepper: Box<dyn Stepper> = match settings.integrator {
-        Integrator::VelocityVerlet => Box::new(Central::default()),
-        Integrator::GeneralisedAlpha {
-            spectral_radius,
-            tolerance,
-        } => Box::new(Implicit::new(spectral_radius, tolerance)),
-    };
-    let mut held = motion.held(0.0);
-    stepper.prepare(motion, &held)?;
-    let mut pace = Pace {
-        wanted: match settings.step {
-            Step::Automatic => f64::INFINITY,
-            Step::AtMost(step) => step,
-        },
-        automatic: settings.step == Step::Automatic,
-        current: f64::INFINITY,
-        runs: 0,
-        patience: PATIENCE,
-        grown: false,
-        total: moving.energy.total(),
-    };
-    for (end, is_instant) in stops(motion, settings) {
-        let now = motion.held(moving.time);
-        if now != held {
-            held = now;
-            stepper.prepare(motion, &held)?;
-            motion.accelerate(&mut moving, &held)?;
-        }
-        motion.enter(&mut moving);
-        moving = pace.reach(motion, &mut *stepper, moving, end, &held, history)?;
-        if is_instant {
-            history.instants.push(motion.instant(&moving));
-            progress(end);
-        }
-        history.factorisations = stepper.factorisations();
+    let mut march = March::new(motion, settings);
+    let outcome = march.run(settings, progress);
+    let history = march.history;
+    match outcome {
+        Ok(()) => Ok(history),
+        Err(fault) => Err(MotionEnd {
+            time: history.instants.last().map_or(0.0, |last| last.time),
+            fault,
+            history,
+        }),
     }
-    Ok(())
 }
 
-/// Where runs of steps end: at instants, kinks and releases; and whether it is an instant.
-fn stops(motion: &Motion, settings: TimeSettings) -> Vec<(f64, bool)> {
+/// A motion on its way.
+struct March<'a> {
+    motion: &'a Motion<'a>,
+    stepper: Box<dyn Stepper>,
+    /// The unknowns that supports hold now.
+    held: Vec<bool>,
+    pace: Pace,
+    history: History,
+}
+
+/// Where a run of steps ends.
+struct Stop {
+    /// In s.
+    time: f64,
+    /// Whether it is an instant.
+    is_instant: bool,
+}
+
+/// Where runs of steps end: at instants, kinks and releases.
+fn stops(motion: &Motion, settings: TimeSettings) -> Vec<Stop> {
     let TimeSettings {
         duration, interval, ..
     } = settings;
     let count = (duration / interval * (1.0 - 1e-12)).ceil().max(1.0) as usize;
-    let instants = (1..=count).map(|i| (i as f64 * interval).min(duration));
-    let mut stops: Vec<(f64, bool)> = instants.map(|time| (time, true)).collect();
+    let instants = (1..=count).map(|i| Stop {
+        time: (i as f64 * interval).min(duration),
+        is_instant: true,
+    });
+    let mut stops: Vec<Stop> = instants.collect();
     for mark in motion.marks(duration) {
-        let near = |time: f64| (time - mark).abs() < 1e-9 * interval;
-        match stops.iter_mut().find(|(time, _)| near(*time)) {
+        let near = |stop: &&mut Stop| (stop.time - mark).abs() < 1e-9 * interval;
+        match stops.iter_mut().find(near) {
             // The instant moves to the mark, by a rounding error.
-            Some(stop) => stop.0 = mark,
-            None => stops.push((mark, false)),
+            Some(stop) => stop.time = mark,
+            None => stops.push(Stop {
+                time: mark,
+                is_instant: false,
+            }),
         }
     }
-    stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+    stops.sort_by(|a, b| a.time.total_cmp(&b.time));
     stops
 }
 
@@ -204,101 +161,148 @@ struct Pace {
 }
 
 impl Pace {
-    /// Takes equal steps to a time.
-    fn reach(
-        &mut self,
-        motion: &Motion,
-        stepper: &mut dyn Stepper,
-        mut moving: Moving,
-        end: f64,
-        held: &[bool],
-        history: &mut History,
-    ) -> Result<Moving, SolveFault> {
-        while end - moving.time > 1e-9 * (end - moving.time).max(end) {
-            let rest = end - moving.time;
-            let longest = self.allowed(motion, stepper, &moving)?.min(rest);
-            let count = (rest / longest * (1.0 - 1e-9)).ceil().max(1.0);
-            let step = rest / count;
-            let run = (count as usize).min(RUN);
-            match self.take(motion, stepper, &moving, (step, run), held) {
-                Ok(next) => {
-                    history.steps += run;
-                    moving = next;
-                    if run == count as usize {
-                        moving.time = end;
-                    }
-                    self.runs += 1;
-                }
-                Err(fault) => {
-                    history.halved += run;
-                    self.current = 0.5 * step;
-                    self.runs = 0;
-                    if std::mem::take(&mut self.grown) {
-                        self.patience *= 2;
-                    }
-                    self.total = moving.energy.total();
-                    let shortest = SHORTEST * self.wanted.min(rest);
-                    if self.current < shortest {
-                        return Err(fault);
-                    }
-                }
-            }
+    fn new(step: Step) -> Self {
+        Self {
+            wanted: match step {
+                Step::Automatic => f64::INFINITY,
+                Step::AtMost(step) => step,
+            },
+            automatic: step == Step::Automatic,
+            current: f64::INFINITY,
+            runs: 0,
+            patience: PATIENCE,
+            grown: false,
+            total: 0.0,
         }
-        Ok(moving)
     }
 
-    /// The longest step now: as the settings say, as the integrator says, and as halving has left it. A step that was
-    /// halved, or that may be twice as long, is doubled after some runs: equal steps keep the energy.
-    fn allowed(
-        &mut self,
-        motion: &Motion,
-        stepper: &mut dyn Stepper,
-        moving: &Moving,
-    ) -> Result<f64, SolveFault> {
-        let mut limit = self.wanted;
-        if self.automatic {
-            let longest = stepper.longest(motion, moving)?;
-            limit = longest.unwrap_or(f64::INFINITY);
-        }
+    /// The longest step now: not beyond a limit, and as halving has left it. A step that was halved, or that may be
+    /// twice as long, is doubled after some runs: equal steps keep the energy.
+    fn within(&mut self, limit: f64) -> f64 {
         if self.current > limit {
             self.current = limit;
         } else if self.runs >= self.patience && 2.0 * self.current <= limit {
             self.current *= 2.0;
             (self.runs, self.grown) = (0, true);
         }
-        Ok(self.current)
+        self.current
+    }
+
+    /// Halves a step that failed from a state with so much energy.
+    fn halve(&mut self, step: f64, total: f64) {
+        self.current = 0.5 * step;
+        self.runs = 0;
+        if std::mem::take(&mut self.grown) {
+            self.patience *= 2;
+        }
+        self.total = total;
+    }
+}
+
+impl<'a> March<'a> {
+    fn new(motion: &'a Motion<'a>, settings: TimeSettings) -> Self {
+        Self {
+            motion,
+            stepper: match settings.integrator {
+                Integrator::VelocityVerlet => Box::new(Central::default()),
+                Integrator::GeneralisedAlpha {
+                    spectral_radius,
+                    tolerance,
+                } => Box::new(Implicit::new(spectral_radius, tolerance)),
+            },
+            held: motion.held(0.0),
+            pace: Pace::new(settings.step),
+            history: History::default(),
+        }
+    }
+
+    fn run(&mut self, settings: TimeSettings, progress: &dyn Fn(f64)) -> Result<(), SolveFault> {
+        let motion = self.motion;
+        let mut at = motion.begin()?;
+        self.history.instants.push(motion.instant(&at));
+        self.stepper.prepare(motion, &self.held)?;
+        self.pace.total = at.energy.total();
+        for stop in stops(motion, settings) {
+            let now = motion.held(at.time);
+            if now != self.held {
+                self.held = now;
+                self.stepper.prepare(motion, &self.held)?;
+                motion.accelerate(&mut at, &self.held)?;
+            }
+            motion.enter(&mut at);
+            at = self.reach(at, stop.time)?;
+            if stop.is_instant {
+                self.history.instants.push(motion.instant(&at));
+                progress(stop.time);
+            }
+            self.history.factorisations = self.stepper.factorisations();
+        }
+        Ok(())
+    }
+
+    /// Takes equal steps to a time.
+    fn reach(&mut self, mut at: BodyState, end: f64) -> Result<BodyState, SolveFault> {
+        while end - at.time > 1e-9 * (end - at.time).max(end) {
+            let rest = end - at.time;
+            let longest = self.longest(&at)?.min(rest);
+            let count = (rest / longest * (1.0 - 1e-9)).ceil().max(1.0);
+            let step = rest / count;
+            let run = (count as usize).min(RUN);
+            match self.take(&at, step, run) {
+                Ok(next) => {
+                    self.history.steps += run;
+                    at = next;
+                    if run == count as usize {
+                        at.time = end;
+                    }
+                    self.pace.runs += 1;
+                }
+                Err(fault) => {
+                    self.history.halved += run;
+                    self.pace.halve(step, at.energy.total());
+                    if self.pace.current < SHORTEST * self.pace.wanted.min(rest) {
+                        return Err(fault);
+                    }
+                }
+            }
+        }
+        Ok(at)
+    }
+
+    /// The longest step now: as the settings say, as the integrator says, and as halving has left it.
+    fn longest(&mut self, at: &BodyState) -> Result<f64, SolveFault> {
+        let limit = match self.pace.automatic {
+            true => self
+                .stepper
+                .longest(self.motion, at)?
+                .unwrap_or(f64::INFINITY),
+            false => self.pace.wanted,
+        };
+        Ok(self.pace.within(limit))
     }
 
     /// A run of equal steps; a fault where the energy goes astray.
     fn take(
-        &self,
-        motion: &Motion,
-        stepper: &mut dyn Stepper,
-        start: &Moving,
-        (step, count): (f64, usize),
-        held: &[bool],
-    ) -> Result<Moving, SolveFault> {
-        let mut moving = start.clone();
+        &mut self,
+        start: &BodyState,
+        step: f64,
+        count: usize,
+    ) -> Result<BodyState, SolveFault> {
+        let mut at = start.clone();
         for _ in 0..count {
-            let mut next = stepper.step(motion, &moving, step, held)?;
-            motion.account(&moving, &mut next, held);
-            if let Some(viscosity) = motion.viscosity {
-                let memory = moving
-                    .memory
-                    .after(motion.energy, viscosity, next.whole(step));
-                next.memory = memory.map_err(super::viscosity::inverted(&*motion.describe))?;
-            }
-            moving = next;
+            let mut next = self.stepper.step(self.motion, &at, step, &self.held)?;
+            self.motion.account(&at, &mut next, &self.held);
+            next.memory = self.motion.memory_after(&at.memory, &next, step)?;
+            at = next;
         }
-        let gain = moving.energy.total() - self.total;
-        let astray = if stepper.conserves() {
-            gain.abs()
-        } else {
-            gain
+        let gain = at.energy.total() - self.pace.total;
+        let astray = match self.stepper.conserves() {
+            true => gain.abs(),
+            false => gain,
         };
-        let largest = moving.energy.largest().max(start.energy.largest());
+        let largest = at.energy.largest().max(start.energy.largest());
         if astray.is_finite() && astray <= ASTRAY * largest {
-            return Ok(moving);
+            return Ok(at);
         }
         Err(SolveFault::Explodes {
             time: start.time,

@@ -1,10 +1,12 @@
 //! What moves: energy, mass, viscous forces, supports, loads and the start.
 
+use super::history::{EnergyBalance, Instant};
+use super::step_forces::StepForces;
 use super::time_function::TimeFunction;
-use super::viscosity::{Memory, Viscosity, Whole, forces, inverted};
-use super::{EnergyBalance, Instant};
+use super::viscosity::{Memory, Viscosity};
 use crate::error::SolveFault;
-use crate::solve::{Assembly, Potential};
+use crate::solve::vector::add_scaled;
+use crate::solve::{Assembly, Inadmissible, Potential};
 
 /// A body and everything that moves it.
 pub struct Motion<'a> {
@@ -33,7 +35,7 @@ pub struct MovingSupport {
     pub displacement: Vec<f64>,
     /// How much of it is imposed.
     pub time: TimeFunction,
-    /// The time in s at which it lets go; nothing where it never does.
+    /// The time in s at which it lets go; `None` where it never does.
     pub until: Option<f64>,
 }
 
@@ -102,9 +104,9 @@ pub(super) struct Forces {
     pub external: Vec<f64>,
 }
 
-/// A body on its way.
+/// A moving body at one time, with what its next step needs.
 #[derive(Clone, Debug)]
-pub(super) struct Moving {
+pub(super) struct BodyState {
     pub time: f64,
     pub displacement: Vec<f64>,
     pub velocity: Vec<f64>,
@@ -143,10 +145,7 @@ impl Motion<'_> {
     pub fn external_forces(&self, time: f64) -> Vec<f64> {
         let mut sum = vec![0.0; self.energy.unknowns()];
         for load in &self.forces {
-            let factor = load.time.value(time);
-            for (sum, force) in sum.iter_mut().zip(&load.force) {
-                *sum += factor * force;
-            }
+            add_scaled(&mut sum, load.time.value(time), &load.force);
         }
         sum
     }
@@ -165,7 +164,7 @@ impl Motion<'_> {
     }
 
     /// The body at time 0, accelerations included.
-    pub(super) fn begin(&self) -> Result<Moving, SolveFault> {
+    pub(super) fn begin(&self) -> Result<BodyState, SolveFault> {
         let size = self.energy.unknowns();
         let mut start = self.start.clone();
         let mut acceleration = vec![0.0; size];
@@ -175,65 +174,145 @@ impl Motion<'_> {
             &mut acceleration,
         ];
         self.impose(0.0, 0.0, imposed.map(|values| &mut values[..]));
-        let describe = &*self.describe;
         let rest = vec![0.0; size];
-        let past = if start.relaxed {
-            &start.displacement
-        } else {
-            &rest
+        let past = match start.relaxed {
+            true => &start.displacement,
+            false => &rest,
         };
-        let memory = match self.viscosity {
-            Some(viscosity) => Memory::relaxed(self.energy, viscosity, past),
-            None => Ok(Memory::default()),
-        };
-        let mut moving = Moving {
+        let memory = self.viscosity.map_or(Ok(Memory::default()), |viscosity| {
+            Memory::relaxed(self.energy.connectivity(), viscosity, past)
+        });
+        let mut state = BodyState {
             time: 0.0,
             displacement: start.displacement,
             velocity: start.velocity,
             acceleration,
-            memory: memory.map_err(inverted(describe))?,
-            forces: Forces::default(),
+            memory: memory.map_err(|fault| self.inverted(fault))?,
+            forces: Forces {
+                elastic: vec![0.0; size],
+                viscous: vec![0.0; size],
+                external: Vec::new(),
+            },
             energy: EnergyBalance::default(),
         };
-        moving.forces.elastic = vec![0.0; size];
-        self.evaluate(&mut moving, 0.0)?;
+        self.evaluate(&mut state, 0.0)?;
         // The elements have taken the step to the start at once; from now on they remember it.
-        if let Some(viscosity) = self.viscosity {
-            let next = moving
-                .memory
-                .after(self.energy, viscosity, moving.whole(0.0));
-            moving.memory = next.map_err(inverted(describe))?;
+        state.memory = self.memory_after(&state.memory, &state, 0.0)?;
+        self.accelerate(&mut state, &self.held(0.0))?;
+        state.energy.kinetic = self.kinetic(&state.velocity);
+        Ok(state)
+    }
+
+    /// An element's fault with its name.
+    pub(super) fn inverted(&self, fault: Inadmissible) -> SolveFault {
+        SolveFault::Inverted {
+            element: (self.describe)(fault.element),
         }
-        self.accelerate(&mut moving, &self.held(0.0))?;
-        moving.energy.kinetic = self.kinetic(&moving.velocity);
-        Ok(moving)
+    }
+
+    /// What the elements remember after a step of a length in s that ends at a state.
+    pub(super) fn memory_after(
+        &self,
+        before: &Memory,
+        at: &BodyState,
+        step: f64,
+    ) -> Result<Memory, SolveFault> {
+        let Some(viscosity) = self.viscosity else {
+            return Ok(Memory::default());
+        };
+        let connectivity = self.energy.connectivity();
+        let after = before.after(
+            connectivity,
+            viscosity,
+            [&at.displacement, &at.velocity],
+            step,
+        );
+        after.map_err(|fault| self.inverted(fault))
+    }
+
+    /// The viscous forces of a state that lies `elapsed` after the memory's, whose tangent is ∂f_v/∂u̇.
+    fn viscous_forces<'s>(&'s self, at: &'s BodyState, elapsed: f64) -> StepForces<'s> {
+        StepForces {
+            energy: self.energy,
+            viscosity: self.viscosity,
+            velocity: &at.velocity,
+            memory: &at.memory,
+            elapsed,
+            elastic: false,
+            by_displacement: 0.0,
+            by_velocity: 1.0,
+        }
     }
 
     /// Takes the forces and the stored energy of a state that lies `elapsed` after the memory's.
-    pub(super) fn evaluate(&self, moving: &mut Moving, elapsed: f64) -> Result<(), SolveFault> {
-        let describe = &*self.describe;
-        let stored = Assembly::residual(
-            self.energy,
-            &moving.displacement,
-            &mut moving.forces.elastic,
-        );
-        moving.energy.stored = stored.map_err(inverted(describe))?;
-        moving.forces.external = self.external_forces(moving.time);
-        moving.forces.viscous = match self.viscosity {
-            Some(viscosity) => forces(
-                self.energy,
-                viscosity,
-                &moving.memory,
-                moving.whole(elapsed),
-            )
-            .map_err(inverted(describe))?,
-            None => vec![0.0; moving.displacement.len()],
-        };
+    pub(super) fn evaluate(&self, at: &mut BodyState, elapsed: f64) -> Result<(), SolveFault> {
+        let stored = Assembly::residual(self.energy, &at.displacement, &mut at.forces.elastic);
+        at.energy.stored = stored.map_err(|fault| self.inverted(fault))?;
+        at.forces.external = self.external_forces(at.time);
+        self.evaluate_viscous(at, elapsed)
+    }
+
+    /// Takes the viscous forces alone.
+    pub(super) fn evaluate_viscous(
+        &self,
+        at: &mut BodyState,
+        elapsed: f64,
+    ) -> Result<(), SolveFault> {
+        if self.viscosity.is_some() {
+            let mut viscous = std::mem::take(&mut at.forces.viscous);
+            let forces = self.viscous_forces(at, elapsed);
+            let evaluated = Assembly::residual(&forces, &at.displacement, &mut viscous);
+            evaluated.map_err(|fault| self.inverted(fault))?;
+            at.forces.viscous = viscous;
+        }
         Ok(())
     }
 
+    /// ∂f_v/∂u̇ over the free unknowns, in N·s/mm.
+    pub(super) fn damping(
+        &self,
+        assembly: &Assembly,
+        at: &BodyState,
+        elapsed: f64,
+    ) -> Result<Vec<f64>, SolveFault> {
+        self.assemble(assembly, &self.viscous_forces(at, elapsed), at)
+    }
+
+    /// ∂Π/∂u + ∂f_v/∂u + c ∂f_v/∂u̇ over the free unknowns, in N/mm.
+    pub(super) fn tangent(
+        &self,
+        assembly: &Assembly,
+        at: &BodyState,
+        elapsed: f64,
+        c: f64,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let forces = StepForces {
+            elastic: true,
+            by_displacement: 1.0,
+            by_velocity: c,
+            ..self.viscous_forces(at, elapsed)
+        };
+        self.assemble(assembly, &forces, at)
+    }
+
+    fn assemble(
+        &self,
+        assembly: &Assembly,
+        forces: &StepForces,
+        at: &BodyState,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let (mut residual, mut values) = (vec![0.0; at.displacement.len()], Vec::new());
+        let linearised = assembly.linearise(forces, &at.displacement, &mut residual, &mut values);
+        linearised.map_err(|fault| self.inverted(fault))?;
+        Ok(values)
+    }
+
     /// ü = M⁻¹ (f − ∂Π/∂u − f_v) of the free unknowns.
-    pub(super) fn accelerate(&self, moving: &mut Moving, held: &[bool]) -> Result<(), SolveFault> {
+    pub(super) fn accelerate(
+        &self,
+        moving: &mut BodyState,
+        held: &[bool],
+    ) -> Result<(), SolveFault> {
         let Forces {
             elastic,
             viscous,
@@ -242,7 +321,10 @@ impl Motion<'_> {
         for i in (0..held.len()).filter(|i| !held[*i]) {
             moving.acceleration[i] = (external[i] - elastic[i] - viscous[i]) / self.mass[i];
         }
-        super::finite(&moving.acceleration, "the acceleration")
+        match moving.acceleration.iter().all(|value| value.is_finite()) {
+            true => Ok(()),
+            false => Err(SolveFault::NotFinite("the acceleration".into())),
+        }
     }
 
     pub(super) fn kinetic(&self, velocity: &[f64]) -> f64 {
@@ -251,7 +333,7 @@ impl Motion<'_> {
     }
 
     /// The instant of a state.
-    pub(super) fn instant(&self, moving: &Moving) -> Instant {
+    pub(super) fn instant(&self, moving: &BodyState) -> Instant {
         let Forces {
             elastic,
             viscous,
@@ -282,7 +364,7 @@ impl Motion<'_> {
 
     /// Brings the energy balance from the state `before` a step to the one after it, by the trapezoidal rule; the
     /// work that moves the mass of held unknowns is the change of its kinetic energy.
-    pub(super) fn account(&self, before: &Moving, after: &mut Moving, held: &[bool]) {
+    pub(super) fn account(&self, before: &BodyState, after: &mut BodyState, held: &[bool]) {
         let (mut work, mut dissipated) = (0.0, 0.0);
         for (i, held) in held.iter().enumerate() {
             let change = after.displacement[i] - before.displacement[i];
@@ -304,9 +386,9 @@ impl Motion<'_> {
         energy.kinetic = self.kinetic(&after.velocity);
     }
 
-    /// Gives held unknowns the velocities with which a stretch of time begins: at a kink the supports' work makes them
+    /// Gives held unknowns the velocities with which an interval begins: at a kink the supports' work makes them
     /// jump.
-    pub(super) fn enter(&self, moving: &mut Moving) {
+    pub(super) fn enter(&self, moving: &mut BodyState) {
         let before = self.kinetic(&moving.velocity);
         moving.impose(self, moving.time, moving.time);
         moving.energy.kinetic = self.kinetic(&moving.velocity);
@@ -314,7 +396,7 @@ impl Motion<'_> {
     }
 }
 
-impl Moving {
+impl BodyState {
     /// Moves the held unknowns as [`Motion::impose`] says.
     pub fn impose(&mut self, motion: &Motion, time: f64, within: f64) {
         let Self {
@@ -332,13 +414,5 @@ impl Moving {
         next.time = self.time + step;
         next.impose(motion, next.time, self.time);
         next
-    }
-
-    pub fn whole(&self, elapsed: f64) -> Whole<'_> {
-        Whole {
-            displacement: &self.displacement,
-            velocity: &self.velocity,
-            elapsed,
-        }
     }
 }

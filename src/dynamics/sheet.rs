@@ -1,6 +1,6 @@
 //! The viscous forces of a sheet of finite elements.
 
-use super::viscosity::{Passing, Viscosity, ViscousLocal};
+use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::viscosity::{
     ViscousMaterial, first_piola_kirchhoff, geometric_tangent, second_piola_kirchhoff,
@@ -117,16 +117,16 @@ impl Viscosity for SheetViscosity<'_> {
     fn add_element(
         &self,
         element: usize,
-        passing: Passing<'_>,
+        motion: ElementMotion<'_>,
         mut local: ViscousLocal<'_>,
     ) -> Result<(), Inadmissible> {
-        let points = self.points(element, passing.displacement)?;
+        let points = self.points(element, motion.displacement)?;
         for (index, (point, kinematics)) in points.into_iter().enumerate() {
             let own = self.point_stress(
                 &kinematics,
-                &point.gradient(passing.velocity),
-                self.part(passing.memory, index),
-                passing.elapsed,
+                &point.gradient(motion.velocity),
+                self.part(motion.memory, index),
+                motion.elapsed,
                 local.tangents.is_some(),
             );
             point.add_force(&own.stress, local.force);
@@ -143,15 +143,15 @@ impl Viscosity for SheetViscosity<'_> {
     fn remember(
         &self,
         element: usize,
-        passing: Passing<'_>,
+        motion: ElementMotion<'_>,
         next: &mut [f64],
     ) -> Result<(), Inadmissible> {
-        let points = self.points(element, passing.displacement)?;
+        let points = self.points(element, motion.displacement)?;
         for (index, (_, kinematics)) in points.into_iter().enumerate() {
             let (_, long) = self.energy.law().stress(&kinematics);
             let now = second_piola_kirchhoff(&kinematics, &long);
-            let part = self.part(passing.memory, index);
-            let branches = self.branches(part, now, passing.elapsed);
+            let part = self.part(motion.memory, index);
+            let branches = self.branches(part, now, motion.elapsed);
             let values = now.into_iter().chain(branches.into_iter().flatten());
             let start = index * self.of_point();
             next[start..]

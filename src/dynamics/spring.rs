@@ -1,6 +1,6 @@
 //! A single spring with a dashpot, for tests.
 
-use super::viscosity::{Passing, Viscosity, ViscousLocal};
+use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
 use crate::solve::{Connectivity, Inadmissible, Local, Potential};
 
 /// One unknown with the energy ½ k u² + ¼ q u⁴, in mJ, and a dashpot of constant c in N·s/mm.
@@ -37,10 +37,10 @@ impl Viscosity for Spring {
     fn add_element(
         &self,
         _: usize,
-        passing: Passing<'_>,
+        motion: ElementMotion<'_>,
         local: ViscousLocal<'_>,
     ) -> Result<(), Inadmissible> {
-        local.force[0] += self.c * passing.velocity[0];
+        local.force[0] += self.c * motion.velocity[0];
         if let Some([_, damping]) = local.tangents {
             damping[0] += self.c;
         }

@@ -1,11 +1,11 @@
 //! Forces that depend on rates and on the past.
 
-use crate::error::SolveFault;
-use crate::solve::{Inadmissible, Potential};
+use crate::solve::vector::gather;
+use crate::solve::{Connectivity, Inadmissible};
 
-/// An element on its way: its own unknowns, their velocities, and what it remembers.
+/// The motion of an element: its own unknowns, their velocities, and what it remembers.
 #[derive(Clone, Copy, Debug)]
-pub struct Passing<'a> {
+pub struct ElementMotion<'a> {
     /// In mm.
     pub displacement: &'a [f64],
     /// In mm/s.
@@ -40,7 +40,7 @@ pub trait Viscosity: Sync {
     fn add_element(
         &self,
         element: usize,
-        passing: Passing<'_>,
+        motion: ElementMotion<'_>,
         local: ViscousLocal<'_>,
     ) -> Result<(), Inadmissible>;
 
@@ -51,7 +51,7 @@ pub trait Viscosity: Sync {
     fn remember(
         &self,
         _element: usize,
-        _passing: Passing<'_>,
+        _motion: ElementMotion<'_>,
         _next: &mut [f64],
     ) -> Result<(), Inadmissible> {
         Ok(())
@@ -76,119 +76,71 @@ pub trait Viscosity: Sync {
     }
 }
 
-/// The memories of all elements, one after the other.
+/// The memories of all elements, one after the other; none where nothing is remembered.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Memory {
+pub struct Memory {
     starts: Vec<usize>,
     values: Vec<f64>,
 }
 
 impl Memory {
     /// The memories of a body that rests at a displacement.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with the first inverted element.
     pub fn relaxed(
-        potential: &dyn Potential,
+        connectivity: &Connectivity,
         viscosity: &dyn Viscosity,
         displacement: &[f64],
     ) -> Result<Self, Inadmissible> {
-        let mut starts = vec![0];
-        for element in 0..potential.elements() {
-            starts.push(starts[element] + viscosity.memory(element));
+        let mut memory = Self {
+            starts: vec![0],
+            values: Vec::new(),
+        };
+        for element in 0..connectivity.elements() {
+            let mut own = vec![0.0; viscosity.memory(element)];
+            let u = gather(connectivity.of(element), displacement);
+            viscosity.relaxed(element, &u, &mut own)?;
+            memory.values.extend(own);
+            memory.starts.push(memory.values.len());
         }
-        let mut values = vec![0.0; starts[potential.elements()]];
-        for element in 0..potential.elements() {
-            let own = gather(potential.element_unknowns(element), displacement);
-            let memory = &mut values[starts[element]..starts[element + 1]];
-            viscosity.relaxed(element, &own, memory)?;
-        }
-        Ok(Self { starts, values })
+        Ok(memory)
     }
 
+    /// The memory of an element.
     pub fn of(&self, element: usize) -> &[f64] {
-        &self.values[self.starts[element]..self.starts[element + 1]]
+        match self.values.is_empty() {
+            true => &[],
+            false => &self.values[self.starts[element]..self.starts[element + 1]],
+        }
     }
 
-    /// The memories after a step that ends at u, u̇.
+    /// The memories after a step of a length in s that ends at displacements u and velocities u̇.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with the first inverted element.
     pub fn after(
         &self,
-        potential: &dyn Potential,
+        connectivity: &Connectivity,
         viscosity: &dyn Viscosity,
-        at: Whole<'_>,
+        [u, v]: [&[f64]; 2],
+        elapsed: f64,
     ) -> Result<Self, Inadmissible> {
         let mut next = self.clone();
         if next.values.is_empty() {
             return Ok(next);
         }
-        for element in 0..potential.elements() {
-            let range = self.starts[element]..self.starts[element + 1];
-            let [u, v] = at.of(potential, element);
-            let passing = Passing {
-                displacement: &u,
-                velocity: &v,
-                memory: &self.values[range.clone()],
-                elapsed: at.elapsed,
+        for element in 0..connectivity.elements() {
+            let unknowns = connectivity.of(element);
+            let motion = ElementMotion {
+                displacement: &gather(unknowns, u),
+                velocity: &gather(unknowns, v),
+                memory: self.of(element),
+                elapsed,
             };
-            viscosity.remember(element, passing, &mut next.values[range])?;
+            let own = self.starts[element]..self.starts[element + 1];
+            viscosity.remember(element, motion, &mut next.values[own])?;
         }
         Ok(next)
-    }
-}
-
-/// The displacement and the velocity of all unknowns some time after the step before.
-#[derive(Clone, Copy)]
-pub(super) struct Whole<'a> {
-    pub displacement: &'a [f64],
-    pub velocity: &'a [f64],
-    pub elapsed: f64,
-}
-
-impl Whole<'_> {
-    pub fn of(&self, potential: &dyn Potential, element: usize) -> [Vec<f64>; 2] {
-        let unknowns = potential.element_unknowns(element);
-        [self.displacement, self.velocity].map(|values| gather(unknowns, values))
-    }
-}
-
-/// The viscous forces on all unknowns in N.
-pub(super) fn forces(
-    potential: &dyn Potential,
-    viscosity: &dyn Viscosity,
-    memory: &Memory,
-    at: Whole<'_>,
-) -> Result<Vec<f64>, Inadmissible> {
-    let mut sum = vec![0.0; at.displacement.len()];
-    let mut force = Vec::new();
-    for element in 0..potential.elements() {
-        let unknowns = potential.element_unknowns(element);
-        let [u, v] = at.of(potential, element);
-        force.clear();
-        force.resize(unknowns.len(), 0.0);
-        let passing = Passing {
-            displacement: &u,
-            velocity: &v,
-            memory: memory.of(element),
-            elapsed: at.elapsed,
-        };
-        let local = ViscousLocal {
-            force: &mut force,
-            tangents: None,
-        };
-        viscosity.add_element(element, passing, local)?;
-        for (unknown, force) in unknowns.iter().zip(&force) {
-            sum[*unknown] += force;
-        }
-    }
-    Ok(sum)
-}
-
-pub(super) fn gather(unknowns: &[usize], values: &[f64]) -> Vec<f64> {
-    unknowns.iter().map(|unknown| values[*unknown]).collect()
-}
-
-/// An element's fault with its name.
-pub(super) fn inverted<'a>(
-    describe: &'a dyn Fn(usize) -> String,
-) -> impl Fn(Inadmissible) -> SolveFault + 'a {
-    |fault| SolveFault::Inverted {
-        element: describe(fault.element),
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use super::tests::{DENSITY, alpha, clamp, plate, run, solved};
-use super::viscosity::{Passing, ViscousLocal};
+use super::viscosity::{ElementMotion, ViscousLocal};
 use super::*;
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{DashpotLaw, LatticeSettings, MassSpring, SpringLaw};
@@ -69,7 +69,7 @@ fn tangent_errors(
         .unwrap();
     let at = |displacement: &[f64], velocity: &[f64], tangents: Option<[&mut [f64]; 2]>| {
         let mut force = vec![0.0; size];
-        let passing = Passing {
+        let motion = ElementMotion {
             displacement,
             velocity,
             memory: &memory,
@@ -79,7 +79,7 @@ fn tangent_errors(
             force: &mut force,
             tangents,
         };
-        viscosity.add_element(element, passing, local).unwrap();
+        viscosity.add_element(element, motion, local).unwrap();
         force
     };
     let mut errors = [0.0; 2];

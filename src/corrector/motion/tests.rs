@@ -12,6 +12,7 @@ use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Side};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::SheetEnergy;
+use crate::solve::Potential;
 
 fn motion<'a>(
     energy: &'a dyn Potential,

@@ -1,0 +1,28 @@
+//! One step of time.
+
+use super::motion::{BodyState, Motion};
+use crate::error::SolveFault;
+
+/// One way to take a step.
+pub(super) trait Stepper {
+    /// Makes ready for the supports that hold after a time.
+    fn prepare(&mut self, motion: &Motion, held: &[bool]) -> Result<(), SolveFault>;
+
+    /// The longest step in s that is safe at a state; `None` where any is.
+    fn longest(&mut self, motion: &Motion, at: &BodyState) -> Result<Option<f64>, SolveFault>;
+
+    /// The state a step later. `held` are the unknowns that supports hold in the step.
+    fn step(
+        &mut self,
+        motion: &Motion,
+        before: &BodyState,
+        step: f64,
+        held: &[bool],
+    ) -> Result<BodyState, SolveFault>;
+
+    /// Whether an exact step would not change the sum of the energies; otherwise it may lose some.
+    fn conserves(&self) -> bool;
+
+    /// Factorisations so far.
+    fn factorisations(&self) -> usize;
+}
