@@ -1,14 +1,14 @@
 //! The springs' motion, corrected in time.
 
-use super::Moved;
-use super::read::MovingPlate;
+use super::problem::MovingPlate;
+use super::solution::ModelMotion;
 use crate::corrector::DifferenceScheme;
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::dynamics::{Instant, SheetViscosity, Viscosity};
 use crate::error::Error;
 
 /// The corrected motion at the instants that are written.
-pub struct Corrected {
+pub struct CorrectedMotion {
     /// In mm.
     pub displacement: Vec<Vec<f64>>,
     /// In mm/s.
@@ -30,7 +30,7 @@ const WINDOWS: WindowSettings = WindowSettings {
 impl MovingPlate {
     /// Corrects the motion of the springs; nothing but a note where three consecutive instants do not hold the equation
     /// of motion.
-    pub fn corrected(&self, springs: &Moved) -> Result<Corrected, Error> {
+    pub fn corrected(&self, springs: &ModelMotion) -> Result<CorrectedMotion, Error> {
         let mesh = &springs.mesh;
         let energy = self.scheme().energy(&self.problem, mesh);
         let viscosity = SheetViscosity::new(&energy, &self.viscosity);
@@ -44,7 +44,7 @@ impl MovingPlate {
         let equation = match EquationOfMotion::new(&motion, step, AVERAGE_ACCELERATION) {
             Ok(equation) => equation,
             Err(reason) => {
-                return Ok(Corrected {
+                return Ok(CorrectedMotion {
                     displacement: Vec::new(),
                     velocity: Vec::new(),
                     note: format!("The motion of the springs is not corrected: {reason}."),
@@ -67,7 +67,7 @@ impl MovingPlate {
         );
         let fine = found.displacement;
         let instants = (0..fine.len()).step_by(within);
-        Ok(Corrected {
+        Ok(CorrectedMotion {
             velocity: instants
                 .clone()
                 .map(|i| velocity(&fine, i, step, &motion.start.velocity))

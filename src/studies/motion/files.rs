@@ -1,8 +1,8 @@
 //! Pictures, grids and tables of a motion.
 
-use super::Moved;
-use super::corrected::Corrected;
-use super::read::{MovingPlate, Probe};
+use super::corrected::CorrectedMotion;
+use super::problem::{MovingPlate, Probe};
+use super::solution::ModelMotion;
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::Mesh;
 use crate::results::{
@@ -24,16 +24,19 @@ fn pair(upper: LineChart, lower: LineChart) -> Drawing {
 }
 
 /// A line for each model through a pair of figures of all instants.
-fn lines(models: &[Moved; 2], point: impl Fn(&Moved, &Instant) -> [f64; 2]) -> Vec<Line> {
+fn lines(
+    models: &[ModelMotion; 2],
+    point: impl Fn(&ModelMotion, &Instant) -> [f64; 2],
+) -> Vec<Line> {
     let models = models.iter().zip(STROKES).zip(PALETTE);
-    let line = |((model, stroke), colour): ((&Moved, _), _)| {
+    let line = |((model, stroke), colour): ((&ModelMotion, _), _)| {
         let points = model.points(|now| point(model, now));
         Line::new(model.name, points, colour, stroke)
     };
     models.map(line).collect()
 }
 
-impl Moved {
+impl ModelMotion {
     /// Pairs of figures of all instants.
     fn points(&self, pair: impl Fn(&Instant) -> [f64; 2]) -> Vec<[f64; 2]> {
         self.history.instants.iter().map(pair).collect()
@@ -45,7 +48,11 @@ impl Moved {
 }
 
 /// Displacement of the probes, phase of the first, energies, force of the grip, and the plates at the end.
-pub fn figures(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> Vec<Figure> {
+pub fn figures(
+    plate: &MovingPlate,
+    models: &[ModelMotion; 2],
+    corrected: &CorrectedMotion,
+) -> Vec<Figure> {
     let [springs, elements] = models;
     let last = springs.history.instants.len() - 1;
     let plates = speeds(&shown(models, corrected), last);
@@ -88,7 +95,11 @@ pub fn figures(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) 
     figures
 }
 
-fn probes(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> LineChart {
+fn probes(
+    plate: &MovingPlate,
+    models: &[ModelMotion; 2],
+    corrected: &CorrectedMotion,
+) -> LineChart {
     let mut lines = Vec::new();
     let [springs, _] = models;
     let times = springs.history.times();
@@ -108,7 +119,7 @@ fn probes(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> Li
     chart("Displacement of the probes", "time [s]", along, lines)
 }
 
-fn energy(model: &Moved) -> LineChart {
+fn energy(model: &ModelMotion) -> LineChart {
     type Part = fn(&EnergyBalance) -> f64;
     let parts: [(_, Part); 5] = [
         ("kinetic", |energy| energy.kinetic),
@@ -125,13 +136,13 @@ fn energy(model: &Moved) -> LineChart {
     chart(&title, "time [s]", "energy [mJ]", lines.collect())
 }
 
-fn right_side(model: &Moved, now: &Instant) -> f64 {
+fn right_side(model: &ModelMotion, now: &Instant) -> f64 {
     let [length, width] = model.mesh.grid().size;
     let middle = [length, 0.5 * width];
     model.mesh.displacement_at(&now.displacement, middle)[0]
 }
 
-fn force(models: &[Moved; 2], axis: &str, x: fn(&Moved, &Instant) -> f64) -> LineChart {
+fn force(models: &[ModelMotion; 2], axis: &str, x: fn(&ModelMotion, &Instant) -> f64) -> LineChart {
     let lines = lines(models, |model, now| {
         [x(model, now), now.support_forces[1][0]]
     });
@@ -139,7 +150,7 @@ fn force(models: &[Moved; 2], axis: &str, x: fn(&Moved, &Instant) -> f64) -> Lin
 }
 
 /// A plate whose motion is shown.
-struct Shown<'a> {
+struct PlateMotion<'a> {
     name: &'static str,
     file: &'static str,
     mesh: &'a Mesh,
@@ -148,10 +159,10 @@ struct Shown<'a> {
 }
 
 /// All plates; the corrected one between the models, where there is one.
-fn shown<'a>(models: &'a [Moved; 2], corrected: &'a Corrected) -> Vec<Shown<'a>> {
-    let model = |model: &'a Moved| {
+fn shown<'a>(models: &'a [ModelMotion; 2], corrected: &'a CorrectedMotion) -> Vec<PlateMotion<'a>> {
+    let model = |model: &'a ModelMotion| {
         let instants = model.history.instants.iter();
-        Shown {
+        PlateMotion {
             name: model.name,
             file: model.file,
             mesh: &model.mesh,
@@ -162,7 +173,7 @@ fn shown<'a>(models: &'a [Moved; 2], corrected: &'a Corrected) -> Vec<Shown<'a>>
     };
     let [springs, elements] = models;
     let fields = corrected.displacement.iter().zip(&corrected.velocity);
-    let between = Shown {
+    let between = PlateMotion {
         name: "corrected",
         file: "corrected",
         mesh: &springs.mesh,
@@ -174,8 +185,8 @@ fn shown<'a>(models: &'a [Moved; 2], corrected: &'a Corrected) -> Vec<Shown<'a>>
 }
 
 /// The plates at an instant, with the size of their velocity.
-fn speeds(plates: &[Shown], instant: usize) -> Vec<Panel> {
-    let panel = |plate: &Shown| {
+fn speeds(plates: &[PlateMotion], instant: usize) -> Vec<Panel> {
+    let panel = |plate: &PlateMotion| {
         let [displacement, velocity] = *plate.motion.get(instant)?;
         let speed = |node: usize| velocity[2 * node].hypot(velocity[2 * node + 1]);
         Some(Panel::at_nodes(
@@ -189,7 +200,7 @@ fn speeds(plates: &[Shown], instant: usize) -> Vec<Panel> {
 }
 
 /// The plates in motion: a picture that plays in every browser.
-pub fn animation(models: &[Moved; 2], corrected: &Corrected) -> Animation {
+pub fn animation(models: &[ModelMotion; 2], corrected: &CorrectedMotion) -> Animation {
     const FRAMES: usize = 60;
     const MILLISECONDS: u16 = 80;
     let times = models[0].history.times();
@@ -214,8 +225,8 @@ pub fn animation(models: &[Moved; 2], corrected: &Corrected) -> Animation {
 /// displacements.
 pub fn grids(
     plate: &MovingPlate,
-    models: &[Moved; 2],
-    corrected: &Corrected,
+    models: &[ModelMotion; 2],
+    corrected: &CorrectedMotion,
     expected: &[Vec<f64>],
 ) -> Vec<GridSeries> {
     let [springs, elements] = models;
@@ -224,7 +235,7 @@ pub fn grids(
         thickness: plate.problem.thickness,
     };
     let times = springs.history.times();
-    let series = |plate: &Shown| {
+    let series = |plate: &PlateMotion| {
         let instants = plate.motion.iter().zip(&times).zip(expected);
         let grid =
             |(([displacement, velocity], time), expected): ((&[&[f64]; 2], &f64), &Vec<f64>)| {
@@ -242,12 +253,12 @@ pub fn grids(
 /// Probes, energies and the grip's force over time, one table for each model.
 pub fn tables(
     plate: &MovingPlate,
-    models: &[Moved; 2],
-    corrected: &Corrected,
+    models: &[ModelMotion; 2],
+    corrected: &CorrectedMotion,
 ) -> Vec<(String, Content)> {
     let [springs, _] = models;
     let times = springs.history.times();
-    let of_model = |model: &Moved| {
+    let of_model = |model: &ModelMotion| {
         let instants = &model.history.instants;
         type Column = fn(&Instant) -> f64;
         let columns: [(_, _, Column); 6] = [
@@ -285,7 +296,7 @@ fn table(model: &str, times: &[f64], columns: Vec<Series>) -> (String, Content) 
 /// Displacements and velocities of the probes, from those of all nodes at every instant.
 fn of_probes<'a>(
     plate: &MovingPlate,
-    model: &Moved,
+    model: &ModelMotion,
     fields: impl Iterator<Item = [&'a Vec<f64>; 2]> + Clone,
 ) -> Vec<Series> {
     let mut columns = Vec::new();

@@ -1,9 +1,9 @@
 //! What is told about a motion: energies, frequencies, deviations in time.
 
-use super::Moved;
-use super::corrected::Corrected;
+use super::corrected::CorrectedMotion;
 use super::files::{animation, figures, grids, tables};
-use super::read::MovingPlate;
+use super::problem::MovingPlate;
+use super::solution::ModelMotion;
 use super::statement;
 use crate::dynamics::lumped_mass;
 use crate::mesh::Mesh;
@@ -48,7 +48,7 @@ impl Deviations {
 }
 
 /// The finite elements' displacements at the nodes of the lattice at all instants.
-fn expected(lattice: &Mesh, elements: &Moved) -> Vec<Vec<f64>> {
+fn expected(lattice: &Mesh, elements: &ModelMotion) -> Vec<Vec<f64>> {
     let instants = elements.history.instants.iter();
     instants
         .map(|now| elements.mesh.displacement_on(&now.displacement, lattice))
@@ -56,7 +56,11 @@ fn expected(lattice: &Mesh, elements: &Moved) -> Vec<Vec<f64>> {
 }
 
 /// The outcome of both models and the corrected motion.
-pub fn outcome(plate: &MovingPlate, models: &[Moved; 2], corrected: &Corrected) -> Outcome {
+pub fn outcome(
+    plate: &MovingPlate,
+    models: &[ModelMotion; 2],
+    corrected: &CorrectedMotion,
+) -> Outcome {
     let [springs, elements] = models;
     let expected = expected(&springs.mesh, elements);
     let of_springs = springs.history.instants.iter();
@@ -113,7 +117,7 @@ fn introduction(plate: &MovingPlate) -> String {
     )
 }
 
-fn summary(models: &[Moved; 2]) -> Block {
+fn summary(models: &[ModelMotion; 2]) -> Block {
     let head = [
         "model",
         "nodes",
@@ -126,7 +130,7 @@ fn summary(models: &[Moved; 2]) -> Block {
         "dissipated [mJ]",
         "work of grips and loads [mJ]",
     ];
-    let row = |model: &Moved| {
+    let row = |model: &ModelMotion| {
         let history = &model.history;
         let energies = history.instants.iter().map(|now| now.energy);
         let stored = energies.fold(0.0, |most: f64, energy| most.max(energy.stored));
@@ -147,7 +151,7 @@ fn summary(models: &[Moved; 2]) -> Block {
     Block::table(&head, models.iter().map(row))
 }
 
-fn in_time([springs, elements]: &[Moved; 2], deviations: &[Deviations; 2]) -> Block {
+fn in_time([springs, elements]: &[ModelMotion; 2], deviations: &[Deviations; 2]) -> Block {
     let head = [
         "time [s]",
         "mass-spring: displacement [%]",
@@ -162,7 +166,7 @@ fn in_time([springs, elements]: &[Moved; 2], deviations: &[Deviations; 2]) -> Bl
         value.map_or("–".into(), |value| format!("{value:.3}"))
     };
     let row = |instant: usize| {
-        let force = |model: &Moved| model.history.instants[instant].support_forces[1][0];
+        let force = |model: &ModelMotion| model.history.instants[instant].support_forces[1][0];
         vec![
             number(springs.history.instants[instant].time),
             percent(&deviations[0], instant),
@@ -174,7 +178,11 @@ fn in_time([springs, elements]: &[Moved; 2], deviations: &[Deviations; 2]) -> Bl
     Block::table(&head, (0..count).step_by(every).map(row))
 }
 
-fn checks(plate: &MovingPlate, models: &[Moved; 2], deviations: &[Deviations; 2]) -> Vec<Check> {
+fn checks(
+    plate: &MovingPlate,
+    models: &[ModelMotion; 2],
+    deviations: &[Deviations; 2],
+) -> Vec<Check> {
     let limits = plate.tolerances;
     let check = |quantity: String, limit, value| {
         Check::new(
@@ -185,7 +193,7 @@ fn checks(plate: &MovingPlate, models: &[Moved; 2], deviations: &[Deviations; 2]
             value,
         )
     };
-    let energy = |model: &Moved| {
+    let energy = |model: &ModelMotion| {
         check(
             format!("{}: error of the energy balance", model.name),
             limits.energy_percent,

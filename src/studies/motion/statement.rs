@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::read::MovingPlate;
+use super::problem::{MovingPlate, PointForce};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
 use crate::results::{Block, material_json, material_statement, number};
@@ -114,7 +114,7 @@ fn gravity(plate: &MovingPlate) -> String {
 }
 
 fn forces(plate: &MovingPlate) -> String {
-    let force = |own: &super::read::PointForce| {
+    let force = |own: &PointForce| {
         let ([x, y], [fx, fy]) = (own.at, own.force);
         let time = match &own.time {
             TimeFunction::Ramp { begin, end } => format!("growing from {begin} s to {end} s"),

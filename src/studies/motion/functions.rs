@@ -1,0 +1,195 @@
+//! Functions that a study of motion states: the grip's motion in time, stiffness and damping of springs.
+
+use crate::document::{Bound, Section};
+use crate::dynamics::TimeFunction;
+use crate::mass_spring::{DashpotLaw, SpringLaw};
+use crate::material::scalar_function::ScalarFunction;
+use crate::units::Dimension;
+
+/// Stretches that a grip may reach.
+pub const STRETCHES: Bound = Bound::Within(-0.5, 10.0);
+
+/// The motion of the right grip.
+pub struct GripMotion {
+    /// Its stretch in time.
+    pub stretch: TimeFunction,
+    /// When it lets go, in s.
+    pub release: Option<f64>,
+}
+
+#[derive(Clone, Copy)]
+enum Grip {
+    Hold,
+    Release,
+    Ramp,
+    Sine,
+    Table,
+}
+
+/// The right grip's motion from a stretch at the start.
+pub fn read_grip(section: &Section, start: f64) -> Option<GripMotion> {
+    let kinds = [
+        ("hold", Grip::Hold),
+        ("release", Grip::Release),
+        ("ramp", Grip::Ramp),
+        ("sine", Grip::Sine),
+        ("table", Grip::Table),
+    ];
+    let stretch = |key| section.quantity(key, Dimension::Ratio, STRETCHES);
+    let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
+    let mut release = None;
+    let stretch = match section.choice("motion", &kinds)? {
+        Grip::Hold => TimeFunction::Constant(start),
+        Grip::Release => {
+            release = Some(instant("time"));
+            TimeFunction::Constant(start)
+        }
+        Grip::Ramp => {
+            let (begin, end, to) = (instant("begin"), instant("end"), stretch("to"));
+            let points = ascending(section, "end", vec![begin, end], vec![start, to])?;
+            TimeFunction::Table(points)
+        }
+        Grip::Sine => {
+            let amplitude = stretch("amplitude");
+            TimeFunction::Sine {
+                mean: start,
+                amplitude,
+                frequency: section.quantity("frequency", Dimension::Frequency, Bound::Positive),
+            }
+        }
+        Grip::Table => {
+            let times = section.quantities("times", Dimension::Time, Bound::NonNegative);
+            let stretches = section.quantities("stretches", Dimension::Ratio, STRETCHES);
+            if stretches.first().is_some_and(|first| *first != start) {
+                let hint = "the grips have held the plate at `start.stretch` before time 0";
+                section.fault(
+                    "stretches",
+                    "must begin with the stretch at the start",
+                    hint,
+                );
+            }
+            let points = ascending(section, "times", times, stretches)?;
+            TimeFunction::Table(points)
+        }
+    };
+    Some(GripMotion { stretch, release })
+}
+
+/// The largest stretch of a grip's motion.
+pub fn largest(motion: &TimeFunction) -> f64 {
+    match motion {
+        TimeFunction::Constant(stretch) => *stretch,
+        TimeFunction::Ramp { .. } => 1.0,
+        TimeFunction::Sine {
+            mean, amplitude, ..
+        } => mean + amplitude.abs(),
+        TimeFunction::Table(points) => points
+            .iter()
+            .fold(f64::NEG_INFINITY, |most, point| most.max(point[1])),
+    }
+}
+
+/// Points of a table whose times ascend.
+fn ascending(
+    section: &Section,
+    key: &'static str,
+    times: Vec<f64>,
+    values: Vec<f64>,
+) -> Option<Vec<[f64; 2]>> {
+    if times.len() != values.len() || times.is_empty() {
+        section.fault(
+            key,
+            "must be as many as the values",
+            "give one time for each value",
+        );
+        return None;
+    }
+    if times.windows(2).any(|pair| pair[1] <= pair[0]) {
+        section.fault(
+            key,
+            "must ascend",
+            "sort the times and leave out repetitions",
+        );
+        return None;
+    }
+    Some(
+        times
+            .into_iter()
+            .zip(values)
+            .map(|(t, value)| [t, value])
+            .collect(),
+    )
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Constant,
+    Polynomial,
+    Table,
+}
+
+/// A function of one variable.
+fn read_function(section: &Section, dimension: Dimension) -> Option<ScalarFunction> {
+    let kinds = [
+        ("constant", Kind::Constant),
+        ("polynomial", Kind::Polynomial),
+        ("table", Kind::Table),
+    ];
+    Some(match section.choice("kind", &kinds)? {
+        Kind::Constant => {
+            let value = section.quantity("value", dimension, Bound::NonNegative);
+            ScalarFunction::constant(value)
+        }
+        Kind::Polynomial => {
+            let coefficients = section.quantities("coefficients", dimension, Bound::Any);
+            ScalarFunction::Polynomial(coefficients)
+        }
+        Kind::Table => {
+            let at = section.quantities("at", Dimension::Ratio, Bound::Any);
+            let values = section.quantities("values", dimension, Bound::NonNegative);
+            let points = ascending(section, "at", at, values)?;
+            match ScalarFunction::table(points) {
+                Ok(table) => table,
+                Err(reason) => {
+                    section.fault("at", &reason, "give two or more ascending points");
+                    return None;
+                }
+            }
+        }
+    })
+}
+
+/// E(·) of springs.
+pub fn read_stiffness(section: &Section) -> Option<SpringLaw> {
+    let modulus = read_function(section, Dimension::Stress);
+    section.unknown_keys();
+    let modulus = modulus?;
+    if modulus.at(0.0)[0] <= 0.0 {
+        section.fault(
+            "kind",
+            "the springs have no stiffness at rest",
+            "E(0) must be positive",
+        );
+        return None;
+    }
+    Some(SpringLaw::SecantModulus(modulus))
+}
+
+/// η(·) of dashpots.
+pub fn read_damping(section: &Section) -> Option<DashpotLaw> {
+    let function = read_function(section, Dimension::Viscosity);
+    let by_rate = match section.has("of") {
+        true => section.choice("of", &[("stretch", false), ("stretch rate", true)]),
+        false => Some(true),
+    };
+    section.unknown_keys();
+    let one = ScalarFunction::constant(1.0);
+    let (by_stretch, by_rate) = match by_rate? {
+        true => (one, function?),
+        false => (function?, one),
+    };
+    Some(DashpotLaw::Viscosity {
+        by_stretch,
+        by_rate,
+    })
+}

@@ -1,0 +1,156 @@
+//! A plate that moves: supports, loads, start, and what is computed.
+
+use crate::dynamics::{
+    Motion, MovingForce, MovingSupport, Start, TimeFunction, TimeSettings, Viscosity, lumped_mass,
+};
+use crate::error::Error;
+use crate::finite_element::Element;
+use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
+use crate::material::Card;
+use crate::material::viscosity::ViscousMaterial;
+use crate::mesh::{Mesh, Side};
+use crate::problem::{ClampedPlate, Model};
+use crate::solve::NewtonSettings;
+
+/// How the plate at the start is solved.
+const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
+    max_iterations: 60,
+};
+
+/// A point of the plate that is watched.
+pub struct Probe {
+    /// Its name.
+    pub name: String,
+    /// Where it is at rest, in mm.
+    pub at: [f64; 2],
+}
+
+/// A dead force on a point.
+pub struct PointForce {
+    /// Where it pulls, in mm.
+    pub at: [f64; 2],
+    /// In N.
+    pub force: [f64; 2],
+    /// How much of it acts.
+    pub time: TimeFunction,
+}
+
+/// What has to be reached, in %.
+#[derive(Clone, Copy)]
+pub struct Tolerances {
+    /// Largest error of the energy balance.
+    pub energy_percent: f64,
+    /// Largest deviation of the springs from the finite elements.
+    pub deviation_percent: f64,
+}
+
+/// A plate that moves.
+pub struct MovingPlate {
+    /// The plate; its stretches are that of the start, or none at rest.
+    pub problem: ClampedPlate,
+    /// The card of its material.
+    pub card: Card,
+    /// In tonne/mm³.
+    pub density: f64,
+    /// The viscous part of the material.
+    pub viscosity: ViscousMaterial,
+    /// The right grip's stretch in time.
+    pub grip: TimeFunction,
+    /// When it lets go, in s.
+    pub release: Option<f64>,
+    /// In mm/s².
+    pub gravity: [f64; 2],
+    /// Point forces.
+    pub forces: Vec<PointForce>,
+    /// Duration, instants, steps.
+    pub time: TimeSettings,
+    /// Cells of the lattice.
+    pub cells: [usize; 2],
+    /// What it consists of.
+    pub lattice: LatticeSettings,
+    /// K(·).
+    pub springs: SpringLaw,
+    /// D(·).
+    pub dashpots: DashpotLaw,
+    /// The finite element, and how many.
+    pub element: (Element, [usize; 2]),
+    /// Points that are watched.
+    pub probes: Vec<Probe>,
+    /// What has to be reached.
+    pub tolerances: Tolerances,
+}
+
+impl MovingPlate {
+    /// The motion of a model of the plate.
+    pub fn motion<'a>(
+        &self,
+        model: &'a Model<'a>,
+        viscosity: Option<&'a dyn Viscosity>,
+    ) -> Result<Motion<'a>, Error> {
+        let mesh = model.mesh;
+        let size = 2 * mesh.nodes.len();
+        let mass = lumped_mass(mesh, self.density, self.problem.thickness);
+        let start = match self.problem.stretches[..] {
+            [] => vec![0.0; size],
+            _ => model.reach(&self.problem.stretches, NEWTON)?.displacement,
+        };
+        let weight = (0..size).map(|i| mass[i] * self.gravity[i % 2]).collect();
+        let gravity = MovingForce {
+            force: weight,
+            time: TimeFunction::Constant(1.0),
+        };
+        let points = self.forces.iter().map(|own| MovingForce {
+            force: point_force(mesh, own.at, own.force),
+            time: own.time.clone(),
+        });
+        Ok(Motion {
+            energy: model.energy,
+            viscosity,
+            supports: vec![
+                MovingSupport::fixed(unknowns(mesh, Side::Left)),
+                self.right_grip(mesh),
+            ],
+            forces: [gravity].into_iter().chain(points).collect(),
+            start: Start::held_at(start),
+            describe: Box::new(|element| (model.describe)(element)),
+            mass,
+        })
+    }
+
+    fn right_grip(&self, mesh: &Mesh) -> MovingSupport {
+        let unknowns = unknowns(mesh, Side::Right);
+        let length = self.problem.size[0];
+        let along = |unknown: &usize| {
+            if unknown.is_multiple_of(2) {
+                length
+            } else {
+                0.0
+            }
+        };
+        MovingSupport {
+            displacement: unknowns.iter().map(along).collect(),
+            unknowns,
+            time: self.grip.clone(),
+            until: self.release,
+        }
+    }
+}
+
+/// The unknowns of the nodes on a side.
+fn unknowns(mesh: &Mesh, side: Side) -> Vec<usize> {
+    let nodes = (0..mesh.nodes.len()).filter(|node| mesh.on(side, *node));
+    nodes.flat_map(|node| [2 * node, 2 * node + 1]).collect()
+}
+
+/// A force in N on a point, shared by the nodes of its cell as the shape functions say.
+fn point_force(mesh: &Mesh, at: [f64; 2], force: [f64; 2]) -> Vec<f64> {
+    let mut sum = vec![0.0; 2 * mesh.nodes.len()];
+    let (cell, local) = mesh.locate(at);
+    for (node, value) in mesh.cell(cell).iter().zip(mesh.shape(cell).values(local)) {
+        for axis in [0, 1] {
+            sum[2 * node + axis] += value * force[axis];
+        }
+    }
+    sum
+}

@@ -1,0 +1,58 @@
+//! The motion of one model.
+
+use std::time::Instant as Clock;
+
+use super::problem::MovingPlate;
+use crate::dynamics::frequency::{slowest, strongest};
+use crate::dynamics::{History, Viscosity, follow};
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::problem::Model;
+
+/// One model's motion.
+pub struct ModelMotion {
+    /// Its name.
+    pub name: &'static str,
+    /// Its name in names of files.
+    pub file: &'static str,
+    /// Its mesh.
+    pub mesh: Mesh,
+    /// Its instants.
+    pub history: History,
+    /// The first longitudinal vibration about the undeformed plate, with the right grip as at the end, in Hz.
+    pub frequency: f64,
+    /// Computing time in s.
+    pub seconds: f64,
+}
+
+impl MovingPlate {
+    /// Computes the motion of one model.
+    pub fn moved(
+        &self,
+        [name, file]: [&'static str; 2],
+        model: &Model,
+        viscosity: Option<&dyn Viscosity>,
+    ) -> Result<ModelMotion, Error> {
+        let start = Clock::now();
+        let motion = self.motion(model, viscosity)?;
+        let fault = |time: String, fault| Error::Solve {
+            model: model.name.clone(),
+            step: time,
+            fault,
+        };
+        let history =
+            follow(&motion, self.time, &|_| ()).map_err(|end| fault(end.describe(), end.fault))?;
+        let held = motion.held(self.time.duration);
+        let rest = vec![0.0; motion.mass.len()];
+        let modes = slowest(&motion, &held, &rest, 6);
+        let modes = modes.map_err(|found| fault("rest".into(), found))?;
+        Ok(ModelMotion {
+            name,
+            file,
+            mesh: model.mesh.clone(),
+            history,
+            frequency: strongest(modes, &motion.mass, 0).map_or(f64::NAN, |mode| mode.frequency),
+            seconds: start.elapsed().as_secs_f64(),
+        })
+    }
+}
