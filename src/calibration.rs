@@ -11,12 +11,16 @@ mod fit;
 mod least_squares;
 mod misfit;
 mod quality;
+mod search;
+mod settings;
 mod test_data;
+mod warnings;
 
 pub use card_text::{Provenance, card_text};
 pub use conversion::Conversion;
-pub use fit::{Bounds, Fit, FitSettings, Weighting, fit, rank};
+pub use fit::{Fit, fit, rank};
 pub use quality::{Quality, StableRange};
+pub use settings::{Bounds, FitSettings, Weighting};
 pub use test_data::{KEYS, Observation, StrainColumn, Test, TestData};
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The material card of a fit, as text.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 use super::fit::Fit;
 use super::test_data::TestData;
@@ -20,88 +20,79 @@ pub struct Provenance {
 
 /// A card that `gelbench materials refit` can make again.
 pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> String {
-    let head = |key: &str| {
-        let mut found: Vec<&str> = Vec::new();
-        for value in tests.iter().filter_map(|test| test.head.get(key)) {
-            if !found.contains(&&**value) {
-                found.push(value);
-            }
-        }
-        found.join("; ")
-    };
-    let or = |text: String, other: &str| {
-        if text.is_empty() {
-            other.to_owned()
-        } else {
-            text
-        }
-    };
     let files = provenance.files.join(", ");
-    let title = match head("specimen") {
-        specimen if specimen.is_empty() => format!("{} fitted to {files}", fit.law.name),
-        specimen => format!("{specimen}, {}", fit.law.name),
+    let [specimen, source, doi] = ["specimen", "source", "doi"].map(|key| stated(tests, key));
+    let title = match &specimen {
+        Some(specimen) => format!("{specimen}, {}", fit.law.name),
+        None => format!("{} fitted to {files}", fit.law.name),
     };
-    let specimen = or(head("specimen"), "not stated in the data");
+    let mut kinds: Vec<&str> = tests.iter().map(|test| test.test.name()).collect();
+    kinds.dedup();
     let mut text = String::from(
         "# Fitted by `gelbench materials fit`; `gelbench materials refit` fits it again and compares.\n\n",
     );
-    put(&mut text, "title", &quoted(&title));
-    put(&mut text, "law", &quoted(fit.law.name));
+    put(&mut text, "title", quoted(&title));
+    put(&mut text, "law", quoted(fit.law.name));
     text += "\n[parameters]\n";
     parameters(&mut text, fit);
-    let mut kinds: Vec<&str> = tests.iter().map(|test| test.test.name()).collect();
-    kinds.dedup();
-    let [low, high] = fit.quality.stretch_range;
     text += "\n[data]\n";
-    put(&mut text, "test", &quoted(&kinds.join(", ")));
+    put(&mut text, "test", quoted(&kinds.join(", ")));
     put(
         &mut text,
         "stress_measure",
-        &quoted(fit.stress_measure().name()),
+        quoted(fit.stress_measure().name()),
     );
-    put(&mut text, "strain_measure", &quoted("nominal"));
-    put(&mut text, "offset", &quoted("subtract"));
-    put(&mut text, "stretch_range", &format!("[{low}, {high}]"));
+    put(&mut text, "strain_measure", quoted("nominal"));
+    put(&mut text, "offset", quoted("subtract"));
+    let [low, high] = fit.quality.stretch_range;
+    put(&mut text, "stretch_range", format!("[{low}, {high}]"));
     text += "\n[source]\n";
-    put(
-        &mut text,
-        "citation",
-        &quoted(&or(head("source"), &format!("data of {files}"))),
-    );
-    let doi = head("doi");
-    if !doi.is_empty() {
-        put(&mut text, "doi", &quoted(&doi));
+    let citation = source.unwrap_or_else(|| format!("data of {files}"));
+    put(&mut text, "citation", quoted(&citation));
+    if let Some(doi) = doi {
+        put(&mut text, "doi", quoted(&doi));
     }
-    put(&mut text, "specimen", &quoted(&specimen));
-    let note = note(fit);
-    put(&mut text, "note", &quoted(&note));
-    text += "\n[fit]\n";
-    put(&mut text, "data", &list(provenance.files.iter().cloned()));
+    let specimen = specimen.as_deref().unwrap_or("not stated in the data");
+    put(&mut text, "specimen", quoted(specimen));
+    put(&mut text, "note", quoted(&note(fit)));
+    text + &recipe(fit, provenance)
+}
+
+/// How the fit is made again.
+fn recipe(fit: &Fit, provenance: &Provenance) -> String {
+    let mut text = String::from("\n[fit]\n");
+    put(&mut text, "data", list(provenance.files.iter().cloned()));
     put(
         &mut text,
         "weighting",
-        &quoted(fit.settings.weighting.name()),
+        quoted(fit.settings.weighting.name()),
     );
-    put(&mut text, "starts", &fit.settings.starts.to_string());
+    put(&mut text, "starts", fit.settings.starts);
     let bounds = fit.settings.bounds.iter();
-    let bounds: Vec<_> = bounds
-        .map(|(key, [low, high])| format!("{key}={low}..{high}"))
-        .collect();
-    if !bounds.is_empty() {
-        put(&mut text, "bounds", &list(bounds.into_iter()));
+    let bounds = bounds.map(|(key, [low, high])| format!("{key}={low}..{high}"));
+    if bounds.len() > 0 {
+        put(&mut text, "bounds", list(bounds));
     }
-    if !provenance.reading.is_empty() {
-        let reading = provenance.reading.iter();
-        put(
-            &mut text,
-            "reading",
-            &list(reading.map(|(key, value)| format!("{key}: {value}"))),
-        );
+    let reading = provenance.reading.iter();
+    let reading = reading.map(|(key, value)| format!("{key}: {value}"));
+    if reading.len() > 0 {
+        put(&mut text, "reading", list(reading));
     }
     text
 }
 
-fn put(text: &mut String, key: &str, value: &str) {
+/// What the heads of the data say about a key.
+fn stated(tests: &[TestData], key: &str) -> Option<String> {
+    let mut found: Vec<&str> = Vec::new();
+    for value in tests.iter().filter_map(|test| test.head.get(key)) {
+        if !found.contains(&&**value) {
+            found.push(value);
+        }
+    }
+    Some(found.join("; ")).filter(|text| !text.is_empty())
+}
+
+fn put(text: &mut String, key: &str, value: impl Display) {
     let _ = writeln!(text, "{key} = {value}");
 }
 
@@ -124,17 +115,13 @@ fn parameters(text: &mut String, fit: &Fit) {
         let _ = writeln!(text, "{} = {value} # {error}", parameter.key);
     }
     for (key, name) in &fit.choices {
-        put(text, key, &quoted(name));
+        put(text, key, quoted(name));
     }
     if fit.law.name == MARLOW_TABLE {
         let numbers = |axis: usize| fit.curve.iter().map(move |point| point[axis]);
         let strains: Vec<_> = numbers(0).map(|x| x.to_string()).collect();
-        put(text, "strain", &format!("[{}]", strains.join(", ")));
-        put(
-            text,
-            "stress",
-            &list(numbers(1).map(|p| format!("{p} MPa"))),
-        );
+        put(text, "strain", format!("[{}]", strains.join(", ")));
+        put(text, "stress", list(numbers(1).map(|p| format!("{p} MPa"))));
     }
 }
 

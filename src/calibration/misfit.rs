@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::fit::{MEASURE, Weighting};
 use super::least_squares::{self, Residuals};
+use super::settings::{MEASURE, Weighting};
 use super::test_data::{Observation, TestData};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::CardEntries;

@@ -1,0 +1,129 @@
+//! How a law is fitted: weights, bounds, starts.
+
+use super::test_data::{Observation, TestData};
+use crate::document::{Bound, name_of};
+use crate::error::{Error, suggestion};
+use crate::material::parameters::{Parameter, StrainMeasure};
+use crate::material::registry::Law;
+
+/// What a residual is measured by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighting {
+    /// All differences of stress count alike.
+    Absolute,
+    /// All relative differences count alike: a residual is divided by the measured stress, but by no less than
+    /// a hundredth of the largest one of its test, so that a stress near zero does not outweigh all others.
+    Relative,
+}
+
+impl Weighting {
+    /// The names that cards and the command line use.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("absolute", Self::Absolute), ("relative", Self::Relative)];
+
+    /// The name that cards use.
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, self)
+    }
+
+    /// The name, and the floor of what relative residuals are divided by.
+    pub fn describe(self) -> String {
+        match self {
+            Self::Absolute => self.name().into(),
+            Self::Relative => format!(
+                "{} (to {} % of its test's largest stress where a stress is smaller)",
+                self.name(),
+                100.0 * SMALLEST_SHARE
+            ),
+        }
+    }
+
+    /// The weight of an observation.
+    pub(super) fn weight(self, data: &TestData, observation: &Observation) -> f64 {
+        match self {
+            Self::Absolute => 1.0,
+            Self::Relative => {
+                let least = SMALLEST_SHARE * data.largest_stress;
+                1.0 / observation.stress.abs().max(least)
+            }
+        }
+    }
+}
+
+/// Limits of parameters by key, in internal units.
+pub type Bounds = Vec<(String, [f64; 2])>;
+
+/// How a fit is made.
+#[derive(Clone, Debug)]
+pub struct FitSettings {
+    /// What a residual is measured by.
+    pub weighting: Weighting,
+    /// Limits beside those that the law has.
+    pub bounds: Bounds,
+    /// How many of the best starts are improved.
+    pub starts: usize,
+}
+
+impl Default for FitSettings {
+    fn default() -> Self {
+        Self {
+            weighting: Weighting::Absolute,
+            bounds: Vec::new(),
+            starts: 8,
+        }
+    }
+}
+
+/// The smallest stress that a relative residual is divided by, as a share of its test's largest one.
+pub const SMALLEST_SHARE: f64 = 0.01;
+
+/// The strain measure that laws of a curve take in a fit.
+pub(super) const MEASURE: StrainMeasure = StrainMeasure::Nominal;
+
+/// Lower and upper limit of each parameter; `scale` is a stress that the data speak of.
+pub(super) fn limits(
+    law: &Law,
+    parameters: &[Parameter],
+    bounds: &Bounds,
+    scale: f64,
+) -> Result<Vec<[f64; 2]>, Error> {
+    check_bounds(law, parameters, bounds)?;
+    let limit = |parameter: &Parameter| {
+        let [low, high] = match parameter.bound {
+            Bound::Any => [f64::NEG_INFINITY, f64::INFINITY],
+            // Next to nothing beside what the data speak of.
+            Bound::Positive if parameter.is_stress() => [1e-9 * scale, f64::INFINITY],
+            Bound::Positive => [1e-9, f64::INFINITY],
+            Bound::NonNegative => [0.0, f64::INFINITY],
+            Bound::Within(low, high) | Bound::Range(low, high, _) => [low, high],
+        };
+        let given = bounds.iter().find(|(key, _)| key == parameter.key);
+        let [from, to] = given.map_or([low, high], |(_, [l, h])| [low.max(*l), high.min(*h)]);
+        if from < to {
+            return Ok([from, to]);
+        }
+        let message = format!("the bounds of {} leave no value of the law", parameter.key);
+        let hint = format!("the law takes values from {low:.1e} to {high:.1e}");
+        Err(Error::input(message, hint))
+    };
+    parameters.iter().map(limit).collect()
+}
+
+fn check_bounds(law: &Law, parameters: &[Parameter], bounds: &Bounds) -> Result<(), Error> {
+    let known: Vec<_> = parameters.iter().map(|parameter| parameter.key).collect();
+    for (key, [low, high]) in bounds {
+        if !known.contains(&&**key) {
+            let message = format!("{} has no parameter `{key}`", law.name);
+            let hint = suggestion(key, &known, "its parameters are");
+            return Err(Error::input(message, hint));
+        }
+        if bounds.iter().filter(|(other, _)| other == key).count() > 1 {
+            return Err(Error::input(format!("{key} has two bounds"), "give one"));
+        }
+        if low >= high {
+            let message = format!("the bounds {low} … {high} of {key} are not in order");
+            return Err(Error::input(message, "write the lower one first"));
+        }
+    }
+    Ok(())
+}

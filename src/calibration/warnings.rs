@@ -1,0 +1,93 @@
+//! What a user must know before using a fit.
+
+use super::quality::{Quality, StableRange, knows_sign};
+use crate::material::curve::Mode;
+use crate::material::parameters::Parameter;
+
+/// The warnings of a fit; `other` are the parameters of another minimum that is nearly as good.
+pub(super) fn warnings(
+    quality: &Quality,
+    parameters: &[Parameter],
+    other: Option<&[f64]>,
+) -> Vec<String> {
+    let away = (quality.nmad_percent > 20.0).then(|| {
+        let percent = quality.nmad_percent;
+        format!("the law does not follow the data: they are {percent:.0} % apart in the mean")
+    });
+    let other = other.map(|other| {
+        let pairs = parameters.iter().zip(other);
+        let values = pairs.map(|(parameter, value)| format!("{} = {value:.4}", parameter.key));
+        let values = values.collect::<Vec<_>>().join(", ");
+        format!("the fit is not unique: {values} is at most 5 % worse")
+    });
+    away.into_iter()
+        .chain(uncertain(quality, parameters))
+        .chain(correlated(quality, parameters))
+        .chain(other)
+        .chain(quality.stable.iter().filter_map(unstable))
+        .chain(predicted(quality))
+        .collect()
+}
+
+/// Parameters that a bound holds, or whose sign is not known.
+fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
+    let (mut warnings, mut vague) = (Vec::new(), Vec::new());
+    for (index, estimate) in quality.estimates.iter().enumerate() {
+        let (key, value) = (parameters[index].key, estimate.value);
+        if quality.at_bound[index] {
+            warnings.push(format!("{key} = {value:.4e} is held by a bound"));
+        } else if !knows_sign(estimate) {
+            vague.push(key);
+        }
+    }
+    if !vague.is_empty() {
+        warnings.push(format!(
+            "not identifiable from these data: {}, whose 95 % intervals hold zero",
+            vague.join(", ")
+        ));
+    }
+    warnings
+}
+
+/// The pair of parameters that are told apart worst.
+fn correlated(quality: &Quality, parameters: &[Parameter]) -> Option<String> {
+    let pairs = (0..parameters.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
+    let mut close: Vec<(f64, (usize, usize))> = pairs
+        .map(|pair| (quality.correlation[pair], pair))
+        .filter(|(correlation, _)| correlation.abs() >= 0.99)
+        .collect();
+    close.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let (correlation, (j, i)) = close.first()?;
+    let more = match close.len() - 1 {
+        0 => String::new(),
+        more => format!(", and {more} more pairs above 0.99"),
+    };
+    Some(format!(
+        "{} and {} are hardly told apart: their correlation is {correlation:.4}{more}",
+        parameters[*j].key, parameters[*i].key
+    ))
+}
+
+fn unstable(range: &StableRange) -> Option<String> {
+    let ([low, high], [from, to]) = (range.stretches, range.needed);
+    let name = range.mode.name();
+    if high <= 1.0 || low >= 1.0 {
+        return Some(format!("the law is unstable from rest in {name} tests"));
+    }
+    (!range.is_enough()).then(|| {
+        format!(
+            "the law is stable (Drucker) in {name} tests from λ = {low:.3} to {high:.3} only, the data go from {from:.3} to {to:.3}"
+        )
+    })
+}
+
+fn predicted(quality: &Quality) -> Option<String> {
+    let untested: Vec<_> = quality.untested.iter().map(|mode| mode.name()).collect();
+    let only = match !quality.untested.contains(&Mode::Uniaxial) && untested.len() == 2 {
+        true => "uniaxial only: ",
+        false => "",
+    };
+    let untested = untested.join(" and ");
+    (!untested.is_empty())
+        .then(|| format!("{only}{untested} stresses are predictions that no data support"))
+}
