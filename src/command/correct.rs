@@ -7,11 +7,11 @@ use clap::{Args, ValueEnum};
 use super::terminal::{Outcome, print, progress_bar, warn};
 use crate::corrector::estimation::{EdgeCondition, MeasuredForce, Physics, Robust};
 use crate::error::Error;
-use crate::markers::Reading;
+use crate::markers::ReadSettings;
 use crate::mesh::{Allowed, CellShape, MeshReading};
 use crate::output::ResultFolder;
 use crate::studies::markers::written;
-use crate::studies::markers::{Conditions, MeasuredField, MeshSource, Request, measured_force};
+use crate::studies::markers::{Conditions, MarkerStudy, MeshSource, Request, measured_force};
 use crate::units::{self, Dimension};
 
 /// What the command line says about a correction.
@@ -145,11 +145,11 @@ pub enum Holds {
 pub fn run(options: Options) -> Outcome {
     let folder = options.output.clone();
     let inputs = inputs(&options);
-    let field = MeasuredField::prepare(request(options)?)?;
+    let field = MarkerStudy::prepare(request(options)?)?;
     warn(&field.warnings);
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     let mut results = ResultFolder::open(&folder, "correct", &inputs)?;
-    let bar = progress_bar(field.measurement.frames.len() as u64);
+    let bar = progress_bar(field.series.frames.len() as u64);
     let estimates = field.estimate(&|frame| {
         bar.set_message(format!("frame {}", frame.number));
         bar.inc(1);
@@ -184,52 +184,11 @@ fn inputs(options: &Options) -> Vec<PathBuf> {
 }
 
 fn request(options: Options) -> Result<Request, Error> {
-    let mut conditions = match &options.study {
-        Some(path) => Conditions::of_file(path)?,
-        None => Conditions::default(),
-    };
-    for (names, condition) in [
-        (options.free, EdgeCondition::Free),
-        (options.rigid, EdgeCondition::Rigid),
-    ] {
-        conditions
-            .edges
-            .extend(names.into_iter().map(|name| (name, condition)));
-    }
-    let forces = options.force.into_iter().map(|force| (None, force));
-    conditions.forces.extend(forces);
-    conditions.fit.extend(options.fit);
-    conditions.noise = options.noise.or(conditions.noise);
-    conditions.edge_gap = options.edge_gap.or(conditions.edge_gap);
-    if let Some(robust) = options.robust {
-        conditions.robust = match robust {
-            Weights::No => Robust::No,
-            Weights::Huber => Robust::Huber,
-            Weights::Tukey => Robust::Tukey,
-        };
-    }
-    if let Some(physics) = options.physics {
-        conditions.physics = match physics {
-            Holds::Exact => Physics::Exact,
-            Holds::Weighted => Physics::Weighted,
-        };
-    }
-    let mesh = match (options.mesh, options.outline) {
-        (Some(mesh), _) => {
-            let names = options.allow.iter().map(String::as_str);
-            let reading = MeshReading {
-                unit: options.mesh_unit,
-                merge_nodes: options.merge_nodes,
-                allowed: Allowed::of_names(names).unwrap_or_default(),
-            };
-            MeshSource::File(mesh, reading)
-        }
-        (None, Some(outline)) => MeshSource::Outline(outline),
-        (None, None) => MeshSource::Data,
-    };
     Ok(Request {
+        conditions: conditions(&options)?,
+        mesh: mesh_source(&options),
         files: options.fields,
-        reading: Reading {
+        reading: ReadSettings {
             unit: options.unit,
             array: options.array,
             grid: options.grid,
@@ -237,7 +196,6 @@ fn request(options: Options) -> Result<Request, Error> {
         },
         material: options.material,
         thickness: options.thickness,
-        mesh,
         cell_size: options.cell_size,
         shape: match options.cells {
             Cells::Triangle3 => CellShape::Triangle3,
@@ -246,8 +204,57 @@ fn request(options: Options) -> Result<Request, Error> {
             Cells::Quadrilateral9 => CellShape::Quad9,
         },
         holes: options.holes == Holes::Found,
-        conditions,
     })
+}
+
+/// What the file says of the specimen, completed by the command line.
+fn conditions(options: &Options) -> Result<Conditions, Error> {
+    let mut conditions = match &options.study {
+        Some(path) => Conditions::of_file(path)?,
+        None => Conditions::default(),
+    };
+    let free = options.free.iter().map(|name| (name, EdgeCondition::Free));
+    let rigid = options
+        .rigid
+        .iter()
+        .map(|name| (name, EdgeCondition::Rigid));
+    let edges = free
+        .chain(rigid)
+        .map(|(name, condition)| (name.clone(), condition));
+    conditions.edges.extend(edges);
+    let forces = options.force.iter().map(|force| (None, force.clone()));
+    conditions.forces.extend(forces);
+    conditions.fit.extend(options.fit.iter().cloned());
+    conditions.noise = options.noise.or(conditions.noise);
+    conditions.edge_gap = options.edge_gap.or(conditions.edge_gap);
+    conditions.robust = match options.robust {
+        None => conditions.robust,
+        Some(Weights::No) => Robust::No,
+        Some(Weights::Huber) => Robust::Huber,
+        Some(Weights::Tukey) => Robust::Tukey,
+    };
+    conditions.physics = match options.physics {
+        None => conditions.physics,
+        Some(Holds::Exact) => Physics::Exact,
+        Some(Holds::Weighted) => Physics::Weighted,
+    };
+    Ok(conditions)
+}
+
+fn mesh_source(options: &Options) -> MeshSource {
+    match (&options.mesh, &options.outline) {
+        (Some(mesh), _) => {
+            let names = options.allow.iter().map(String::as_str);
+            let reading = MeshReading {
+                unit: options.mesh_unit,
+                merge_nodes: options.merge_nodes,
+                allowed: Allowed::of_names(names).unwrap_or_default(),
+            };
+            MeshSource::File(mesh.clone(), reading)
+        }
+        (None, Some(outline)) => MeshSource::Outline(outline.clone()),
+        (None, None) => MeshSource::Data,
+    }
 }
 
 /// An edge, an axis, a force and its standard deviation.

@@ -118,59 +118,16 @@ pub fn correction(table: &Table, head: Option<&str>, given: Option<f64>) -> Opti
 /// `strain`), DICe's figures of its correlation, stretches, rotations and coordinates of other systems, and what a correction
 /// writes beside its markers and nodes.
 pub fn is_harmless(name: &str) -> bool {
-    const NAMES: [&str; 37] = [
-        "exx",
-        "eyy",
-        "exy",
-        "e_xx",
-        "e_yy",
-        "e_xy",
-        "e1",
-        "e2",
-        "gamma",
-        "beta",
-        "sigma",
-        "contrast",
-        "match",
-        "noise_level",
-        "active_pixels",
-        "iterations",
-        "status_flag",
-        "neighbor_id",
-        "condition_number",
-        "uncertainty",
-        "uncertainty_angle",
-        "corr",
-        "correlation",
-        "zncc",
-        "standardised_residual",
-        "trust",
-        "outlier",
-        "residual_x_mm",
-        "residual_y_mm",
-        "ux_standard_error_mm",
-        "uy_standard_error_mm",
-        "reaction_x_n",
-        "reaction_y_n",
-        "multiplier_x_mm2_per_n",
-        "multiplier_y_mm2_per_n",
-        "neighbour_id",
-        "rotation_z",
-    ];
-    const BEGINNINGS: [&str; 7] = [
-        "normal_stretch_",
-        "shear_stretch_",
-        "cross_corr_",
-        "stereo_",
-        "model_",
-        "epi_",
-        "field_value_",
-    ];
+    const NAMES: &str = "exx eyy exy e_xx e_yy e_xy e1 e2 gamma beta sigma contrast match noise_level active_pixels \
+        iterations status_flag neighbor_id condition_number uncertainty uncertainty_angle corr correlation zncc \
+        standardised_residual trust outlier residual_x_mm residual_y_mm ux_standard_error_mm uy_standard_error_mm \
+        reaction_x_n reaction_y_n multiplier_x_mm2_per_n multiplier_y_mm2_per_n neighbour_id rotation_z";
+    const BEGINNINGS: &str =
+        "normal_stretch_ shear_stretch_ cross_corr_ stereo_ model_ epi_ field_value_";
+    let begins = |beginning: &str| name.starts_with(beginning);
     name.contains("strain")
-        || NAMES.contains(&name)
-        || BEGINNINGS
-            .iter()
-            .any(|beginning| name.starts_with(beginning))
+        || NAMES.split_whitespace().any(|known| known == name)
+        || BEGINNINGS.split_whitespace().any(begins)
 }
 
 /// Whether the user passes over a column, by its name with or without its unit.

@@ -11,7 +11,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::read::{Reading, Row, Rows};
+use super::rows::{FileRows, ReadSettings, Row};
 use crate::document::Table;
 use crate::error::Error;
 
@@ -62,7 +62,7 @@ pub fn series(stem: &str) -> Option<&str> {
 ///
 /// # Errors
 /// [`Error::Input`] with the file, what is wrong and what to do.
-pub fn read(u: &Path, v: &Path, reading: &Reading) -> Result<Rows, Error> {
+pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let Some(step) = reading.grid else {
         return Err(Error::input(
             format!(
@@ -106,7 +106,7 @@ pub fn read(u: &Path, v: &Path, reading: &Reading) -> Result<Rows, Error> {
             }
         }
     }
-    Ok(Rows {
+    Ok(FileRows {
         rows,
         mesh: None,
         layout: "Ncorr",

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::read::{Reading, Row, Rows};
+use super::rows::{FileRows, ReadSettings, Row};
 use crate::error::Error;
 use crate::mesh::import_series;
 
@@ -10,7 +10,7 @@ use crate::mesh::import_series;
 ///
 /// # Errors
 /// [`Error::Input`] with the file and what is wrong.
-pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
+pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let unit = reading.unit.unwrap_or(1.0);
     let series = import_series(path, unit, reading.array.as_deref()).map_err(|reason| {
         let hint = "a field stands in .csv (x, y, ux, uy), .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with \
@@ -31,7 +31,7 @@ pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
             standard_deviation: None,
         })
     });
-    Ok(Rows {
+    Ok(FileRows {
         rows: rows.collect(),
         mesh: Some(series.mesh),
         layout: "field on a mesh",

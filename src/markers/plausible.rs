@@ -1,6 +1,6 @@
 //! Whether lengths fit each other: places and displacements, markers and a mesh.
 
-use super::{Frame, Marker, Measurement};
+use super::frames::{Frame, Marker, MarkerSeries};
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
 
@@ -40,14 +40,14 @@ pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
 ///
 /// # Errors
 /// [`Error::Input`] when there is no displacement, or one in another unit.
-pub fn check(measurement: &Measurement, warnings: &mut Vec<Diagnostic>) -> Result<(), Error> {
-    if measurement.frames.is_empty() {
+pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<(), Error> {
+    if series.frames.is_empty() {
         return Err(Error::input(
             "no point of the field has a displacement that is a number",
             "look at the columns or the array that hold it",
         ));
     }
-    let markers = || measurement.frames.iter().flat_map(|frame| &frame.markers);
+    let markers = || series.frames.iter().flat_map(|frame| &frame.markers);
     let extent = extent(markers().map(|marker| marker.place));
     let size = extent[0].max(extent[1]);
     let largest = markers()
@@ -78,11 +78,11 @@ pub fn check(measurement: &Measurement, warnings: &mut Vec<Diagnostic>) -> Resul
     Ok(())
 }
 
-/// A measurement on a mesh, without the markers outside.
+/// Markers on a mesh, without the markers outside.
 #[derive(Debug)]
-pub struct Placed {
+pub struct MarkersOnMesh {
     /// The markers on the mesh.
-    pub measurement: Measurement,
+    pub series: MarkerSeries,
     /// How many are left out, over all frames.
     pub outside: usize,
 }
@@ -91,7 +91,7 @@ pub struct Placed {
 ///
 /// # Errors
 /// [`Error::Input`] when most do, with what is likely: another unit, or another origin.
-pub fn place_on(mesh: &Mesh, measurement: &Measurement) -> Result<Placed, Error> {
+pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Error> {
     let [low, high] = mesh.bounding_box();
     let near = |place: [f64; 2]| {
         let margin = [0, 1].map(|axis| MARGIN * (high[axis] - low[axis]));
@@ -104,23 +104,23 @@ pub fn place_on(mesh: &Mesh, measurement: &Measurement) -> Result<Placed, Error>
         markers: frame.markers.iter().filter(within).copied().collect(),
         ..frame.clone()
     };
-    let kept = Measurement {
-        frames: measurement.frames.iter().map(frame).collect(),
-        lost: measurement.lost.clone(),
+    let kept = MarkerSeries {
+        frames: series.frames.iter().map(frame).collect(),
+        lost: series.lost.clone(),
     };
-    let count = |measurement: &Measurement| -> usize {
-        let frames = measurement.frames.iter();
+    let count = |series: &MarkerSeries| -> usize {
+        let frames = series.frames.iter();
         frames.map(|frame| frame.markers.len()).sum()
     };
-    let (all, inside) = (count(measurement), count(&kept));
-    let places = || measurement.frames.iter().flat_map(|frame| &frame.markers);
+    let (all, inside) = (count(series), count(&kept));
+    let places = || series.frames.iter().flat_map(|frame| &frame.markers);
     let spanned = extent(places().map(|marker| marker.place));
     let measures = extent(mesh.nodes.iter().copied());
     let ratio = measures[0].hypot(measures[1]) / spanned[0].hypot(spanned[1]);
     let unit = unit_ratio(ratio);
     if 2 * inside >= all && (ratio < 8.0 || unit.is_none()) {
-        return Ok(Placed {
-            measurement: kept,
+        return Ok(MarkersOnMesh {
+            series: kept,
             outside: all - inside,
         });
     }

@@ -20,7 +20,7 @@
 use std::path::Path;
 
 use super::columns::{self, Length, Names, Units, length, plain};
-use super::read::{Reading, Row, Rows};
+use super::rows::{FileRows, ReadSettings, Row};
 use crate::document::Table;
 use crate::error::{Diagnostic, Error};
 
@@ -82,12 +82,12 @@ const MUDIC: Layout = Layout {
 ///
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
-pub fn read(path: &Path, reading: &Reading) -> Result<Rows, Error> {
+pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     let table = Table::read(path)?;
     let layout = layout(&table);
     let (columns, warning) = Columns::find(&table, layout, reading)?;
     let rows = (0..table.rows.len()).map(|row| columns.row(&table, layout, row));
-    Ok(Rows {
+    Ok(FileRows {
         rows: rows.collect::<Result<_, _>>()?,
         mesh: None,
         layout: layout.name,
@@ -159,7 +159,7 @@ impl Columns {
     fn find(
         table: &Table,
         layout: &Layout,
-        reading: &Reading,
+        reading: &ReadSettings,
     ) -> Result<(Self, Option<Diagnostic>), Error> {
         let [places, displacements] = [layout.places, layout.displacements];
         let head = columns::common_unit(table, [places, displacements].as_flattened());

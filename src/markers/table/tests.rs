@@ -2,10 +2,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::markers::{Marker, Read, Reading, read};
+use crate::markers::{Marker, MarkerFiles, ReadSettings, read};
 
 /// Reads texts as files of these names.
-fn read_texts(files: &[(&str, &str)], reading: &Reading) -> Result<Read, Error> {
+fn read_texts(files: &[(&str, &str)], reading: &ReadSettings) -> Result<MarkerFiles, Error> {
     let folder = tempfile::tempdir().unwrap();
     let write = |(name, text): &(&str, &str)| {
         let path = folder.path().join(name);
@@ -16,10 +16,10 @@ fn read_texts(files: &[(&str, &str)], reading: &Reading) -> Result<Read, Error> 
     read(&paths, reading)
 }
 
-fn unit(unit: f64) -> Reading {
-    Reading {
+fn unit(unit: f64) -> ReadSettings {
+    ReadSettings {
         unit: Some(unit),
-        ..Reading::default()
+        ..ReadSettings::default()
     }
 }
 
@@ -55,8 +55,8 @@ fn near(found: &[Marker], expected: &[Marker]) {
 fn columns_are_read_with_units_frames_and_holes() {
     let text = "frame,x [cm],y [mm],ux [um],uy_mm,standard deviation [mm],time [s]\n\
                 1,1,2,500,0.25,0.1,0.5\n1,2,2,NaN,0.25,0.1,0.5\n3,1,2,1000,0.5,,1.5\n3,2,2,-1000,,,1.5\n";
-    let found = read_texts(&[("a.csv", text)], &Reading::default()).unwrap();
-    let [first, second] = &found.measurement.frames[..] else {
+    let found = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
+    let [first, second] = &found.series.frames[..] else {
         panic!("two frames");
     };
     assert_eq!((first.number, first.time), (1, Some(0.5)));
@@ -92,13 +92,13 @@ fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
         ..marker
     };
     near(
-        &found.measurement.frames[0].markers,
+        &found.series.frames[0].markers,
         &[
             with(0.01, marker(0, [30.5, -485.5], [-0.031436, 0.394485])),
             with(0.015, marker(2, [30.5, -450.5], [-0.036928, 0.42921])),
         ],
     );
-    let told = read_texts(&[("a.txt", DICE)], &Reading::default()).unwrap_err();
+    let told = read_texts(&[("a.txt", DICE)], &ReadSettings::default()).unwrap_err();
     assert!(told.to_string().contains("is in pixels"), "{told}");
 }
 
@@ -107,7 +107,7 @@ fn early_versions_of_dice_say_match_and_stereo_has_its_own_columns() {
     let early = "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,GAMMA,MATCH\n1,2,3,4,0,0\n2,2,3,4,0,-1\n";
     let found = read_texts(&[("a.txt", early)], &unit(1.0)).unwrap();
     near(
-        &found.measurement.frames[0].markers,
+        &found.series.frames[0].markers,
         &[marker(0, [1.0, -2.0], [3.0, -4.0])],
     );
     let stereo = "COORDINATE_X,COORDINATE_Y,MODEL_COORDINATES_X,MODEL_COORDINATES_Y,DISPLACEMENT_X,DISPLACEMENT_Y,\
@@ -115,7 +115,7 @@ fn early_versions_of_dice_say_match_and_stereo_has_its_own_columns() {
     let found = read_texts(&[("a.txt", stereo)], &unit(1.0)).unwrap();
     assert_eq!(found.layout, "DICe, stereo");
     near(
-        &found.measurement.frames[0].markers,
+        &found.series.frames[0].markers,
         &[marker(0, [5.0, 7.0], [0.5, 0.25])],
     );
 }
@@ -127,7 +127,7 @@ fn mudic_gives_places_in_the_frame() {
     let found = read_texts(&[("frame_3.csv", text)], &unit(0.1)).unwrap();
     assert_eq!(found.layout, "muDIC");
     near(
-        &found.measurement.frames[0].markers,
+        &found.series.frames[0].markers,
         &[marker(0, [10.0, -5.0], [1.0, -0.2])],
     );
 }
@@ -135,7 +135,7 @@ fn mudic_gives_places_in_the_frame() {
 #[test]
 fn ncorr_keeps_matrices() {
     let (u, v) = ("0,1,2\n0,3,NaN\n", "0,-1,-2\n0,0,1\n");
-    let reading = Reading {
+    let reading = ReadSettings {
         grid: Some(0.5),
         ..unit(2.0)
     };
@@ -143,7 +143,7 @@ fn ncorr_keeps_matrices() {
     let found = read_texts(&files, &reading).unwrap();
     assert_eq!(found.layout, "Ncorr");
     near(
-        &found.measurement.frames[0].markers,
+        &found.series.frames[0].markers,
         &[
             marker(0, [0.5, 0.0], [2.0, 2.0]),
             marker(1, [1.0, 0.0], [4.0, 4.0]),
@@ -165,9 +165,9 @@ fn files_are_frames_by_the_numbers_of_their_names() {
         ("a_10.csv", text),
         ("a_13.csv", text),
     ];
-    let found = read_texts(&files, &Reading::default()).unwrap();
+    let found = read_texts(&files, &ReadSettings::default()).unwrap();
     let numbers: Vec<_> = found
-        .measurement
+        .series
         .frames
         .iter()
         .map(|frame| frame.number)
@@ -178,7 +178,7 @@ fn files_are_frames_by_the_numbers_of_their_names() {
             .to_string()
             .contains("frames are missing: 12")
     );
-    assert_eq!(found.measurement.places(), [[0.0, 0.0], [1.0, 0.0]]);
+    assert_eq!(found.series.places(), [[0.0, 0.0], [1.0, 0.0]]);
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
             "deviation is negative",
         ),
     ] {
-        let told = read_texts(&[("a.csv", text)], &Reading::default()).unwrap_err();
+        let told = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
         assert!(told.to_string().contains(reason), "{text:?}: {told}");
         assert!(told.to_string().contains('('), "a remedy: {told}");
     }
@@ -251,12 +251,12 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
 #[test]
 fn columns_are_passed_over_by_wish_and_harmless_ones_without() {
     let text = "x [mm],y [mm],ux [mm],uy [mm],uz [mm],exx,Strain YY,temperature [C]\n1,2,3,4,9,0,0,20\n5,2,3,4,9,0,0,20\n";
-    let reading = Reading {
+    let reading = ReadSettings {
         ignored_columns: vec!["temperature".into(), "uz".into()],
-        ..Reading::default()
+        ..ReadSettings::default()
     };
     let found = read_texts(&[("a.csv", text)], &reading).unwrap();
-    assert_eq!(found.measurement.frames[0].markers.len(), 2);
+    assert_eq!(found.series.frames[0].markers.len(), 2);
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
     let text = "x [mm],y [mm],ux [mm],uy [mm]\n0.01,0.02,0.001,0\n0.03,0.02,0.001,0\n";
     let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
     near(
-        &found.measurement.frames[0].markers,
+        &found.series.frames[0].markers,
         &[
             marker(0, [10.0, 20.0], [1.0, 0.0]),
             marker(1, [30.0, 20.0], [1.0, 0.0]),
@@ -276,7 +276,7 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
     let text = "x [mm],y [mm],ux [um],uy [um]\n10,20,1000,0\n30,20,1000,0\n";
     let found = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
     assert_eq!(
-        found.measurement.frames[0].markers[1],
+        found.series.frames[0].markers[1],
         marker(1, [30.0, 20.0], [1.0, 0.0])
     );
 }
@@ -284,19 +284,16 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
 #[test]
 fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
     let text = "x [mm],y [mm],ux [mm],uy [mm]\n0,0,1,2\n0,0,1,2\n0,0,1,2.5\n9,0,1,2\n9,9,,\n";
-    let found = read_texts(&[("a.csv", text)], &Reading::default()).unwrap();
+    let found = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
     near(
-        &found.measurement.frames[0].markers,
+        &found.series.frames[0].markers,
         &[
             marker(0, [0.0, 0.0], [1.0, 2.0]),
             marker(0, [0.0, 0.0], [1.0, 2.5]),
             marker(1, [9.0, 0.0], [1.0, 2.0]),
         ],
     );
-    assert_eq!(
-        found.measurement.places(),
-        [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]
-    );
+    assert_eq!(found.series.places(), [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]);
     let told: Vec<_> = found.warnings.iter().map(ToString::to_string).collect();
     assert!(
         told[1].contains("rows that stand twice") && told[1].contains(": 1"),
@@ -308,6 +305,6 @@ fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
     );
     // What is found in one frame is not lost.
     let text = "frame,x [mm],y [mm],ux [mm],uy [mm]\n1,0,0,1,2\n1,9,0,1,2\n2,0,0,,\n2,9,0,1,2\n";
-    let found = read_texts(&[("a.csv", text)], &Reading::default()).unwrap();
-    assert!(found.measurement.lost.is_empty());
+    let found = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
+    assert!(found.series.lost.is_empty());
 }

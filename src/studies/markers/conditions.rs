@@ -34,7 +34,7 @@ use crate::corrector::estimation::{
 };
 use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error, suggestion};
-use crate::markers::Measurement;
+use crate::markers::MarkerSeries;
 use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::studies::plate::study;
@@ -142,8 +142,8 @@ impl Conditions {
     ///
     /// # Errors
     /// [`Error::Input`] with the first force that belongs to no frame.
-    pub fn check_frames(&self, measurement: &Measurement) -> Result<(), Error> {
-        let frames = &measurement.frames;
+    pub fn check_frames(&self, series: &MarkerSeries) -> Result<(), Error> {
+        let frames = &series.frames;
         let numbers = || frames.iter().map(|frame| frame.number);
         for (frame, force) in &self.forces {
             let known = match frame {

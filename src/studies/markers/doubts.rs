@@ -2,7 +2,7 @@
 //!
 //! A doubt stands beside the figures and makes the command end with exit code 1.
 
-use super::MeasuredField;
+use super::MarkerStudy;
 use crate::corrector::estimation::FieldEstimate;
 use crate::error::Diagnostic;
 use crate::markers::Frame;
@@ -18,11 +18,11 @@ const MANY: f64 = 0.1;
 /// Noise farther from what was stated than this factor is told, if it is by four standard errors too.
 const OFF: f64 = 1.25;
 
-impl MeasuredField {
+impl MarkerStudy {
     /// What makes the figures of the frames doubtful, of all of them first.
     pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Diagnostic> {
         let mut all = self.doubts.clone();
-        let frames = self.measurement.frames.iter().zip(estimates);
+        let frames = self.series.frames.iter().zip(estimates);
         for (frame, estimate) in frames {
             all.extend(of_frame(frame, estimate));
         }

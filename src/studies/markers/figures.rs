@@ -4,12 +4,12 @@ use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::mesh::Mesh;
 use crate::results::{Drawing, FieldCell, FieldFigure, Figure, Panel, mesh_outlines};
-use crate::studies::markers::MeasuredField;
+use crate::studies::markers::MarkerStudy;
 
 use super::written::{left, nominal_stress};
 
 /// The pictures of one frame.
-pub fn figures(field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> Vec<Figure> {
+pub fn figures(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Vec<Figure> {
     let pictures = Pictures {
         mesh: &field.mesh,
         at: format!("frame {}", frame.number),

@@ -7,11 +7,11 @@ use super::written::title;
 use crate::corrector::estimation::{EdgeCondition, FieldEstimate};
 use crate::markers::Frame;
 use crate::statistics::Estimate;
-use crate::studies::markers::MeasuredField;
+use crate::studies::markers::MarkerStudy;
 
 /// The report for programs.
-pub fn json(field: &MeasuredField, estimates: &[FieldEstimate]) -> Value {
-    let frames = field.measurement.frames.iter().zip(estimates);
+pub fn json(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Value {
+    let frames = field.series.frames.iter().zip(estimates);
     json!({
         "title": title(field),
         "layout": field.layout,

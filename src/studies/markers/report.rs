@@ -4,10 +4,10 @@ use super::written::title;
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::results::{Block, Figure};
 use crate::statistics::Estimate;
-use crate::studies::markers::MeasuredField;
+use crate::studies::markers::MarkerStudy;
 
 /// The figures of every frame, for the terminal.
-pub fn summary(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
+pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     let mut text = format!(
         "{}; {}; mesh {}: {}\n",
         field.layout,
@@ -21,7 +21,7 @@ pub fn summary(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
         }
         Some(_) => "frame    nodes  correction, root mean square [mm]  largest [mm]\n",
     };
-    for (frame, estimate) in field.measurement.frames.iter().zip(estimates) {
+    for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         text += &match field.coarse {
             None => format!(
                 "{:>5}  {:>7}  {:>8}  {:>10.4}  {:>9.4}  {:>10.1}  {:>27.4}\n",
@@ -42,7 +42,7 @@ pub fn summary(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
             ),
         };
     }
-    for (frame, estimate) in field.measurement.frames.iter().zip(estimates) {
+    for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
             let [low, high] = found.interval;
             text += &format!(
@@ -51,7 +51,7 @@ pub fn summary(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
             );
         }
     }
-    if let (Some(frame), Some(last)) = (field.measurement.frames.last(), estimates.last()) {
+    if let (Some(frame), Some(last)) = (field.series.frames.last(), estimates.last()) {
         for force in &last.forces {
             let [x, y] = &force.force;
             text += &format!(
@@ -126,11 +126,7 @@ fn condition(condition: &EdgeCondition) -> String {
 }
 
 /// The report with `figures`.
-pub fn report(
-    field: &MeasuredField,
-    estimates: &[FieldEstimate],
-    figures: &[Figure],
-) -> Vec<Block> {
+pub fn report(field: &MarkerStudy, estimates: &[FieldEstimate], figures: &[Figure]) -> Vec<Block> {
     let mut blocks = vec![
         Block::Heading(1, title(field)),
         Block::Paragraph(format!(
@@ -203,14 +199,14 @@ const TRANSFERRED: &str = "The given field is taken to be free of noise: edges t
     the inside and the free edges are brought into equilibrium on the new mesh. The correction is the given field less the \
     corrected one at the given nodes.";
 
-fn transferred_frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
+fn transferred_frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let head = [
         "frame",
         "given nodes",
         "correction, root mean square [mm]",
         "largest [mm]",
     ];
-    let frames = field.measurement.frames.iter().zip(estimates);
+    let frames = field.series.frames.iter().zip(estimates);
     let rows = frames.map(|(frame, estimate)| {
         vec![
             frame.number.to_string(),
@@ -222,7 +218,7 @@ fn transferred_frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Blo
     Block::table(&head, rows)
 }
 
-fn frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
+fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let head = [
         "frame",
         "markers",
@@ -235,7 +231,7 @@ fn frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
         "correlation of neighbours (white noise)",
         "steps",
     ];
-    let frames = field.measurement.frames.iter().zip(estimates);
+    let frames = field.series.frames.iter().zip(estimates);
     let rows = frames.map(|(frame, estimate)| {
         vec![
             frame.number.to_string(),
@@ -263,8 +259,8 @@ fn frames(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
     Block::table(&head, rows)
 }
 
-fn forces(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
-    let frames = field.measurement.frames.iter().zip(estimates);
+fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
+    let frames = field.series.frames.iter().zip(estimates);
     let rows = frames.flat_map(|(frame, estimate)| {
         estimate.forces.iter().map(move |force| {
             let [x, y] = &force.force;
@@ -280,8 +276,8 @@ fn forces(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
 }
 
 /// The parameters of the law that were found with the field.
-fn parameters(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
-    let frames = field.measurement.frames.iter().zip(estimates);
+fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
+    let frames = field.series.frames.iter().zip(estimates);
     let rows = frames.flat_map(|(frame, estimate)| {
         estimate.parameters.iter().map(move |(key, unit, found)| {
             let [low, high] = found.interval;
@@ -306,7 +302,7 @@ fn parameters(field: &MeasuredField, estimates: &[FieldEstimate]) -> Block {
     Block::table(&head, rows)
 }
 
-fn edges(field: &MeasuredField, last: &FieldEstimate) -> Vec<Block> {
+fn edges(field: &MarkerStudy, last: &FieldEstimate) -> Vec<Block> {
     let known = |known: &EdgeCondition| match (known, &field.coarse) {
         (EdgeCondition::Unknown, Some(_)) => "as the given field".to_owned(),
         (EdgeCondition::Rigid, Some(_)) => "rigid, as near as can be to the given field".to_owned(),

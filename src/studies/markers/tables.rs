@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::written::{left, nominal, nominal_stress};
 use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
-use crate::studies::markers::MeasuredField;
+use crate::studies::markers::MarkerStudy;
 
 /// A row of a table; a number that is none leaves its field empty.
 fn row(text: &mut String, first: &[usize], values: &[f64]) {
@@ -19,7 +19,7 @@ fn row(text: &mut String, first: &[usize], values: &[f64]) {
 }
 
 /// The field at the nodes.
-pub fn nodes(field: &MeasuredField, estimate: &FieldEstimate) -> String {
+pub fn nodes(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
     let mut text = String::from(
         "node,X_mm,Y_mm,ux_mm,uy_mm,ux_standard_error_mm,uy_standard_error_mm,reaction_x_N,reaction_y_N,\
          multiplier_x_mm2_per_N,multiplier_y_mm2_per_N\n",
@@ -39,7 +39,7 @@ pub fn nodes(field: &MeasuredField, estimate: &FieldEstimate) -> String {
 }
 
 /// Stress and thickness in the middle of the cells.
-pub fn cells(field: &MeasuredField, estimate: &FieldEstimate) -> String {
+pub fn cells(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
     let mut text = String::from("cell,X_mm,Y_mm");
     for of in ["", "_standard_error"] {
         for component in ["xx", "xy", "yx", "yy"] {
@@ -81,7 +81,7 @@ pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
 }
 
 /// The forces on the edges in all frames.
-pub fn forces(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
+pub fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     let mut text = String::from("frame,edge");
     for axis in ["x", "y"] {
         let _ = write!(
@@ -90,7 +90,7 @@ pub fn forces(field: &MeasuredField, estimates: &[FieldEstimate]) -> String {
         );
     }
     text += "\n";
-    for (frame, estimate) in field.measurement.frames.iter().zip(estimates) {
+    for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for force in &estimate.forces {
             let values = force.force.iter().flat_map(|force| {
                 [

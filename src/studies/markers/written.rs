@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::markers::Frame;
 use crate::output::{ResultFolder, write_document, write_grids};
 use crate::results::{Array, Grid, GridSeries, Sheet};
-use crate::studies::markers::MeasuredField;
+use crate::studies::markers::MarkerStudy;
 
 pub use super::report::summary;
 use super::{figures, json, report, tables};
@@ -25,11 +25,11 @@ use super::{figures, json, report, tables};
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
 pub fn write(
-    field: &MeasuredField,
+    field: &MarkerStudy,
     estimates: &[FieldEstimate],
     folder: &mut ResultFolder,
 ) -> Result<(), Error> {
-    let frames = || field.measurement.frames.iter().zip(estimates);
+    let frames = || field.series.frames.iter().zip(estimates);
     for series in [
         series("corrected", field, estimates, corrected),
         series("markers", field, estimates, markers),
@@ -63,15 +63,15 @@ pub fn write(
     write_document(folder, "report", &blocks, &figures)
 }
 
-type OfFrame = fn(&MeasuredField, &Frame, &FieldEstimate) -> Grid;
+type OfFrame = fn(&MarkerStudy, &Frame, &FieldEstimate) -> Grid;
 
 fn series(
     name: &str,
-    field: &MeasuredField,
+    field: &MarkerStudy,
     estimates: &[FieldEstimate],
     grid: OfFrame,
 ) -> GridSeries {
-    let frames = field.measurement.frames.iter().zip(estimates);
+    let frames = field.series.frames.iter().zip(estimates);
     let frames = frames.map(|(frame, estimate)| {
         let time = frame.time.unwrap_or(frame.number as f64);
         (frame.number, time, grid(field, frame, estimate))
@@ -80,14 +80,14 @@ fn series(
 }
 
 /// The heading of a report.
-pub(super) fn title(field: &MeasuredField) -> String {
+pub(super) fn title(field: &MarkerStudy) -> String {
     match field.conditions.title.as_str() {
         "" => "Corrected displacement field".to_owned(),
         title => title.to_owned(),
     }
 }
 
-fn corrected(field: &MeasuredField, _frame: &Frame, estimate: &FieldEstimate) -> Grid {
+fn corrected(field: &MarkerStudy, _frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let law = field.law(estimate);
     let sheet = Sheet {
         law: &*law,
@@ -154,7 +154,7 @@ pub(super) fn left(estimate: &FieldEstimate) -> impl Iterator<Item = Left> {
     })
 }
 
-fn markers(_field: &MeasuredField, frame: &Frame, estimate: &FieldEstimate) -> Grid {
+fn markers(_field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let all = &frame.markers;
     let places: Vec<[f64; 2]> = all.iter().map(|marker| marker.place).collect();
     let measured: Vec<f64> = all.iter().flat_map(|marker| marker.displacement).collect();

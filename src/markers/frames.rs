@@ -1,0 +1,48 @@
+//! Markers of one specimen, frame after frame.
+
+use std::collections::HashSet;
+
+/// One series of frames of one specimen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MarkerSeries {
+    /// The frames, ascending by number.
+    pub frames: Vec<Frame>,
+    /// Places at rest in mm of markers that were found in no frame.
+    pub lost: Vec<[f64; 2]>,
+}
+
+/// The markers at one instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Its number in the series.
+    pub number: usize,
+    /// Its time, where the data say it.
+    pub time: Option<f64>,
+    /// The markers that were found.
+    pub markers: Vec<Marker>,
+}
+
+/// A material point with its displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Marker {
+    /// Its number: the same point has the same one in all frames.
+    pub number: usize,
+    /// Its place at rest in mm.
+    pub place: [f64; 2],
+    /// ux, uy in mm.
+    pub displacement: [f64; 2],
+    /// Standard deviation of each component of the displacement in mm, where the data say it.
+    pub standard_deviation: Option<f64>,
+}
+
+impl MarkerSeries {
+    /// The places of all markers of all frames, each once, in the order of their first frame; those that were found in none
+    /// come last.
+    pub fn places(&self) -> Vec<[f64; 2]> {
+        let mut seen = HashSet::new();
+        let markers = self.frames.iter().flat_map(|frame| &frame.markers);
+        let found = markers.filter(|marker| seen.insert(marker.number));
+        let places = found.map(|marker| marker.place);
+        places.chain(self.lost.iter().copied()).collect()
+    }
+}

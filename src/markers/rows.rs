@@ -1,0 +1,178 @@
+//! The markers of files as they stand there, and how they are gathered into frames.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::frames::{Frame, Marker, MarkerSeries};
+use crate::error::Diagnostic;
+use crate::mesh::Mesh;
+
+/// How files are to be understood.
+#[derive(Clone, Debug, Default)]
+pub struct ReadSettings {
+    /// The length of the files' unit, or of a pixel, in mm, where the files do not say it.
+    pub unit: Option<f64>,
+    /// The array of a file of VTK or Gmsh, where it must be named.
+    pub array: Option<String>,
+    /// The distance of the points of a matrix in mm.
+    pub grid: Option<f64>,
+    /// Columns of a table that are passed over.
+    pub ignored_columns: Vec<String>,
+}
+
+/// A marker of a file, before markers have numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Row {
+    /// The frame, where the file says it.
+    pub frame: Option<usize>,
+    pub time: Option<f64>,
+    /// The point's own number, where the file has one.
+    pub name: Option<u64>,
+    pub place: [f64; 2],
+    /// No numbers where the marker was not found.
+    pub displacement: [f64; 2],
+    pub standard_deviation: Option<f64>,
+}
+
+/// The rows of one file and the mesh that they came on.
+pub(super) struct FileRows {
+    pub rows: Vec<Row>,
+    pub mesh: Option<Mesh>,
+    pub layout: &'static str,
+    /// What deserves attention.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl FileRows {
+    /// Gathers rows into frames; a point has the number that the files give it, else one by its place. Rows of a table that
+    /// stand twice, with the same place and displacement in the same frame, count once: they are one measurement, and its
+    /// weight must not grow by writing it down again. Rows that differ at one place are measurements of their own.
+    pub fn gather(self, warnings: &mut Vec<Diagnostic>) -> MarkerSeries {
+        let mut gathering = Gathering {
+            named: self.rows.iter().all(|row| row.name.is_some()),
+            mesh: self.mesh.is_some(),
+            ..Gathering::default()
+        };
+        self.rows.into_iter().for_each(|row| gathering.add(row));
+        gathering.finish(warnings)
+    }
+}
+
+/// Frames as they fill with rows.
+#[derive(Default)]
+struct Gathering {
+    /// Whether the files number all points.
+    named: bool,
+    /// Whether the points are nodes of a mesh.
+    mesh: bool,
+    by_place: HashMap<[u64; 2], usize>,
+    frames: BTreeMap<usize, Frame>,
+    /// The displacements at each place of each frame.
+    seen: HashMap<(usize, [u64; 2]), Vec<[f64; 2]>>,
+    lost: BTreeMap<usize, [f64; 2]>,
+    holes: usize,
+    twice: usize,
+    again: usize,
+}
+
+impl Gathering {
+    fn add(&mut self, row: Row) {
+        let key = row.place.map(|x| (x + 0.0).to_bits());
+        let next = self.by_place.len();
+        let number = match row.name {
+            Some(name) if self.named => name as usize,
+            _ => *self.by_place.entry(key).or_insert(next),
+        };
+        let frame_number = row.frame.unwrap_or(1);
+        let frame = self.frames.entry(frame_number).or_default();
+        frame.time = frame.time.or(row.time);
+        if row.displacement.iter().any(|u| !u.is_finite()) {
+            self.holes += 1;
+            if row.place.iter().all(|x| x.is_finite()) {
+                self.lost.insert(number, row.place);
+            }
+            return;
+        }
+        let there = self.seen.entry((frame_number, key)).or_default();
+        if !self.mesh && there.contains(&row.displacement) {
+            self.twice += 1;
+            return;
+        }
+        self.again += usize::from(!self.mesh && !there.is_empty());
+        there.push(row.displacement);
+        frame.markers.push(Marker {
+            number,
+            place: row.place,
+            displacement: row.displacement,
+            standard_deviation: row.standard_deviation,
+        });
+    }
+
+    fn finish(mut self, warnings: &mut Vec<Diagnostic>) -> MarkerSeries {
+        for marker in self.frames.values().flat_map(|frame| &frame.markers) {
+            self.lost.remove(&marker.number);
+        }
+        let counted = [
+            (
+                self.holes,
+                "points without a displacement",
+                "they are left out; their places still count for the outline",
+            ),
+            (
+                self.twice,
+                "rows that stand twice, with one place and displacement in one frame",
+                "each counts once: writing a measurement down again makes it no surer",
+            ),
+            (
+                self.again,
+                "markers measured again at the same place in one frame, with another displacement",
+                "each counts as a measurement of its own; give one row a marker if they are not independent",
+            ),
+        ];
+        for (count, what, hint) in counted.into_iter().filter(|(count, ..)| *count > 0) {
+            warnings.push(Diagnostic::warning("", format!("{what}: {count}")).hint(hint));
+        }
+        MarkerSeries {
+            frames: with_markers(self.frames, warnings),
+            lost: self.lost.into_values().collect(),
+        }
+    }
+}
+
+/// The frames that have markers, with a word about those that have none or are missing.
+fn with_markers(frames: BTreeMap<usize, Frame>, warnings: &mut Vec<Diagnostic>) -> Vec<Frame> {
+    let mut warn = |message: String, hint: &str| {
+        warnings.push(Diagnostic::warning("", message).hint(hint));
+    };
+    let mut kept = Vec::new();
+    for (number, frame) in frames {
+        if frame.markers.is_empty() {
+            let message = format!("the frame {number} has no displacement at all");
+            warn(message, "it is left out");
+        } else {
+            kept.push(Frame { number, ..frame });
+        }
+    }
+    if let Some(gaps) = missing_frames(&kept) {
+        let message = format!("frames are missing: {gaps}");
+        warn(message, "the others are corrected one by one");
+    }
+    kept
+}
+
+/// The numbers that are missing between the first and the last frame; none where frames stand at regular numbers,
+/// such as every tenth of a camera.
+fn missing_frames(frames: &[Frame]) -> Option<String> {
+    let pairs = frames.windows(2);
+    let pairs: Vec<[usize; 2]> = pairs.map(|pair| [pair[0].number, pair[1].number]).collect();
+    let steps: Vec<usize> = pairs.iter().map(|[from, to]| to - from).collect();
+    if steps.len() > 1 && steps.iter().all(|step| *step == steps[0]) {
+        return None;
+    }
+    let gaps = pairs.iter().filter(|[from, to]| *to > from + 1);
+    let gaps = gaps.map(|[from, to]| match to - from {
+        2 => (from + 1).to_string(),
+        _ => format!("{} to {}", from + 1, to - 1),
+    });
+    let gaps: Vec<_> = gaps.collect();
+    (!gaps.is_empty()).then(|| gaps.join(", "))
+}

@@ -1,0 +1,41 @@
+//! What is to be corrected, and how.
+
+use std::path::PathBuf;
+
+use super::conditions::Conditions;
+use crate::markers::ReadSettings;
+use crate::mesh::{CellShape, MeshReading};
+
+/// Where the mesh comes from.
+#[derive(Clone, Debug)]
+pub enum MeshSource {
+    /// The mesh of the field, or one inside the outline of the markers.
+    Data,
+    /// A file with a mesh, and how it is read.
+    File(PathBuf, MeshReading),
+    /// A table with closed lines.
+    Outline(PathBuf),
+}
+
+/// What is to be corrected, and how.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The files of the field.
+    pub files: Vec<PathBuf>,
+    /// How they are to be understood.
+    pub reading: ReadSettings,
+    /// Name or path of the material's card.
+    pub material: String,
+    /// Thickness at rest in mm.
+    pub thickness: f64,
+    /// The mesh.
+    pub mesh: MeshSource,
+    /// Size of the cells of a mesh that is made, in mm.
+    pub cell_size: Option<f64>,
+    /// Their kind.
+    pub shape: CellShape,
+    /// Whether gaps among the markers are holes of the specimen.
+    pub holes: bool,
+    /// What is known besides.
+    pub conditions: Conditions,
+}

@@ -1,0 +1,169 @@
+//! The mesh of a specimen: a file's, the field's own, or one made inside an outline.
+
+use std::path::Path;
+
+use super::request::{MeshSource, Request};
+use crate::error::{Diagnostic, Error, Severity};
+use crate::markers::{MarkerFiles, read_lines};
+use crate::mesh::{Allowed, Mesh, Outline, import};
+
+/// A mesh that is made has at most about so many cells, if no size is given.
+const MOST_CELLS: f64 = 20_000.0;
+
+/// A mesh that is asked for has at most about so many.
+const TOO_MANY_CELLS: f64 = 1e6;
+
+/// A mesh that is made has at least about so many cells across the specimen, if no size is given.
+const LEAST_ACROSS: f64 = 12.0;
+
+/// A mesh and what it was made from.
+pub(super) struct SpecimenMesh {
+    pub mesh: Mesh,
+    pub origin: String,
+    pub warnings: Vec<Diagnostic>,
+    pub doubts: Vec<Diagnostic>,
+    pub unknown_gap: Option<f64>,
+}
+
+impl SpecimenMesh {
+    /// A mesh whose edge is known.
+    fn known(mesh: Mesh, origin: String) -> Self {
+        Self {
+            mesh,
+            origin,
+            warnings: Vec::new(),
+            doubts: Vec::new(),
+            unknown_gap: None,
+        }
+    }
+}
+
+/// The mesh that a request wants.
+pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
+    if request.conditions.edge_gap.is_some()
+        && (field.mesh.is_some() || !matches!(request.mesh, MeshSource::Data))
+    {
+        return Err(Error::input(
+            "an edge gap is given, but the specimen's edge is not made of markers",
+            "leave out --edge-gap (edge_gap), or the mesh and the outline",
+        ));
+    }
+    match (&request.mesh, &field.mesh) {
+        (MeshSource::File(path, reading), _) => {
+            let (mesh, warnings) = import(path, *reading).map_err(Error::Input)?;
+            let origin = format!("from {}", path.display());
+            Ok(SpecimenMesh {
+                warnings,
+                ..SpecimenMesh::known(mesh, origin)
+            })
+        }
+        (MeshSource::Outline(path), _) => in_outline(request, path, field),
+        (MeshSource::Data, Some(mesh)) => Ok(of_field(mesh)),
+        (MeshSource::Data, None) => of_markers(request, field),
+    }
+}
+
+/// A mesh inside the lines of a table.
+fn in_outline(request: &Request, path: &Path, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
+    let lines = read_lines(path, request.reading.unit)?;
+    let outline = Outline::of_lines(lines).map_err(|reason| {
+        let hint = "give the corners of each closed line in order, in columns x [mm], y [mm], line";
+        Error::input(format!("{}: {reason}", path.display()), hint)
+    })?;
+    let markers = field.series.places().len() as f64;
+    let spacing = (outline.area() / markers).sqrt();
+    let mesh = made(request, &outline, spacing)?;
+    let origin = format!("made inside the outline of {}", path.display());
+    Ok(SpecimenMesh::known(mesh, origin))
+}
+
+/// The mesh that the field came on.
+fn of_field(mesh: &Mesh) -> SpecimenMesh {
+    let faults = mesh.faults(Allowed::default()).into_iter();
+    let warnings = faults.map(|fault| Diagnostic {
+        severity: Severity::Warning,
+        message: format!("the field's own mesh: {}", fault.message),
+        hint: Some("correct it on a sound mesh: --mesh or --outline".into()),
+        ..fault
+    });
+    SpecimenMesh {
+        warnings: warnings.collect(),
+        ..SpecimenMesh::known(mesh.clone(), "that of the field".into())
+    }
+}
+
+/// A mesh inside the outline of the markers.
+fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
+    const HINT: &str = "give the specimen's edge with --outline, or its mesh with --mesh";
+    let refuse = |reason: String| Error::input(format!("a mesh cannot be made: {reason}"), HINT);
+    let found = Outline::of_points(&field.series.places()).map_err(refuse)?;
+    let mut outline = found.outline;
+    let mut warnings = Vec::new();
+    let mut warn = |message: String, hint: &str| {
+        warnings.push(Diagnostic::warning("", message).hint(hint));
+    };
+    match (outline.holes.len(), request.holes) {
+        (0, _) => {}
+        (_, false) => outline.holes.clear(),
+        (count, true) => warn(
+            format!("gaps among the markers taken for holes: {count}"),
+            "--holes closed if markers were only lost there; --outline gives their true edges",
+        ),
+    }
+    let gap = request.conditions.edge_gap;
+    if let Some(gap) = gap {
+        outline = outline.widened(gap).map_err(refuse)?;
+    }
+    let mesh = made(request, &outline, found.spacing)?;
+    let spacing = found.spacing;
+    let mut origin =
+        format!("made inside the outline of the markers, which are about {spacing:.4} mm apart");
+    match gap {
+        Some(gap) if gap > 0.0 => origin += &format!(", {gap} mm farther out"),
+        Some(_) => {}
+        None => warn(
+            "the specimen's edge is not known: the outline is that of the markers, which usually end inside of it".into(),
+            "forces grow with the width: their intervals hold an edge up to a spacing farther out; say where it is with \
+             --edge-gap LENGTH (\"0 mm\" where markers lie on it), --outline or --mesh",
+        ),
+    }
+    let doubt = |reason: String| {
+        let message = format!("the outline of the markers is uncertain: {reason}");
+        Diagnostic::warning("", message).hint(HINT)
+    };
+    Ok(SpecimenMesh {
+        mesh,
+        origin,
+        warnings,
+        doubts: found.doubts.into_iter().map(doubt).collect(),
+        unknown_gap: gap.is_none().then_some(spacing),
+    })
+}
+
+/// A mesh inside an outline. Without a wish its cells are as long as the markers' spacing, but at least 12 go across
+/// the specimen and at most about 20,000 are made.
+fn made(request: &Request, outline: &Outline, spacing: f64) -> Result<Mesh, Error> {
+    // Of a triangle with edges of length 1.
+    let cell_area = 3f64.sqrt() / 4.0;
+    let smallest = |cells: f64| (outline.area() / (cells * cell_area)).sqrt();
+    let extent = |axis: usize| {
+        let values = outline.outer.iter().map(|point| point[axis]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        high - low
+    };
+    let across = extent(0).min(extent(1));
+    let size = request
+        .cell_size
+        .unwrap_or(spacing.min(across / LEAST_ACROSS).max(smallest(MOST_CELLS)));
+    if size > across / 2.0 {
+        let message = format!("cells of {size} mm are too large for a specimen of {across:.4} mm");
+        return Err(Error::input(message, "choose a smaller --cell-size"));
+    }
+    if size < smallest(TOO_MANY_CELLS) {
+        let message = format!("cells of {size} mm would be more than a million");
+        return Err(Error::input(message, "choose a larger --cell-size"));
+    }
+    Ok(outline.mesh(size, request.shape))
+}
