@@ -11,13 +11,13 @@
 use std::{error::Error, path::Path};
 
 use gelbench::corrector::estimation::{EdgeCondition, Knowledge, Robust, Specimen, estimate};
-use gelbench::markers::{Reading, read};
+use gelbench::markers::{ReadSettings, read};
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, Mesh};
 
 pub fn report() -> Result<String, Box<dyn Error>> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/measured_plate.csv");
-    let markers = read(&[file], &Reading::default())?.measurement;
+    let markers = read(&[file], &ReadSettings::default())?.series;
     let mesh = Mesh::plate([150.0, 50.0], [12, 4], CellShape::Quad9);
     let specimen = Specimen {
         mesh: &mesh,
