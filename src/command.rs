@@ -18,10 +18,11 @@ use crate::error::{Diagnostic, Error};
 use crate::output;
 use crate::output::ResultFolder;
 use crate::problem::ClampedPlate;
-use crate::results::Computed;
+use crate::results::{Check, Computed};
 use crate::studies::Kind;
-use crate::studies::plate::study::{self, DEFAULT, Study};
 use crate::studies::plate::{self, run};
+use crate::studies::plate::{DEFAULT, Study};
+use crate::studies::sections;
 use crate::validation;
 use terminal::{Outcome, complain, print, progress_bar, warn};
 
@@ -160,7 +161,7 @@ fn perform(command: Command) -> u8 {
 }
 
 fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
-    let text = study::read(path)?;
+    let text = sections::read_text(path)?;
     if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
         return run_case(case, path, &text, folder);
     }
@@ -190,9 +191,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
         folder.display()
     ))?;
     results.ends.iter().for_each(complain);
-    let passed = requirements
-        .iter()
-        .all(|requirement| requirement.judgement.passed());
+    let passed = requirements.iter().all(Check::passed);
     let ended = results.ends.first().map(Error::exit_code);
     Ok(ended.unwrap_or(u8::from(!passed)))
 }
@@ -268,7 +267,7 @@ fn conclude(cases: &[Computed], report: &Path) -> Outcome {
 }
 
 fn check(path: &Path) -> Outcome {
-    let text = study::read(path)?;
+    let text = sections::read_text(path)?;
     if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
         warn(&case.read(path, &text)?.warnings);
         print(&format!(

@@ -10,6 +10,7 @@ use crate::results::{Computed, Outcome};
 pub mod markers;
 pub mod motion;
 pub mod plate;
+pub mod sections;
 pub mod specimen;
 
 /// Reports what is being done.

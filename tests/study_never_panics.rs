@@ -6,7 +6,7 @@ use gelbench::calibration::{FitSettings, TestData, fit};
 use gelbench::document::Statements;
 use gelbench::material::Card;
 use gelbench::material::registry::{CARDS, DATA, Law};
-use gelbench::studies::plate::study::{DEFAULT, Study};
+use gelbench::studies::plate::{DEFAULT, Study};
 use gelbench::validation::{CASES, case_of};
 use proptest::prelude::*;
 

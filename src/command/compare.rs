@@ -13,8 +13,9 @@ use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
 use crate::output::{self, ResultFolder};
 use crate::results::{Array, Block, Grid, GridSeries, Sheet};
+use crate::studies::plate::Study;
 use crate::studies::plate::run;
-use crate::studies::plate::study::{self, Study};
+use crate::studies::sections;
 use crate::studies::{Kind, specimen};
 use crate::units::{self, Dimension};
 use crate::validation;
@@ -106,7 +107,7 @@ fn doubts(differences: &[Difference]) -> Vec<Diagnostic> {
 /// Computes what is compared.
 fn compute(options: &Options) -> Result<Compared, Error> {
     let path = &options.study;
-    let text = study::read(path)?;
+    let text = sections::read_text(path)?;
     let bar = progress_bar(0);
     let told = |what: &str| {
         bar.set_message(what.to_owned());

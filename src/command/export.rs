@@ -6,13 +6,11 @@ use clap::{Args, ValueEnum};
 
 use super::terminal::{Outcome, print, warn};
 use crate::error::{Diagnostic, Error, suggestion};
-use crate::finite_element::FiniteElements;
 use crate::material::Code;
-use crate::mesh::Side;
 use crate::output;
 use crate::output::export::{Export, InputFile};
-use crate::problem::{BoundaryProblem, Support};
-use crate::studies::plate::study::{self, Study};
+use crate::studies::plate::Study;
+use crate::studies::sections;
 use crate::studies::specimen::Specimen;
 use crate::studies::{Kind, specimen};
 use crate::validation;
@@ -57,7 +55,7 @@ pub fn run(options: &Options) -> Outcome {
         ));
     }
     let path = &options.study;
-    let text = study::read(path)?;
+    let text = sections::read_text(path)?;
     let written = match validation::case_of(&path.display().to_string(), &text)? {
         None => plate(path, text, options)?,
         Some(case) if case.kind == specimen::KIND => {
@@ -117,24 +115,17 @@ fn plate(path: &Path, text: String, options: &Options) -> Result<InputFile, Erro
     let study = Study::of_file(path, text)?;
     warn(&study.warnings);
     let plate = &study.problem;
-    let cells = study.reference_meshes()[options.level as usize];
-    let grip = |side: Side, along: f64| {
-        (
-            side.name().to_owned(),
-            Support::Displacement([Some(along), Some(0.0)]),
-        )
-    };
-    let problem = BoundaryProblem {
-        thickness: plate.thickness,
-        law: plate.law.clone(),
-        supports: vec![grip(Side::Left, 0.0), grip(Side::Right, plate.size[0])],
-        loads: Vec::new(),
+    let [coarse, middle, fine] = study.finite_elements();
+    let elements = match options.level {
+        Level::Coarse => coarse,
+        Level::Middle => middle,
+        Level::Fine => fine,
     };
     let export = Export {
         title: &study.title,
-        problem: &problem,
+        problem: &plate.boundary_problem(),
         card: &study.card,
-        mesh: &FiniteElements::graded(plate, cells, study.element, study.grading).mesh,
+        mesh: &elements.mesh,
         factors: &plate.stretches,
         bulk_ratio: options.bulk_ratio,
     };

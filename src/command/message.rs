@@ -14,9 +14,9 @@ use crate::material::Card;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
 use crate::problem::ClampedPlate;
-use crate::results::{Computed, Wanted, limit, number};
-use crate::studies::plate::results::{Requirement, Results};
-use crate::studies::plate::study::Study;
+use crate::results::{Check, Computed, Wanted, limit, number};
+use crate::studies::plate::Study;
+use crate::studies::plate::results::Results;
 
 /// A finding with the lines of the file that it is about.
 pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
@@ -61,9 +61,9 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
 /// What a checked study will compute.
 pub fn study(path: &Path, study: &Study) -> String {
     let [nx, ny] = study.cells;
-    let [fx, fy] = study.reference_cells;
-    let graded = match study.grading > 1.0 {
-        true => format!(" graded by {}", study.grading),
+    let [fx, fy] = study.reference.cells;
+    let graded = match study.reference.grading > 1.0 {
+        true => format!(" graded by {}", study.reference.grading),
         false => String::new(),
     };
     format!(
@@ -71,13 +71,13 @@ pub fn study(path: &Path, study: &Study) -> String {
         path.display(),
         study.problem.stretches.len(),
         study.card.name,
-        study.element.name(),
+        study.reference.element.name(),
         study.output.folder.display()
     )
 }
 
 /// The headline figures of a run.
-pub fn summary(results: &Results, requirements: &[Requirement]) -> String {
+pub fn summary(results: &Results, requirements: &[Check]) -> String {
     let mut text = String::from(
         "deviation from the finite elements [%]\n\
          \x20            mass-spring                       corrected\n\
@@ -109,19 +109,15 @@ pub fn summary(results: &Results, requirements: &[Requirement]) -> String {
     text
 }
 
-fn requirement(requirement: &Requirement) -> String {
-    let judgement = &requirement.judgement;
-    let bound = if requirement.at_most {
-        "at most"
-    } else {
-        "at least"
-    };
-    let mut text = format!("{} {}", judgement.word(), requirement.name);
-    if !requirement.worst.is_nan() || *judgement == Judgement::Fail {
-        text += &format!(
-            ": {:.3} % ({bound} {} %)",
-            requirement.worst, requirement.limit
-        );
+fn requirement(check: &Check) -> String {
+    let judgement = check.judgement();
+    let mut text = format!("{} {}", judgement.word(), check.quantity);
+    if !check.computed.is_nan() || judgement == Judgement::Fail {
+        let bound = match check.wanted {
+            Wanted::AtLeast(limit) => format!("at least {limit} %"),
+            Wanted::AtMost(limit) | Wanted::Equal(limit, _) => format!("at most {limit} %"),
+        };
+        text += &format!(": {:.3} % ({bound})", check.computed);
     }
     if let Some(remark) = judgement.remark() {
         text += &format!(": {remark}");

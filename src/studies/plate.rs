@@ -5,15 +5,17 @@ use crate::output::{ResultFolder, write_document, write_grids, write_pictures};
 
 mod figures;
 mod json;
+mod problem;
+mod read;
 mod report;
 pub mod results;
 pub mod run;
-pub mod study;
 mod vtk;
 mod warnings;
 
+pub use problem::{OutputSettings, Study};
+pub use read::DEFAULT;
 use results::Results;
-use study::Study;
 pub use warnings::warnings;
 
 /// Writes everything a study asks for into its folder.

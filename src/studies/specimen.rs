@@ -27,7 +27,7 @@ mod verdict;
 mod warnings;
 
 use paths::OnLattice;
-pub use read::{Refinement, Specimen, Tolerances};
+pub use read::{Refinement, Specimen};
 use reference::{OnMesh, Reference};
 use solved::Solved;
 

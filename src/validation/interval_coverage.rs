@@ -16,7 +16,7 @@ use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, Mesh};
 use crate::results::{Axis, Stroke};
-use crate::studies::plate::study;
+use crate::studies::sections;
 use crate::units::Dimension;
 use inference::{free_edges, modulus};
 use subject::{Data, Disturbance, MIDDLE, PLATE, Subject, unknown_grips};
@@ -46,7 +46,7 @@ struct Settings {
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
-    let card = study::read_card(&root.section("plate"), folder);
+    let card = sections::read_card(&root.section("plate"), folder);
     let law = card.and_then(|card| {
         let first = card.parameters.first().map(|parameter| parameter.key);
         RegressedLaw::of_card(&card, &first.into_iter().collect::<Vec<_>>()).ok()

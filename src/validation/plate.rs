@@ -11,7 +11,7 @@ use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
 use crate::solve::State;
-use crate::studies::plate::study;
+use crate::studies::sections;
 use crate::units::Dimension;
 
 /// The plate of a case, read from its `[plate]` section.
@@ -50,11 +50,11 @@ impl Plate {
     /// Reads the section; a card given by a path is looked for relative to `folder`.
     pub fn read(root: &Section<'_>, folder: &Path) -> Self {
         let section = root.section("plate");
-        let card = study::read_card(&section, folder);
-        let (problem, cells) = study::read_plate(&section, card.as_ref());
-        let stretch = study::read_stretch(&section, "stretch");
+        let card = sections::read_card(&section, folder);
+        let (problem, cells) = sections::read_plate(&section, card.as_ref());
+        let stretch = sections::read_stretch(&section, "stretch");
         if let Some(card) = card.filter(|_| stretch > 0.0) {
-            study::check_range(&section, "stretch", stretch, &card);
+            sections::check_range(&section, "stretch", stretch, &card);
         }
         section.unknown_keys();
         let stretches = vec![stretch];

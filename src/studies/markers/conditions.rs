@@ -37,7 +37,7 @@ use crate::error::{Diagnostic, Error, suggestion};
 use crate::markers::MarkerSeries;
 use crate::material::Card;
 use crate::mesh::Mesh;
-use crate::studies::plate::study;
+use crate::studies::sections;
 use crate::units::Dimension;
 
 /// An edge by its name, with what is known of it.
@@ -105,7 +105,7 @@ impl Conditions {
     /// # Errors
     /// [`Error::Input`] with all of its faults.
     pub fn of_file(path: &Path) -> Result<Self, Error> {
-        let text = study::read(path)?;
+        let text = sections::read_text(path)?;
         let faults = Faults::default();
         let document = Document::parse(&path.display().to_string(), &text, &faults);
         let conditions = read(&document.root(None, &faults));

@@ -13,7 +13,7 @@ use crate::material::Card;
 use crate::material::card::read_viscosity;
 use crate::material::viscosity::ViscousMaterial;
 use crate::problem::ClampedPlate;
-use crate::studies::plate::study;
+use crate::studies::sections;
 use crate::units::Dimension;
 
 /// Most instants: every one is kept in memory.
@@ -42,7 +42,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let plate = root
         .section("plate")
         .requiring(&["length", "width", "thickness"]);
-    let (problem, cells) = study::read_plate(&plate, material.card.as_ref());
+    let (problem, cells) = sections::read_plate(&plate, material.card.as_ref());
     plate.unknown_keys();
     let (start, grip) = read_stretches(root, material.card.as_ref());
     let gravity = read_gravity(&root.section("gravity"));
@@ -89,7 +89,7 @@ fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T)
 }
 
 fn read_material(section: &Section, folder: &Path) -> Material {
-    let card = study::read_card(section, folder);
+    let card = sections::read_card(section, folder);
     let own_density = card.as_ref().and_then(|card| card.density);
     let density = match own_density {
         Some(density) if !section.has("density") => density,
@@ -113,14 +113,14 @@ fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotio
     let section = root.section("start").requiring(&["stretch"]);
     let start = section.quantity("stretch", Dimension::Ratio, STRETCHES);
     if let Some(card) = card.filter(|_| start > 0.0) {
-        study::check_range(&section, "stretch", start, card);
+        sections::check_range(&section, "stretch", start, card);
     }
     section.unknown_keys();
     let section = root.section("grip").requiring(&["motion", "time"]);
     let grip = read_grip(&section, start);
     let most = grip.as_ref().map_or(0.0, |grip| largest(&grip.stretch));
     if let Some(card) = card.filter(|_| most > start) {
-        study::check_range(&section, "motion", most, card);
+        sections::check_range(&section, "motion", most, card);
     }
     section.unknown_keys();
     (start, grip)

@@ -1,7 +1,7 @@
 //! The pictures of a plate.
 
+use super::Study;
 use super::results::{MODELS, Results};
-use super::study::Study;
 use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;

@@ -4,9 +4,10 @@ use serde_json::{Value, json};
 
 use crate::compare::{Deviation, SelfConvergence, StepComparison};
 use crate::problem::Measures;
+use crate::results::{Check, Wanted};
 use crate::solve::State;
-use crate::studies::plate::results::{Requirement, Results, verdict};
-use crate::studies::plate::study::Study;
+use crate::studies::plate::Study;
+use crate::studies::plate::results::{Results, verdict};
 
 /// The figures of a run. Numbers and models that do not exist are `null`.
 pub fn json(study: &Study, results: &Results) -> Value {
@@ -18,7 +19,6 @@ pub fn json(study: &Study, results: &Results) -> Value {
         .map(|(what, seconds)| ((*what).to_owned(), json!(seconds)));
     let mut warnings: Vec<String> = study.warnings.iter().map(ToString::to_string).collect();
     warnings.extend(super::warnings(study, results));
-    let passed = |requirement: &Requirement| requirement.judgement.passed();
     json!({
         "gelbench": env!("CARGO_PKG_VERSION"),
         "study": { "name": study.name, "title": study.title, "text": study.text },
@@ -35,27 +35,32 @@ pub fn json(study: &Study, results: &Results) -> Value {
             "thickness_mm": study.problem.thickness,
             "cells": study.cells,
         },
-        "reference": { "element": study.element.name(), "cells": study.reference_meshes(), "grading": study.grading },
+        "reference": { "element": study.reference.element.name(), "cells": study.reference.meshes(), "grading": study.reference.grading },
         "ends": results.ends.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "balance": balance(results),
         "steps": steps.map(|(index, step)| self::step(results, index, step)).collect::<Vec<_>>(),
         "requirements": requirements.iter().map(self::requirement).collect::<Vec<_>>(),
-        "passed": results.ends.is_empty() && requirements.iter().all(passed),
+        "passed": results.ends.is_empty() && requirements.iter().all(Check::passed),
         "verdict": verdict(&requirements),
         "times_s": times.collect::<serde_json::Map<_, _>>(),
     })
 }
 
-fn requirement(requirement: &Requirement) -> Value {
+fn requirement(check: &Check) -> Value {
+    let (limit, limit_is) = match check.wanted {
+        Wanted::AtLeast(limit) => (limit, "smallest"),
+        Wanted::AtMost(limit) | Wanted::Equal(limit, _) => (limit, "largest"),
+    };
+    let judgement = check.judgement();
     json!({
-        "name": requirement.name,
-        "worst_percent": requirement.worst,
-        "own_error_percent": requirement.own_error,
-        "limit_percent": requirement.limit,
-        "limit_is": if requirement.at_most { "largest" } else { "smallest" },
-        "judgement": requirement.judgement.word(),
-        "remark": requirement.judgement.remark(),
-        "passed": requirement.judgement.passed(),
+        "name": check.quantity,
+        "worst_percent": check.computed,
+        "own_error_percent": check.own_error,
+        "limit_percent": limit,
+        "limit_is": limit_is,
+        "judgement": judgement.word(),
+        "remark": judgement.remark(),
+        "passed": judgement.passed(),
     })
 }
 

@@ -3,11 +3,11 @@
 use crate::compare::{Deviation, StepComparison};
 use crate::error::Error;
 use crate::problem::ClampedPlate;
-use crate::studies::plate::results::{MODELS, Requirement, Results, verdict};
-use crate::studies::plate::study::Study;
+use crate::studies::plate::Study;
+use crate::studies::plate::results::{MODELS, Results, verdict};
 
 use super::warnings::warnings;
-use crate::results::{Block, Figure, material_statement};
+use crate::results::{Block, Check, Figure, Wanted, material_statement};
 
 mod accuracy;
 
@@ -83,17 +83,16 @@ fn judged(study: &Study, results: &Results) -> Vec<Block> {
         study.card.title,
         results.finest().model.describe()
     );
-    let row = |requirement: &Requirement| {
+    let row = |check: &Check| {
         vec![
-            requirement.name.to_owned(),
-            figure(Some(requirement.worst), 3),
-            power(requirement.own_error),
-            format!(
-                "{} {}",
-                if requirement.at_most { "≤" } else { "≥" },
-                requirement.limit
-            ),
-            requirement.judgement.word().to_owned(),
+            check.quantity.clone(),
+            figure(Some(check.computed), 3),
+            power(check.own_error.unwrap_or(f64::NAN)),
+            match check.wanted {
+                Wanted::AtLeast(limit) => format!("≥ {limit}"),
+                Wanted::AtMost(limit) | Wanted::Equal(limit, _) => format!("≤ {limit}"),
+            },
+            check.judgement().word().to_owned(),
         ]
     };
     let head = [
@@ -103,9 +102,9 @@ fn judged(study: &Study, results: &Results) -> Vec<Block> {
         "wanted [%]",
         "result",
     ];
-    let remark = |requirement: &Requirement| {
-        let remark = requirement.judgement.remark()?;
-        let (name, word) = (requirement.name, requirement.judgement.word());
+    let remark = |check: &Check| {
+        let remark = check.judgement().remark()?;
+        let (name, word) = (&check.quantity, check.judgement().word());
         Some(Block::Paragraph(format!("{name}, {word}: {remark}.")))
     };
     let mut blocks = vec![

@@ -12,7 +12,7 @@ use crate::solve::State;
 
 mod requirement;
 
-pub use requirement::{Requirement, verdict};
+pub use requirement::verdict;
 
 /// The names of the models, in the order of [`Results::models`].
 pub const MODELS: [&str; 3] = ["mass-spring", "corrected", "finite elements"];

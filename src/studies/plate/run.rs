@@ -14,8 +14,8 @@ use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::problem::{Measures, Model};
 use crate::solve::{NewtonSettings, State};
+use crate::studies::plate::Study;
 use crate::studies::plate::results::{ReferenceMesh, Results};
-use crate::studies::plate::study::Study;
 
 /// How many times [`run`] reports progress for a study.
 pub fn progress_steps(study: &Study) -> usize {
@@ -100,10 +100,16 @@ fn correct(
     progress: Progress,
 ) -> Vec<Result<CorrectedState, Error>> {
     let problem = &study.problem;
-    let corrector = PlateCorrector::new(problem, lattice, study.scheme, study.corrector);
+    let corrector = PlateCorrector::new(
+        problem,
+        lattice,
+        study.corrector.scheme,
+        study.corrector.direct,
+    );
     let mut climb = study
+        .corrector
         .climb
-        .map(|settings| Climb::even(problem, study.cells, study.scheme, settings));
+        .map(|settings| Climb::even(problem, study.cells, study.corrector.scheme, settings));
     let mut state = |(step, stretch): (usize, &f64)| {
         let affine = || problem.affine(lattice, *stretch);
         let own = springs.get(step).map(|solution| &solution.displacement);
@@ -168,16 +174,21 @@ fn finite_elements(
         "finite elements, middle",
         "finite elements, fine",
     ];
-    let [coarse, middle, fine] = study.reference_meshes();
+    let [coarse, middle, fine] = study.reference.meshes();
     [(names[0], coarse), (names[1], middle), (names[2], fine)].map(|(name, cells)| {
         let problem = &study.problem;
-        let model = FiniteElements::graded(problem, cells, study.element, study.grading);
+        let model = FiniteElements::graded(
+            problem,
+            cells,
+            study.reference.element,
+            study.reference.grading,
+        );
         let told = |stretch: f64| progress(name, stretch);
         let solutions = timed(times, name, || {
             as_far(
                 &model.model(problem),
                 study,
-                study.finite_element,
+                study.reference.newton,
                 ends,
                 &told,
             )

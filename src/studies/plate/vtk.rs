@@ -1,7 +1,7 @@
 //! The fields of a plate for other programs.
 
+use super::Study;
 use super::results::Results;
-use super::study::Study;
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{CorrectedState, EQUILIBRIUM, FREE_EDGES, GRIPS};
 use crate::results::{Array, Grid, GridSeries, Sheet};

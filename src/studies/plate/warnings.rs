@@ -1,8 +1,8 @@
 //! What a reader of a plate's figures has to know about them.
 
 use crate::problem::ClampedPlate;
+use crate::studies::plate::Study;
 use crate::studies::plate::results::{MODELS, Results};
-use crate::studies::plate::study::Study;
 
 use crate::results::wrinkling;
 

@@ -10,19 +10,8 @@ use crate::error::suggestion;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Load};
-use crate::studies::plate::study;
+use crate::studies::sections::{Tolerances, read_card};
 use crate::units::Dimension;
-
-/// What the corrected field has to reach, in %.
-#[derive(Clone, Copy)]
-pub struct Tolerances {
-    /// Largest deviation in displacement from the finite elements.
-    pub displacement_percent: f64,
-    /// Largest deviation in what is measured.
-    pub force_percent: f64,
-    /// Smallest correction of the springs' deviation in displacement.
-    pub correction_percent: f64,
-}
 
 /// When local refinement ends.
 #[derive(Clone, Copy)]
@@ -67,7 +56,7 @@ const MEASURES: &[&str] = &[
 /// Reads a study; `None` where it has faults, which are recorded.
 pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let material = root.section("material").requiring(&["card"]);
-    let card = study::read_card(&material, folder);
+    let card = read_card(&material, folder);
     material.unknown_keys();
 
     let section = root.section("finite_element");
@@ -97,7 +86,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     }
     let group = section.text("measured_group");
     section.unknown_keys();
-    let tolerances = read_tolerances(&root.section("tolerances"));
+    let tolerances = Tolerances::read(&root.section("tolerances"), false);
     let (card, name, outline) = (card?, name?, outline?);
     let mesh = coarse(root, &outline)?;
     given.check_groups(&mesh);
@@ -139,17 +128,6 @@ fn coarse(root: &Section, outline: &Outline) -> Option<Mesh> {
     mesh.ok()
 }
 
-fn read_tolerances(section: &Section) -> Tolerances {
-    let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
-    let tolerances = Tolerances {
-        displacement_percent: percent("displacement"),
-        force_percent: percent("force"),
-        correction_percent: percent("correction"),
-    };
-    section.unknown_keys();
-    tolerances
-}
-
 fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refinement> {
     let error = section.quantity("error", Dimension::Ratio, Bound::Within(1e-6, 0.5));
     let most_cells = section.count("most_cells", 10, 200_000);
@@ -183,6 +161,7 @@ impl Specimen {
             group: group.into(),
             tolerances: Tolerances {
                 displacement_percent: 1.0,
+                departure_percent: None,
                 force_percent: 1.0,
                 correction_percent: 1.0,
             },

@@ -8,8 +8,8 @@ use crate::finite_element::convergence::Richardson;
 use crate::problem::ClampedPlate;
 use crate::results::Block;
 use crate::solve::State;
+use crate::studies::plate::Study;
 use crate::studies::plate::results::{MODELS, Results};
-use crate::studies::plate::study::Study;
 
 pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
     let fit = match study.card.fit_error_percent() {
@@ -52,7 +52,7 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
              remains is the discretisation error of the corrector's finite differences on the lattice's nodes{}, and \
              the finite elements' own discretisation error, estimated from three meshes. The finite elements judge a \
              deviation only where their own error of it is at most a tenth of it.",
-            match study.scheme {
+            match study.corrector.scheme {
                 DifferenceScheme::Gauss =>
                     ", whose equations are those of bilinear finite elements there",
                 DifferenceScheme::Biquadratic =>
@@ -86,7 +86,7 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
         ]);
         cells
     };
-    let meshes = study.reference_meshes().map(|[x, y]| format!("{x} × {y}"));
+    let meshes = study.reference.meshes().map(|[x, y]| format!("{x} × {y}"));
     let head = [
         "stretch [%]",
         "force, extrapolated [N]",
@@ -108,12 +108,15 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
              clamped corners are singular, which lowers the order where cells are equal; a grading towards them \
              restores it. The last columns come from the finest mesh alone, by recovery of its gradient; at \
              singular corners they are good for the order of magnitude, and they count where three meshes do not converge.",
-            study.element.name(),
+            study.reference.element.name(),
             meshes[0],
             meshes[1],
             meshes[2],
-            match study.grading > 1.0 {
-                true => format!(", graded by {} towards the corners", study.grading),
+            match study.reference.grading > 1.0 {
+                true => format!(
+                    ", graded by {} towards the corners",
+                    study.reference.grading
+                ),
                 false => String::new(),
             }
         )),
@@ -139,7 +142,7 @@ pub fn balance(study: &Study, results: &Results) -> Vec<Block> {
         "at a stretch of [%]",
         "largest force left at a free node, over that on a grip [–]",
     ];
-    let climb = match study.climb {
+    let climb = match study.corrector.climb {
         Some(_) => {
             " The corrected field has climbed: its iteration ends at a share (`climb_tolerance`) of its own discretisation \
              error, which is what is left at its nodes."
@@ -194,7 +197,7 @@ pub fn convergence(study: &Study, results: &Results) -> Vec<Block> {
         Block::table(&head, rows),
         Block::Paragraph(format!(
             "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: {}",
-            match study.climb {
+            match study.corrector.climb {
                 Some(_) =>
                     "the correction that is left, root mean square over the nodes of the finest grid, over the \
                      largest displacement; the first is what this grid adds to the one before it.",
@@ -235,7 +238,7 @@ fn starts(results: &Results) -> Option<Block> {
 
 /// What the springs do, and what they do not.
 fn role_of_springs(study: &Study) -> String {
-    let start = match study.climb {
+    let start = match study.corrector.climb {
         Some(_) => {
             "The climb begins with a field of its own on a coarse grid, as the table says, and needs the study's springs \
              for the multipliers alone."

@@ -4,38 +4,23 @@ use super::Results;
 use crate::compare::judgement::{Judgement, ROUNDING_PERCENT, judge, judge_correction};
 use crate::compare::{Deviation, StepComparison};
 use crate::problem::ClampedPlate;
-use crate::studies::plate::study::Study;
+use crate::results::{Check, Wanted};
+use crate::studies::plate::Study;
 
 /// How the reference becomes a better one.
 const REMEDY: &str = "take finer `finite_element.cells`, or a `finite_element.grading` near 2";
 
-/// A requirement on the corrected field, in percent.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Requirement {
-    /// The measure.
-    pub name: &'static str,
-    /// The study's tolerance.
-    pub limit: f64,
-    /// The worst value over all stretches; not a number where there is none.
-    pub worst: f64,
-    /// The largest own error of the reference in what is judged, over all stretches, in % of the same size.
-    pub own_error: f64,
-    /// What comes of it.
-    pub judgement: Judgement,
-    /// Whether the limit is the largest value that passes; else it is the smallest.
-    pub at_most: bool,
-}
+/// Where the limits come from.
+const SOURCE: &str = "the study's tolerance";
 
 /// What all requirements together come to: failed where one fails, passed where all do.
-pub fn verdict(requirements: &[Requirement]) -> &'static str {
-    let judged = || {
-        requirements
-            .iter()
-            .map(|requirement| &requirement.judgement)
-    };
-    if judged().all(Judgement::passed) {
+pub fn verdict(requirements: &[Check]) -> &'static str {
+    if requirements.iter().all(Check::passed) {
         "passed"
-    } else if judged().any(|judgement| *judgement == Judgement::Fail) {
+    } else if requirements
+        .iter()
+        .any(|check| check.judgement() == Judgement::Fail)
+    {
         "failed"
     } else {
         "not been judged in all"
@@ -52,7 +37,7 @@ struct Measure {
 
 impl Results {
     /// Every requirement on the corrected field with its worst value over all stretches.
-    pub fn requirements(&self, study: &Study) -> Vec<Requirement> {
+    pub fn requirements(&self, study: &Study) -> Vec<Check> {
         let tolerances = &study.tolerances;
         let displacement = Measure {
             name: "displacement",
@@ -60,27 +45,27 @@ impl Results {
             deviation: |deviation| deviation.displacement_percent,
             own: |results, step| Some(results.comparison[step].reference?.displacement_percent),
         };
-        let departure = Measure {
+        let departure = tolerances.departure_percent.map(|limit| Measure {
             name: "departure from affine",
-            limit: tolerances.departure_percent,
+            limit,
             deviation: |deviation| deviation.departure_percent,
             own: |results, step| Some(results.comparison[step].reference?.departure_percent),
-        };
+        });
         let force = Measure {
             name: "force",
             limit: tolerances.force_percent,
             deviation: |deviation| deviation.force_percent.abs(),
             own: Self::own_force_percent,
         };
-        let [displacement, departure, force] =
-            [displacement, departure, force].map(|measure| self.largest(study, &measure));
-        let correction = self.correction(study);
-        vec![displacement, departure, force, correction]
+        let measures = [Some(displacement), departure, Some(force)];
+        let largest = measures.iter().flatten();
+        let largest = largest.map(|measure| self.largest(study, measure));
+        largest.chain([self.correction(study)]).collect()
     }
 
     /// The worst deviation over all stretches, judged with the largest own error over all of them: a force may be right by
     /// accident at one stretch.
-    fn largest(&self, study: &Study, measure: &Measure) -> Requirement {
+    fn largest(&self, study: &Study, measure: &Measure) -> Check {
         let compared = || self.comparison.iter().enumerate();
         let deviations = compared().filter_map(|(_, step)| step.corrected.as_ref());
         let deviation = worst(deviations.map(measure.deviation), f64::max);
@@ -92,21 +77,13 @@ impl Results {
             false => judge(deviation, own_error, measure.limit, REMEDY),
         };
         let missing = self.stretches_without(|step| step.corrected.is_none());
-        Requirement {
-            name: measure.name,
-            limit: measure.limit,
-            worst: deviation,
-            own_error,
-            judgement: self.unless_missing(
-                judgement,
-                missing,
-                "the corrected field is not compared",
-            ),
-            at_most: true,
-        }
+        let judgement =
+            self.unless_missing(judgement, missing, "the corrected field is not compared");
+        let wanted = Wanted::AtMost(measure.limit);
+        Check::new(measure.name, "%", wanted, SOURCE, deviation).judged(judgement, own_error)
     }
 
-    fn correction(&self, study: &Study) -> Requirement {
+    fn correction(&self, study: &Study) -> Check {
         let limit = study.tolerances.correction_percent;
         let own = |step: &StepComparison| step.reference.map_or(f64::NAN, |r| r.departure_percent);
         let pair = |step: &StepComparison| {
@@ -128,14 +105,11 @@ impl Results {
         let measured = || pairs.iter().filter(|pair| !rounding(pair));
         let corrections = measured().map(|([before, after], _)| 100.0 * (1.0 - after / before));
         let own = measured().map(|([before, _], own)| 100.0 * own / before);
-        Requirement {
-            name: "correction of the departure",
-            limit,
-            worst: worst(corrections, f64::min),
-            own_error: worst(own, f64::max),
-            judgement: self.unless_missing(judgement, missing, "the correction is not known"),
-            at_most: false,
-        }
+        let judgement = self.unless_missing(judgement, missing, "the correction is not known");
+        let least = worst(corrections, f64::min);
+        let wanted = Wanted::AtLeast(limit);
+        Check::new("correction of the departure", "%", wanted, SOURCE, least)
+            .judged(judgement, worst(own, f64::max))
     }
 
     /// What is not known at all stretches can have failed at one, but it cannot have passed.

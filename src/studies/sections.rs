@@ -1,29 +1,40 @@
-//! The plate of a study: its material, its size, its cells and its stretches.
+//! Sections that studies of several kinds have: material, plate, Newton's method, tolerances.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use crate::document::{Bound, Section};
-use crate::error::Error;
+use crate::error::{Diagnostic, Error};
 use crate::mass_spring::LARGEST_ASPECT;
 use crate::material::curve::Mode;
 use crate::material::parameters::OffsetTreatment;
 use crate::material::stability::{SEARCHED, stable_range};
 use crate::material::{Card, HyperelasticLaw, NeoHooke};
 use crate::problem::ClampedPlate;
+use crate::solve::NewtonSettings;
 use crate::units::Dimension;
 
 /// Most cells of a mesh in one direction, and in all: more than this would not fit into common memories.
-pub(super) const MOST_CELLS: usize = 2000;
+pub const MOST_CELLS: usize = 2000;
 const MOST_CELLS_IN_ALL: usize = 200_000;
 
 /// Lengths that a plate may have, in mm: from a micrometre to a kilometre.
 const LENGTHS: Bound = Bound::Range(1e-3, 1e6, "greater than zero, from 1 µm to 1 km");
 /// Stretches that a plate may be given.
 const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
-/// The same with compressions, and the smallest that is none.
-const WITH_COMPRESSIONS: Bound = Bound::Range(-0.95, 100.0, "from −95 % to 10000 %");
-const SMALLEST: f64 = 1e-9;
+
+/// The text of a study file.
+///
+/// # Errors
+/// [`Error::Input`] when the file cannot be read.
+pub fn read_text(path: &Path) -> Result<String, Error> {
+    std::fs::read_to_string(path).map_err(|cause| {
+        let fault = Diagnostic::error("", format!("cannot read {}: {cause}", path.display()));
+        Error::Input(vec![
+            fault.hint("`gelbench new NAME` writes a study to start from"),
+        ])
+    })
+}
 
 /// The card under `card` of a section, looked for relative to `folder`; nothing when it is no card to work
 /// with, which is recorded as a fault.
@@ -94,30 +105,13 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, 
 }
 
 /// Records the fault of a mesh with too many cells in all; whether it has not.
-pub(super) fn check_cells(section: &Section<'_>, cells: [usize; 2]) -> bool {
+pub fn check_cells(section: &Section<'_>, cells: [usize; 2]) -> bool {
     let all = cells[0] * cells[1];
     if all > MOST_CELLS_IN_ALL {
         let hint = format!("take at most {MOST_CELLS_IN_ALL}");
         section.fault("cells", &format!("{all} cells are too many"), &hint);
     }
     all <= MOST_CELLS_IN_ALL
-}
-
-/// The cells of biquadratic elements, graded by 2, that can judge a lattice. Their error falls with the third power of their
-/// number n over the shorter side, that of a lattice with the 1.5th power of its own number m:
-///
-/// ```text
-/// n = max(√(40 m), min(40, 2 √(20 m))),   n √(long/short) over the longer side
-/// ```
-///
-/// so that it is 1/100 and less of the lattice's on plates of 1:1 to 20:1 with 4 to 80 cells across. Between the grips a
-/// long plate is nearly in uniaxial tension: over the longer side the cells need not be square.
-pub(super) fn reference_cells(size: [f64; 2], lattice: [usize; 2]) -> [usize; 2] {
-    let short = if size[0] < size[1] { 0 } else { 1 };
-    let m = lattice[short] as f64;
-    let n = (40.0 * m).sqrt().max(40.0_f64.min(2.0 * (20.0 * m).sqrt()));
-    let over = |axis: usize| (n * (size[axis] / size[short]).sqrt()).ceil() as usize;
-    [0, 1].map(|axis| over(axis).next_multiple_of(4).min(MOST_CELLS))
 }
 
 /// Springs cannot make a lattice of long cells isotropic.
@@ -133,40 +127,6 @@ fn check_aspect(section: &Section<'_>, size: [f64; 2], cells: [usize; 2]) {
             &format!("take [{along}, {across}]"),
         );
     }
-}
-
-/// The stretches of a plate: at least one, all of one sign, from small to large, as a path from rest takes them.
-pub(super) fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
-    const KEY: &str = "stretches";
-    let stretches = section.quantities(KEY, Dimension::Ratio, WITH_COMPRESSIONS);
-    section.unknown_keys();
-    if stretches.is_empty() {
-        let hint = "such as [\"15 %\", \"30 %\"]";
-        section.fault(KEY, "needs at least one stretch", hint);
-    }
-    if stretches.iter().any(|stretch| stretch.is_nan()) {
-        return stretches;
-    }
-    if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
-        let hint = "at rest there is nothing to solve; leave it out";
-        section.fault(KEY, "must not hold zero", hint);
-        return stretches;
-    }
-    let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
-    if !one_sign {
-        let hint = "every path begins at rest: write one study for the tension and one for the compression";
-        section.fault(KEY, "must have one sign", hint);
-    } else if stretches
-        .windows(2)
-        .any(|pair| pair[1].abs() <= pair[0].abs())
-    {
-        let hint = "sort them by their size and leave out repetitions";
-        section.fault(KEY, "must go from small to large", hint);
-    }
-    for (stretch, card) in stretches.iter().zip(card.into_iter().cycle()) {
-        check_range(section, KEY, *stretch, card);
-    }
-    stretches
 }
 
 /// Warns of a stretch outside the range of the card, or beyond the stability of its law.
@@ -205,4 +165,40 @@ pub fn check_range(section: &Section<'_>, key: &'static str, stretch: f64, card:
 /// One stretch, as a ratio or in percent.
 pub fn read_stretch(section: &Section<'_>, key: &'static str) -> f64 {
     section.quantity(key, Dimension::Ratio, STRETCHES)
+}
+
+/// How a model is solved.
+pub fn read_newton(section: &Section<'_>) -> NewtonSettings {
+    NewtonSettings {
+        tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
+        max_iterations: section.count("max_iterations", 1, 1000),
+    }
+}
+
+/// What the corrected field has to reach at every load factor, in percent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Largest deviation in displacement.
+    pub displacement_percent: f64,
+    /// Largest deviation in the departure from affine; `None` where the study compares with no affine field.
+    pub departure_percent: Option<f64>,
+    /// Largest deviation in force.
+    pub force_percent: f64,
+    /// Smallest correction of the departure from affine.
+    pub correction_percent: f64,
+}
+
+impl Tolerances {
+    /// Reads the section; `affine` where the study compares with the affine field too.
+    pub fn read(section: &Section, affine: bool) -> Self {
+        let percent = |key| 100.0 * section.quantity(key, Dimension::Ratio, Bound::Positive);
+        let tolerances = Self {
+            displacement_percent: percent("displacement"),
+            departure_percent: affine.then(|| percent("departure")),
+            force_percent: percent("force"),
+            correction_percent: percent("correction"),
+        };
+        section.unknown_keys();
+        tolerances
+    }
 }

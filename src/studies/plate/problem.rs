@@ -1,0 +1,112 @@
+//! What a plate's study asks for: the plate, the models and how they are solved, what is written.
+
+use std::path::PathBuf;
+
+use crate::corrector::climb::ClimbSettings;
+use crate::corrector::{CorrectorSettings, DifferenceScheme};
+use crate::error::Diagnostic;
+use crate::finite_element::{Element, FiniteElements};
+use crate::mass_spring::LatticeSettings;
+use crate::material::Card;
+use crate::problem::ClampedPlate;
+use crate::solve::NewtonSettings;
+use crate::studies::sections::Tolerances;
+
+/// A study, checked.
+#[derive(Debug)]
+pub struct Study {
+    /// The file's name without its ending.
+    pub name: String,
+    /// The heading of the report.
+    pub title: String,
+    /// What is solved.
+    pub problem: ClampedPlate,
+    /// Where its material comes from.
+    pub card: Card,
+    /// Cells of the lattice.
+    pub cells: [usize; 2],
+    /// What the lattice consists of.
+    pub lattice: LatticeSettings,
+    /// How the lattice is solved.
+    pub mass_spring: NewtonSettings,
+    /// How its field is corrected.
+    pub corrector: Correction,
+    /// The finite elements that the other models are compared with.
+    pub reference: Reference,
+    /// What the corrected field has to reach.
+    pub tolerances: Tolerances,
+    /// What is written, and where.
+    pub output: OutputSettings,
+    /// The file's text.
+    pub text: String,
+    /// What deserves attention but does not stop the work.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// How the field of the lattice is corrected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correction {
+    /// The finite differences.
+    pub scheme: DifferenceScheme,
+    /// How exactly the corrector climbs; `None` where it is direct.
+    pub climb: Option<ClimbSettings>,
+    /// When the direct corrector stops.
+    pub direct: CorrectorSettings,
+}
+
+/// The finite elements of a study.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// The element.
+    pub element: Element,
+    /// Cells of the finest mesh.
+    pub cells: [usize; 2],
+    /// How much smaller the cells become towards the corners; see [`crate::mesh::Grid`].
+    pub grading: f64,
+    /// How they are solved.
+    pub newton: NewtonSettings,
+}
+
+/// What is written, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputSettings {
+    /// The folder that receives everything.
+    pub folder: PathBuf,
+    /// Whether `.vtu` and `.pvd` files are written.
+    pub vtk: bool,
+    /// Whether pictures are written.
+    pub plots: bool,
+    /// Whether reports are written.
+    pub report: bool,
+}
+
+impl Study {
+    /// Whether the reference is the corrected field once more: the same equations on the same nodes.
+    pub fn is_its_own_reference(&self) -> bool {
+        let scheme = self.corrector.scheme;
+        let element = match scheme {
+            DifferenceScheme::Corners => return false,
+            DifferenceScheme::Gauss => Element::Q1,
+            DifferenceScheme::Biquadratic => Element::Q2,
+        };
+        let Reference { cells, grading, .. } = self.reference;
+        let cells = cells.map(|cells| cells * scheme.side());
+        self.reference.element == element && grading == 1.0 && cells == self.cells
+    }
+
+    /// The finite elements on three meshes, coarse to fine.
+    pub fn finite_elements(&self) -> [FiniteElements; 3] {
+        let Reference {
+            element, grading, ..
+        } = self.reference;
+        let meshes = self.reference.meshes();
+        meshes.map(|cells| FiniteElements::graded(&self.problem, cells, element, grading))
+    }
+}
+
+impl Reference {
+    /// Cells of the three meshes, coarse to fine.
+    pub fn meshes(&self) -> [[usize; 2]; 3] {
+        [4, 2, 1].map(|coarser| self.cells.map(|cells| cells / coarser))
+    }
+}

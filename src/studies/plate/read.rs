@@ -1,0 +1,253 @@
+//! The study file: read, checked, and turned into a problem and the settings of the models.
+//!
+//! Every default stands in `study/default.toml`, which is also what `gelbench new` writes.
+
+use std::path::{Path, PathBuf};
+
+use super::problem::{Correction, OutputSettings, Reference, Study};
+use crate::corrector::climb::ClimbSettings;
+use crate::corrector::{CorrectorSettings, DifferenceScheme};
+use crate::document::{Bound, Document, Faults, Section};
+use crate::error::Error;
+use crate::finite_element::Element;
+use crate::mass_spring::LatticeSettings;
+use crate::material::Card;
+use crate::problem::ClampedPlate;
+use crate::studies::sections::{
+    MOST_CELLS, Tolerances, check_cells, check_range, read_card, read_newton, read_plate,
+};
+use crate::units::Dimension;
+
+/// The same with compressions, and the smallest that is none.
+const WITH_COMPRESSIONS: Bound = Bound::Range(-0.95, 100.0, "from −95 % to 10000 %");
+const SMALLEST: f64 = 1e-9;
+
+/// The study that `gelbench new` writes: every key with its default.
+pub const DEFAULT: &str = include_str!("default.toml");
+
+impl Study {
+    /// Checks the text of the study file `path`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault of the study and of its card.
+    pub fn of_file(path: &Path, text: String) -> Result<Self, Error> {
+        let name = path
+            .file_stem()
+            .map_or_else(String::new, |stem| stem.to_string_lossy().into());
+        let folder = path.parent().unwrap_or(Path::new("."));
+        Self::parse(&name, &path.display().to_string(), folder, text)
+    }
+
+    /// Reads a study's text; a card given by a path is looked for relative to `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault of the study and of its card.
+    pub fn parse(name: &str, file: &str, folder: &Path, text: String) -> Result<Self, Error> {
+        let faults = Faults::default();
+        let study = {
+            let defaults = Document::parse("default.toml", DEFAULT, &faults);
+            let document = Document::parse(file, &text, &faults);
+            let root = document.root(Some(&defaults), &faults);
+            read_sections(name, folder, root)
+        };
+        let warnings = faults.finish()?;
+        let study = study.expect("a study without a card has a fault");
+        Ok(Self {
+            text,
+            warnings,
+            ..study
+        })
+    }
+}
+
+/// Reads all sections; `None` where there is no card to work with, which is recorded as a fault.
+fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> {
+    root.choice("kind", &[("plate", ())]);
+    let title = root.heading("title");
+    let material = root.section("material");
+    let card = read_card(&material, folder);
+    material.unknown_keys();
+    let plate = root.section("plate");
+    let (problem, cells) = read_plate(&plate, card.as_ref());
+    plate.unknown_keys();
+    let stretches = read_stretches(&root.section("load"), card.as_ref());
+    let problem = ClampedPlate {
+        stretches,
+        ..problem
+    };
+    let section = root.section("mass_spring");
+    let lattice = LatticeSettings {
+        area_term: section.flag("area_term"),
+    };
+    let mass_spring = read_newton(&section);
+    section.unknown_keys();
+    let corrector = read_corrector(&root.section("corrector"), cells);
+    let reference = read_reference(&root.section("finite_element"), problem.size, cells);
+    let tolerances = Tolerances::read(&root.section("tolerances"), true);
+    let output = read_output(&root.section("output"), name);
+    root.unknown_keys();
+    let study = Study {
+        name: name.to_owned(),
+        title,
+        problem,
+        card: card?,
+        cells,
+        lattice,
+        mass_spring,
+        corrector: corrector?,
+        reference: reference?,
+        tolerances,
+        output,
+        text: String::new(),
+        warnings: Vec::new(),
+    };
+    if study.is_its_own_reference() {
+        root.section("finite_element").warning(
+            "cells",
+            "with these the finite elements are the corrected field's own equations on the same nodes and cannot judge it",
+            "leave `cells` and `grading` out, which suits the lattice, or take finer ones",
+        );
+    }
+    Some(study)
+}
+
+fn read_corrector(section: &Section<'_>, cells: [usize; 2]) -> Option<Correction> {
+    let scheme = section.choice("scheme", &DifferenceScheme::NAMES);
+    if let Some(scheme) = scheme {
+        check_pairs(section, scheme, cells);
+    }
+    let climb = section.choice("method", &[("climb", true), ("direct", false)]);
+    let bound = Bound::Within(1e-6, 1.0);
+    let settings = ClimbSettings {
+        tolerance: section.quantity("climb_tolerance", Dimension::Ratio, bound),
+        ..ClimbSettings::default()
+    };
+    let direct = CorrectorSettings {
+        tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
+        max_steps: section.count("max_steps", 1, 1000),
+        ..CorrectorSettings::default()
+    };
+    section.unknown_keys();
+    Some(Correction {
+        scheme: scheme?,
+        climb: climb?.then_some(settings),
+        direct,
+    })
+}
+
+fn read_reference(section: &Section<'_>, size: [f64; 2], lattice: [usize; 2]) -> Option<Reference> {
+    let element = section.choice("element", &Element::NAMES);
+    let cells = read_reference_cells(section, size, lattice);
+    let grading = section.number("grading", Bound::Within(1.0, 4.0));
+    let newton = read_newton(section);
+    section.unknown_keys();
+    Some(Reference {
+        element: element?,
+        cells,
+        grading,
+        newton,
+    })
+}
+
+/// The cells that a study gives, or those that suit its lattice.
+fn read_reference_cells(section: &Section<'_>, size: [f64; 2], lattice: [usize; 2]) -> [usize; 2] {
+    const KEY: &str = "cells";
+    let given = section.count_pair_or("automatic", KEY, [4, MOST_CELLS]);
+    let Some(cells) = given.flatten() else {
+        return reference_cells(size, lattice);
+    };
+    if cells.iter().any(|cells| cells % 4 != 0) {
+        let [x, y] = cells.map(|cells| cells.next_multiple_of(4));
+        section.fault(
+            KEY,
+            "must be multiples of 4: the error is estimated on meshes with half and a quarter as many",
+            &format!("the next are [{x}, {y}]"),
+        );
+    }
+    check_cells(section, cells);
+    cells
+}
+
+/// The cells of biquadratic elements, graded by 2, that can judge a lattice. Their error falls with the third power of their
+/// number n over the shorter side, that of a lattice with the 1.5th power of its own number m:
+///
+/// ```text
+/// n = max(√(40 m), min(40, 2 √(20 m))),   n √(long/short) over the longer side
+/// ```
+///
+/// so that it is 1/100 and less of the lattice's on plates of 1:1 to 20:1 with 4 to 80 cells across. Between the grips a
+/// long plate is nearly in uniaxial tension: over the longer side the cells need not be square.
+fn reference_cells(size: [f64; 2], lattice: [usize; 2]) -> [usize; 2] {
+    let short = if size[0] < size[1] { 0 } else { 1 };
+    let m = lattice[short] as f64;
+    let n = (40.0 * m).sqrt().max(40.0_f64.min(2.0 * (20.0 * m).sqrt()));
+    let over = |axis: usize| (n * (size[axis] / size[short]).sqrt()).ceil() as usize;
+    [0, 1].map(|axis| over(axis).next_multiple_of(4).min(MOST_CELLS))
+}
+
+/// The stretches of a plate: at least one, all of one sign, from small to large, as a path from rest takes them.
+fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
+    const KEY: &str = "stretches";
+    let stretches = section.quantities(KEY, Dimension::Ratio, WITH_COMPRESSIONS);
+    section.unknown_keys();
+    if stretches.is_empty() {
+        let hint = "such as [\"15 %\", \"30 %\"]";
+        section.fault(KEY, "needs at least one stretch", hint);
+    }
+    if stretches.iter().any(|stretch| stretch.is_nan()) {
+        return stretches;
+    }
+    if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
+        let hint = "at rest there is nothing to solve; leave it out";
+        section.fault(KEY, "must not hold zero", hint);
+        return stretches;
+    }
+    let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
+    if !one_sign {
+        let hint = "every path begins at rest: write one study for the tension and one for the compression";
+        section.fault(KEY, "must have one sign", hint);
+    } else if stretches
+        .windows(2)
+        .any(|pair| pair[1].abs() <= pair[0].abs())
+    {
+        let hint = "sort them by their size and leave out repetitions";
+        section.fault(KEY, "must go from small to large", hint);
+    }
+    for (stretch, card) in stretches.iter().zip(card.into_iter().cycle()) {
+        check_range(section, KEY, *stretch, card);
+    }
+    stretches
+}
+
+/// A scheme that takes cells two by two needs even numbers of them.
+fn check_pairs(section: &Section, scheme: DifferenceScheme, cells: [usize; 2]) {
+    if let Some(odd) = cells
+        .iter()
+        .find(|cells| !cells.is_multiple_of(scheme.side()))
+    {
+        section.fault(
+            "scheme",
+            &format!("takes the cells of the plate two by two, and {odd} is odd"),
+            "give an even number of cells along both axes, or take scheme = \"gauss\"",
+        );
+    }
+}
+
+fn read_output(section: &Section<'_>, name: &str) -> OutputSettings {
+    let folder = section.text("folder");
+    let settings = OutputSettings {
+        folder: if folder.is_empty() {
+            Path::new("output").join(name)
+        } else {
+            PathBuf::from(folder)
+        },
+        vtk: section.flag("vtk"),
+        plots: section.flag("plots"),
+        report: section.flag("report"),
+    };
+    section.unknown_keys();
+    settings
+}
+
+#[cfg(test)]
+mod tests;

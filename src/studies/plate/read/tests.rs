@@ -1,0 +1,162 @@
+use super::*;
+use crate::solve::NewtonSettings;
+
+fn parse(text: &str) -> Result<Study, Error> {
+    Study::parse("plate", "plate.toml", Path::new("."), text.to_owned())
+}
+
+fn faults(text: &str) -> Vec<String> {
+    match parse(text) {
+        Err(Error::Input(faults)) => faults.iter().map(ToString::to_string).collect(),
+        other => panic!("accepted: {other:?}"),
+    }
+}
+
+#[test]
+fn an_empty_study_is_the_default_one() {
+    let (empty, full) = (parse("").unwrap(), parse(DEFAULT).unwrap());
+    assert_eq!(empty.problem.size, [150.0, 50.0]);
+    assert_eq!(empty.problem.thickness, 2.0);
+    assert_eq!(empty.problem.stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
+    assert_eq!(empty.cells, [60, 20]);
+    assert_eq!(empty.reference.meshes(), [[18, 10], [36, 20], [72, 40]]);
+    assert_eq!(empty.reference.grading, 2.0);
+    assert_eq!(empty.output.folder, Path::new("output/plate"));
+    assert_eq!(empty.tolerances, full.tolerances);
+    assert!(full.warnings.is_empty());
+}
+
+#[test]
+fn studies_and_the_library_have_the_same_defaults() {
+    let study = parse("").unwrap();
+    assert_eq!(study.lattice, LatticeSettings::default());
+    assert_eq!(study.mass_spring, NewtonSettings::default());
+    assert_eq!(study.corrector.scheme, DifferenceScheme::default());
+    assert_eq!(study.corrector.climb, Some(ClimbSettings::default()));
+    assert_eq!(study.corrector.direct, CorrectorSettings::default());
+    assert_eq!(study.reference.element, Element::default());
+    assert_eq!(study.reference.newton, NewtonSettings::default());
+}
+
+#[test]
+fn all_faults_are_told_at_once_with_line_key_and_hint() {
+    let text = "[plate]\nlenght = \"15 cm\"\nwidth = 50\nthickness = \"-2 mm\"\ncells = [60, 0]\n\
+                [material]\ncard = \"pva10\"\n[load]\nstretches = [\"15 mm\"]\n";
+    let told = faults(text);
+    let expected = [
+        (
+            "plate.toml:2: plate.lenght: unknown key",
+            "did you mean `length`?",
+        ),
+        (
+            "plate.toml:3: plate.width: a length needs a unit",
+            "\"2 mm\"",
+        ),
+        (
+            "plate.toml:4: plate.thickness: must be greater than zero",
+            "-2 mm",
+        ),
+        (
+            "plate.toml:5: plate.cells: must be two whole numbers",
+            "[60, 0]",
+        ),
+        (
+            "plate.toml:7: material.card: there is no card `pva10`",
+            "did you mean `pva-10`?",
+        ),
+        ("plate.toml:9: load.stretches: \"15 mm\"", "%"),
+    ];
+    assert_eq!(told.len(), expected.len(), "{told:#?}");
+    for (line, (start, hint)) in told.iter().zip(expected) {
+        assert!(line.starts_with(start) && line.contains(hint), "{line}");
+    }
+}
+
+#[test]
+fn of_many_faults_the_first_are_told_and_the_others_counted() {
+    let keys: String = (0..3000).map(|key| format!("k{key} = 1\n")).collect();
+    let told = faults(&format!("[plate]\n{keys}"));
+    assert_eq!(told.len(), 51);
+    assert_eq!(told[50], "and 2950 more findings");
+}
+
+#[test]
+fn settings_that_contradict_each_other_are_refused() {
+    assert!(faults("[plate]\ncells = [60, 10]\n")[0].contains("take [60, 20]"));
+    assert!(faults("[plate]\ncells = [2, 2]\n")[0].contains("take [6, 2]"));
+    assert!(faults("[plate]\ncells = [1500, 500]\n")[0].contains("750000 cells are too many"));
+    assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
+    assert!(faults("[finite_element]\ngrading = 0.5\n")[0].contains("must be"));
+    assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));
+    assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("from small to large"));
+    assert!(faults("[load]\nstretches = [-0.1, 0.3]\n")[0].contains("one sign"));
+    assert!(faults("[load]\nstretches = [-0.1, -0.05]\n")[0].contains("from small to large"));
+    assert!(faults("[load]\nstretches = [0, 0.3]\n")[0].contains("zero"));
+    assert!(faults("[load]\nstretches = [-1]\n")[0].contains("must be"));
+    assert!(faults("[finite_element]\ncells = \"auto\"\n")[0].contains("\"automatic\""));
+    assert!(faults("[corrector]\nscheme = \"gaus\"\n")[0].contains("did you mean \"gauss\""));
+    assert!(
+        faults("[plate\n")
+            .iter()
+            .any(|line| line.contains("TOML syntax"))
+    );
+}
+
+/// Equal cells of the reference that are the lattice's own pairs of cells.
+#[test]
+fn a_plate_that_is_compared_with_itself_is_told_so() {
+    let study = parse("[plate]\ncells = [240, 80]\n").unwrap();
+    assert!(study.reference.cells[1] >= 40 && study.reference.grading > 1.0);
+    let own = "[plate]\ncells = [48, 16]\n[finite_element]\ncells = [24, 8]\ngrading = 1\n";
+    let study = parse(own).unwrap();
+    assert!(study.is_its_own_reference());
+    assert!(study.warnings[0].to_string().contains("own equations"));
+    let gauss = "[corrector]\nscheme = \"gauss\"\n";
+    assert!(
+        !parse(&format!("{own}{gauss}"))
+            .unwrap()
+            .is_its_own_reference()
+    );
+    let q1 = own.replace("[24, 8]", "[48, 16]\nelement = \"Q1\"");
+    assert!(
+        parse(&format!("{q1}{gauss}"))
+            .unwrap()
+            .is_its_own_reference()
+    );
+}
+
+#[test]
+fn compressions_are_a_path_of_their_own() {
+    let study = parse("[load]\nstretches = [\"-5 %\", \"-10 %\"]\n").unwrap();
+    assert_eq!(study.problem.stretches, [-0.05, -0.1]);
+}
+
+#[test]
+fn a_stretch_outside_the_range_of_the_card_is_a_warning() {
+    let study = parse("[load]\nstretches = [0.5, 1.2]\n").unwrap();
+    assert_eq!(study.warnings.len(), 1);
+    let told = study.warnings[0].to_string();
+    assert!(
+        told.contains("120 % stretch") && told.contains("0 to 100 %"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_stretch_beyond_the_stability_of_the_law_is_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    let card = crate::material::registry::CARDS[0].1;
+    let card = card.replace("marlow-exponential", "veronda-westmann");
+    let (head, _) = card.split_once("amplitude").unwrap();
+    let (_, rest) = card.split_once("[data]").unwrap();
+    let card = format!("{head}c = \"0.1468 MPa\"\nbeta = 0.31\n[data]{rest}");
+    std::fs::write(folder.path().join("vw.toml"), card).unwrap();
+    let text = "[material]\ncard = \"vw.toml\"\n[load]\nstretches = [0.5, 0.75]\n";
+    let study = Study::parse("plate", "plate.toml", folder.path(), text.to_owned()).unwrap();
+    assert_eq!(study.warnings.len(), 1, "{:?}", study.warnings);
+    let told = study.warnings[0].to_string();
+    assert!(
+        told.contains("75 % stretch is beyond the stability"),
+        "{told}"
+    );
+}
