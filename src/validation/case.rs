@@ -7,7 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::document::Section;
 use crate::mesh::Mesh;
 pub use crate::results::Wanted;
-use crate::results::{Axis, Line, LineChart, Stroke, mesh_outlines};
+use crate::results::{Line, Stroke, mesh_outlines};
 use crate::statistics::median;
 
 pub use crate::results::{Block, Check, Claim, Figure, Outcome, limit, number};
@@ -62,11 +62,6 @@ impl Quantity {
     }
 }
 
-/// A paragraph of a report.
-pub fn paragraph(text: impl Into<String>) -> Block {
-    Block::Paragraph(text.into())
-}
-
 /// A table; the column heads stand in one line, separated by ` | `.
 pub fn table(head: &str, rows: impl IntoIterator<Item = Vec<String>>) -> Block {
     Block::table(&head.split(" | ").collect::<Vec<_>>(), rows)
@@ -78,19 +73,9 @@ pub fn row(name: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Ve
     [name.into()].into_iter().chain(values).collect()
 }
 
-/// A chart as a figure of a case.
-pub fn figure(name: &str, caption: &str, chart: &LineChart) -> Figure {
-    Figure::new(name, caption, chart.clone())
-}
-
 /// A mesh as a figure of a case.
 pub fn mesh_figure(name: &str, caption: &str, title: &str, mesh: &Mesh) -> Figure {
     Figure::new(name, caption, mesh_outlines(title, mesh))
-}
-
-/// A chart of some lines over two axes.
-pub fn chart(title: &str, [x, y]: [Axis; 2], lines: impl Into<Vec<Line>>) -> LineChart {
-    LineChart::new(title, x, y, lines.into())
 }
 
 /// A line of `y` over `x`.

@@ -6,29 +6,39 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::case::{Check, Outcome, Prepared, Wanted};
+use super::case::{Check, Outcome, Prepared, check, largest, section};
 use super::plate::CORRECTOR;
 use crate::corrector::{CorrectionMatrix, Corrector, Factor, Linear, Projection, Solver, retained};
 use crate::document::Section;
 use crate::error::{Error, SolveFault};
 use crate::solve::{NotPositiveDefinite, SparseRows};
 
+#[derive(Clone, Copy)]
+struct Settings {
+    unknowns: usize,
+    conditions: usize,
+    seed: u64,
+}
+
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("system");
-    let unknowns = section.count("unknowns", 4, 400);
-    let conditions = section.count("conditions", 2, 400);
-    if conditions >= unknowns {
-        section.fault(
-            "conditions",
-            "must be fewer than the unknowns",
-            "such as half as many",
-        );
-    }
-    let seed = section.count("seed", 0, usize::MAX) as u64;
-    section.unknown_keys();
+    let settings = section(root, "system", |system| {
+        let settings = Settings {
+            unknowns: system.count("unknowns", 4, 400),
+            conditions: system.count("conditions", 2, 400),
+            seed: system.count("seed", 0, usize::MAX) as u64,
+        };
+        if settings.conditions >= settings.unknowns {
+            system.fault(
+                "conditions",
+                "must be fewer than the unknowns",
+                "such as half as many",
+            );
+        }
+        settings
+    });
     Box::new(move |_| {
-        compute(unknowns, conditions, seed).map_err(|NotPositiveDefinite| Error::Solve {
+        compute(settings).map_err(|NotPositiveDefinite| Error::Solve {
             model: "corrector".into(),
             step: "a random system".into(),
             fault: SolveFault::Singular,
@@ -49,106 +59,43 @@ fn random_rows(random: &mut ChaCha8Rng, count: usize, size: usize) -> SparseRows
     rows
 }
 
-fn compute(unknowns: usize, conditions: usize, seed: u64) -> Result<Outcome, NotPositiveDefinite> {
+fn random_numbers(random: &mut ChaCha8Rng, size: usize) -> Vec<f64> {
+    (0..size).map(|_| random.random_range(-1.0..1.0)).collect()
+}
+
+fn compute(settings: Settings) -> Result<Outcome, NotPositiveDefinite> {
+    let Settings {
+        unknowns,
+        conditions,
+        seed,
+    } = settings;
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let rows = random_rows(&mut random, conditions, unknowns);
-    let numbers = |random: &mut ChaCha8Rng, size: usize| -> Vec<f64> {
-        (0..size).map(|_| random.random_range(-1.0..1.0)).collect()
-    };
-    let matrix = CorrectionMatrix::new(&rows, vec![1.0; unknowns])?;
-    let (y, s, b) = (matrix.y(), matrix.s(), matrix.b());
-    let size = |matrix: DMatrix<f64>| matrix.amax();
-    let identity = DMatrix::identity(conditions, conditions);
     let square = random_rows(&mut random, unknowns, unknowns);
-    let zero = size(CorrectionMatrix::new(&square, vec![1.0; unknowns])?.y());
-    let at_most = |quantity: &str, limit, source, value| {
-        Check::new(quantity, "–", Wanted::AtMost(limit), source, value)
+    let mut checks = properties(&rows, &square)?;
+    let system = System {
+        rows,
+        values: random_numbers(&mut random, conditions),
+        pull: random_numbers(&mut random, unknowns),
     };
-    let mut checks = vec![
-        at_most(
-            "Y − Yᵀ, largest entry",
-            1e-12,
-            "Eq. 18",
-            size(&y - y.transpose()),
-        ),
-        at_most(
-            "Y Y − Y, largest entry",
-            1e-12,
-            "Eq. 18",
-            size(&y * &y - &y),
-        ),
-        at_most("B Y, largest entry", 1e-12, "Eq. 14", size(b * &y)),
-        at_most(
-            "S B Bᵀ − I, largest entry",
-            1e-11,
-            "Eq. 19",
-            size(s * b * b.transpose() - identity),
-        ),
-        Check::new(
-            "rank of Y",
-            "–",
-            Wanted::Equal((unknowns - conditions) as f64, 0.0),
-            "i less the rows of B",
-            y.rank(1e-9) as f64,
-        ),
-        at_most(
-            "Y of a square B, largest entry",
-            1e-12,
-            "design of Eq. 22-23",
-            zero,
-        ),
-    ];
-
-    let (values, pull) = (
-        numbers(&mut random, conditions),
-        numbers(&mut random, unknowns),
-    );
-    let project = |solver| {
-        Factor::new(rows.clone(), vec![1.0; unknowns], None, solver)?.project(&values, &pull)
-    };
-    let expected = project(Solver::Dense)?;
-    for (name, solver) in [
-        ("sparse Cholesky", Solver::Cholesky),
-        ("sparse KKT", Solver::Kkt),
-    ] {
-        let found = project(solver)?;
-        let worst = far(&found, &expected);
-        checks.push(at_most(
-            &format!("{name} beside dense: field and multipliers"),
-            1e-9,
-            "the same projection",
-            worst,
-        ));
-    }
+    checks.extend(system.forms()?);
     checks.push(at_most(
         "Y beside I − W⁻¹ Bᵀ (B W⁻¹ Bᵀ)⁻¹ B for unequal weights",
         1e-12,
         "Eq. 18-19",
-        weighted(&rows, &mut random)?,
+        weighted(&system.rows, &mut random)?,
     ));
-    checks.push(at_most(
-        "symmetric form beside dense: field and multipliers",
-        1e-9,
-        "the same projection",
-        symmetric(&mut random, unknowns)?,
-    ));
-    let mut kept = Factor::new(rows.clone(), vec![1.0; unknowns], None, Solver::Cholesky)?;
-    let corrector = of_rows(&rows, unknowns);
-    let mut read = retained::from_bytes(&retained::to_bytes(&kept, &corrector), &corrector)
-        .map_err(|_| NotPositiveDefinite)?;
-    let (found, before) = (read.project(&values, &pull)?, kept.project(&values, &pull)?);
-    let worst = far(&found, &expected).max(far(&found, &before));
-    checks.push(at_most(
-        "retained factor, written and read, beside dense: field and multipliers",
-        1e-9,
-        "the same projection",
-        worst,
+    let symmetric = symmetric(&mut random, unknowns)?;
+    checks.push(same_projection("symmetric form", symmetric));
+    checks.push(same_projection(
+        "retained factor, written and read,",
+        system.retained()?,
     ));
     checks.push(at_most(
         "multipliers beside the derivative of the minimum",
         1e-6,
         "central differences",
-        derivative(&rows, &values, &pull)?,
+        system.derivative()?,
     ));
     Ok(Outcome {
         checks,
@@ -156,22 +103,117 @@ fn compute(unknowns: usize, conditions: usize, seed: u64) -> Result<Outcome, Not
     })
 }
 
+fn at_most(quantity: &str, limit: f64, source: &'static str, value: f64) -> Check {
+    check(quantity, "–", value).at_most(limit, source)
+}
+
+fn same_projection(form: &str, distance: f64) -> Check {
+    let quantity = format!("{form} beside dense: field and multipliers");
+    at_most(&quantity, 1e-9, "the same projection", distance)
+}
+
+/// What Eq. 14 and 16–19 say of Y, S and B.
+fn properties(rows: &SparseRows, square: &SparseRows) -> Result<Vec<Check>, NotPositiveDefinite> {
+    let (unknowns, conditions) = (rows.columns(), rows.len());
+    let matrix = CorrectionMatrix::new(rows, vec![1.0; unknowns])?;
+    let (y, s, b) = (matrix.y(), matrix.s(), matrix.b());
+    let identity = DMatrix::identity(conditions, conditions);
+    let y_of_square = CorrectionMatrix::new(square, vec![1.0; unknowns])?.y();
+    let largest = |what: &str, limit, source, matrix: DMatrix<f64>| {
+        at_most(
+            &format!("{what}, largest entry"),
+            limit,
+            source,
+            matrix.amax(),
+        )
+    };
+    let rank = check("rank of Y", "–", y.rank(1e-9) as f64);
+    Ok(vec![
+        largest("Y − Yᵀ", 1e-12, "Eq. 18", &y - y.transpose()),
+        largest("Y Y − Y", 1e-12, "Eq. 18", &y * &y - &y),
+        largest("B Y", 1e-12, "Eq. 14", b * &y),
+        largest(
+            "S B Bᵀ − I",
+            1e-11,
+            "Eq. 19",
+            s * b * b.transpose() - identity,
+        ),
+        rank.equal((unknowns - conditions) as f64, 0.0, "i less the rows of B"),
+        largest("Y of a square B", 1e-12, "design of Eq. 22-23", y_of_square),
+    ])
+}
+
+/// Rows of B, their right-hand sides, and a pull on the unknowns.
+struct System {
+    rows: SparseRows,
+    values: Vec<f64>,
+    pull: Vec<f64>,
+}
+
+impl System {
+    fn factor(&self, solver: Solver) -> Result<Factor, NotPositiveDefinite> {
+        Factor::new(self.rows.clone(), vec![1.0; self.pull.len()], None, solver)
+    }
+
+    fn project(&self, solver: Solver) -> Result<Projection, NotPositiveDefinite> {
+        self.factor(solver)?.project(&self.values, &self.pull)
+    }
+
+    /// The sparse forms of the projection compared with the dense one.
+    fn forms(&self) -> Result<[Check; 2], NotPositiveDefinite> {
+        let dense = self.project(Solver::Dense)?;
+        let cholesky = far(&self.project(Solver::Cholesky)?, &dense);
+        let kkt = far(&self.project(Solver::Kkt)?, &dense);
+        Ok([
+            same_projection("sparse Cholesky", cholesky),
+            same_projection("sparse KKT", kkt),
+        ])
+    }
+
+    /// Distance of a factor that was written and read to the dense form and to itself.
+    fn retained(&self) -> Result<f64, NotPositiveDefinite> {
+        let mut kept = self.factor(Solver::Cholesky)?;
+        let conditions = Linear::new("rows", self.rows.clone(), vec![0.0; self.rows.len()]);
+        let weights = vec![1.0; self.pull.len()];
+        let corrector = Corrector::new(vec![Box::new(conditions)], weights, CORRECTOR);
+        let bytes = retained::to_bytes(&kept, &corrector);
+        let read = retained::from_bytes(&bytes, &corrector);
+        let mut read = read.map_err(|_| NotPositiveDefinite)?;
+        let found = read.project(&self.values, &self.pull)?;
+        let before = kept.project(&self.values, &self.pull)?;
+        Ok(far(&found, &self.project(Solver::Dense)?).max(far(&found, &before)))
+    }
+
+    /// Largest relative difference of −ψ and the derivatives of ½ ‖δ − pull‖² with respect to the right-hand sides.
+    fn derivative(&self) -> Result<f64, NotPositiveDefinite> {
+        let mut factor = self.factor(Solver::Dense)?;
+        let psi = factor.project(&self.values, &self.pull)?.multipliers;
+        let size = largest(psi.iter().copied());
+        let mut worst = 0.0_f64;
+        for (row, psi) in psi.iter().enumerate() {
+            let mut minimum = |step: f64| -> Result<f64, NotPositiveDefinite> {
+                let mut moved = self.values.clone();
+                moved[row] -= step;
+                let found = factor.project(&moved, &self.pull)?.step;
+                let squares = found
+                    .iter()
+                    .zip(&self.pull)
+                    .map(|(d, p)| 0.5 * (d - p).powi(2));
+                Ok(squares.sum())
+            };
+            let slope = (minimum(1e-4)? - minimum(-1e-4)?) / 2e-4;
+            worst = worst.max((slope + psi).abs() / size);
+        }
+        Ok(worst)
+    }
+}
+
 /// Largest difference of two projections, relative to the largest entry of the second.
 fn far(found: &Projection, expected: &Projection) -> f64 {
     let far = |a: &[f64], b: &[f64]| {
-        let scale = b.iter().fold(0.0, |most: f64, b| most.max(b.abs()));
-        a.iter()
-            .zip(b)
-            .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
-            / scale
+        largest(a.iter().zip(b).map(|(a, b)| a - b)) / largest(b.iter().copied())
     };
     far(&found.step, &expected.step).max(far(&found.multipliers, &expected.multipliers))
-}
-
-/// The corrector whose conditions are these rows.
-fn of_rows(rows: &SparseRows, unknowns: usize) -> Corrector<'static> {
-    let conditions = Linear::new("rows", rows.clone(), vec![0.0; rows.len()]);
-    Corrector::new(vec![Box::new(conditions)], vec![1.0; unknowns], CORRECTOR)
 }
 
 /// Y for unequal weights beside its definition, computed with an explicit inverse: largest difference.
@@ -200,39 +242,12 @@ fn symmetric(random: &mut ChaCha8Rng, unknowns: usize) -> Result<f64, NotPositiv
             _ => rows.push((0..unknowns).map(|column| (column, stiffness[(unknown, column)]))),
         }
     }
-    let numbers = |random: &mut ChaCha8Rng| -> Vec<f64> {
-        (0..unknowns)
-            .map(|_| random.random_range(-1.0..1.0))
-            .collect()
-    };
-    let (values, pull) = (numbers(random), numbers(random));
+    let values = random_numbers(random, unknowns);
+    let pull = random_numbers(random, unknowns);
     let project = |solver, unknowns| {
         Factor::new(rows.clone(), vec![1.0; rows.columns()], unknowns, solver)?
             .project(&values, &pull)
     };
     let found = project(Solver::Symmetric, Some((0..unknowns).collect()))?;
     Ok(far(&found, &project(Solver::Dense, None)?))
-}
-
-/// Largest relative difference of −ψ and the derivatives of ½ ‖δ − pull‖² by the right-hand sides.
-fn derivative(rows: &SparseRows, values: &[f64], pull: &[f64]) -> Result<f64, NotPositiveDefinite> {
-    let mut factor = Factor::new(rows.clone(), vec![1.0; pull.len()], None, Solver::Dense)?;
-    let psi = factor.project(values, pull)?.multipliers;
-    let largest = psi.iter().fold(0.0, |most: f64, psi| most.max(psi.abs()));
-    let mut worst = 0.0_f64;
-    for row in 0..values.len() {
-        let mut minimum = |step: f64| -> Result<f64, NotPositiveDefinite> {
-            let mut moved = values.to_vec();
-            moved[row] -= step;
-            let found = factor.project(&moved, pull)?.step;
-            Ok(found
-                .iter()
-                .zip(pull)
-                .map(|(d, p)| 0.5 * (d - p).powi(2))
-                .sum())
-        };
-        let slope = (minimum(1e-4)? - minimum(-1e-4)?) / 2e-4;
-        worst = worst.max((slope + psi[row]).abs() / largest);
-    }
-    Ok(worst)
 }

@@ -8,7 +8,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::case::{Check, Claim, Outcome, Prepared, Progress, Wanted, number};
+use super::case::{Check, Claim, Outcome, Prepared, Progress, check, number, section, table};
 use super::plate::Plate;
 use crate::compare::departure_percent;
 use crate::corrector::DifferenceScheme;
@@ -16,14 +16,14 @@ use crate::corrector::climb::{Climb, ClimbSettings};
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::Element;
-use crate::results::Block;
+use crate::mass_spring::MassSpring;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Prepared {
     let plate = Plate::read(root, folder);
-    let section = root.section("measure");
-    let repetitions = section.count("repetitions", 1, 1000);
-    section.unknown_keys();
+    let repetitions = section(root, "measure", |measure| {
+        measure.count("repetitions", 1, 1000)
+    });
     Box::new(move |progress| compute(&plate, repetitions, progress))
 }
 
@@ -47,51 +47,84 @@ struct Beside {
     elements: Way,
 }
 
-/// A work that finds the field on the nodes of the lattice.
-type Work<'a> = &'a mut dyn FnMut() -> Result<Vec<f64>, Error>;
+/// What every way is measured with.
+struct Bench<'a> {
+    plate: &'a Plate,
+    lattice: MassSpring,
+    reference: Vec<f64>,
+    affine: Vec<f64>,
+    repetitions: usize,
+    progress: Progress<'a>,
+}
 
-fn compute(plate: &Plate, repetitions: usize, progress: Progress) -> Result<Outcome, Error> {
-    let lattice = plate.lattice();
-    let reference = plate.reference(&lattice)?;
-    let affine = plate.problem.affine(&lattice.mesh, plate.stretch());
-    let measure = |name: &'static str, work: Work| -> Result<Way, Error> {
-        progress(name);
+impl<'a> Bench<'a> {
+    fn new(plate: &'a Plate, repetitions: usize, progress: Progress<'a>) -> Result<Self, Error> {
+        let lattice = plate.lattice();
+        Ok(Self {
+            plate,
+            reference: plate.reference(&lattice)?,
+            affine: plate.problem.affine(&lattice.mesh, plate.stretch()),
+            lattice,
+            repetitions,
+            progress,
+        })
+    }
+
+    /// The shortest time of some work that finds the field on the nodes of the lattice, and its departure.
+    fn measure(
+        &self,
+        name: &'static str,
+        work: impl Fn() -> Result<Vec<f64>, Error>,
+    ) -> Result<Way, Error> {
+        (self.progress)(name);
         let (mut seconds, mut field) = (f64::INFINITY, Vec::new());
-        for _ in 0..repetitions {
+        for _ in 0..self.repetitions {
             let start = Instant::now();
             field = work()?;
             seconds = seconds.min(start.elapsed().as_secs_f64());
         }
+        let mesh = &self.lattice.mesh;
         Ok(Way {
             name,
-            nodes: lattice.mesh.nodes.len(),
-            departure: departure_percent(&lattice.mesh, &field, &reference, &affine),
+            nodes: mesh.nodes.len(),
+            departure: departure_percent(mesh, &field, &self.reference, &self.affine),
             seconds,
         })
-    };
-    let on_nodes = |cells: [usize; 2], element| -> Result<Vec<f64>, Error> {
-        let (model, solution) = plate.finite_elements(cells, element)?;
-        let displacement = &solution.displacement;
-        Ok(model.mesh.displacement_on(displacement, &lattice.mesh))
-    };
-    let springs = measure("mass-spring", &mut || {
+    }
+
+    /// Finite elements with the nodes of the lattice.
+    fn elements(
+        &self,
+        name: &'static str,
+        cells: [usize; 2],
+        element: Element,
+    ) -> Result<Way, Error> {
+        self.measure(name, || {
+            let (model, solution) = self.plate.finite_elements(cells, element)?;
+            let displacement = &solution.displacement;
+            Ok(model.mesh.displacement_on(displacement, &self.lattice.mesh))
+        })
+    }
+}
+
+fn compute(plate: &Plate, repetitions: usize, progress: Progress) -> Result<Outcome, Error> {
+    let bench = Bench::new(plate, repetitions, progress)?;
+    let springs = bench.measure("mass-spring", || {
         Ok(plate.solve(&plate.lattice())?.displacement)
     })?;
+    let directly = || {
+        let lattice = plate.lattice();
+        let field = plate.solve(&lattice)?.displacement;
+        Ok(plate.corrected(&lattice, &field)?.state.displacement)
+    };
+    let (cells, halved) = (plate.cells, plate.cells.map(|cells| cells / 2));
     let direct = Beside {
-        corrected: measure("mass-spring, corrected directly", &mut || {
-            let lattice = plate.lattice();
-            let field = plate.solve(&lattice)?.displacement;
-            Ok(plate.corrected(&lattice, &field)?.state.displacement)
-        })?,
-        elements: measure("finite elements, Q1, equal nodes", &mut || {
-            on_nodes(plate.cells, Element::Q1)
-        })?,
+        corrected: bench.measure("mass-spring, corrected directly", directly)?,
+        elements: bench.elements("finite elements, Q1, equal nodes", cells, Element::Q1)?,
     };
     let climb = Beside {
-        corrected: measure("climb, the default", &mut || climb(plate))?,
-        elements: measure("finite elements, Q2, equal nodes", &mut || {
-            on_nodes(plate.cells.map(|cells| cells / 2), Element::Q2)
-        })?,
+        corrected: bench.measure("climb, the default", || climb(plate))?,
+        elements: bench.elements("finite elements, Q2, equal nodes", halved, Element::Q2)?,
     };
     Ok(outcome(springs, [direct, climb]))
 }
@@ -136,15 +169,8 @@ impl Beside {
     }
 
     fn check(&self, quantity: &str) -> Check {
-        let source = "the same equations";
         let quantity = format!("consistency: departure of {quantity} elements at equal nodes");
-        Check::new(
-            quantity,
-            "–",
-            Wanted::AtMost(EQUAL),
-            source,
-            self.departure(),
-        )
+        check(quantity, "–", self.departure()).at_most(EQUAL, "the same equations")
     }
 }
 
@@ -175,12 +201,12 @@ fn outcome(springs: Way, paths: [Beside; 2]) -> Outcome {
             number(way.departure),
         ]
     };
-    let head = ["way to the field", "nodes", "departure from affine [%]"];
+    let head = "way to the field | nodes | departure from affine [%]";
     let times = ways.iter().map(|way| (way.name.to_owned(), way.seconds));
     Outcome {
         checks,
         claims: vec![claim],
-        blocks: vec![Block::table(&head, ways.iter().map(row))],
+        blocks: vec![table(head, ways.iter().map(row))],
         times: times.collect(),
         ..Outcome::default()
     }

@@ -7,40 +7,71 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::case::{Check, Outcome, Prepared, Progress, Wanted, number};
+use super::case::{Block, Outcome, Prepared, Progress, check, number, section, table};
 use super::plate::NEWTON;
 use crate::corrector::DifferenceScheme;
 use crate::corrector::climb::{Climb, ClimbSettings, Climbed};
 use crate::document::{Bound, Section};
 use crate::error::Error;
-use crate::material::{HyperelasticLaw, samples};
+use crate::material::samples;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::ClampedPlate;
-use crate::results::Block;
 use crate::solve::State;
 use crate::units::Dimension;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("plates");
-    let shapes = section.tables("shape");
-    let sizes = shapes.iter().map(|shape| {
-        let length = |key| shape.quantity(key, Dimension::Length, Bound::Positive);
-        let size = [length("length"), length("width")];
-        shape.unknown_keys();
-        size
+    let plates = section(root, "plates", |plates| {
+        let length = |shape: &Section, key| shape.quantity(key, Dimension::Length, Bound::Positive);
+        let sizes = plates.tables("shape").into_iter().map(|shape| {
+            let size = [length(&shape, "length"), length(&shape, "width")];
+            shape.unknown_keys();
+            size
+        });
+        let cells = plates.tables("mesh").into_iter().filter_map(|mesh| {
+            let cells = mesh.count_pair("cells", 2, 400);
+            mesh.unknown_keys();
+            cells
+        });
+        Plates {
+            sizes: sizes.collect(),
+            cells: cells.collect(),
+            stretches: plates.quantities("stretches", Dimension::Ratio, Bound::Positive),
+        }
     });
-    let sizes: Vec<[f64; 2]> = sizes.collect();
-    let meshes = section.tables("mesh");
-    let cells = meshes.iter().filter_map(|mesh| {
-        let cells = mesh.count_pair("cells", 2, 400);
-        mesh.unknown_keys();
-        cells
-    });
-    let cells: Vec<[usize; 2]> = cells.collect();
-    let stretches = section.quantities("stretches", Dimension::Ratio, Bound::Positive);
-    section.unknown_keys();
-    Box::new(move |progress| Ok(compute(&sizes, &cells, &stretches, progress)))
+    Box::new(move |progress| Ok(outcome(&plates.compute(progress))))
+}
+
+/// The shapes and meshes of all plates, and their stretches.
+struct Plates {
+    sizes: Vec<[f64; 2]>,
+    cells: Vec<[usize; 2]>,
+    stretches: Vec<f64>,
+}
+
+impl Plates {
+    /// All shapes on all meshes, of every law.
+    fn compute(&self, progress: Progress) -> Vec<Found> {
+        let mut found = Vec::new();
+        for (law, material) in samples::all() {
+            progress(law);
+            let pairs = self.sizes.iter();
+            let pairs = pairs.flat_map(|size| self.cells.iter().map(|cells| (*size, *cells)));
+            let plate = |(size, cells)| Plate {
+                law,
+                problem: ClampedPlate {
+                    size,
+                    thickness: 2.0,
+                    law: Arc::clone(&material),
+                    stretches: self.stretches.clone(),
+                },
+                cells,
+            };
+            let plates: Vec<Plate> = pairs.map(plate).collect();
+            found.par_extend(plates.par_iter().flat_map_iter(Plate::compute));
+        }
+        found
+    }
 }
 
 /// A plate whose law, size and cells are chosen.
@@ -113,72 +144,24 @@ fn share(climbed: &Climbed, direct: &[f64]) -> f64 {
     distance / climbed.discretisation_error
 }
 
-fn compute(
-    sizes: &[[f64; 2]],
-    cells: &[[usize; 2]],
-    stretches: &[f64],
-    progress: Progress,
-) -> Outcome {
-    let mut found = Vec::new();
-    for (law, material) in samples::all() {
-        progress(law);
-        let plate = |(size, cells): ([f64; 2], [usize; 2])| Plate {
-            law,
-            problem: problem(&material, size, stretches),
-            cells,
-        };
-        let pairs = sizes
-            .iter()
-            .flat_map(|size| cells.iter().map(|cells| (*size, *cells)));
-        let plates: Vec<Plate> = pairs.map(plate).collect();
-        found.par_extend(plates.par_iter().flat_map_iter(Plate::compute));
-    }
-    outcome(&found)
-}
-
-fn problem(law: &Arc<dyn HyperelasticLaw>, size: [f64; 2], stretches: &[f64]) -> ClampedPlate {
-    ClampedPlate {
-        size,
-        thickness: 2.0,
-        law: Arc::clone(law),
-        stretches: stretches.to_vec(),
-    }
-}
-
 fn outcome(found: &[Found]) -> Outcome {
-    let lost = found
-        .iter()
-        .filter(|found| found.direct && found.climbed.is_err());
-    let worst = worst_share(found.iter());
-    let check = |quantity: &str, limit, source, value| {
-        Check::new(quantity, "–", Wanted::AtMost(limit), source, value)
-    };
+    let lost = found.iter();
+    let lost = lost.filter(|found| found.direct && found.climbed.is_err());
+    let missing = "plates without a climbed field where the direct method has one";
+    let distance = "largest distance to the direct method's field over the discretisation error";
+    let explanation = "What the climb began with, and the largest distance of its field to that of Newton's method on the same \
+                       equations, root mean square over the nodes, over the discretisation error that the climb states:";
+    let mut blocks = vec![Block::paragraph(explanation), table_of_laws(found)];
+    let places = lost
+        .clone()
+        .map(|lost| format!("No climbed field: {}", lost.place));
+    blocks.extend(places.map(Block::paragraph));
     Outcome {
         checks: vec![
-            check(
-                "plates without a climbed field where the direct method has one",
-                0.0,
-                "the start does not matter",
-                lost.clone().count() as f64,
-            ),
-            check(
-                "largest distance to the direct method's field over the discretisation error",
-                0.1,
-                "the same equations",
-                worst,
-            ),
+            check(missing, "–", lost.count() as f64).at_most(0.0, "the start does not matter"),
+            check(distance, "–", worst_share(found.iter())).at_most(0.1, "the same equations"),
         ],
-        blocks: [
-            Block::Paragraph(
-                "What the climb began with, and the largest distance of its field to that of Newton's method on the same \
-                 equations, root mean square over the nodes, over the discretisation error that the climb states:"
-                    .into(),
-            ),
-            table(found),
-        ]
-        .into_iter()
-        .chain(lost.map(|lost| Block::Paragraph(format!("No climbed field: {}", lost.place))))
-        .collect(),
+        blocks,
         ..Outcome::default()
     }
 }
@@ -192,7 +175,7 @@ fn worst_share<'a>(found: impl Iterator<Item = &'a Found>) -> f64 {
 }
 
 /// A row for each law: how often each start led to the field, and the largest share.
-fn table(found: &[Found]) -> Block {
+fn table_of_laws(found: &[Found]) -> Block {
     let mut laws: Vec<&str> = found.iter().map(|found| found.law).collect();
     laws.dedup();
     let row = |law: &&str| {
@@ -220,12 +203,6 @@ fn table(found: &[Found]) -> Block {
             number(worst_share(own())),
         ]
     };
-    let head = [
-        "law",
-        "plates",
-        "start",
-        "no field by the direct method",
-        "largest distance over discretisation error",
-    ];
-    Block::table(&head, laws.iter().map(row))
+    let head = "law | plates | start | no field by the direct method | largest distance over discretisation error";
+    table(head, laws.iter().map(row))
 }

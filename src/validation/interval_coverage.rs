@@ -7,15 +7,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::case::{
-    Figure, Outcome, Prepared, Progress, chart, figure, line, paragraph, section, table,
-};
+use super::case::{Block, Figure, Outcome, Prepared, Progress, line, section, table};
 use super::plate::{Plate, read_noise};
 use crate::corrector::estimation::{RegressedLaw, Robust, Specimen, estimate};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::mesh::{CellShape, Mesh};
-use crate::results::{Axis, Stroke};
+use crate::results::{Axis, LineChart, Stroke};
 use crate::studies::sections;
 use crate::units::Dimension;
 use inference::{free_edges, modulus};
@@ -113,7 +111,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     }
     progress("100,000 nodes");
     outcome.times.push(large(&settings.data)?);
-    outcome.blocks = vec![paragraph(EXPLANATION), table(trials::HEAD, rows)];
+    outcome.blocks = vec![Block::paragraph(EXPLANATION), table(trials::HEAD, rows)];
     outcome.figures.push(picture(&plates));
     Ok(outcome)
 }
@@ -167,20 +165,20 @@ fn picture(plates: &[Trials]) -> Figure {
         let (noise, error) = (of(|trials| trials.noise), of(error));
         line(label, &noise, &error, colour, Stroke::Marked)
     };
-    let axes = [
+    let (x, y) = (
         Axis::linear("noise of each component [mm]"),
         Axis::logarithmic("error of the displacement, median [mm]"),
-    ];
+    );
     let before = |trials: &Trials| trials.spread(|trial| trial.before).median;
     let after = |trials: &Trials| trials.spread(|trial| trial.after).median;
-    let lines = [
+    let lines = vec![
         line("markers", before, [213, 94, 0]),
         line("estimated field", after, [0, 158, 115]),
     ];
-    let chart = chart("Noisy markers with unknown grips", axes, lines);
-    figure(
+    let chart = LineChart::new("Noisy markers with unknown grips", x, y, lines);
+    Figure::new(
         "measured_fields.png",
         "Noisy markers before and after.",
-        &chart,
+        chart,
     )
 }

@@ -20,7 +20,7 @@ use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::viscosity::ViscousMaterial;
 use crate::mesh::{Mesh, Side};
 use crate::problem::{ClampedPlate, Model};
-use crate::results::{Axis, Block, Line, LineChart, PALETTE, Stroke};
+use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Stroke};
 use crate::solve::Potential;
 use crate::units::Dimension;
 
@@ -288,11 +288,7 @@ fn released(settings: &Settings, progress: Progress, outcome: &mut Outcome) -> R
     Ok(())
 }
 
-fn figures(
-    mesh: &Mesh,
-    times: &[f64],
-    [exact, before, after]: [&[Vec<f64>]; 3],
-) -> Vec<crate::results::Figure> {
+fn figures(mesh: &Mesh, times: &[f64], [exact, before, after]: [&[Vec<f64>]; 3]) -> Vec<Figure> {
     const INK: [u8; 3] = [60, 60, 60];
     // The node in the middle of the free end.
     let [length, width] = mesh.grid().size;
@@ -347,15 +343,15 @@ fn figures(
         band: None,
     };
     vec![
-        super::case::figure(
+        Figure::new(
             "motion_correction.png",
             "Displacement of the middle of the free end.",
-            &motion,
+            motion,
         ),
-        super::case::figure(
+        Figure::new(
             "motion_correction_error.png",
             "Deviation from the finite elements over time.",
-            &errors,
+            errors,
         ),
     ]
 }

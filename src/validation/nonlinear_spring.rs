@@ -6,13 +6,13 @@
 use std::path::Path;
 
 use super::case::{
-    Block, Check, Claim, Figure, Outcome, Prepared, chart, check, figure, largest, line, number,
-    percent, row, section, table,
+    Block, Check, Claim, Figure, Outcome, Prepared, check, largest, line, number, percent, row,
+    section, table,
 };
 use crate::corrector::{Corrector, CorrectorSettings, Function, Linearised, Solver};
 use crate::document::{Bound, Section};
 use crate::error::Error;
-use crate::results::{Axis, Stroke};
+use crate::results::{Axis, LineChart, Stroke};
 use crate::solve::SparseRows;
 use crate::units::Dimension;
 
@@ -129,11 +129,11 @@ fn deviation_table(deviations: &[f64]) -> Block {
 fn figures(forces: &[f64], exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> Vec<Figure> {
     let line =
         |label: &str, values: &[f64], colour, stroke| line(label, forces, values, colour, stroke);
-    let force = || Axis::linear("force [N]");
-    let motion = chart(
+    let motion = LineChart::new(
         "Parabolic spring from a linear trial",
-        [force(), Axis::linear("displacement [mm]")],
-        [
+        Axis::linear("force [N]"),
+        Axis::linear("displacement [mm]"),
+        vec![
             line("exact", exact, [30, 30, 30], Stroke::Solid),
             line("uncorrected", iterates[0], [213, 94, 0], Stroke::Solid),
             line("after one step", iterates[1], [0, 158, 115], Stroke::Dashed),
@@ -145,21 +145,22 @@ fn figures(forces: &[f64], exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> V
             ),
         ],
     );
-    let multipliers = chart(
+    let multipliers = LineChart::new(
         "Lagrange multipliers of f − k u² = 0",
-        [force(), Axis::linear("multiplier ζ [mm²/N]")],
-        [line("ζ", psi, [204, 121, 167], Stroke::Marked)],
+        Axis::linear("force [N]"),
+        Axis::linear("multiplier ζ [mm²/N]"),
+        vec![line("ζ", psi, [204, 121, 167], Stroke::Marked)],
     );
     vec![
-        figure(
+        Figure::new(
             "nonlinear_spring.png",
             "Figure 1 of the publication: uncorrected, corrected and exact displacement.",
-            &motion,
+            motion,
         ),
-        figure(
+        Figure::new(
             "nonlinear_spring_multipliers.png",
             "Figure 1 of the publication: the Lagrange multipliers.",
-            &multipliers,
+            multipliers,
         ),
     ]
 }

@@ -8,8 +8,8 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::case::{
-    Check, Claim, Figure, Outcome, Prepared, Progress, chart, check, figure, largest, line,
-    normal_numbers, number, paragraph, removed_percent, row, section, table,
+    Block, Check, Claim, Figure, Outcome, Prepared, Progress, check, largest, line, normal_numbers,
+    number, removed_percent, row, section, table,
 };
 use super::plate::{CORRECTOR, Plate};
 use crate::compare::{departure_percent, displacement_percent};
@@ -20,7 +20,7 @@ use crate::error::{Error, SolveFault};
 use crate::finite_element::Element;
 use crate::mass_spring::MassSpring;
 use crate::mesh::{Mesh, Side};
-use crate::results::{Axis, Stroke};
+use crate::results::{Axis, LineChart, Stroke};
 use crate::statistics;
 use crate::units::Dimension;
 
@@ -87,7 +87,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
         noisy.push(found);
     }
     let head = "data | before [%] | after [%] | correction [%] | seeds converged";
-    outcome.blocks = vec![paragraph(EXPLANATION), table(head, rows)];
+    outcome.blocks = vec![Block::paragraph(EXPLANATION), table(head, rows)];
     outcome.figures.push(picture(&noisy));
     Ok(outcome)
 }
@@ -315,11 +315,11 @@ fn picture(noisy: &[Noisy]) -> Figure {
         let (noise, deviation) = (of(|noisy| noisy.noise), of(deviation));
         line(label, &noise, &deviation, colour, Stroke::Marked)
     };
-    let axes = [
+    let (x, y) = (
         Axis::linear("noise at every node [mm]"),
         Axis::logarithmic("deviation, relative L2 [%]"),
-    ];
-    let lines = [
+    );
+    let lines = vec![
         line("before", |noisy| noisy.rigid.before, [213, 94, 0]),
         line(
             "after, grips unknown",
@@ -332,6 +332,6 @@ fn picture(noisy: &[Noisy]) -> Figure {
             [0, 114, 178],
         ),
     ];
-    let chart = chart("Noisy fields smoothed", axes, lines);
-    figure("smoothing.png", "Noisy fields before and after.", &chart)
+    let chart = LineChart::new("Noisy fields smoothed", x, y, lines);
+    Figure::new("smoothing.png", "Noisy fields before and after.", chart)
 }

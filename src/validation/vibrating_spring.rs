@@ -8,15 +8,15 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::case::{
-    Check, Claim, Figure, Outcome, Prepared, Progress, Spread, chart, check, figure, line, mean,
-    normal_numbers, number, percent, removed_percent, row, section, share, table,
+    Check, Claim, Figure, Outcome, Prepared, Progress, Spread, check, line, mean, normal_numbers,
+    number, percent, removed_percent, row, section, share, table,
 };
 use super::oscillator::{Differences, Motion, Regression};
 use super::plate::CORRECTOR;
 use crate::corrector::Corrector;
 use crate::document::{Bound, Section};
 use crate::error::{Error, SolveFault};
-use crate::results::{Axis, Stroke};
+use crate::results::{Axis, LineChart, Stroke};
 use crate::statistics::Estimate;
 use crate::units::Dimension;
 
@@ -310,28 +310,29 @@ fn fits(
 }
 
 fn motion_figure(times: &[f64], exact: &[f64], data: &[f64], corrected: &[f64]) -> Figure {
-    let lines = [
+    let lines = vec![
         line("disturbed", times, data, [170, 170, 170], Stroke::Points),
         line("exact", times, exact, [30, 30, 30], Stroke::Solid),
         line("corrected", times, corrected, [0, 114, 178], Stroke::Dashed),
     ];
-    let axes = [Axis::linear("time [s]"), Axis::linear("displacement [mm]")];
-    figure(
+    let (x, y) = (Axis::linear("time [s]"), Axis::linear("displacement [mm]"));
+    Figure::new(
         "vibrating_spring.png",
         "Figure 3 of the publication: exact, disturbed and corrected motion.",
-        &chart("Motion of the vibrating spring", axes, lines),
+        LineChart::new("Motion of the vibrating spring", x, y, lines),
     )
 }
 
 fn multiplier_figure(times: &[f64], psi: &[f64]) -> Figure {
-    let axes = [Axis::linear("time [s]"), Axis::linear("multiplier ζ [mm]")];
-    let lines = [line("ζ", times, psi, [204, 121, 167], Stroke::Solid)];
-    figure(
+    let (x, y) = (Axis::linear("time [s]"), Axis::linear("multiplier ζ [mm]"));
+    let lines = vec![line("ζ", times, psi, [204, 121, 167], Stroke::Solid)];
+    Figure::new(
         "vibrating_spring_multipliers.png",
         "Figure 3 of the publication: the Lagrange multipliers.",
-        &chart(
+        LineChart::new(
             "Lagrange multipliers of the equation of motion",
-            axes,
+            x,
+            y,
             lines,
         ),
     )

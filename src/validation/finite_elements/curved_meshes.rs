@@ -16,7 +16,7 @@ use crate::mesh::{CellShape, Mesh, Shape};
 use crate::problem::BoundaryProblem;
 use crate::studies::specimen::{self, Specimen};
 use crate::validation::case::{
-    Check, Outcome, Prepared, Progress, check, mesh_figure, number, paragraph, section, table,
+    Block, Check, Outcome, Prepared, Progress, check, mesh_figure, number, section, table,
 };
 
 /// Kinds of cells with curved sides.
@@ -92,7 +92,7 @@ fn compute(cells: usize, exact: usize, progress: Progress) -> Result<Outcome, Er
     let head = "specimen | cells of the file | force [N] | true force [N] | stated error [%] | true error [%] | \
                 stated over true";
     let text = "The force on the finest of three meshes, each cut out of the cells of the file along their curved sides.";
-    outcome.blocks = vec![paragraph(text), table(head, rows)];
+    outcome.blocks = vec![Block::paragraph(text), table(head, rows)];
     outcome.figures.push(mesh_figure(
         "curved_meshes.png",
         "The coarsest mesh of the ring, of six-node triangles: its sides are parabolas.",

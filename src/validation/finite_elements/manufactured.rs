@@ -15,7 +15,7 @@ use crate::mesh::{CellShape, GAUSS_5, Mesh};
 use crate::problem::{BoundaryProblem, Support};
 use crate::results::{Axis, Line, LineChart, PALETTE, Stroke};
 use crate::solve::State;
-use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, figure};
+use crate::validation::case::{Check, Figure, Outcome, Prepared, Progress, Wanted};
 
 /// For messages.
 const NAME: &str = "manufactured solution";
@@ -123,10 +123,10 @@ fn compute(coarsest: usize, amplitude: f64, progress: Progress) -> Result<Outcom
             });
         }
     }
-    outcome.figures.push(figure(
+    outcome.figures.push(Figure::new(
         "manufactured_solution.png",
         "Error of every element over the size of its cells.",
-        &LineChart {
+        LineChart {
             title: "Manufactured solution".into(),
             x: Axis::logarithmic("size of the cells [mm]"),
             y: Axis::logarithmic("relative error [–]"),

@@ -13,7 +13,7 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::problem::{ClampedPlate, Measures};
 use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Stroke, mesh_outlines};
-use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, figure, number};
+use crate::validation::case::{Check, Outcome, Prepared, Progress, Wanted, number};
 
 const SIZE: [f64; 2] = [150.0, 50.0];
 const STRETCH: f64 = 0.5;
@@ -390,10 +390,10 @@ fn pictures(uniform: &[Round], adaptive: &[Round]) -> [Figure; 2] {
     };
     let last = &adaptive[adaptive.len() - 1].triangles;
     [
-        figure(
+        Figure::new(
             "own_error.png",
             "Error of the plate's force over the number of cells.",
-            &chart,
+            chart,
         ),
         Figure::new(
             "own_error_mesh.png",

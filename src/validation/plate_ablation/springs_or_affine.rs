@@ -1,19 +1,10 @@
 //! What ū decides: the same corrections from the springs' field and from the affine stretch, side by side.
 
-use super::Fields;
+use super::fields::{Fields, GRIPS};
 use crate::compare::{departure_percent, displacement_percent};
-use crate::corrector::Multipliers;
 use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
-use crate::results::Block;
-use crate::validation::case::{Check, Outcome, Wanted, number};
-use crate::validation::plate::Plate;
-
-/// The grips alone: fewer conditions than unknowns.
-const GRIPS: KnownConditions = KnownConditions {
-    grips: true,
-    free_edges: false,
-};
+use crate::validation::case::{Block, Outcome, check, percent, row, table};
 
 /// Corrections of the springs' field and of the affine stretch with the same conditions.
 struct Pair {
@@ -22,95 +13,74 @@ struct Pair {
 }
 
 impl Pair {
-    fn new(plate: &Plate, fields: &Fields, known: KnownConditions) -> Result<Self, Error> {
-        let corrector = plate.corrector(&fields.lattice);
-        let correct = |data: &[f64]| corrector.correct(data, plate.stretch(), known);
+    fn new(fields: &Fields, known: KnownConditions) -> Result<Self, Error> {
         Ok(Self {
-            springs: correct(&fields.uncorrected)?,
-            affine: correct(&fields.affine)?,
+            springs: fields.correct(&fields.uncorrected, known)?,
+            affine: fields.correct(&fields.affine, known)?,
         })
+    }
+
+    /// The fields from the springs and from the affine stretch.
+    fn displacements(&self) -> [&[f64]; 2] {
+        [&self.springs, &self.affine].map(|state| &state.state.displacement[..])
     }
 
     /// Distance of the fields over the departure from affine of the first, in %.
     fn fields_percent(&self, fields: &Fields) -> f64 {
-        let [springs, affine] =
-            [&self.springs, &self.affine].map(|state| &state.state.displacement[..]);
+        let [springs, affine] = self.displacements();
         departure_percent(&fields.lattice.mesh, affine, springs, &fields.affine)
     }
 
     /// Distance of the multipliers over those of the first, in %.
     fn multipliers_percent(&self) -> f64 {
-        let values = |all: &[Multipliers]| -> Vec<f64> {
-            all.iter()
-                .flat_map(|own| own.values.iter().copied())
-                .collect()
-        };
-        let [springs, affine] =
-            [&self.springs, &self.affine].map(|state| values(&state.multipliers));
-        crate::validation::case::percent(&affine, &springs)
+        let [springs, affine] = [&self.springs, &self.affine].map(|state| {
+            let values = state.multipliers.iter().map(|own| &own.values[..]);
+            values.collect::<Vec<_>>().concat()
+        });
+        percent(&affine, &springs)
     }
 
     fn row(&self, name: &str, fields: &Fields) -> Vec<String> {
-        let departure =
-            |state: &CorrectedState| number(fields.departure(&state.state.displacement));
-        vec![
-            name.to_owned(),
-            number(self.fields_percent(fields)),
-            number(self.multipliers_percent()),
-            departure(&self.springs),
-            departure(&self.affine),
-        ]
+        let [springs, affine] = self.displacements().map(|field| fields.departure(field));
+        let apart = [self.fields_percent(fields), self.multipliers_percent()];
+        row(name, [apart[0], apart[1], springs, affine])
     }
 }
 
 /// With as many conditions as unknowns ū has a say in the multipliers alone; with fewer it decides the field.
-pub fn side_by_side(plate: &Plate, fields: &Fields, outcome: &mut Outcome) -> Result<(), Error> {
-    let all = Pair::new(plate, fields, KnownConditions::ALL)?;
-    let grips = Pair::new(plate, fields, GRIPS)?;
-    let head = [
-        "known conditions T",
-        "fields apart [%]",
-        "multipliers apart [%]",
-        "from springs, to finite elements [%]",
-        "from the affine stretch, to finite elements [%]",
-    ];
-    outcome.blocks.push(Block::Paragraph(
-        "What the springs decide: the same correction once from their field and once from the affine stretch, departure \
+pub fn compare(fields: &Fields, outcome: &mut Outcome) -> Result<(), Error> {
+    let all = Pair::new(fields, KnownConditions::ALL)?;
+    let grips = Pair::new(fields, GRIPS)?;
+    let head = "known conditions T | fields apart [%] | multipliers apart [%] | from springs, to finite elements [%] | \
+                from the affine stretch, to finite elements [%]";
+    let text = "What the springs decide: the same correction once from their field and once from the affine stretch, departure \
          from affine. With as many conditions as unknowns ū has a say in the multipliers alone, with fewer it decides the \
-         field (the affine stretch is in equilibrium inside already and stays as it is):"
-            .into(),
-    ));
+         field (the affine stretch is in equilibrium inside already and stays as it is):";
     let rows = vec![
         all.row("grips and traction-free edges: as many as unknowns", fields),
         grips.row("grips: fewer than unknowns", fields),
     ];
-    outcome.blocks.push(Block::table(&head, rows));
-    let far = displacement_percent(
-        &fields.lattice.mesh,
-        &all.affine.state.displacement,
-        &all.springs.state.displacement,
-    );
-    let check =
-        |quantity: &str, wanted, source, value| Check::new(quantity, "%", wanted, source, value);
+    outcome
+        .blocks
+        .extend([Block::paragraph(text), table(head, rows)]);
+    let [springs, affine] = all.displacements();
+    let far = displacement_percent(&fields.lattice.mesh, affine, springs);
+    let beside = "corrected from springs and from affine beside each other";
     outcome.checks.extend([
-        check(
-            "everything known: corrected from springs and from affine beside each other",
-            Wanted::AtMost(1e-6),
-            "ū has no say in the field",
-            far,
-        ),
+        check(format!("everything known: {beside}"), "%", far)
+            .at_most(1e-6, "ū has no say in the field"),
         check(
             "everything known: their multipliers beside each other",
-            Wanted::AtLeast(1.0),
-            "ū decides the multipliers",
+            "%",
             all.multipliers_percent(),
-        ),
+        )
+        .at_least(1.0, "ū decides the multipliers"),
         check(
-            "grips alone known: corrected from springs and from affine beside each other",
-            Wanted::AtLeast(10.0),
-            "ū decides the field",
+            format!("grips alone known: {beside}"),
+            "%",
             grips.fields_percent(fields),
-        ),
+        )
+        .at_least(10.0, "ū decides the field"),
     ]);
     Ok(())
 }
