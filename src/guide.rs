@@ -4,15 +4,15 @@
 //!
 //! | page | for |
 //! |---|---|
-//! | [plates] | a clamped plate in all three models: the study file, the report, the figures |
-//! | [specimens] | any shape, any mesh, supports and loads, adaptive refinement, paths that end early |
-//! | [motions] | a plate that is released, driven or relaxing: dashpots, viscosity, energy |
-//! | [measured_fields] | markers from image correlation: the nearest field in equilibrium, with intervals |
-//! | [materials] | cards, fits to your own tests, export of test data |
-//! | [springs_and_dashpots] | spring and dashpot functions from a recording of force and extension |
-//! | [other_codes] | the same problem in Abaqus, CalculiX or FEBio, and the way back |
-//! | [validation] | the claims of the publication, and what gelbench is checked against |
-//! | [performance] | why the corrected plate is fast, and how to measure it |
+//! | [Plates](plates) | a clamped plate in all three models: the study file, the report, the figures |
+//! | [Specimens](specimens) | any shape, any mesh, supports and loads, adaptive refinement, paths that end early |
+//! | [Motions](motions) | a plate that is released, driven or relaxing: dashpots, viscosity, energy |
+//! | [Measured fields](measured_fields) | markers from image correlation: the nearest field in equilibrium, with intervals |
+//! | [Materials](materials) | cards, fits to your own tests, export of test data |
+//! | [Springs and dashpots](springs_and_dashpots) | spring and dashpot functions from a recording of force and extension |
+//! | [Other codes](other_codes) | the same problem in Abaqus, CalculiX or FEBio, and the way back |
+//! | [Validation](validation) | the claims of the publication, and what gelbench is checked against |
+//! | [Performance](performance) | why the corrected plate is fast, and how to measure it |
 //!
 //! # With the library
 //!
@@ -20,12 +20,12 @@
 //!
 //! | page | for |
 //! |---|---|
-//! | [first_plate] | springs, corrected springs and finite elements of one plate |
-//! | [own_law] | a material law that gelbench does not have |
-//! | [own_shape] | a shape from measures, from an outline or from a file, with supports and loads |
-//! | [own_markers] | an equilibrium field from markers that are already in memory |
-//! | [own_condition] | a condition of your own in the corrector |
-//! | [own_study] | reading a study file and writing its results |
+//! | [A first plate](first_plate) | springs, corrected springs and finite elements of one plate |
+//! | [A law of your own](own_law) | a material law that gelbench does not have |
+//! | [A shape of your own](own_shape) | a shape from measures, from an outline or from a file, with supports and loads |
+//! | [Markers of your own](own_markers) | an equilibrium field from markers that are already in memory |
+//! | [A condition of your own](own_condition) | a condition of your own in the corrector |
+//! | [A study in a program](own_study) | reading a study file and writing its results |
 
 #[doc = include_str!("guide/first_plate.md")]
 pub mod first_plate {}

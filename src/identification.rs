@@ -38,7 +38,7 @@ mod sample;
 mod smoothing;
 
 pub use band::Function;
-pub use basis::{Basis, Form, Shape};
+pub use basis::{Basis, Form, Shape, UnknownForm};
 pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;

@@ -41,7 +41,7 @@
 //!
 //! | to … | use |
 //! |---|---|
-//! | convert quantities with units; understand an error | [`units`], [`error`] |
+//! | convert quantities with units; understand an error; estimate with intervals | [`units`], [`error`], [`statistics`] |
 //! | read TOML and tables with all faults at once | [`document`] |
 //! | mesh a shape, an outline or a file; ask a field at a point | [`mesh`] |
 //! | load a material card, write a law of your own, plot its curves | [`material`] |

@@ -68,25 +68,38 @@ struct Stretch {
 /// What an equation takes of an instant: its number, and the factors of M u/h² and of g.
 type Term = (usize, f64, f64);
 
+/// Why the equation of motion between three instants does not hold for a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MotionFault {
+    /// A support lets go later than at the start.
+    #[error("a support lets go: begin at the release")]
+    LettingGo,
+    /// Stresses depend on the whole past.
+    #[error("three instants do not tell the stresses of a Prony series")]
+    Relaxing,
+    /// A free unknown has no mass.
+    #[error("a free unknown has no mass")]
+    Massless,
+}
+
 impl<'a> EquationOfMotion<'a> {
     /// The equation of `motion` at instants from time 0 on that are `step` apart in s, with β = `weight`.
     ///
     /// # Errors
-    /// Says why the motion does not take it: a support that lets go, stresses that remember, or a free unknown without
-    /// mass.
-    pub fn new(motion: &'a Motion<'a>, step: f64, weight: f64) -> Result<Self, String> {
+    /// A [`MotionFault`].
+    pub fn new(motion: &'a Motion<'a>, step: f64, weight: f64) -> Result<Self, MotionFault> {
         if motion
             .supports
             .iter()
             .any(|support| support.until.is_some_and(|until| until > 0.0))
         {
-            return Err("a support lets go: begin at the release".into());
+            return Err(MotionFault::LettingGo);
         }
         let remembers = |viscosity: &dyn crate::dynamics::Viscosity| {
             (0..motion.energy.elements()).any(|element| viscosity.memory(element) > 0)
         };
         if motion.viscosity.is_some_and(remembers) {
-            return Err("three instants do not tell the stresses of a Prony series".into());
+            return Err(MotionFault::Relaxing);
         }
         let assembly = Assembly::new(motion.energy, &motion.held(0.0));
         if assembly
@@ -94,7 +107,7 @@ impl<'a> EquationOfMotion<'a> {
             .iter()
             .any(|unknown| motion.mass[*unknown] <= 0.0)
         {
-            return Err("a free unknown has no mass".into());
+            return Err(MotionFault::Massless);
         }
         Ok(Self {
             motion,

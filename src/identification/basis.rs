@@ -25,8 +25,8 @@ impl Form {
     /// Reads `constant`, `polynomial-N`, `spline` or `spline-N`.
     ///
     /// # Errors
-    /// Says what is possible.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    /// [`UnknownForm`].
+    pub fn parse(text: &str) -> Result<Self, UnknownForm> {
         let [degree, fewest, most] = Self::LIMITS;
         let number = |prefix: &str| text.strip_prefix(prefix)?.parse::<usize>().ok();
         match (text, number("polynomial-"), number("spline-")) {
@@ -34,12 +34,18 @@ impl Form {
             ("spline", ..) => Ok(Self::SPLINE),
             (_, Some(own), _) if (1..=degree).contains(&own) => Ok(Self::Polynomial(own)),
             (_, _, Some(own)) if (fewest..=most).contains(&own) => Ok(Self::Spline(own)),
-            _ => Err(format!(
-                "it must be constant, polynomial-1 to polynomial-{degree}, spline, or spline-{fewest} to spline-{most}"
-            )),
+            _ => Err(UnknownForm),
         }
     }
 }
+
+/// A text that names no [`Form`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "it must be constant, polynomial-1 to polynomial-{}, spline, or spline-{} to spline-{}",
+    Form::LIMITS[0], Form::LIMITS[1], Form::LIMITS[2]
+)]
+pub struct UnknownForm;
 
 /// What is known of a spline's shape beforehand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

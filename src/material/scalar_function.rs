@@ -27,6 +27,25 @@ const GAUSS: [[f64; 2]; 3] = [
     [0.887_298_334_620_741_7, 5.0 / 18.0],
 ];
 
+/// Why points are no table of a function.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum TableFault {
+    /// Fewer than two points.
+    #[error("needs at least two points")]
+    TooFew,
+    /// A point that is not finite.
+    #[error("has a point that is not finite")]
+    NotFinite,
+    /// A place that is not beyond the one before it.
+    #[error("must ascend: {next} follows {before}")]
+    NotAscending {
+        /// The place.
+        next: f64,
+        /// The one before it.
+        before: f64,
+    },
+}
+
 impl ScalarFunction {
     /// Always the same.
     pub fn constant(value: f64) -> Self {
@@ -36,19 +55,17 @@ impl ScalarFunction {
     /// The cubics of Fritsch and Butland through points of ascending x.
     ///
     /// # Errors
-    /// Says what is wrong with the points.
-    pub fn table(points: Vec<[f64; 2]>) -> Result<Self, String> {
+    /// A [`TableFault`].
+    pub fn table(points: Vec<[f64; 2]>) -> Result<Self, TableFault> {
         if points.len() < 2 {
-            return Err("needs at least two points".into());
+            return Err(TableFault::TooFew);
         }
         if points.iter().flatten().any(|value| !value.is_finite()) {
-            return Err("has a point that is not finite".into());
+            return Err(TableFault::NotFinite);
         }
         if let Some(pair) = points.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-            return Err(format!(
-                "must ascend: {} follows {}",
-                pair[1][0], pair[0][0]
-            ));
+            let [before, next] = [pair[0][0], pair[1][0]];
+            return Err(TableFault::NotAscending { next, before });
         }
         let slopes = slopes(&points);
         let mut table = Table {
@@ -177,7 +194,7 @@ mod tests {
             last = now;
         }
         assert_eq!(table.at(9.0), [6.0, 0.0]);
-        let reason = |points: Vec<[f64; 2]>| ScalarFunction::table(points).unwrap_err();
+        let reason = |points: Vec<[f64; 2]>| ScalarFunction::table(points).unwrap_err().to_string();
         assert!(reason(vec![[0.0, 1.0]]).contains("two points"));
         assert!(reason(vec![[0.0, 1.0], [0.0, 2.0]]).contains("ascend"));
         assert!(reason(vec![[0.0, 1.0], [1.0, f64::NAN]]).contains("finite"));

@@ -224,7 +224,7 @@ fn released(settings: &Settings, progress: Progress, outcome: &mut Outcome) -> R
     let uncorrected = integrate(&springs, step, count, 1, 1)?;
     progress("corrector");
     let equation = EquationOfMotion::new(&scheme.motion, step, 0.25)
-        .map_err(|reason| Error::input(reason, "change the motion"))?;
+        .map_err(|reason| Error::input(reason.to_string(), "change the motion"))?;
     let windows = WindowSettings {
         steps: settings.window,
         tolerance: 1e-9,

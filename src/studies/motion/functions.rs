@@ -151,7 +151,11 @@ fn read_function(section: &Section, dimension: Dimension) -> Option<ScalarFuncti
             match ScalarFunction::table(points) {
                 Ok(table) => table,
                 Err(reason) => {
-                    section.fault("at", &reason, "give two or more ascending points");
+                    section.fault(
+                        "at",
+                        &reason.to_string(),
+                        "give two or more ascending points",
+                    );
                     return None;
                 }
             }

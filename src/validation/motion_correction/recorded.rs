@@ -92,7 +92,7 @@ pub fn compute(
         .collect();
     let guess = run(&springs, 8)?;
     let equation = EquationOfMotion::new(&scheme.motion, step, 0.25)
-        .map_err(|reason| Error::input(reason, "change the motion"))?;
+        .map_err(|reason| Error::input(reason.to_string(), "change the motion"))?;
     progress("seeds");
     let one = |seed: u64| -> Result<[f64; 2], Error> {
         let data = disturbed(&exact, &scheme, recording.noise, seed);
