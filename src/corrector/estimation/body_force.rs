@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 
-use super::edge_motion::Roughness;
+use super::regression::Roughness;
 use crate::mesh::Mesh;
 use crate::statistics::{BSpline, Ends};
 

@@ -4,10 +4,13 @@
 //! field that was found. Where the misfit falls by more than noise would let it (F test), something is wrong with what was
 //! said, or with law and thickness.
 
+use super::equations::Equations;
+use super::field_estimate::Contradiction;
+use super::knowledge::EdgeCondition;
 use super::mesh_error::MeshError;
 use super::regression::{Fit, Trade};
-use super::search::{Found, Search};
-use super::{Edge, EdgeCondition, Task};
+use super::search::NearestField;
+use super::task::{Edge, Task};
 use crate::statistics::f_tail;
 
 /// Probability below which the data contradict. Smoothness is chosen by the data too, which the test does not count; small
@@ -20,19 +23,10 @@ const ROUNDING: f64 = 1e-6;
 /// Twice the mesh's own error, squared.
 const MESH: f64 = 4.0;
 
-/// What the data contradict.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Contradiction {
-    /// How probable so large a fall of the misfit is if all that is said of the edges holds.
-    pub probability: f64,
-    /// The edges that contradict on their own, with the same probability of each; nothing where they do so together only.
-    pub edges: Vec<(String, f64)>,
-}
-
 /// Looks at the edges that are said to be free, rigid or known.
 pub fn contradiction(
     task: &Task,
-    found: &Found,
+    found: &NearestField,
     edges: &[Edge],
     own: Option<&MeshError>,
 ) -> Option<Contradiction> {
@@ -46,7 +40,7 @@ pub fn contradiction(
             }
         }
         // Data that do not determine so much contradict nothing.
-        let score = Search::new(task, &relaxed).and_then(|search| search.score(found));
+        let score = Equations::new(task, &relaxed).and_then(|search| search.score(found));
         score.map_or(1.0, |score| probability(found, &score, own))
     };
     if !edges.iter().any(said) {
@@ -69,8 +63,8 @@ pub fn contradiction(
     })
 }
 
-fn probability(found: &Found, (fit, trade): &(Fit, Trade), own: Option<&MeshError>) -> f64 {
-    let weights = &found.search.task.observations.weights;
+fn probability(found: &NearestField, (fit, trade): &(Fit, Trade), own: Option<&MeshError>) -> f64 {
+    let weights = &found.equations.task.observations.weights;
     let weight = |row: usize| weights[row / 2] * trade.trust[row / 2];
     let sum = |values: &[f64]| -> f64 {
         let squares = values.iter().enumerate();
@@ -85,7 +79,12 @@ fn probability(found: &Found, (fit, trade): &(Fit, Trade), own: Option<&MeshErro
     );
     // What the mesh gets wrong, up to twice what is told of it, counts as noise; a misfit of its size says nothing.
     let mesh = own.map_or(0.0, |own| MESH * sum(&own.markers));
-    let moved = found.search.task.observations.displacements.as_flattened();
+    let moved = found
+        .equations
+        .task
+        .observations
+        .displacements
+        .as_flattened();
     let nothing = mesh + ROUNDING * ROUNDING * sum(moved);
     if before <= nothing {
         return 1.0;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::tests::{SIZE, STRETCH, Truth, law, specimen, with_grips};
 use super::*;
 use crate::material::sheet::{Gradient, Kinematics};
-use crate::mesh::CellShape;
+use crate::mesh::{CellShape, Mesh};
 
 const SEEDS: u64 = 40;
 

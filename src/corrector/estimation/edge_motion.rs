@@ -2,53 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
+use super::edge_displacements::{Combination, EdgeDisplacements};
+use super::knowledge::EdgeCondition;
 use super::outline::Segment;
+use super::regression::Roughness;
 use crate::mesh::Mesh;
 use crate::statistics::{BSpline, Ends};
-
-/// What is known of a part of the boundary.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EdgeCondition {
-    /// No traction.
-    Free,
-    /// Displacements ux, uy in mm; along an axis without one the edge is free.
-    Known([Option<f64>; 2]),
-    /// A rigid body that moved and turned by unknown amounts.
-    Rigid,
-    /// Loaded in an unknown way: the displacement is a smooth function along the edge.
-    Unknown,
-}
 
 /// Most spans of a spline along one edge.
 const MOST_SPANS: usize = 12;
 
 /// Markers' spacings in a span.
 const SPACINGS: f64 = 1.5;
-
-/// A linear combination of parameters and a constant.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Combination {
-    value: f64,
-    slopes: Vec<(usize, f64)>,
-}
-
-impl Combination {
-    fn parameter(index: usize, values: &[f64]) -> Self {
-        Self {
-            value: values[index],
-            slopes: vec![(index, 1.0)],
-        }
-    }
-
-    fn add(&mut self, factor: f64, other: &Self) {
-        self.value += factor * other.value;
-        let slopes = other.slopes.iter();
-        self.slopes
-            .extend(slopes.map(|(index, slope)| (*index, factor * slope)));
-    }
-}
 
 /// A coefficient of a spline along one axis: a parameter, or an unknown of the field that another part moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +25,7 @@ enum Coefficient {
 }
 
 /// What moves an unknown of the field.
-type Moved = BTreeMap<usize, Coefficient>;
+type Movers = BTreeMap<usize, Coefficient>;
 
 #[derive(Clone, Debug)]
 enum Part {
@@ -90,27 +57,6 @@ pub struct EdgeMotion {
     parameters: usize,
 }
 
-/// u_B and its derivatives at some p.
-#[derive(Clone, Debug)]
-pub struct Imposed {
-    unknowns: BTreeMap<usize, Combination>,
-}
-
-/// The curvature of the displacement of one edge along one axis: Σ r² = ∫ (d²u/dt²)² dt with t = 0…1 along the edge.
-#[derive(Clone, Debug)]
-pub struct Roughness {
-    /// The edge.
-    pub edge: String,
-    /// The axis.
-    pub axis: usize,
-    /// The values r in mm.
-    pub values: Vec<f64>,
-    /// ∂r/∂p.
-    pub slopes: DMatrix<f64>,
-    /// Rank of the form.
-    pub rank: usize,
-}
-
 impl EdgeMotion {
     /// The motion of segments under one condition each. Where segments meet, known displacements go before rigid ones and
     /// these before unknown ones; `spacing` is the distance of the markers in mm.
@@ -120,7 +66,7 @@ impl EdgeMotion {
             parts: Vec::new(),
             parameters: 0,
         };
-        let mut moved = Moved::new();
+        let mut moved = Movers::new();
         for (segment, condition) in segments {
             if let EdgeCondition::Known(displacement) = condition {
                 motion.known(segment, *displacement, &mut moved);
@@ -139,7 +85,7 @@ impl EdgeMotion {
         motion
     }
 
-    fn known(&mut self, segment: &Segment, displacement: [Option<f64>; 2], moved: &mut Moved) {
+    fn known(&mut self, segment: &Segment, displacement: [Option<f64>; 2], moved: &mut Movers) {
         for axis in [0, 1]
             .into_iter()
             .filter(|axis| displacement[*axis].is_some())
@@ -152,7 +98,7 @@ impl EdgeMotion {
         });
     }
 
-    fn rigid(&mut self, segment: &Segment, moved: &mut Moved) {
+    fn rigid(&mut self, segment: &Segment, moved: &mut Movers) {
         let nodes = segment.nodes.clone();
         [0, 1]
             .into_iter()
@@ -169,7 +115,7 @@ impl EdgeMotion {
         });
     }
 
-    fn smooth(&mut self, segment: &Segment, spacing: f64, moved: &mut Moved) {
+    fn smooth(&mut self, segment: &Segment, spacing: f64, moved: &mut Movers) {
         let length = segment.length();
         let edges = segment.nodes.len() - 1;
         let spans = (length / (SPACINGS * spacing)).round() as usize;
@@ -209,7 +155,7 @@ impl EdgeMotion {
     }
 
     /// The displacements at parameters p.
-    pub fn at(&self, p: &[f64]) -> Imposed {
+    pub fn at(&self, p: &[f64]) -> EdgeDisplacements {
         let mut unknowns: BTreeMap<usize, Combination> = BTreeMap::new();
         for part in &self.parts {
             match part {
@@ -231,15 +177,15 @@ impl EdgeMotion {
                     for axis in [0, 1] {
                         let q = combinations(&unknowns, &coefficients[axis], p);
                         for (node, place) in nodes {
-                            unknowns
-                                .entry(2 * node + axis)
-                                .or_insert_with(|| combine(&q, spline.derivatives(*place, 0)));
+                            unknowns.entry(2 * node + axis).or_insert_with(|| {
+                                Combination::sum(&q, spline.derivatives(*place, 0))
+                            });
                         }
                     }
                 }
             }
         }
-        Imposed { unknowns }
+        EdgeDisplacements { unknowns }
     }
 
     fn impose_rigid(
@@ -281,7 +227,9 @@ impl EdgeMotion {
             for axis in [0, 1] {
                 let q = combinations(&imposed.unknowns, &coefficients[axis], p);
                 let rows = spline.roughness();
-                let rows: Vec<_> = rows.map(|row| combine(&q, row.into_iter())).collect();
+                let rows: Vec<_> = rows
+                    .map(|row| Combination::sum(&q, row.into_iter()))
+                    .collect();
                 let mut slopes = DMatrix::zeros(rows.len(), self.parameters);
                 for (row, combination) in rows.iter().enumerate() {
                     for (index, slope) in &combination.slopes {
@@ -301,49 +249,8 @@ impl EdgeMotion {
     }
 }
 
-impl Imposed {
-    /// Writes u_B into a field.
-    pub fn write(&self, field: &mut [f64]) {
-        for (unknown, combination) in &self.unknowns {
-            field[*unknown] = combination.value;
-        }
-    }
-
-    /// ∂u_B/∂p, and how far u_B is from a field there.
-    pub fn toward(&self, field: &[f64], parameters: usize) -> (DMatrix<f64>, DVector<f64>) {
-        let count = self.unknowns.len();
-        let (mut rows, mut values) = (DMatrix::zeros(count, parameters), DVector::zeros(count));
-        for (row, (unknown, combination)) in self.unknowns.iter().enumerate() {
-            values[row] = field[*unknown] - combination.value;
-            for (index, slope) in &combination.slopes {
-                rows[(row, *index)] += slope;
-            }
-        }
-        (rows, values)
-    }
-
-    /// Marks the unknowns of u_B among `count`.
-    pub fn held(&self, count: usize) -> Vec<bool> {
-        let unknowns = 0..count;
-        unknowns
-            .map(|unknown| self.unknowns.contains_key(&unknown))
-            .collect()
-    }
-
-    /// ∂u_B/∂p of one parameter after the other, as fields of `count` unknowns.
-    pub fn motions(&self, parameters: usize, count: usize) -> Vec<Vec<f64>> {
-        let mut motions = vec![vec![0.0; count]; parameters];
-        for (unknown, combination) in &self.unknowns {
-            for (index, slope) in &combination.slopes {
-                motions[*index][*unknown] += slope;
-            }
-        }
-        motions
-    }
-}
-
 /// Notes that nodes are moved along an axis, by what came first.
-fn hold(nodes: &[usize], axis: usize, moved: &mut Moved) {
+fn hold(nodes: &[usize], axis: usize, moved: &mut Movers) {
     for unknown in nodes.iter().map(|node| 2 * node + axis) {
         moved
             .entry(unknown)
@@ -377,12 +284,6 @@ fn combinations(
         Coefficient::Unknown(unknown) => unknowns[unknown].clone(),
     };
     coefficients.iter().map(combination).collect()
-}
-
-fn combine(q: &[Combination], terms: impl Iterator<Item = (usize, f64)>) -> Combination {
-    let mut sum = Combination::default();
-    terms.for_each(|(index, factor)| sum.add(factor, &q[index]));
-    sum
 }
 
 #[cfg(test)]

@@ -1,17 +1,16 @@
 //! The forces on the edges of an estimated field, the parameters of its law, and how both depend on where the edges lie.
 
-use super::Edge;
-use super::edge_motion::EdgeCondition;
+use super::field_estimate::{EdgeForce, ForceCheck};
 use super::linearise::dot;
 use super::mesh_error::MeshError;
-use super::result::{EdgeForce, ForceCheck};
-use super::search::Found;
+use super::search::NearestField;
+use super::task::Edge;
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::statistics::Estimate;
 
-impl Found<'_> {
+impl NearestField<'_> {
     /// The forces on the edges that are not free; with the mesh's own error, if it is known.
     pub fn forces(
         &self,
@@ -20,11 +19,11 @@ impl Found<'_> {
         own: Option<&MeshError>,
     ) -> Result<Vec<EdgeForce>, Error> {
         let reactions = self.reactions();
-        let slopes = self.search.law_slopes(&self.parameters, &self.field)?;
-        let first = self.search.motion.parameters();
+        let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
+        let first = self.equations.motion.parameters();
         let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
             let nodes = &edges[index].segment.nodes;
-            let grip = self.search.grip(nodes, axis, &self.field)?;
+            let grip = self.equations.grip(nodes, axis, &self.field)?;
             let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
             let force = dot(&grip.marks, &reactions);
             let mesh = own.map_or(0.0, |own| {
@@ -32,7 +31,7 @@ impl Found<'_> {
             });
             Ok(Estimate::new(force, self.error(&row).hypot(mesh), reach))
         };
-        let held = (0..edges.len()).filter(|index| edges[*index].condition != EdgeCondition::Free);
+        let held = (0..edges.len()).filter(|index| edges[*index].is_loaded());
         let force = |index: usize| {
             Ok(EdgeForce {
                 edge: edges[index].segment.name.clone(),
@@ -48,8 +47,8 @@ impl Found<'_> {
         reach: f64,
         own: Option<&MeshError>,
     ) -> Vec<(&'static str, &'static str, Estimate)> {
-        let first = self.search.motion.parameters();
-        let regressed = self.search.task.knowledge.law.iter();
+        let first = self.equations.motion.parameters();
+        let regressed = self.equations.task.knowledge.law.iter();
         let parameters = regressed.flat_map(|law| law.parameters()).enumerate();
         let estimate = |(index, parameter): (usize, &Parameter)| {
             let place = first + index;
@@ -71,7 +70,7 @@ impl Found<'_> {
         let with_mesh = self.forces(edges, 1.0, own)?;
         let plain = self.forces(edges, 1.0, None)?;
         let mut checks = Vec::new();
-        for measured in &self.search.task.knowledge.forces {
+        for measured in &self.equations.task.knowledge.forces {
             let axis = measured.axis;
             let sum = |forces: &[EdgeForce]| {
                 let own = forces.iter().filter(|force| force.edge == measured.edge);
@@ -97,11 +96,11 @@ impl Found<'_> {
 
     /// ∮ Ψ ds/∫ Ψ dA.
     pub(super) fn growth(&self, edges: &[Edge]) -> f64 {
-        let mesh = self.search.task.specimen.mesh;
+        let mesh = self.equations.task.specimen.mesh;
         let energy = |cell: usize, local: [f64; 2]| {
             let gradient = Gradient::from(mesh.gradient_at(&self.field, cell, local));
             Kinematics::new(&gradient)
-                .map_or(0.0, |kinematics| self.search.law.stress(&kinematics).0)
+                .map_or(0.0, |kinematics| self.equations.law.stress(&kinematics).0)
         };
         let over = |cell: usize| -> f64 {
             let points = mesh.shape(cell).quadrature().into_iter();
@@ -110,9 +109,7 @@ impl Found<'_> {
                 .sum()
         };
         let whole: f64 = (0..mesh.cell_count()).map(over).sum();
-        let free = edges
-            .iter()
-            .filter(|edge| edge.condition == EdgeCondition::Free);
+        let free = edges.iter().filter(|edge| !edge.is_loaded());
         let along = |pair: &[usize]| {
             let [a, b] = [mesh.nodes[pair[0]], mesh.nodes[pair[1]]];
             let middle = [0, 1].map(|axis| (a[axis] + b[axis]) / 2.0);

@@ -1,9 +1,10 @@
 //! Which of the edges that nobody names are free: the data say it.
 
-use super::edge_motion::EdgeCondition;
-use super::result::EdgeForce;
-use super::search::{Found, MOST_STEPS, Search};
-use super::{Edge, Task};
+use super::equations::Equations;
+use super::field_estimate::EdgeForce;
+use super::knowledge::EdgeCondition;
+use super::search::{MOST_STEPS, NearestField};
+use super::task::{Edge, Task};
 use crate::error::Error;
 use crate::statistics::f_tail;
 
@@ -20,8 +21,8 @@ const TRIAL_STEPS: usize = 20;
 pub fn search<'a>(
     task: &Task<'a>,
     mut edges: Vec<Edge<'a>>,
-) -> Result<(Found<'a>, Vec<Edge<'a>>), Error> {
-    let mut found = Search::new(task, &edges)?.run(MOST_STEPS)?;
+) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
+    let mut found = Equations::new(task, &edges)?.run(MOST_STEPS)?;
     let mut open: Vec<usize> = (0..edges.len())
         .filter(|edge| edges[*edge].tested)
         .collect();
@@ -34,19 +35,15 @@ pub fn search<'a>(
     for index in open {
         let mut freed = edges.clone();
         freed[index].condition = EdgeCondition::Free;
-        if freed
-            .iter()
-            .all(|edge| edge.condition == EdgeCondition::Free)
-        {
+        if !freed.iter().any(Edge::is_loaded) {
             break;
         }
-        let pulled = found.is_pulled(&edges, index)?;
-        if pulled {
+        if found.is_pulled(&edges, index)? {
             edges[index].probability = Some(0.0);
             continue;
         }
         // Where no equilibrium with the free edge is found, it is not free.
-        let trial = Search::new(task, &freed).and_then(|search| search.run(TRIAL_STEPS));
+        let trial = Equations::new(task, &freed).and_then(|search| search.run(TRIAL_STEPS));
         let probability = trial
             .as_ref()
             .map_or(0.0, |trial| probability(&found, trial));
@@ -60,7 +57,7 @@ pub fn search<'a>(
 }
 
 /// How probable it is that the misfit grows so much by noise, when an edge that is free is taken as such.
-fn probability(loaded: &Found, free: &Found) -> f64 {
+fn probability(loaded: &NearestField, free: &NearestField) -> f64 {
     let count = loaded.fit.residual.len() as f64;
     let more = (loaded.fit.effective - free.fit.effective).max(1.0);
     let rest = (count - loaded.fit.effective).max(1.0);
@@ -69,34 +66,31 @@ fn probability(loaded: &Found, free: &Found) -> f64 {
     f_tail([more, rest], ratio)
 }
 
-impl Found<'_> {
+impl NearestField<'_> {
     /// Whether the force on an edge is so large, and so well known, that it needs no trial: more than a third of the largest
     /// one, and more than ten times its standard error.
     fn is_pulled(&self, edges: &[Edge], index: usize) -> Result<bool, Error> {
         const LARGE: f64 = 1.0 / 3.0;
         const SURE: f64 = 10.0;
         let forces = self.forces(edges, 1.0, None)?;
-        let held = edges
-            .iter()
-            .filter(|edge| edge.condition != EdgeCondition::Free);
+        let held = edges.iter().filter(|edge| edge.is_loaded());
         let own = held
             .zip(&forces)
             .find(|(edge, _)| edge.segment.nodes == edges[index].segment.nodes);
         let size = |force: &EdgeForce| force.force[0].value.hypot(force.force[1].value);
         let error = |force: &EdgeForce| {
-            force.force[0]
-                .standard_error
-                .hypot(force.force[1].standard_error)
+            let [x, y] = force.force.map(|along| along.standard_error);
+            x.hypot(y)
         };
         let most = forces.iter().map(size).fold(0.0, f64::max);
         Ok(own.is_some_and(|(_, own)| size(own) > LARGE * most && size(own) > SURE * error(own)))
     }
 
     /// Σ w ω r² with the trust ω of another search.
-    fn misfit(&self, other: &Found) -> f64 {
+    fn misfit(&self, other: &NearestField) -> f64 {
         let residual = self.fit.residual.as_slice().chunks_exact(2);
         let weights = self
-            .search
+            .equations
             .task
             .observations
             .weights

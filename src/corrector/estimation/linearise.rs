@@ -1,18 +1,12 @@
 //! The equations, the measured forces and the law linearised about a field.
 
-use std::sync::Arc;
-
 use nalgebra::{DMatrix, DVector};
 
-use super::MeasuredForce;
 use super::body_force::BodyForce;
-use super::search::{Place, Search, solve};
-use crate::error::{Error, SolveFault};
-use crate::material::HyperelasticLaw;
-use crate::solve::{Assembly, Inadmissible, Potential, Sum};
-
-/// A law with one parameter a little smaller and larger, and the width between.
-pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
+use super::equations::{Equations, Place, solve};
+use super::knowledge::MeasuredForce;
+use crate::error::Error;
+use crate::solve::Assembly;
 
 /// The equations and the observations linearised about a place.
 pub struct Linear {
@@ -26,89 +20,13 @@ pub struct Linear {
     pub facts: (DMatrix<f64>, DVector<f64>),
 }
 
-impl Search<'_> {
-    /// The values of the law's parameters among all.
-    pub fn law_values<'b>(&self, parameters: &'b [f64]) -> &'b [f64] {
-        let first = self.motion.parameters();
-        let regressed = self.task.knowledge.law.as_ref();
-        &parameters[first..first + regressed.map_or(0, |law| law.parameters().len())]
-    }
-
-    /// The energy with the forces on the interior.
-    pub(super) fn potential(&self) -> Box<dyn Potential + '_> {
-        match self.body {
-            Some(_) => Box::new(Sum::with_forces(&self.energy, &self.forces)),
-            None => Box::new(&self.energy),
-        }
-    }
-
-    /// Takes the law and the forces on the interior with the parameters.
-    pub(super) fn take(&mut self, parameters: &[f64]) {
-        if let Some(body) = &self.body {
-            let last = &parameters[parameters.len() - body.columns().len()..];
-            self.forces = body.forces(last, self.forces.len());
-        }
-        if let Some(regressed) = &self.task.knowledge.law {
-            self.law = regressed.at(self.law_values(parameters));
-            self.energy = self.energy.with_law(Arc::clone(&self.law));
-        }
-    }
-
-    /// The laws with each of the law's parameters a little smaller and larger, and twice the difference.
-    pub fn neighbours(&self, parameters: &[f64]) -> Vec<Neighbours> {
-        const STEP: f64 = 1e-5;
-        let Some(regressed) = &self.task.knowledge.law else {
-            return Vec::new();
-        };
-        let values = self.law_values(parameters);
-        let pair = |index: usize| {
-            let step = STEP * values[index].abs();
-            let moved = [-step, step].map(|step| {
-                let mut moved = values.to_vec();
-                moved[index] += step;
-                regressed.at(&moved)
-            });
-            (moved, 2.0 * step)
-        };
-        (0..values.len()).map(pair).collect()
-    }
-
-    /// ∂F/∂θ of each parameter θ of the law, at held unknowns too.
-    pub fn law_slopes(&self, parameters: &[f64], field: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
-        let mut slopes = Vec::new();
-        for (laws, width) in self.neighbours(parameters) {
-            let mut sides = laws.map(|law| (self.energy.with_law(law), vec![0.0; field.len()]));
-            for (energy, residual) in &mut sides {
-                Assembly::residual(energy, field, residual)
-                    .map_err(|fault| self.inverted(fault))?;
-            }
-            let [(_, low), (_, high)] = sides;
-            let slope = high
-                .iter()
-                .zip(&low)
-                .map(|(high, low)| (high - low) / width);
-            slopes.push(slope.collect());
-        }
-        Ok(slopes)
-    }
-
-    pub fn inverted(&self, fault: Inadmissible) -> Error {
-        solve(SolveFault::Inverted {
-            element: self.task.specimen.mesh.describe_cell(fault.element),
-        })
-    }
-
+impl Equations<'_> {
     /// The equations and the observations about a place.
     pub(super) fn linearise(&mut self, place: &Place) -> Result<Linear, Error> {
         let (mesh, field) = (self.task.specimen.mesh, &place.field);
         let describe = |cell: usize| mesh.describe_cell(cell);
-        let residual = match self.body {
-            Some(_) => {
-                let pushed = Sum::with_forces(&self.energy, &self.forces);
-                self.newton.tangent.at(&pushed, field, &describe)
-            }
-            None => self.newton.tangent.at(&self.energy, field, &describe),
-        };
+        let residual =
+            self.with_potential(|newton, potential| newton.tangent.at(potential, field, &describe));
         let residual = residual.map_err(solve)?;
         let motions = self.motion.at(&place.parameters);
         let motions = motions.motions(self.motion.parameters(), field.len());

@@ -12,9 +12,10 @@
 
 use nalgebra::DVector;
 
+use super::knowledge::EdgeCondition;
 use super::linearise::dot;
-use super::search::Found;
-use super::{Edge, EdgeCondition};
+use super::search::NearestField;
+use super::task::Edge;
 use crate::mesh::Mesh;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{Newton, NewtonSettings, Sum};
@@ -49,17 +50,17 @@ struct Fine {
     held: Vec<[Vec<usize>; 2]>,
 }
 
-impl Found<'_> {
+impl NearestField<'_> {
     /// The mesh's own error; nothing where the mesh is too large to be refined, or the refined one has no equilibrium.
     pub fn mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
-        let mesh = self.search.task.specimen.mesh;
+        let mesh = self.equations.task.specimen.mesh;
         if mesh.cell_count() > MOST_CELLS {
             return None;
         }
         let fine = self.refined(mesh, edges)?;
         let there = fine.mesh.displacement_on(&fine.displacement, mesh);
         let difference: Vec<f64> = there.iter().zip(&self.field).map(|(a, b)| a - b).collect();
-        let observations = self.search.task.observations;
+        let observations = self.equations.task.observations;
         let nearby = observations.interpolation.multiply(&self.field);
         let places = observations.places.iter();
         let markers =
@@ -89,7 +90,7 @@ impl Found<'_> {
     fn refined(&self, mesh: &Mesh, edges: &[Edge]) -> Option<Fine> {
         let fine = mesh.refined();
         let mut coarse = vec![true; self.field.len()];
-        for unknown in self.search.newton.free() {
+        for unknown in self.equations.newton.free() {
             coarse[*unknown] = false;
         }
         let held: Vec<_> = edges
@@ -100,9 +101,9 @@ impl Found<'_> {
         for unknown in held.iter().flatten().flatten() {
             fixed[*unknown] = true;
         }
-        let thickness = self.search.task.specimen.thickness;
-        let energy = SheetEnergy::of_mesh(self.search.law.clone(), &fine, thickness);
-        let forces = match &self.search.body {
+        let thickness = self.equations.task.specimen.thickness;
+        let energy = SheetEnergy::of_mesh(self.equations.law.clone(), &fine, thickness);
+        let forces = match &self.equations.body {
             Some(_) => super::body_force::BodyForce::new(&fine, &fixed)
                 .forces(self.body_coefficients(), fixed.len()),
             None => vec![0.0; fixed.len()],
@@ -131,7 +132,7 @@ impl Found<'_> {
 
     fn body_coefficients(&self) -> &[f64] {
         let count = self
-            .search
+            .equations
             .body
             .as_ref()
             .map_or(0, |body| body.columns().len());
@@ -162,13 +163,13 @@ impl Found<'_> {
 
     /// δp.
     fn regressed(&self, at_markers: &[f64], edges: &[Edge], forces: &[[f64; 2]]) -> DVector<f64> {
-        let weights = &self.search.task.observations.weights;
+        let weights = &self.equations.task.observations.weights;
         let weight = |row: usize| weights[row / 2] * self.trade.trust[row / 2];
         let weighted = at_markers.iter().enumerate();
         let weighted = weighted.map(|(row, d)| -weight(row) * d / self.trade.variance);
         let weighted = DVector::from_iterator(at_markers.len(), weighted);
         let mut target = self.linear.design.tr_mul(&weighted);
-        let measured = self.search.task.knowledge.forces.iter().enumerate();
+        let measured = self.equations.task.knowledge.forces.iter().enumerate();
         for (row, measured) in measured {
             let own = edges.iter().zip(forces);
             let own = own.filter(|(edge, _)| edge.segment.name == measured.edge);

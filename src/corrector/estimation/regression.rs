@@ -20,9 +20,23 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::edge_motion::Roughness;
 use super::robust::Robust;
 use crate::statistics::inverse;
+
+/// The curvature of the displacement of one edge along one axis: Σ r² = ∫ (d²u/dt²)² dt with t = 0…1 along the edge.
+#[derive(Clone, Debug)]
+pub struct Roughness {
+    /// The edge.
+    pub edge: String,
+    /// The axis.
+    pub axis: usize,
+    /// The values r in mm.
+    pub values: Vec<f64>,
+    /// ∂r/∂p.
+    pub slopes: DMatrix<f64>,
+    /// Rank of the form.
+    pub rank: usize,
+}
 
 /// What is fitted.
 pub struct Regression<'a> {

@@ -1,124 +1,15 @@
 use std::sync::Arc;
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use super::*;
 use crate::error::Error;
-use crate::material::{Card, NeoHooke};
-use crate::mesh::{CellShape, Mesh};
+use crate::material::{Card, HyperelasticLaw};
 use crate::problem::{BoundaryProblem, Support};
 use crate::solve::NewtonSettings;
 
-pub(super) const SIZE: [f64; 2] = [60.0, 30.0];
-const THICKNESS: f64 = 2.0;
-const C10: f64 = 0.05;
-pub(super) const STRETCH: f64 = 0.3;
+mod truth;
 
-pub(super) fn law() -> Arc<dyn HyperelasticLaw> {
-    Arc::new(NeoHooke { c10: C10 })
-}
-
-/// A clamped plate pulled by 30 %, on a mesh that no estimate uses: the field, and the force in N.
-pub(super) struct Truth {
-    pub(super) mesh: Mesh,
-    displacement: Vec<f64>,
-    pub(super) force: f64,
-}
-
-impl Truth {
-    pub(super) fn new() -> Self {
-        Self::on(Mesh::plate(SIZE, [26, 14], CellShape::Quad9))
-    }
-
-    /// The same on any mesh.
-    pub(super) fn on(mesh: Mesh) -> Self {
-        let clamp = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
-        let problem = BoundaryProblem {
-            thickness: THICKNESS,
-            law: law(),
-            supports: vec![
-                ("left".into(), clamp(0.0)),
-                ("right".into(), clamp(STRETCH * SIZE[0])),
-            ],
-            loads: Vec::new(),
-        };
-        let energy = problem.finite_elements(&mesh);
-        let newton = NewtonSettings {
-            tolerance: 1e-10,
-            max_iterations: 30,
-        };
-        let discretised = problem.on(&mesh, &energy).unwrap();
-        let state = discretised
-            .solve(&[1.0], newton, &|_| ())
-            .unwrap()
-            .remove(0);
-        let force = discretised.reaction(&state, "right")[0];
-        drop(discretised);
-        Self {
-            mesh,
-            displacement: state.displacement,
-            force,
-        }
-    }
-
-    /// ux, uy of node after node in mm.
-    pub(super) fn field(&self) -> &[f64] {
-        &self.displacement
-    }
-
-    pub(super) fn at(&self, place: [f64; 2]) -> [f64; 2] {
-        self.mesh.displacement_at(&self.displacement, place)
-    }
-
-    /// 21 × 11 markers with normal noise.
-    pub(super) fn markers(&self, noise: f64, seed: u64) -> Vec<Marker> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
-        let places =
-            (0..21).flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
-        let marker = |(number, place): (usize, [f64; 2])| Marker {
-            number,
-            place,
-            displacement: self.at(place).map(|u| u + noise * draw()),
-            standard_deviation: None,
-        };
-        places.enumerate().map(marker).collect()
-    }
-
-    fn error(&self, mesh: &Mesh, field: &[f64]) -> f64 {
-        let exact = self.mesh.displacement_on(&self.displacement, mesh);
-        let sum: f64 = exact.iter().zip(field).map(|(a, b)| (a - b).powi(2)).sum();
-        (sum / field.len() as f64).sqrt()
-    }
-}
-
-fn estimate_mesh() -> Mesh {
-    Mesh::plate(SIZE, [20, 10], CellShape::Quad9)
-}
-
-pub(super) fn specimen(mesh: &Mesh) -> Specimen<'_> {
-    Specimen {
-        mesh,
-        law: law(),
-        thickness: THICKNESS,
-    }
-}
-
-pub(super) fn with_grips(condition: EdgeCondition) -> Knowledge {
-    let edge = |(name, condition): (&str, EdgeCondition)| (name.to_owned(), condition);
-    let edges = [
-        ("left", condition),
-        ("right", condition),
-        ("bottom", EdgeCondition::Free),
-        ("top", EdgeCondition::Free),
-    ];
-    Knowledge {
-        edges: edges.map(edge).to_vec(),
-        ..Knowledge::default()
-    }
-}
+use truth::{C10, THICKNESS, estimate_mesh};
+pub(super) use truth::{SIZE, STRETCH, Truth, law, specimen, with_grips};
 
 #[test]
 fn noise_on_unknown_and_rigid_grips_falls_by_four_fifths() {

@@ -11,12 +11,13 @@
 use std::sync::Arc;
 
 use super::approach::approach;
-use super::outline::{Segment, segments};
-use super::search::solve;
-use super::{
-    Edge, EdgeCondition, EdgeForce, EdgeOutcome, FieldEstimate, Knowledge, MarkerEstimate,
-    Specimen, StressEstimate,
+use super::equations::solve;
+use super::field_estimate::{
+    EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, StressEstimate,
 };
+use super::knowledge::{EdgeCondition, Knowledge, Specimen};
+use super::outline::{Segment, segments};
+use super::task::Edge;
 use crate::error::{Error, SolveFault};
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::Mesh;
@@ -110,12 +111,8 @@ pub fn transfer(
 
 /// The segments of the boundary, each with its condition.
 fn conditions(mesh: &Mesh, knowledge: &Knowledge) -> Result<Vec<(Segment, EdgeCondition)>, Error> {
-    let names: Vec<&str> = knowledge
-        .edges
-        .iter()
-        .map(|(name, _)| name.as_str())
-        .collect();
-    let segments = segments(mesh, &names).map_err(|fault| Error::Input(vec![fault]))?;
+    let segments =
+        segments(mesh, &knowledge.edge_names()).map_err(|fault| Error::Input(vec![fault]))?;
     let with = |segment: Segment| {
         let condition = Edge::new(&segment, knowledge).condition;
         (segment, condition)

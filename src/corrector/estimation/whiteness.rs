@@ -18,40 +18,17 @@ use std::collections::HashMap;
 
 use nalgebra::DMatrix;
 
+use super::field_estimate::{MarkerEstimate, Whiteness};
 use super::mesh_error::MeshError;
-use super::result::MarkerEstimate;
-use super::search::Found;
+use super::search::NearestField;
 
 /// Neighbours of a marker.
 const NEIGHBOURS: usize = 4;
 
-/// The correlation of what is left of neighbouring markers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Whiteness {
-    /// I of both components together.
-    pub correlation: f64,
-    /// What white noise would leave.
-    pub expected: f64,
-    /// Its standard deviation.
-    pub deviation: f64,
-    /// I of ux and of uy.
-    pub of_components: [f64; 2],
-}
-
-impl Whiteness {
-    /// Whether what is left is white: its correlation is within four standard deviations of that of white noise, or hardly any.
-    pub fn is_white(&self) -> bool {
-        const SURE: f64 = 4.0;
-        const LITTLE: f64 = 0.05;
-        let more = self.correlation - self.expected;
-        more <= (SURE * self.deviation).max(LITTLE)
-    }
-}
-
 /// Numbers of markers and their neighbours.
 type Pairs = Vec<[usize; 2]>;
 
-impl Found<'_> {
+impl NearestField<'_> {
     /// The correlation of what is left of neighbours; nothing where few markers are left, or what is left is no more than the
     /// mesh's own error and the rounding of numbers.
     pub fn whiteness(
@@ -61,7 +38,7 @@ impl Found<'_> {
     ) -> Option<Whiteness> {
         const FEWEST: usize = 30;
         const TRUSTED: f64 = 0.5;
-        let observations = self.search.task.observations;
+        let observations = self.equations.task.observations;
         let sound = |row: &usize| {
             let outlier = markers[observations.chosen[*row]].is_some_and(|marker| marker.outlier);
             self.trade.trust[*row] >= TRUSTED && !outlier
@@ -100,7 +77,7 @@ impl Found<'_> {
             let entries = rows.iter().flat_map(|row| [2 * row, 2 * row + 1]);
             entries.map(|entry| values(entry).powi(2)).sum()
         };
-        let observations = self.search.task.observations;
+        let observations = self.equations.task.observations;
         let left = sum(&|entry| self.fit.residual[entry]);
         let moved = sum(&|entry| observations.displacements[entry / 2][entry % 2]);
         let mesh = own.map_or(0.0, |own| sum(&|entry| own.markers[entry]));
@@ -109,7 +86,7 @@ impl Found<'_> {
 
     /// E[I].
     fn expected(&self, rows: &[usize], pairs: &Pairs) -> f64 {
-        let weights = &self.search.task.observations.weights;
+        let weights = &self.equations.task.observations.weights;
         let scale = |row: usize| {
             (weights[row / 2] * self.trade.trust[row / 2] / self.trade.variance).sqrt()
         };

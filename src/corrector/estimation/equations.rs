@@ -1,0 +1,304 @@
+//! The equations that the nearest field satisfies, and how their parameters move it.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::approach::approach;
+use super::body_force::BodyForce;
+use super::edge_motion::EdgeMotion;
+use super::knowledge::{Physics, Specimen};
+use super::regression::Roughness;
+use super::robust::Robust;
+use super::start::{DEGREE, Polynomial};
+use super::task::{Edge, Task};
+use crate::error::{Error, SolveFault};
+use crate::material::HyperelasticLaw;
+use crate::problem::sheet_energy::SheetEnergy;
+use crate::solve::vector::largest;
+use crate::solve::{Assembly, Inadmissible, Newton, NewtonSettings, Potential, Sum};
+
+/// How equilibria on the way and at the end are solved.
+pub const ON_THE_WAY: NewtonSettings = NewtonSettings {
+    tolerance: 1e-3,
+    max_iterations: 60,
+};
+pub const AT_THE_END: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
+    max_iterations: 20,
+};
+
+/// A law with one parameter a little smaller and larger, and the width between.
+pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
+
+/// The equations on one mesh with one set of conditions.
+///
+/// Its parameters p are those of the edges' motion, then those of the law, then those of the forces on the interior.
+pub struct Equations<'a> {
+    pub task: Task<'a>,
+    pub motion: EdgeMotion,
+    pub law: Arc<dyn HyperelasticLaw>,
+    pub energy: SheetEnergy,
+    pub newton: Newton,
+    /// Forces on the interior, where they are wanted, and their present values in N.
+    pub body: Option<BodyForce>,
+    pub forces: Vec<f64>,
+}
+
+/// Where the search is.
+#[derive(Clone, Debug)]
+pub struct Place {
+    pub parameters: Vec<f64>,
+    pub field: Vec<f64>,
+}
+
+impl<'a> Equations<'a> {
+    /// The equations of a task.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when nothing loads the specimen.
+    pub fn new(task: &Task<'a>, edges: &[Edge]) -> Result<Self, Error> {
+        let Specimen {
+            mesh,
+            law,
+            thickness,
+        } = task.specimen;
+        let conditions: Vec<_> = edges
+            .iter()
+            .map(|edge| (edge.segment, edge.condition))
+            .collect();
+        let motion = EdgeMotion::new(mesh, &conditions, task.observations.spacing(mesh));
+        let law = match &task.knowledge.law {
+            Some(regressed) => regressed.at(&regressed.start()),
+            None => Arc::clone(law),
+        };
+        let energy = SheetEnergy::of_mesh(Arc::clone(&law), mesh, *thickness);
+        let held = motion
+            .at(&vec![0.0; motion.parameters()])
+            .held(energy.unknowns());
+        if !held.iter().any(|held| *held) {
+            return Err(Error::input(
+                "all edges are free, so that nothing loads the specimen",
+                "say which edges are held, or leave their conditions open",
+            ));
+        }
+        let weighted = task.knowledge.physics == Physics::Weighted;
+        let forces = vec![0.0; energy.unknowns()];
+        let newton = match weighted {
+            true => Newton::new(&Sum::with_forces(&energy, &forces), &held),
+            false => Newton::new(&energy, &held),
+        };
+        Ok(Self {
+            task: *task,
+            motion,
+            law,
+            energy,
+            newton: newton.map_err(solve)?,
+            body: weighted.then(|| BodyForce::new(mesh, &held)),
+            forces,
+        })
+    }
+
+    /// A smooth field near the data, in equilibrium, and the markers that it trusts.
+    pub fn start(&mut self) -> Result<(Place, Vec<f64>), Error> {
+        let points = self.task.observations.points();
+        let mut last = None;
+        for degree in (1..=DEGREE).rev() {
+            let polynomial = match self.task.knowledge.robust {
+                Robust::No => Polynomial::nearest(&points, degree),
+                _ => Polynomial::trimmed(&points, degree),
+            };
+            let Some(polynomial) = polynomial else {
+                continue;
+            };
+            let nodes = self.task.specimen.mesh.nodes.iter();
+            let field: Vec<f64> = nodes.flat_map(|node| polynomial.at(*node)).collect();
+            let mut parameters = self.nearest_parameters(&field);
+            if let Some(regressed) = &self.task.knowledge.law {
+                parameters.extend(regressed.start());
+            }
+            let body = self.body.as_ref().map_or(0, |body| body.columns().len());
+            parameters.resize(parameters.len() + body, 0.0);
+            let mut place = Place { parameters, field };
+            match self.settle(&mut place, ON_THE_WAY) {
+                Ok(_) => {
+                    let trust = match self.task.knowledge.robust {
+                        Robust::No => vec![1.0; points.places.len()],
+                        _ => polynomial.trust(&points),
+                    };
+                    return Ok((place, trust));
+                }
+                Err(fault) => last = Some(fault),
+            }
+        }
+        Err(last.unwrap_or_else(|| {
+            Error::input(
+                "the markers do not determine even an affine field",
+                "they need to be three at least, and not on one line",
+            )
+        }))
+    }
+
+    /// The parameters with which the edges come nearest to a field.
+    pub fn nearest_parameters(&self, field: &[f64]) -> Vec<f64> {
+        const ITERATIONS: usize = 8;
+        const RIDGE: f64 = 1e-9;
+        let count = self.motion.parameters();
+        let mut p = vec![0.0; count];
+        for _ in 0..ITERATIONS {
+            let imposed = self.motion.at(&p);
+            let (rows, values) = imposed.toward(field, count);
+            let mut normal = rows.tr_mul(&rows);
+            let mut target = rows.tr_mul(&values);
+            let ridge = RIDGE * normal.trace() / count.max(1) as f64;
+            for prior in self.motion.roughness(&p) {
+                let values = DVector::from_column_slice(&prior.values);
+                normal += prior.slopes.tr_mul(&prior.slopes) * ridge;
+                target -= prior.slopes.tr_mul(&values) * ridge;
+            }
+            let diagonal = DMatrix::identity(count, count) * ridge;
+            let Some(factor) = (normal + diagonal).cholesky() else {
+                break;
+            };
+            let step = factor.solve(&target);
+            p.iter_mut()
+                .zip(step.iter())
+                .for_each(|(p, step)| *p += step);
+        }
+        p
+    }
+
+    /// Brings the inner nodes into equilibrium while the edges stay; the residual.
+    pub fn settle(
+        &mut self,
+        place: &mut Place,
+        settings: NewtonSettings,
+    ) -> Result<Vec<f64>, Error> {
+        self.take(&place.parameters);
+        let mut wanted = place.field.clone();
+        self.motion.at(&place.parameters).write(&mut wanted);
+        let mut residual = vec![0.0; place.field.len()];
+        let mesh = self.task.specimen.mesh;
+        let describe = |cell: usize| mesh.describe_cell(cell);
+        let (newton, energy) = (&mut self.newton, &self.energy);
+        approach(newton, energy, &mut place.field, &wanted, &describe).map_err(solve)?;
+        let field = &mut place.field;
+        let solved = self.with_potential(|newton, potential| {
+            newton.solve(potential, field, &mut residual, settings, &describe)
+        });
+        solved.map_err(solve)?;
+        Ok(residual)
+    }
+
+    /// Works with the energy and the forces on the interior.
+    pub fn with_potential<T>(&mut self, work: impl FnOnce(&mut Newton, &dyn Potential) -> T) -> T {
+        match self.body {
+            Some(_) => {
+                let forced = Sum::with_forces(&self.energy, &self.forces);
+                work(&mut self.newton, &forced)
+            }
+            None => work(&mut self.newton, &self.energy),
+        }
+    }
+
+    /// What is held down: the roughness of the edges' motion, and the forces on the interior.
+    pub fn priors(&self, parameters: &[f64]) -> Vec<Roughness> {
+        let mut priors = self.motion.roughness(parameters);
+        for prior in &mut priors {
+            let slopes = std::mem::take(&mut prior.slopes);
+            prior.slopes = slopes.resize_horizontally(parameters.len(), 0.0);
+        }
+        priors.extend(self.body.iter().flat_map(|body| body.roughness(parameters)));
+        priors
+    }
+
+    /// The values of the law's parameters among all.
+    pub fn law_values<'b>(&self, parameters: &'b [f64]) -> &'b [f64] {
+        let first = self.motion.parameters();
+        let regressed = self.task.knowledge.law.as_ref();
+        &parameters[first..first + regressed.map_or(0, |law| law.parameters().len())]
+    }
+
+    /// Takes the law and the forces on the interior with the parameters.
+    fn take(&mut self, parameters: &[f64]) {
+        if let Some(body) = &self.body {
+            let last = &parameters[parameters.len() - body.columns().len()..];
+            self.forces = body.forces(last, self.forces.len());
+        }
+        if let Some(regressed) = &self.task.knowledge.law {
+            self.law = regressed.at(self.law_values(parameters));
+            self.energy = self.energy.with_law(Arc::clone(&self.law));
+        }
+    }
+
+    /// The laws with each of the law's parameters a little smaller and larger, and twice the difference.
+    pub fn neighbours(&self, parameters: &[f64]) -> Vec<Neighbours> {
+        const STEP: f64 = 1e-5;
+        let Some(regressed) = &self.task.knowledge.law else {
+            return Vec::new();
+        };
+        let values = self.law_values(parameters);
+        let pair = |index: usize| {
+            let step = STEP * values[index].abs();
+            let moved = [-step, step].map(|step| {
+                let mut moved = values.to_vec();
+                moved[index] += step;
+                regressed.at(&moved)
+            });
+            (moved, 2.0 * step)
+        };
+        (0..values.len()).map(pair).collect()
+    }
+
+    /// ∂F/∂θ of each parameter θ of the law, at held unknowns too.
+    pub fn law_slopes(&self, parameters: &[f64], field: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
+        let mut slopes = Vec::new();
+        for (laws, width) in self.neighbours(parameters) {
+            let mut sides = laws.map(|law| (self.energy.with_law(law), vec![0.0; field.len()]));
+            for (energy, residual) in &mut sides {
+                Assembly::residual(energy, field, residual)
+                    .map_err(|fault| self.inverted(fault))?;
+            }
+            let [(_, low), (_, high)] = sides;
+            let slope = high
+                .iter()
+                .zip(&low)
+                .map(|(high, low)| (high - low) / width);
+            slopes.push(slope.collect());
+        }
+        Ok(slopes)
+    }
+
+    pub fn inverted(&self, fault: Inadmissible) -> Error {
+        solve(SolveFault::Inverted {
+            element: self.task.specimen.mesh.describe_cell(fault.element),
+        })
+    }
+
+    /// Looks at the equilibrium of a place, and restores it where it is lost.
+    pub fn balance(&mut self, place: &mut Place) -> Result<(), Error> {
+        const LOST: f64 = 1e-2;
+        self.take(&place.parameters);
+        self.motion.at(&place.parameters).write(&mut place.field);
+        let mut residual = vec![0.0; place.field.len()];
+        let admissible = self.with_potential(|_, potential| {
+            Assembly::residual(potential, &place.field, &mut residual)
+        });
+        admissible.map_err(|fault| self.inverted(fault))?;
+        let free = self.newton.free().iter();
+        let lost = free.fold(0.0, |most: f64, unknown| most.max(residual[*unknown].abs()));
+        if lost > LOST * largest(&residual) {
+            self.settle(place, ON_THE_WAY)?;
+        }
+        Ok(())
+    }
+}
+
+/// A fault of the search.
+pub fn solve(fault: SolveFault) -> Error {
+    Error::Solve {
+        model: "corrector".into(),
+        step: "the field nearest to the markers".into(),
+        fault,
+    }
+}

@@ -1,0 +1,179 @@
+//! An estimated field with what the data say about its uncertainty.
+
+use super::knowledge::{EdgeCondition, MeasuredForce};
+use crate::statistics::Estimate;
+
+/// The field nearest to the markers.
+///
+/// Standard errors come from the noise of the markers, to first order, and from the mesh's own error: √(s² + e²). Of
+/// displacements, forces and parameters e comes from the same equations on cells half as large, of stress and thickness from the
+/// recovered gradient. They know nothing of a wrong material or a wrong thickness.
+/// `± reach · standard error` is the 95 % interval.
+#[derive(Clone, Debug)]
+pub struct FieldEstimate {
+    /// ux, uy of node after node in mm.
+    pub displacement: Vec<f64>,
+    /// Their standard errors in mm.
+    pub displacement_error: Vec<f64>,
+    /// Stress and thickness in the middle of each cell.
+    pub cells: Vec<StressEstimate>,
+    /// ∂Π/∂u in N of node after node: reactions at loaded edges, nothing elsewhere.
+    pub reactions: Vec<f64>,
+    /// The total force on each edge that is not free.
+    pub forces: Vec<EdgeForce>,
+    /// ζ of the equilibrium of node after node in mm²/N: less the derivative of ½ ‖H u − d‖²_W by a force there, the weights
+    /// relative to their mean; nothing where the edges are not free.
+    pub multipliers: Vec<f64>,
+    /// What is left of each marker; nothing for markers that do not lie on the mesh.
+    pub markers: Vec<Option<MarkerEstimate>>,
+    /// Standard deviation of each component of a marker of mean weight in mm.
+    pub noise: f64,
+    /// Whether the noise was given; else it is estimated from what is left of the markers.
+    pub known_noise: bool,
+    /// `noise` over the given one: 1 but where markers that scatter far more are judged by their own level.
+    pub noise_scale: f64,
+    /// How many parameters the data have determined: the trace of the matrix that makes the fitted displacements of the
+    /// measured ones.
+    pub effective_parameters: f64,
+    /// Twice the number of markers less the effective parameters.
+    pub degrees_of_freedom: f64,
+    /// Half the width of a 95 % interval over the standard error.
+    pub reach: f64,
+    /// Forces on the interior in N on node after node that stand for what the physics lacks; nothing where it is exact.
+    pub interior_forces: Vec<f64>,
+    /// The rule by which data, smoothness and physics were traded.
+    pub rule: &'static str,
+    /// How smooth the edges of unknown motion came out by the rule, and how large the forces on the interior.
+    pub smoothing: Vec<Smoothing>,
+    /// The condition of each part of the boundary.
+    pub edges: Vec<EdgeOutcome>,
+    /// The parameters of the law that were found: key, unit, estimate.
+    pub parameters: Vec<(&'static str, &'static str, Estimate)>,
+    /// Steps of the search.
+    pub steps: usize,
+    /// Whether the standard errors of displacements, forces and parameters hold the mesh's own error: of meshes with too many
+    /// cells it is not known.
+    pub holds_mesh_error: bool,
+    /// By how much, relative to itself, the force grows with the distance in mm that all free edges lie farther out:
+    /// ∮ Ψ ds/∫ Ψ dA over free edges and sheet, the derivative of its energy by that distance, in 1/mm.
+    pub growth: f64,
+    /// The measured forces beside those of the field.
+    pub force_checks: Vec<ForceCheck>,
+    /// What the data contradict of what is said of the edges.
+    pub contradiction: Option<Contradiction>,
+    /// How what is left of neighbouring markers correlates, where there is enough of it to tell.
+    pub whiteness: Option<Whiteness>,
+}
+
+/// A measured force beside that of the field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceCheck {
+    /// What was measured.
+    pub measured: MeasuredForce,
+    /// The force of the field in N.
+    pub found: f64,
+    /// The difference in units of its own standard deviation, √(σ² − s² + e²): σ of the measured force, s of the field's by the
+    /// noise, e by the mesh.
+    pub standardised: f64,
+}
+
+/// The rule by which data and smoothness are traded.
+pub const TRADE: &str = "equilibrium holds exactly; the roughness of each edge of unknown motion is weighted by restricted maximum likelihood";
+
+/// The rule where the physics is weighted.
+pub const TRADE_WEIGHTED: &str = "equilibrium holds up to smooth forces on the interior; these forces and the roughness of each edge of unknown motion are weighted by restricted maximum likelihood";
+
+/// The state in the middle of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StressEstimate {
+    /// First Piola–Kirchhoff stress P₁₁, P₁₂, P₂₁, P₂₂ in MPa, the transpose of the nominal stress.
+    pub first_piola_kirchhoff_stress: [f64; 4],
+    /// Their standard errors in MPa: √(s² + e²) with s of the noise and e = |P(G*) − P(∇u)|, where G* is the recovered
+    /// gradient of the mesh's field u.
+    pub stress_error: [f64; 4],
+    /// Thickness of the deformed sheet in mm.
+    pub thickness: f64,
+    /// Its standard error in mm.
+    pub thickness_error: f64,
+}
+
+/// The force that an edge exerts on the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeForce {
+    /// The edge.
+    pub edge: String,
+    /// Along x and y in N.
+    pub force: [Estimate; 2],
+}
+
+/// The condition of a part of the boundary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeOutcome {
+    /// The edge.
+    pub edge: String,
+    /// Its length in mm.
+    pub length: f64,
+    /// Its condition.
+    pub condition: EdgeCondition,
+    /// Where the data have chosen between free and loaded: how probable the misfit is if the edge is free.
+    pub probability: Option<f64>,
+}
+
+/// What is left of a marker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarkerEstimate {
+    /// Measured less estimated displacement in mm.
+    pub residual: [f64; 2],
+    /// Length of the residual in units of its own standard deviation: √(rᵀ Cov(r)⁻¹ r).
+    pub standardised_residual: f64,
+    /// Factor of its weight in 0…1.
+    pub trust: f64,
+    /// Whether normal noise would leave so much of less than one marker in a thousand.
+    pub outlier: bool,
+}
+
+/// How smooth an edge came out along an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Smoothing {
+    /// The edge.
+    pub edge: String,
+    /// x or y: 0 or 1.
+    pub axis: usize,
+    /// λ in 1/mm²: the inverse of the variance of the curvature over the edge; of forces on the interior, that of b over the
+    /// area in mm²/N².
+    pub weight: f64,
+    /// Parameters beyond a straight line that the data determine.
+    pub freedom: f64,
+}
+
+/// What the data contradict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contradiction {
+    /// How probable so large a fall of the misfit is if all that is said of the edges holds.
+    pub probability: f64,
+    /// The edges that contradict on their own, with the same probability of each; nothing where they do so together only.
+    pub edges: Vec<(String, f64)>,
+}
+
+/// The correlation of what is left of neighbouring markers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Whiteness {
+    /// I of both components together.
+    pub correlation: f64,
+    /// What white noise would leave.
+    pub expected: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
+    /// I of ux and of uy.
+    pub of_components: [f64; 2],
+}
+
+impl Whiteness {
+    /// Whether what is left is white: its correlation is within four standard deviations of that of white noise, or hardly any.
+    pub fn is_white(&self) -> bool {
+        const SURE: f64 = 4.0;
+        const LITTLE: f64 = 0.05;
+        let more = self.correlation - self.expected;
+        more <= (SURE * self.deviation).max(LITTLE)
+    }
+}

@@ -1,0 +1,145 @@
+//! What an estimate begins with: the specimen, and what is known besides the displacements.
+
+use std::sync::Arc;
+
+use super::regressed_law::RegressedLaw;
+use super::robust::Robust;
+use crate::error::Diagnostic;
+use crate::material::HyperelasticLaw;
+use crate::mesh::Mesh;
+
+/// The sheet whose displacements were measured.
+#[derive(Clone, Debug)]
+pub struct Specimen<'a> {
+    /// Its mesh.
+    pub mesh: &'a Mesh,
+    /// Its material.
+    pub law: Arc<dyn HyperelasticLaw>,
+    /// Its thickness at rest in mm.
+    pub thickness: f64,
+}
+
+/// What is known besides the displacements. All of it may be left out.
+#[derive(Clone, Debug, Default)]
+pub struct Knowledge {
+    /// What is known of named parts of the boundary. Holes that are not named are free.
+    pub edges: Vec<(String, EdgeCondition)>,
+    /// What is assumed of the outer boundary where no part is named.
+    pub unnamed: Unnamed,
+    /// Forces that were measured.
+    pub forces: Vec<MeasuredForce>,
+    /// Standard deviation of each component of the displacement of markers without one of their own, in mm; nothing where it
+    /// is to be estimated.
+    pub noise: Option<f64>,
+    /// How markers that are far off are weighted.
+    pub robust: Robust,
+    /// Whether equilibrium holds exactly.
+    pub physics: Physics,
+    /// Parameters of the law that are found with the field; the specimen's law is not used then.
+    pub law: Option<RegressedLaw>,
+}
+
+/// What is assumed of the outer boundary, from corner to corner, where no part is named.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unnamed {
+    /// All parts begin as loaded. One after the other, the longest first, is taken as free where the data do not contradict:
+    /// where the misfit grows by no more than noise would let it in ninety-nine of a hundred cases (F test). One stays loaded.
+    #[default]
+    Tested,
+    /// All parts are loaded: the mesh ends inside of the specimen.
+    Loaded,
+    /// All parts are free.
+    Free,
+}
+
+impl Unnamed {
+    /// The names that conditions use.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("tested", Self::Tested),
+        ("loaded", Self::Loaded),
+        ("free", Self::Free),
+    ];
+}
+
+/// How far the equations hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Physics {
+    /// F(u) = 0.
+    #[default]
+    Exact,
+    /// F(u) = f with smooth forces f on the interior, which stand for what law, thickness and equations lack: the weight of
+    /// ∫ f² beside the misfit follows by restricted maximum likelihood. Where the physics is right, f comes out as nothing.
+    Weighted,
+}
+
+impl Physics {
+    /// The names that conditions use.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("exact", Self::Exact), ("weighted", Self::Weighted)];
+}
+
+/// A force that was measured on an edge that is not free.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredForce {
+    /// The group of the edge.
+    pub edge: String,
+    /// 0 along x, 1 along y.
+    pub axis: usize,
+    /// The force of the grip on the sheet in N.
+    pub force: f64,
+    /// Its standard deviation in N.
+    pub standard_deviation: f64,
+}
+
+/// What is known of a part of the boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EdgeCondition {
+    /// No traction.
+    Free,
+    /// Displacements ux, uy in mm; along an axis without one the edge is free.
+    Known([Option<f64>; 2]),
+    /// A rigid body that moved and turned by unknown amounts.
+    Rigid,
+    /// Loaded in an unknown way: the displacement is a smooth function along the edge.
+    Unknown,
+}
+
+impl Knowledge {
+    /// The names of the edges of which something is known.
+    pub(super) fn edge_names(&self) -> Vec<&str> {
+        self.edges.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// Looks at the measured forces and the noise.
+    pub(super) fn check(&self) -> Result<(), Diagnostic> {
+        let refuse = |fault: String, hint: &str| Err(Diagnostic::error("", fault).hint(hint));
+        for force in &self.forces {
+            let (edge, value, deviation) = (&force.edge, force.force, force.standard_deviation);
+            let condition = self.edges.iter().find(|(name, _)| name == edge);
+            if condition.is_none_or(|(_, condition)| *condition == EdgeCondition::Free) {
+                let fault = format!(
+                    "the force on `{edge}` was measured, but the edge is not named as held"
+                );
+                return refuse(fault, "say that it is known, rigid or unknown");
+            }
+            if !(value.is_finite() && deviation.is_finite() && deviation > 0.0) {
+                let fault = format!("the force on `{edge}` is {value} ± {deviation} N");
+                return refuse(fault, "give finite numbers and a positive deviation");
+            }
+        }
+        if self.law.is_some() && self.forces.is_empty() {
+            return refuse(
+                "a parameter of the law is to be found without a measured force".into(),
+                "displacements alone say nothing of a stiffness: give the force on an edge with its deviation",
+            );
+        }
+        let positive = |noise: f64| noise > 0.0 && noise.is_finite();
+        match self.noise.is_none_or(positive) {
+            true => Ok(()),
+            false => refuse(
+                "the noise is not positive".into(),
+                "leave it out to have it estimated",
+            ),
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What the search is for.
+
+use super::knowledge::{EdgeCondition, Knowledge, Specimen, Unnamed};
+use super::observations::Observations;
+use super::outline::Segment;
+
+/// A part of the boundary with its condition.
+#[derive(Clone, Debug)]
+pub struct Edge<'a> {
+    pub segment: &'a Segment,
+    pub condition: EdgeCondition,
+    /// Whether the data choose between loaded and free.
+    pub tested: bool,
+    /// Where they have chosen: how probable the misfit of the free edge was.
+    pub probability: Option<f64>,
+}
+
+impl<'a> Edge<'a> {
+    /// A part of the boundary of which this is known.
+    pub fn new(segment: &'a Segment, knowledge: &Knowledge) -> Self {
+        let open = segment.outer && segment.condition.is_none();
+        let condition = match segment.condition {
+            Some(number) => knowledge.edges[number].1,
+            None if open && knowledge.unnamed != Unnamed::Free => EdgeCondition::Unknown,
+            None => EdgeCondition::Free,
+        };
+        Self {
+            segment,
+            condition,
+            tested: open && knowledge.unnamed == Unnamed::Tested,
+            probability: None,
+        }
+    }
+}
+
+/// What the search is for.
+#[derive(Clone, Copy)]
+pub struct Task<'a> {
+    pub specimen: &'a Specimen<'a>,
+    pub observations: &'a Observations,
+    pub knowledge: &'a Knowledge,
+}
+
+impl Edge<'_> {
+    /// Whether it is not free.
+    pub fn is_loaded(&self) -> bool {
+        self.condition != EdgeCondition::Free
+    }
+}
