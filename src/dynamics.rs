@@ -16,6 +16,7 @@ mod march;
 mod mass;
 mod motion;
 mod sheet;
+mod state;
 mod step_forces;
 mod stepper;
 mod time_function;

@@ -16,6 +16,7 @@
 
 mod coarsest;
 mod cycle;
+mod line;
 pub mod stencil;
 #[cfg(test)]
 mod tests;
@@ -23,7 +24,8 @@ pub mod transfer;
 mod vector;
 
 pub use cycle::{Multigrid, NotPositiveDefinite};
-pub use stencil::{CellStiffness, Stencil};
+pub use line::CellStiffness;
+pub use stencil::Stencil;
 pub use transfer::Interpolation;
 pub use vector::{Lines, Vector};
 

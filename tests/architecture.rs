@@ -40,6 +40,7 @@ const DOORS: &[(&str, &[&str])] = &[
         "pulp::",
         &[
             "src/material/law.rs",
+            "src/multigrid/line.rs",
             "src/multigrid/stencil.rs",
             "src/corrector/climb/forces.rs",
         ],

@@ -11,7 +11,8 @@
 //! T. Belytschko, W. K. Liu, B. Moran, Nonlinear Finite Elements for Continua and Structures, Wiley (2000), § 6.2
 
 use super::frequency;
-use super::motion::{BodyState, Motion};
+use super::motion::Motion;
+use super::state::BodyState;
 use super::stepper::Stepper;
 use super::viscosity::Viscosity;
 use crate::error::SolveFault;

@@ -13,7 +13,8 @@
 //! J. Chung, G. M. Hulbert, J. Appl. Mech. 60, 371 (1993), doi:10.1115/1.2900803
 
 use super::frequency;
-use super::motion::{BodyState, Motion};
+use super::motion::Motion;
+use super::state::BodyState;
 use super::stepper::Stepper;
 use crate::error::SolveFault;
 use crate::solve::{Assembly, Cholesky};

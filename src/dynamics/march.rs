@@ -3,7 +3,8 @@
 use super::central::Central;
 use super::history::History;
 use super::implicit::Implicit;
-use super::motion::{BodyState, Motion};
+use super::motion::Motion;
+use super::state::BodyState;
 use super::stepper::Stepper;
 use crate::error::SolveFault;
 

@@ -1,6 +1,7 @@
 //! One step of time.
 
-use super::motion::{BodyState, Motion};
+use super::motion::Motion;
+use super::state::BodyState;
 use crate::error::SolveFault;
 
 /// One way to take a step.

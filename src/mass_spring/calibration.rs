@@ -18,35 +18,24 @@
 //! # References
 //! A. Van Gelder, J. Graph. Tools 3(2), 21 (1998), doi:10.1080/10867651.1998.10487490
 
-use std::collections::BTreeMap;
-
 use nalgebra::{DMatrix, DVector};
 
-use super::Spring;
+use super::spring::{CrossSections, Spring, polygon_area};
 use crate::mesh::Mesh;
 
 /// The springs of a mesh: edges, and both diagonals of quadrilaterals.
 pub fn springs(mesh: &Mesh, thickness: f64) -> Vec<Spring> {
-    let mut areas: BTreeMap<[usize; 2], f64> = BTreeMap::new();
+    let mut all = CrossSections::default();
     for cell in 0..mesh.cell_count() {
         let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
         let places: Vec<[f64; 2]> = corners.iter().map(|node| mesh.nodes[*node]).collect();
         let pairs = pairs(corners.len());
         let sections = sections(&places, &pairs);
         for ([a, b], section) in pairs.iter().zip(sections) {
-            let nodes = [corners[*a].min(corners[*b]), corners[*a].max(corners[*b])];
-            *areas.entry(nodes).or_insert(0.0) += thickness * section;
+            all.add([corners[*a], corners[*b]], thickness * section);
         }
     }
-    let spring = |(nodes, area): ([usize; 2], f64)| {
-        let [from, to] = nodes.map(|node| mesh.nodes[node]);
-        Spring {
-            nodes,
-            rest_length: (to[0] - from[0]).hypot(to[1] - from[1]),
-            area,
-        }
-    };
-    areas.into_iter().map(spring).collect()
+    all.springs(&mesh.nodes)
 }
 
 /// The pairs of corners that springs join: all of them.
@@ -57,7 +46,7 @@ fn pairs(corners: usize) -> Vec<[usize; 2]> {
 
 /// Cross-sections over the thickness of the springs of one cell, in mm.
 fn sections(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
-    let area = super::polygon_area(corners);
+    let area = polygon_area(corners);
     let vector = |[a, b]: &[usize; 2]| [0, 1].map(|axis| corners[*b][axis] - corners[*a][axis]);
     // Components 1111, 1112, 1122, 1222, 2222 with the roots of how often each stands in the tensor.
     let often = [1.0, 2.0, 6.0_f64.sqrt(), 2.0, 1.0];
@@ -93,18 +82,11 @@ fn sections(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
             sections[*index] = *section;
         }
         let most = sections.iter().copied().fold(0.0, f64::max);
-        let kept: Vec<usize> = free
-            .iter()
-            .copied()
-            .filter(|i| sections[*i] >= -1e-12 * most)
-            .collect();
-        if kept.len() == free.len() {
-            return sections
-                .into_iter()
-                .map(|section| section.max(0.0))
-                .collect();
+        let count = free.len();
+        free.retain(|i| sections[*i] >= -1e-12 * most);
+        if free.len() == count {
+            return sections.into_iter().map(|own| own.max(0.0)).collect();
         }
-        free = kept;
     }
 }
 
@@ -125,9 +107,8 @@ fn van_gelder(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
         let beside = triangles
             .iter()
             .filter(|(triangle, _)| pair.iter().all(|c| triangle.contains(c)));
-        let shares = beside.map(|(triangle, share)| {
-            share * super::polygon_area(&triangle.map(|corner| corners[corner]))
-        });
+        let shares = beside
+            .map(|(triangle, share)| share * polygon_area(&triangle.map(|corner| corners[corner])));
         shares.sum::<f64>() / length
     };
     pairs.iter().map(section).collect()

@@ -1,0 +1,282 @@
+//! A moving body at one time: its forces, its energies, and what its next step needs.
+
+use super::history::{EnergyBalance, Instant};
+use super::motion::{Motion, MovingSupport};
+use super::step_forces::StepForces;
+use super::viscosity::Memory;
+use crate::error::SolveFault;
+use crate::solve::{Assembly, Inadmissible};
+
+/// The forces of a state in N, on all unknowns.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Forces {
+    /// ∂Π/∂u.
+    pub elastic: Vec<f64>,
+    /// f_v.
+    pub viscous: Vec<f64>,
+    /// f(t).
+    pub external: Vec<f64>,
+}
+
+/// A moving body at one time, with what its next step needs.
+#[derive(Clone, Debug)]
+pub(super) struct BodyState {
+    pub time: f64,
+    pub displacement: Vec<f64>,
+    pub velocity: Vec<f64>,
+    pub acceleration: Vec<f64>,
+    pub memory: Memory,
+    pub forces: Forces,
+    pub energy: EnergyBalance,
+}
+
+impl Motion<'_> {
+    /// The body at time 0, accelerations included.
+    pub(super) fn begin(&self) -> Result<BodyState, SolveFault> {
+        let size = self.energy.unknowns();
+        let mut start = self.start.clone();
+        let mut acceleration = vec![0.0; size];
+        let imposed = [
+            &mut start.displacement,
+            &mut start.velocity,
+            &mut acceleration,
+        ];
+        self.impose(0.0, 0.0, imposed.map(|values| &mut values[..]));
+        let rest = vec![0.0; size];
+        let past = match start.relaxed {
+            true => &start.displacement,
+            false => &rest,
+        };
+        let memory = self.viscosity.map_or(Ok(Memory::default()), |viscosity| {
+            Memory::relaxed(self.energy.connectivity(), viscosity, past)
+        });
+        let mut state = BodyState {
+            time: 0.0,
+            displacement: start.displacement,
+            velocity: start.velocity,
+            acceleration,
+            memory: memory.map_err(|fault| self.inverted(fault))?,
+            forces: Forces {
+                elastic: vec![0.0; size],
+                viscous: vec![0.0; size],
+                external: Vec::new(),
+            },
+            energy: EnergyBalance::default(),
+        };
+        self.evaluate(&mut state, 0.0)?;
+        // The elements have taken the step to the start at once; from now on they remember it.
+        state.memory = self.memory_after(&state.memory, &state, 0.0)?;
+        self.accelerate(&mut state, &self.held(0.0))?;
+        state.energy.kinetic = self.kinetic(&state.velocity);
+        Ok(state)
+    }
+
+    /// An element's fault with its name.
+    pub(super) fn inverted(&self, fault: Inadmissible) -> SolveFault {
+        SolveFault::Inverted {
+            element: (self.describe)(fault.element),
+        }
+    }
+
+    /// What the elements remember after a step of a length in s that ends at a state.
+    pub(super) fn memory_after(
+        &self,
+        before: &Memory,
+        at: &BodyState,
+        step: f64,
+    ) -> Result<Memory, SolveFault> {
+        let Some(viscosity) = self.viscosity else {
+            return Ok(Memory::default());
+        };
+        let connectivity = self.energy.connectivity();
+        let after = before.after(
+            connectivity,
+            viscosity,
+            [&at.displacement, &at.velocity],
+            step,
+        );
+        after.map_err(|fault| self.inverted(fault))
+    }
+
+    /// The viscous forces of a state that lies `elapsed` after the memory's, whose tangent is ∂f_v/∂u̇.
+    fn viscous_forces<'s>(&'s self, at: &'s BodyState, elapsed: f64) -> StepForces<'s> {
+        StepForces {
+            energy: self.energy,
+            viscosity: self.viscosity,
+            velocity: &at.velocity,
+            memory: &at.memory,
+            elapsed,
+            elastic: false,
+            by_displacement: 0.0,
+            by_velocity: 1.0,
+        }
+    }
+
+    /// Takes the forces and the stored energy of a state that lies `elapsed` after the memory's.
+    pub(super) fn evaluate(&self, at: &mut BodyState, elapsed: f64) -> Result<(), SolveFault> {
+        let stored = Assembly::residual(self.energy, &at.displacement, &mut at.forces.elastic);
+        at.energy.stored = stored.map_err(|fault| self.inverted(fault))?;
+        at.forces.external = self.external_forces(at.time);
+        self.evaluate_viscous(at, elapsed)
+    }
+
+    /// Takes the viscous forces alone.
+    pub(super) fn evaluate_viscous(
+        &self,
+        at: &mut BodyState,
+        elapsed: f64,
+    ) -> Result<(), SolveFault> {
+        if self.viscosity.is_some() {
+            let mut viscous = std::mem::take(&mut at.forces.viscous);
+            let forces = self.viscous_forces(at, elapsed);
+            let evaluated = Assembly::residual(&forces, &at.displacement, &mut viscous);
+            evaluated.map_err(|fault| self.inverted(fault))?;
+            at.forces.viscous = viscous;
+        }
+        Ok(())
+    }
+
+    /// ∂f_v/∂u̇ over the free unknowns, in N·s/mm.
+    pub(super) fn damping(
+        &self,
+        assembly: &Assembly,
+        at: &BodyState,
+        elapsed: f64,
+    ) -> Result<Vec<f64>, SolveFault> {
+        self.assemble(assembly, &self.viscous_forces(at, elapsed), at)
+    }
+
+    /// ∂Π/∂u + ∂f_v/∂u + c ∂f_v/∂u̇ over the free unknowns, in N/mm.
+    pub(super) fn tangent(
+        &self,
+        assembly: &Assembly,
+        at: &BodyState,
+        elapsed: f64,
+        c: f64,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let forces = StepForces {
+            elastic: true,
+            by_displacement: 1.0,
+            by_velocity: c,
+            ..self.viscous_forces(at, elapsed)
+        };
+        self.assemble(assembly, &forces, at)
+    }
+
+    fn assemble(
+        &self,
+        assembly: &Assembly,
+        forces: &StepForces,
+        at: &BodyState,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let (mut residual, mut values) = (vec![0.0; at.displacement.len()], Vec::new());
+        let linearised = assembly.linearise(forces, &at.displacement, &mut residual, &mut values);
+        linearised.map_err(|fault| self.inverted(fault))?;
+        Ok(values)
+    }
+
+    /// ü = M⁻¹ (f − ∂Π/∂u − f_v) of the free unknowns.
+    pub(super) fn accelerate(&self, at: &mut BodyState, held: &[bool]) -> Result<(), SolveFault> {
+        let Forces {
+            elastic,
+            viscous,
+            external,
+        } = &at.forces;
+        for i in (0..held.len()).filter(|i| !held[*i]) {
+            at.acceleration[i] = (external[i] - elastic[i] - viscous[i]) / self.mass[i];
+        }
+        match at.acceleration.iter().all(|value| value.is_finite()) {
+            true => Ok(()),
+            false => Err(SolveFault::NotFinite("the acceleration".into())),
+        }
+    }
+
+    pub(super) fn kinetic(&self, velocity: &[f64]) -> f64 {
+        let pairs = self.mass.iter().zip(velocity);
+        0.5 * pairs.map(|(m, v)| m * v * v).sum::<f64>()
+    }
+
+    /// The instant of a state.
+    pub(super) fn instant(&self, at: &BodyState) -> Instant {
+        let Forces {
+            elastic,
+            viscous,
+            external,
+        } = &at.forces;
+        let reaction = |unknown: usize| {
+            self.mass[unknown] * at.acceleration[unknown] + elastic[unknown] + viscous[unknown]
+                - external[unknown]
+        };
+        let force = |support: &MovingSupport| {
+            let mut sum = [0.0; 2];
+            if support.holds(at.time) {
+                for unknown in &support.unknowns {
+                    sum[unknown % 2] += reaction(*unknown);
+                }
+            }
+            sum
+        };
+        Instant {
+            time: at.time,
+            displacement: at.displacement.clone(),
+            velocity: at.velocity.clone(),
+            acceleration: at.acceleration.clone(),
+            energy: at.energy,
+            support_forces: self.supports.iter().map(force).collect(),
+        }
+    }
+
+    /// Brings the energy balance from the state `before` a step to the one after it, by the trapezoidal rule; the
+    /// work that moves the mass of held unknowns is the change of its kinetic energy.
+    pub(super) fn account(&self, before: &BodyState, after: &mut BodyState, held: &[bool]) {
+        let (mut work, mut dissipated) = (0.0, 0.0);
+        for (i, held) in held.iter().enumerate() {
+            let change = after.displacement[i] - before.displacement[i];
+            let mean = |force: fn(&Forces) -> &[f64]| {
+                0.5 * (force(&before.forces)[i] + force(&after.forces)[i])
+            };
+            let viscous = mean(|forces| &forces.viscous);
+            dissipated += viscous * change;
+            work += if *held {
+                let speeds = after.velocity[i].powi(2) - before.velocity[i].powi(2);
+                (viscous + mean(|forces| &forces.elastic)) * change + 0.5 * self.mass[i] * speeds
+            } else {
+                mean(|forces| &forces.external) * change
+            };
+        }
+        let energy = &mut after.energy;
+        energy.dissipated = before.energy.dissipated + dissipated;
+        energy.external_work = before.energy.external_work + work;
+        energy.kinetic = self.kinetic(&after.velocity);
+    }
+
+    /// Gives held unknowns the velocities with which an interval begins: at a kink the supports' work makes them
+    /// jump.
+    pub(super) fn enter(&self, at: &mut BodyState) {
+        let before = self.kinetic(&at.velocity);
+        at.impose(self, at.time, at.time);
+        at.energy.kinetic = self.kinetic(&at.velocity);
+        at.energy.external_work += at.energy.kinetic - before;
+    }
+}
+
+impl BodyState {
+    /// Moves the held unknowns as [`Motion::impose`] says.
+    pub fn impose(&mut self, motion: &Motion, time: f64, within: f64) {
+        let Self {
+            displacement,
+            velocity,
+            acceleration,
+            ..
+        } = self;
+        motion.impose(time, within, [displacement, velocity, acceleration]);
+    }
+
+    /// The state a step later as far as supports say; everything else is as before.
+    pub fn moved(&self, motion: &Motion, step: f64) -> Self {
+        let mut next = self.clone();
+        next.time = self.time + step;
+        next.impose(motion, next.time, self.time);
+        next
+    }
+}

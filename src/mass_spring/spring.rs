@@ -1,0 +1,80 @@
+//! A spring, at rest and deformed.
+
+use std::collections::BTreeMap;
+
+use crate::material::law::TensionResponse;
+
+/// One spring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// The nodes at its ends.
+    pub nodes: [usize; 2],
+    /// Rest length x₀ in mm.
+    pub rest_length: f64,
+    /// Cross-section a in mm².
+    pub area: f64,
+}
+
+/// Springs between nodes with the sums of cross-sections in mm² that the cells beside them give.
+#[derive(Default)]
+pub(super) struct CrossSections(BTreeMap<[usize; 2], f64>);
+
+impl CrossSections {
+    /// Adds a cross-section between two nodes.
+    pub fn add(&mut self, [a, b]: [usize; 2], area: f64) {
+        *self.0.entry([a.min(b), a.max(b)]).or_insert(0.0) += area;
+    }
+
+    /// The springs between nodes at these places.
+    pub fn springs(self, places: &[[f64; 2]]) -> Vec<Spring> {
+        let spring = |(nodes, area): ([usize; 2], f64)| {
+            let [from, to] = nodes.map(|node| places[node]);
+            Spring {
+                nodes,
+                rest_length: (to[0] - from[0]).hypot(to[1] - from[1]),
+                area,
+            }
+        };
+        self.0.into_iter().map(spring).collect()
+    }
+}
+
+/// A spring in a deformed lattice, with what its forces follow from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringPose {
+    /// λ = |x|/x₀.
+    pub stretch: f64,
+    /// x/|x|.
+    pub unit: [f64; 2],
+    /// The tension curve at λ.
+    pub response: TensionResponse,
+}
+
+impl SpringPose {
+    /// Adds a force in N along the spring, positive in tension, to those of its ends.
+    pub fn add_force(&self, force: f64, ends: &mut [f64]) {
+        let (near, far) = ends.split_at_mut(2);
+        for (axis, direction) in self.unit.iter().enumerate() {
+            near[axis] -= force * direction;
+            far[axis] += force * direction;
+        }
+    }
+
+    /// Adds stiffnesses along and across the spring in N/mm to those of its ends, row by row.
+    pub fn add_stiffness(&self, [along, across]: [f64; 2], stiffness: &mut [f64]) {
+        for (i, k) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let identity = if i == k { 1.0 } else { 0.0 };
+            let value = (along - across) * self.unit[i] * self.unit[k] + across * identity;
+            stiffness[4 * i + k] += value;
+            stiffness[4 * i + 2 + k] -= value;
+            stiffness[4 * (2 + i) + k] -= value;
+            stiffness[4 * (2 + i) + 2 + k] += value;
+        }
+    }
+}
+
+/// Area of a polygon with its corners counter-clockwise.
+pub(super) fn polygon_area(corners: &[[f64; 2]]) -> f64 {
+    let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
+    0.5 * pairs.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>()
+}

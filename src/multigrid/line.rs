@@ -1,0 +1,376 @@
+//! One line of a grid's operator: its coefficients, its residual and its smoothing in vectors of numbers.
+
+use pulp::{NullaryFnOnce, Simd, WithSimd};
+
+use super::vector::Pair;
+
+/// Coefficients kept for a node: the blocks, and the inverse of its own block.
+pub const COEFFICIENTS: usize = 20;
+
+/// P₁₁, P₁₂, P₂₂, Q₁₁, Q₁₂, Q₂₂, R₁₁, R₁₂, R₂₁, R₂₂ of the cells of one column, with a cell of no stiffness at
+/// either end.
+#[derive(Clone, Debug)]
+pub struct CellStiffness(pub [Vec<f32>; 10]);
+
+impl CellStiffness {
+    /// Zeros for a column of so many cells.
+    pub fn zeros(cells: usize) -> Self {
+        Self(std::array::from_fn(|_| vec![0.0; cells + 2]))
+    }
+}
+
+/// The coefficients of one line: own block 0–2, N 3–6, E 7–10, NE 11–13, SE 14–16, inverse of the own block 17–19.
+#[derive(Clone, Copy)]
+pub struct LineStencil<'a> {
+    pub coefficients: &'a [f32],
+    pub stride: usize,
+}
+
+impl<'a> LineStencil<'a> {
+    /// A coefficient of all nodes.
+    #[inline(always)]
+    pub fn array(&self, k: usize) -> &'a [f32] {
+        &self.coefficients[k * self.stride..][..self.stride]
+    }
+
+    /// The coefficients of a block, row by row, of the nodes of a vector.
+    #[inline(always)]
+    fn block<S: Simd>(&self, [a, b, c, d]: [usize; 4], place: usize) -> [S::f32s; 4] {
+        [
+            load::<S>(self.array(a), place),
+            load::<S>(self.array(b), place),
+            load::<S>(self.array(c), place),
+            load::<S>(self.array(d), place),
+        ]
+    }
+}
+
+/// Puts a line together from the cells on both sides.
+pub struct AssembleLine<'a> {
+    pub left: &'a CellStiffness,
+    pub right: &'a CellStiffness,
+    pub target: &'a mut [f32],
+    pub stride: usize,
+    pub nodes: usize,
+}
+
+impl NullaryFnOnce for AssembleLine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            left,
+            right,
+            target,
+            stride,
+            nodes,
+        } = self;
+        let beside = Beside { left, right, nodes };
+        let mut arrays = target.chunks_exact_mut(stride);
+        let mut next = || &mut arrays.next().expect("an array a coefficient")[1..=nodes];
+        for numbers in SYMMETRIC {
+            beside.own(numbers, next());
+        }
+        for numbers in FULL {
+            beside.north(numbers, next());
+        }
+        for numbers in FULL {
+            beside.east(numbers, next());
+        }
+        for above in [true, false] {
+            for numbers in SYMMETRIC {
+                beside.corner(numbers, above, next());
+            }
+        }
+        invert(target, stride, nodes);
+    }
+}
+
+/// Numbers of P, Q, R and Rᵀ in [`CellStiffness`] for each coefficient of a symmetric block, and of any block.
+const SYMMETRIC: [[usize; 4]; 3] = [[0, 3, 6, 6], [1, 4, 7, 8], [2, 5, 9, 9]];
+const FULL: [[usize; 4]; 4] = [[0, 3, 6, 6], [1, 4, 7, 8], [1, 4, 8, 7], [2, 5, 9, 9]];
+const THIRD: f32 = 1.0 / 3.0;
+const SIXTH: f32 = 1.0 / 6.0;
+
+/// The columns of cells on both sides of a line.
+struct Beside<'a> {
+    left: &'a CellStiffness,
+    right: &'a CellStiffness,
+    nodes: usize,
+}
+
+impl<'a> Beside<'a> {
+    /// A number of the cells below and above each node, to the left; of the cells beside node j, cell j lies below it
+    /// and cell j + 1 above it.
+    #[inline(always)]
+    fn left(&self, k: usize) -> (&'a [f32], &'a [f32]) {
+        (
+            &self.left.0[k][..self.nodes],
+            &self.left.0[k][1..=self.nodes],
+        )
+    }
+
+    /// The same to the right.
+    #[inline(always)]
+    fn right(&self, k: usize) -> (&'a [f32], &'a [f32]) {
+        (
+            &self.right.0[k][..self.nodes],
+            &self.right.0[k][1..=self.nodes],
+        )
+    }
+
+    /// Own block, symmetric: Σ (P + Q)/3 + s (R + Rᵀ), s = sx sy.
+    #[inline(always)]
+    fn own(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
+        let ((pa, pb), (pc, pd)) = (self.left(p), self.right(p));
+        let ((qa, qb), (qc, qd)) = (self.left(q), self.right(q));
+        let ((ra, rb), (rc, rd)) = (self.left(r), self.right(r));
+        let ((ta, tb), (tc, td)) = (self.left(t), self.right(t));
+        for j in 0..self.nodes {
+            let both = (pa[j] + pb[j]) + (pc[j] + pd[j]) + (qa[j] + qb[j]) + (qc[j] + qd[j]);
+            let mixed = (ra[j] - rb[j]) - (rc[j] - rd[j]) + ((ta[j] - tb[j]) - (tc[j] - td[j]));
+            out[j] = THIRD * both + mixed;
+        }
+    }
+
+    /// N: P/6 − Q/3, and −R + Rᵀ of the cell to the right, R − Rᵀ of that to the left.
+    #[inline(always)]
+    fn north(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
+        let ((_, pb), (_, pd)) = (self.left(p), self.right(p));
+        let ((_, qb), (_, qd)) = (self.left(q), self.right(q));
+        let ((_, rb), (_, rd)) = (self.left(r), self.right(r));
+        let ((_, tb), (_, td)) = (self.left(t), self.right(t));
+        for j in 0..self.nodes {
+            let mixed = (rb[j] - tb[j]) - (rd[j] - td[j]);
+            out[j] = SIXTH * (pb[j] + pd[j]) - THIRD * (qb[j] + qd[j]) + mixed;
+        }
+    }
+
+    /// E: −P/3 + Q/6, and R − Rᵀ of the cell above, −R + Rᵀ of that below.
+    #[inline(always)]
+    fn east(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
+        let ((pc, pd), (qc, qd)) = (self.right(p), self.right(q));
+        let ((rc, rd), (tc, td)) = (self.right(r), self.right(t));
+        for j in 0..self.nodes {
+            let mixed = (rd[j] - td[j]) - (rc[j] - tc[j]);
+            out[j] = SIXTH * (qc[j] + qd[j]) - THIRD * (pc[j] + pd[j]) + mixed;
+        }
+    }
+
+    /// NE: −(P + Q)/6 − (R + Rᵀ) of the cell above; SE: −(P + Q)/6 + (R + Rᵀ) of that below.
+    #[inline(always)]
+    fn corner(&self, numbers: [usize; 4], above: bool, out: &mut [f32]) {
+        let pick = |k: usize| {
+            if above {
+                self.right(k).1
+            } else {
+                self.right(k).0
+            }
+        };
+        let [p, q, r, t] = numbers.map(pick);
+        let sign = if above { -1.0 } else { 1.0 };
+        for j in 0..self.nodes {
+            out[j] = sign * (r[j] + t[j]) - SIXTH * (p[j] + q[j]);
+        }
+    }
+}
+
+/// The inverse of the own block of each node, behind the blocks.
+#[inline(always)]
+fn invert(target: &mut [f32], stride: usize, nodes: usize) {
+    let (blocks, inverses) = target.split_at_mut(17 * stride);
+    let own = |k: usize| &blocks[k * stride + 1..][..nodes];
+    let (a, b, c) = (own(0), own(1), own(2));
+    let mut arrays = inverses.chunks_exact_mut(stride);
+    let mut next = || &mut arrays.next().expect("three arrays")[1..=nodes];
+    let (first, second, third) = (next(), next(), next());
+    for j in 0..nodes {
+        let inverse = 1.0 / (a[j] * c[j] - b[j] * b[j]);
+        first[j] = c[j] * inverse;
+        second[j] = -b[j] * inverse;
+        third[j] = a[j] * inverse;
+    }
+}
+
+/// The numbers of a vector that begin at a place.
+#[inline(always)]
+fn load<S: Simd>(numbers: &[f32], place: usize) -> S::f32s {
+    S::as_simd_f32s(&numbers[place..place + S::F32_LANES]).0[0]
+}
+
+#[inline(always)]
+fn store<S: Simd>(numbers: &mut [f32], place: usize, vector: S::f32s) {
+    S::as_mut_simd_f32s(&mut numbers[place..place + S::F32_LANES]).0[0] = vector;
+}
+
+/// The part of both lines of a pair that begins at a place.
+#[inline(always)]
+fn load_pair<S: Simd>(pair: Pair, place: usize) -> [S::f32s; 2] {
+    [load::<S>(pair[0], place), load::<S>(pair[1], place)]
+}
+
+/// a x + b y.
+#[inline(always)]
+fn combine<S: Simd>(simd: S, [a, b]: [S::f32s; 2], [x, y]: [S::f32s; 2]) -> S::f32s {
+    simd.add_f32s(simd.mul_f32s(a, x), simd.mul_f32s(b, y))
+}
+
+/// r − A x for a block A = [a b; c d].
+#[inline(always)]
+fn subtract<S: Simd>(
+    simd: S,
+    r: [S::f32s; 2],
+    [a, b, c, d]: [S::f32s; 4],
+    x: [S::f32s; 2],
+) -> [S::f32s; 2] {
+    [
+        simd.sub_f32s(r[0], combine(simd, [a, b], x)),
+        simd.sub_f32s(r[1], combine(simd, [c, d], x)),
+    ]
+}
+
+/// r less the part of K x that comes from the lines before and after, at the vector that begins at a place.
+#[inline(always)]
+fn subtract_beside<S: Simd>(
+    simd: S,
+    r: [S::f32s; 2],
+    [before, own]: [LineStencil; 2],
+    [left, right]: [Pair; 2],
+    place: usize,
+) -> [S::f32s; 2] {
+    let middle = place + 1;
+    let r = subtract(
+        simd,
+        r,
+        own.block::<S>([7, 8, 9, 10], middle),
+        load_pair::<S>(right, middle),
+    );
+    let r = subtract(
+        simd,
+        r,
+        own.block::<S>([11, 12, 12, 13], middle),
+        load_pair::<S>(right, place + 2),
+    );
+    let r = subtract(
+        simd,
+        r,
+        own.block::<S>([14, 15, 15, 16], middle),
+        load_pair::<S>(right, place),
+    );
+    let r = subtract(
+        simd,
+        r,
+        before.block::<S>([7, 9, 8, 10], middle),
+        load_pair::<S>(left, middle),
+    );
+    let r = subtract(
+        simd,
+        r,
+        before.block::<S>([11, 12, 12, 13], place),
+        load_pair::<S>(left, place),
+    );
+    subtract(
+        simd,
+        r,
+        before.block::<S>([14, 15, 15, 16], place + 2),
+        load_pair::<S>(left, place + 2),
+    )
+}
+
+/// r less the part of K x that comes from the neighbours on the line itself.
+#[inline(always)]
+fn subtract_along<S: Simd>(
+    simd: S,
+    r: [S::f32s; 2],
+    own: LineStencil,
+    x: Pair,
+    place: usize,
+) -> [S::f32s; 2] {
+    let r = subtract(
+        simd,
+        r,
+        own.block::<S>([3, 4, 5, 6], place + 1),
+        load_pair::<S>(x, place + 2),
+    );
+    subtract(
+        simd,
+        r,
+        own.block::<S>([3, 5, 4, 6], place),
+        load_pair::<S>(x, place),
+    )
+}
+
+/// r = b − K x on a line.
+pub struct LineResidual<'a> {
+    pub before: LineStencil<'a>,
+    pub own: LineStencil<'a>,
+    pub x: [Pair<'a>; 3],
+    pub b: Pair<'a>,
+    pub r_x: &'a mut [f32],
+    pub r_y: &'a mut [f32],
+}
+
+impl WithSimd for LineResidual<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let [left, own, right] = self.x;
+        for place in (0..self.r_x.len() - 2).step_by(S::F32_LANES) {
+            let middle = place + 1;
+            let b = load_pair::<S>(self.b, middle);
+            let r = subtract_beside(simd, b, [self.before, self.own], [left, right], place);
+            let r = subtract_along(simd, r, self.own, own, place);
+            let block = self.own.block::<S>([0, 1, 1, 2], middle);
+            let [r_x, r_y] = subtract(simd, r, block, load_pair::<S>(own, middle));
+            store::<S>(self.r_x, middle, r_x);
+            store::<S>(self.r_y, middle, r_y);
+        }
+    }
+}
+
+/// Gauss–Seidel on a line, in two colours.
+pub struct SmoothLine<'a> {
+    pub before: LineStencil<'a>,
+    pub own: LineStencil<'a>,
+    pub beside: [Pair<'a>; 2],
+    pub b: Pair<'a>,
+    pub x_x: &'a mut [f32],
+    pub x_y: &'a mut [f32],
+    pub scratch: &'a mut [Vec<f32>; 4],
+    /// The place in a line at which the nodes of the first colour begin.
+    pub first: usize,
+}
+
+impl WithSimd for SmoothLine<'_> {
+    type Output = ();
+
+    /// Both colours are solved for at all nodes and taken over at their own: twice the arithmetic, but in
+    /// vectors.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let nodes = self.x_x.len() - 2;
+        let [g_x, g_y, t_x, t_y] = self.scratch;
+        for place in (0..nodes).step_by(S::F32_LANES) {
+            let b = load_pair::<S>(self.b, place + 1);
+            let [x, y] = subtract_beside(simd, b, [self.before, self.own], self.beside, place);
+            store::<S>(g_x, place, x);
+            store::<S>(g_y, place, y);
+        }
+        for colour in [self.first, 1 - self.first] {
+            for place in (0..nodes).step_by(S::F32_LANES) {
+                let g = [load::<S>(g_x, place), load::<S>(g_y, place)];
+                let r = subtract_along(simd, g, self.own, [self.x_x, self.x_y], place);
+                let [a, b, c, d] = self.own.block::<S>([17, 18, 18, 19], place + 1);
+                store::<S>(t_x, place, combine(simd, [a, b], r));
+                store::<S>(t_y, place, combine(simd, [c, d], r));
+            }
+            for (x, t) in [(&mut *self.x_x, &*t_x), (&mut *self.x_y, &*t_y)] {
+                let own = x[1 + colour..=nodes].iter_mut().step_by(2);
+                let new = t[colour..nodes].iter().step_by(2);
+                own.zip(new).for_each(|(x, t)| *x = *t);
+            }
+        }
+    }
+}
