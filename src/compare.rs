@@ -20,7 +20,7 @@ use nalgebra::Vector4;
 use crate::finite_element::FiniteElements;
 use crate::finite_element::convergence::{Richardson, of_distances, richardson};
 use crate::material::sheet::Kinematics;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, NodalField};
 use crate::problem::{ClampedPlate, Measures};
 use crate::solve::State;
 
@@ -114,13 +114,13 @@ impl<'a> Reference<'a> {
         let affine = self.problem.affine(mesh, state.factor);
         let field = &state.displacement;
         let expected_measures = Measures::of(fine, reference);
-        let percent = |value: f64, expected: f64| 100.0 * (value / expected - 1.0);
+        let beyond = |value: f64, expected: f64| 100.0 * (value / expected - 1.0);
         Some(Deviation {
             displacement_percent: displacement_percent(mesh, field, &expected),
             departure_percent: departure_percent(mesh, field, &expected, &affine),
-            max_difference: largest_distance(field, &expected),
-            force_percent: percent(measures.force, expected_measures.force),
-            width_percent: percent(measures.mid_width, expected_measures.mid_width),
+            max_difference: field.largest_distance(&expected).0,
+            force_percent: beyond(measures.force, expected_measures.force),
+            width_percent: beyond(measures.mid_width, expected_measures.mid_width),
             nominal_stress_percent: self.stress_deviation(mesh, field, step),
         })
     }
@@ -147,15 +147,15 @@ impl<'a> Reference<'a> {
         let [first, second, third] =
             meshes.map(|(mesh, state)| mesh.displacement_on(&state.displacement, common));
         let areas = common.nodal_areas();
-        let size = |field: &[f64]| distance(&areas, &third, field);
-        let nothing = vec![0.0; third.len()];
         let affine = self.problem.affine(common, meshes[2].1.factor);
-        let (error, order) = of_distances(distance(&areas, &first, &second), size(&second));
+        let [before, last] = [(&first, &second), (&third, &second)]
+            .map(|(one, other)| one.weighted_distance(other, &areas));
+        let (error, order) = of_distances(before, last);
         Some(SelfConvergence {
             force: of(|measures| measures.force),
             width: of(|measures| measures.mid_width),
-            displacement_percent: 100.0 * error / size(&nothing),
-            departure_percent: 100.0 * error / size(&affine),
+            displacement_percent: 100.0 * error / third.weighted_norm(&areas),
+            departure_percent: 100.0 * error / third.weighted_distance(&affine, &areas),
             displacement_order: order,
         })
     }
@@ -189,59 +189,30 @@ impl<'a> Reference<'a> {
 
 /// Distance of two fields on a mesh in relative L2, weighted by area, in %.
 pub fn displacement_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
-    departure_percent(mesh, field, reference, &vec![0.0; reference.len()])
+    percent(&mesh.nodal_areas(), field, reference)
 }
 
 /// Distance of two fields on a mesh over the size of what the reference departs from `affine`, in %.
 pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: &[f64]) -> f64 {
     let areas = mesh.nodal_areas();
-    100.0 * distance(&areas, field, reference) / distance(&areas, reference, affine)
+    let departure = reference.weighted_distance(affine, &areas);
+    100.0 * field.weighted_distance(reference, &areas) / departure
 }
 
 /// Distance of two fields on the corners of any mesh in relative L2, weighted by area, in %. The area of a cell
 /// belongs to its corners in equal parts.
 pub fn area_weighted_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f64 {
-    let areas = corner_areas(mesh);
-    let nothing = vec![0.0; reference.len()];
-    100.0 * distance(&areas, field, reference) / distance(&areas, reference, &nothing)
+    percent(&mesh.corner_areas(), field, reference)
 }
 
-/// The area in mm² that belongs to each node: that of a cell to its corners in equal parts.
-fn corner_areas(mesh: &Mesh) -> Vec<f64> {
-    let mut areas = vec![0.0; mesh.nodes.len()];
-    for cell in 0..mesh.cell_count() {
-        let shape = mesh.shape(cell);
-        let rule = shape.quadrature().into_iter();
-        let area: f64 = rule
-            .map(|(point, weight)| weight * mesh.gradients(cell, point).1)
-            .sum();
-        for corner in &mesh.cell(cell)[..shape.corners()] {
-            areas[*corner] += area / shape.corners() as f64;
-        }
-    }
-    areas
+fn percent(areas: &[f64], field: &[f64], reference: &[f64]) -> f64 {
+    100.0 * field.weighted_distance(reference, areas) / reference.weighted_norm(areas)
 }
 
 /// Whether a point lies within a fifth of the width of a corner.
 fn near_corner(size: [f64; 2], point: [f64; 2]) -> bool {
     let [x, y] = [0, 1].map(|axis| point[axis].min(size[axis] - point[axis]));
     x.hypot(y) < size[1] / 5.0
-}
-
-/// √(Σ A |u − v|²).
-fn distance(areas: &[f64], u: &[f64], v: &[f64]) -> f64 {
-    let pairs = u.chunks_exact(2).zip(v.chunks_exact(2)).zip(areas);
-    pairs
-        .map(|((u, v), area)| area * ((u[0] - v[0]).powi(2) + (u[1] - v[1]).powi(2)))
-        .sum::<f64>()
-        .sqrt()
-}
-
-fn largest_distance(u: &[f64], v: &[f64]) -> f64 {
-    let pairs = u.chunks_exact(2).zip(v.chunks_exact(2));
-    pairs.fold(0.0, |most: f64, (u, v)| {
-        most.max((u[0] - v[0]).hypot(u[1] - v[1]))
-    })
 }
 
 #[cfg(test)]

@@ -225,12 +225,10 @@ fn write(
                 let expected = imported.mesh.displacement_on(&imported.displacement, mesh);
                 Grid::sheet(sheet, mesh, u).with(Array::imported(u, &expected))
             }
-            Imported::AtPoints {
-                places,
-                displacement,
-            } => {
+            Imported::AtPoints(points) => {
                 let own = compared.sites.at(field);
-                Grid::scattered(places, &own).with(Array::imported(&own, displacement))
+                let grid = Grid::scattered(&points.places, &own);
+                grid.with(Array::imported(&own, &points.displacement))
             }
         };
         let name = field.model.replace([' ', '-'], "_");
@@ -248,7 +246,7 @@ fn write(
 fn report(compared: &Compared, differences: &[Difference], file: &Path) -> Vec<Block> {
     let weighting = match compared.imported {
         Imported::OnMesh(_) => "at the nodes of the lattice, weighted by area",
-        Imported::AtPoints { .. } => "at the imported points, all with the same weight",
+        Imported::AtPoints(_) => "at the imported points, all with the same weight",
     };
     let row = |(field, difference): (&ModelField, &Difference)| {
         let [x, y] = difference.place;

@@ -10,28 +10,15 @@
 
 use std::path::Path;
 
-use super::{corner_areas, distance};
 use crate::document::Table;
 use crate::error::Error;
 use crate::markers::unit_ratio;
-use crate::mesh::{ImportedField, Mesh, import_field};
+use crate::mesh::geometry::bounding_box;
+use crate::mesh::{ImportedField, Mesh, NodalField, import_field};
 
 mod table;
 
-/// How a file is to be understood.
-#[derive(Clone, Debug)]
-pub struct ImportSettings {
-    /// The length of the file's unit in mm; mm where neither this nor the file says it.
-    pub unit: Option<f64>,
-    /// The array of a VTK file, where it must be named.
-    pub array: Option<String>,
-    /// The load factor.
-    pub factor: f64,
-    /// The time of a step, where it is not the load factor.
-    pub time: Option<f64>,
-    /// Columns of a table that are passed over.
-    pub ignored_columns: Vec<String>,
-}
+pub use table::{ImportSettings, Points};
 
 /// A displacement field of another program.
 #[derive(Clone, Debug)]
@@ -39,12 +26,7 @@ pub enum Imported {
     /// On a mesh of its own.
     OnMesh(Box<ImportedField>),
     /// At scattered points.
-    AtPoints {
-        /// Places in mm.
-        places: Vec<[f64; 2]>,
-        /// ux, uy of point after point in mm.
-        displacement: Vec<f64>,
-    },
+    AtPoints(Points),
 }
 
 /// A field of one of the models.
@@ -104,7 +86,7 @@ impl Imported {
             .extension()
             .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
         if is_table {
-            return table::read(&Table::read(path)?, settings);
+            return table::read(&Table::read(path)?, settings).map(Self::AtPoints);
         }
         let field = import_field(
             path,
@@ -122,7 +104,7 @@ impl Imported {
     pub fn describe(&self) -> String {
         match self {
             Self::OnMesh(field) => format!("{} on {} cells", field.part, field.mesh.cell_count()),
-            Self::AtPoints { places, .. } => format!("{} points", places.len()),
+            Self::AtPoints(points) => format!("{} points", points.places.len()),
         }
     }
 
@@ -146,14 +128,14 @@ impl Imported {
                 )?;
                 Ok(Sites {
                     places: lattice.nodes.clone(),
-                    weights: corner_areas(lattice),
+                    weights: lattice.corner_areas(),
                     expected: field.mesh.displacement_on(&field.displacement, lattice),
                 })
             }
-            Self::AtPoints {
+            Self::AtPoints(Points {
                 places,
                 displacement,
-            } => {
+            }) => {
                 covers(lattice, places, "the specimen does not reach the point")?;
                 near_in_size(places, lattice)?;
                 Ok(Sites {
@@ -181,17 +163,11 @@ impl Sites {
     /// Says that the imported field rests, so that nothing can be related to it.
     pub fn difference(&self, field: &ModelField) -> Result<Difference, String> {
         let found = self.at(field);
-        let size = distance(&self.weights, &self.expected, &vec![0.0; found.len()]);
+        let size = self.expected.weighted_norm(&self.weights);
         if size == 0.0 {
             return Err("is zero everywhere".into());
         }
-        let pairs = found.chunks_exact(2).zip(self.expected.chunks_exact(2));
-        let distances = pairs.map(|(u, v)| (u[0] - v[0]).hypot(u[1] - v[1]));
-        let (place, largest) =
-            distances.enumerate().fold(
-                (0, -1.0),
-                |most, next| if next.1 > most.1 { next } else { most },
-            );
+        let (largest, place) = found.largest_distance(&self.expected);
         let product = |a: &[f64], b: &[f64]| -> f64 {
             let terms = a.iter().zip(b).zip(0..);
             terms
@@ -200,7 +176,7 @@ impl Sites {
         };
         Ok(Difference {
             factor: product(&found, &self.expected) / product(&self.expected, &self.expected),
-            percent: 100.0 * distance(&self.weights, &found, &self.expected) / size,
+            percent: 100.0 * found.weighted_distance(&self.expected, &self.weights) / size,
             largest,
             place: self.places[place],
         })
@@ -227,14 +203,8 @@ fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), String> {
 /// small window is no fault.
 fn near_in_size(places: &[[f64; 2]], specimen: &Mesh) -> Result<(), String> {
     let size = |places: &[[f64; 2]]| {
-        let sides = [0, 1].map(|axis| {
-            let along = places.iter().map(|place| place[axis]);
-            let ends = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-                [low.min(x), high.max(x)]
-            });
-            ends[1] - ends[0]
-        });
-        sides[0].hypot(sides[1])
+        let [low, high] = bounding_box(places.iter().copied());
+        (high[0] - low[0]).hypot(high[1] - low[1])
     };
     let (found, expected) = (size(places), size(&specimen.nodes));
     match unit_ratio(expected / found).filter(|ratio| *ratio >= 100.0) {

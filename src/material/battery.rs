@@ -6,7 +6,8 @@ use std::sync::Arc;
 use nalgebra::{Matrix2, Vector4};
 
 use super::curve::{self, Mode};
-use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
+use super::invariants::{EnergyDerivatives, Invariants};
+use super::law::{HyperelasticLaw, InvariantLaw};
 use super::registry::LAWS;
 use super::samples::{self, SAMPLES};
 use super::sheet::{Gradient, Kinematics};

@@ -2,7 +2,8 @@
 
 use super::code::{Code, CodeLaw};
 use super::exponential::{exponential, exponential_less_one};
-use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
+use super::invariants::{EnergyDerivatives, Invariants};
+use super::law::{HyperelasticLaw, InvariantLaw};
 use super::parameters::Parameters;
 use crate::document::Bound;
 

@@ -1,7 +1,8 @@
 //! The neo-Hooke law.
 
 use super::code::{Code, CodeLaw};
-use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
+use super::invariants::{EnergyDerivatives, Invariants};
+use super::law::{HyperelasticLaw, InvariantLaw};
 use super::parameters::Parameters;
 use super::polynomial::Polynomial;
 use crate::document::Bound;

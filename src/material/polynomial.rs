@@ -1,7 +1,8 @@
 //! Mooney–Rivlin laws of higher order.
 
 use super::code::{Code, CodeLaw};
-use super::law::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
+use super::invariants::{EnergyDerivatives, Invariants};
+use super::law::{HyperelasticLaw, InvariantLaw};
 use super::parameters::Parameters;
 use crate::document::Bound;
 

@@ -18,7 +18,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::law::{EnergyDerivatives, Invariants};
+use super::invariants::{EnergyDerivatives, Invariants};
 
 /// Displacement gradient components H₁₁, H₁₂, H₂₁, H₂₂ where Hᵢⱼ = ∂uᵢ/∂Xⱼ.
 pub type Gradient = Vector4<f64>;

@@ -9,8 +9,9 @@
 
 use std::collections::HashSet;
 
+use super::cell_shape::CellShape;
+use super::cells::Mesh;
 use super::refine::{Point, Subdivision, key};
-use super::{CellShape, Mesh};
 
 /// An edge by its ends, the smaller first.
 type Edge = [usize; 2];
@@ -138,7 +139,7 @@ fn cut(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Shape;
+    use crate::mesh::shapes::Shape;
 
     fn smallest_angle(mesh: &Mesh) -> f64 {
         let angle = |cell: usize, corner: usize| {

@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::{CellShape, Mesh};
+use super::cell_shape::CellShape;
+use super::cells::Mesh;
 
 /// A part of a specimen that is the image of the unit square.
 pub struct Block<'a> {

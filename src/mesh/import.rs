@@ -3,32 +3,25 @@
 //! Lines with a physical group make up the named parts of the boundary. Whatever the file names, the edges on the
 //! four sides of the mesh's box are `left`, `right`, `bottom` and `top`, and all edges of the boundary `boundary`.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::{Allowed, CellShape, Mesh};
+use super::cells::Mesh;
+use super::faults::Allowed;
 use crate::error::{Diagnostic, Severity};
 
 mod field;
 mod frd;
 mod gmsh;
 mod pvd;
+mod raw;
+mod unstructured;
 mod vtk;
 mod vtu;
 
-pub use field::{ImportedField, ImportedSeries, ImportedStep, import_field, import_series};
+use raw::{Raw, read_text};
 
-/// What a file holds, before it is a flat mesh: places in the file's unit, and elements by their kinds.
-#[derive(Default)]
-struct Raw {
-    /// Places by the file's own number.
-    places: HashMap<u64, [f64; 3]>,
-    /// Cells in the order of the file.
-    cells: Vec<(CellShape, Vec<u64>)>,
-    /// Ends of lines, and points, by the name of their group.
-    lines: BTreeMap<String, Vec<[u64; 2]>>,
-    points: BTreeMap<String, Vec<u64>>,
-}
+pub use field::{ImportedField, ImportedSeries, ImportedStep, import_field, import_series};
 
 /// How a mesh is read from a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,167 +114,6 @@ fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Dia
         Some(Diagnostic::warning("", message).hint(hint))
     };
     groups.iter().filter_map(told).collect()
-}
-
-/// Bytes of a file that is read.
-const MOST_BYTES: u64 = 4 << 30;
-
-/// The bytes of a file.
-fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    let unreadable = |cause| format!("cannot be read: {cause}");
-    let about = std::fs::metadata(path).map_err(unreadable)?;
-    if !about.is_file() {
-        return Err("is no file".into());
-    }
-    if about.len() > MOST_BYTES {
-        let size = about.len() >> 30;
-        return Err(format!(
-            "has {size} GiB; at most {} are read",
-            MOST_BYTES >> 30
-        ));
-    }
-    std::fs::read(path).map_err(unreadable)
-}
-
-/// The text of a file.
-fn read_text(path: &Path) -> Result<String, String> {
-    String::from_utf8(read_bytes(path)?).map_err(|_| BINARY.to_owned())
-}
-
-const BINARY: &str = "is a binary file; save it as ASCII (Mesh.Binary = 0 in Gmsh) or as .vtu";
-
-impl Raw {
-    /// The nodes of the cells, in the order that they have in the mesh.
-    fn used(&self) -> BTreeSet<u64> {
-        let nodes = self.cells.iter().flat_map(|(_, nodes)| nodes);
-        nodes.copied().collect()
-    }
-
-    /// Makes nodes that are not farther from each other than a tolerance, in the file's unit, one.
-    fn merge_nodes(&mut self, tolerance: f64) {
-        let mut squares: HashMap<[i64; 2], Vec<u64>> = HashMap::new();
-        let mut merged: HashMap<u64, u64> = HashMap::new();
-        for name in self.used() {
-            let Some([x, y, _]) = self.places.get(&name) else {
-                continue;
-            };
-            let [i, j] = [x, y].map(|x| (x / tolerance).floor() as i64);
-            let around = (-1..=1).flat_map(|di| (-1..=1).map(move |dj| [i + di, j + dj]));
-            let others = around.filter_map(|square| squares.get(&square)).flatten();
-            let near = |other: &&u64| {
-                let [a, b, _] = self.places[*other];
-                (a - x).hypot(b - y) <= tolerance
-            };
-            match others.filter(near).min() {
-                Some(first) => {
-                    merged.insert(name, *first);
-                }
-                None => squares.entry([i, j]).or_default().push(name),
-            }
-        }
-        let cells = self.cells.iter_mut().flat_map(|(_, nodes)| nodes);
-        let lines = self.lines.values_mut().flatten().flatten();
-        let points = self.points.values_mut().flatten();
-        for node in cells.chain(lines).chain(points) {
-            *node = merged.get(node).copied().unwrap_or(*node);
-        }
-    }
-
-    fn mesh(self, unit: f64) -> Result<Mesh, String> {
-        if self.cells.is_empty() {
-            return Err("holds no triangles or quadrilaterals".into());
-        }
-        let used = self.used();
-        let (mut nodes, mut names) = (Vec::new(), HashMap::new());
-        let mut height: Option<f64> = None;
-        for name in used {
-            let Some([x, y, z]) = self.places.get(&name) else {
-                return Err(format!(
-                    "has a cell with the node {name}, which it does not hold"
-                ));
-            };
-            if [x, y, z].iter().any(|x| !x.is_finite()) {
-                return Err(format!("has the node {name} at a place that is no number"));
-            }
-            let plane = *height.get_or_insert(*z);
-            if (z - plane).abs() > 1e-9 * (x.abs() + y.abs()).max(1e-300) {
-                return Err(format!(
-                    "is not flat: the node {name} lies at z = {z}, others at {plane}"
-                ));
-            }
-            names.insert(name, nodes.len());
-            nodes.push([unit * x, unit * y]);
-        }
-        let cells: Vec<_> = self
-            .cells
-            .iter()
-            .map(|(shape, own)| {
-                let own: Vec<usize> = own.iter().map(|name| names[name]).collect();
-                (*shape, counter_clockwise(*shape, own, &nodes))
-            })
-            .collect();
-        let mut mesh = Mesh::new(nodes, cells);
-        name_sides(&mut mesh);
-        for (name, ends) in &self.points {
-            let nodes = ends.iter().filter_map(|node| names.get(node).copied());
-            let nodes: Vec<usize> = nodes.collect();
-            if !nodes.is_empty() {
-                mesh.put_group(name, nodes, Vec::new());
-            }
-        }
-        let edges: HashMap<[usize; 2], Vec<usize>> = mesh
-            .boundary()
-            .iter()
-            .map(|edge| ([edge[0].min(edge[1]), edge[0].max(edge[1])], edge.clone()))
-            .collect();
-        for (name, lines) in &self.lines {
-            let ends = lines
-                .iter()
-                .filter_map(|[a, b]| Some([*names.get(a)?, *names.get(b)?]));
-            let ends: BTreeSet<[usize; 2]> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-            let own = ends.iter().filter_map(|ends| edges.get(ends).cloned());
-            let own: Vec<Vec<usize>> = own.collect();
-            if !own.is_empty() {
-                mesh.name_edges(name, own);
-            }
-        }
-        Ok(mesh)
-    }
-}
-
-/// The nodes of a cell in the order that leaves its area to the left.
-fn counter_clockwise(shape: CellShape, nodes: Vec<usize>, places: &[[f64; 2]]) -> Vec<usize> {
-    let corners = shape.corners();
-    let area: f64 = (0..corners)
-        .map(|i| {
-            let (a, b) = (places[nodes[i]], places[nodes[(i + 1) % corners]]);
-            a[0] * b[1] - b[0] * a[1]
-        })
-        .sum();
-    if area >= 0.0 {
-        return nodes;
-    }
-    // The first corner stays; the middle between corners i and i + 1 follows them.
-    let mut turned = vec![nodes[0]];
-    turned.extend(nodes[1..corners].iter().rev());
-    turned.extend(nodes[corners..].iter().take(corners).rev());
-    turned.extend(nodes.iter().skip(2 * corners));
-    turned
-}
-
-/// Names the boundary and its parts on the four sides of the mesh's box.
-fn name_sides(mesh: &mut Mesh) {
-    let [low, high] = mesh.bounding_box();
-    let near = 1e-9 * (high[0] - low[0]).max(high[1] - low[1]);
-    for (name, axis, value) in [
-        ("left", 0, low[0]),
-        ("right", 0, high[0]),
-        ("bottom", 1, low[1]),
-        ("top", 1, high[1]),
-    ] {
-        mesh.name_boundary(name, |place| (place[axis] - value).abs() <= near);
-    }
-    mesh.name_boundary("boundary", |_| true);
 }
 
 #[cfg(test)]

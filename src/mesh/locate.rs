@@ -1,59 +1,47 @@
-//! Which cell of a mesh holds a point.
+//! Which cell of a mesh holds a point, and where in the cell it lies.
 
-use super::Mesh;
+use super::buckets::Buckets;
+use super::cells::Mesh;
+use super::geometry::{bounding_box, determinant};
 
-/// The cells of a mesh by the squares of a coarse grid that their boxes touch.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Buckets {
-    low: [f64; 2],
-    step: f64,
-    counts: [usize; 2],
-    cells: Vec<Vec<usize>>,
-}
+/// The distance that counts as none beside the size of a cell.
+const ROUNDING: f64 = 2e-15;
 
-impl Buckets {
-    /// Sorts the cells of a mesh.
-    pub fn new(mesh: &Mesh) -> Self {
-        let [low, high] = mesh.bounding_box();
-        let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(f64::MIN_POSITIVE));
-        let step = (size[0] * size[1] / mesh.cell_count().max(1) as f64).sqrt();
-        let step = step.max(size[0].max(size[1]) / 2000.0);
-        let counts = size.map(|size| (size / step) as usize + 1);
-        let mut buckets = Self {
-            low,
-            step,
-            counts,
-            cells: vec![Vec::new(); counts[0] * counts[1]],
-        };
-        for cell in 0..mesh.cell_count() {
-            let [from, to] = mesh.cell_box(cell).map(|corner| buckets.place(corner));
-            for i in from[0]..=to[0] {
-                for j in from[1]..=to[1] {
-                    buckets.cells[i * counts[1] + j].push(cell);
-                }
-            }
+impl Mesh {
+    /// The cell that holds a point, and the point's reference coordinates in it; for a point outside of the mesh
+    /// the nearest cell.
+    pub fn locate(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
+        match self.grid {
+            Some(grid) => grid.locate(point),
+            None => self.search(point),
         }
-        buckets
     }
 
-    fn place(&self, point: [f64; 2]) -> [usize; 2] {
-        [0, 1].map(|axis| {
-            let step = (point[axis] - self.low[axis]) / self.step;
-            (step.max(0.0) as usize).min(self.counts[axis] - 1)
+    /// How far a point lies outside of the mesh, in sizes of its nearest cell; zero inside.
+    pub fn outside(&self, point: [f64; 2]) -> f64 {
+        let (cell, local) = self.locate(point);
+        let shape = self.shape(cell);
+        let size = if shape.is_triangle() { 1.0 } else { 2.0 };
+        shape.outside(local) / size
+    }
+
+    fn buckets(&self) -> &Buckets {
+        self.buckets.get_or_init(|| {
+            let boxes: Vec<_> = (0..self.cell_count())
+                .map(|cell| self.cell_box(cell))
+                .collect();
+            Buckets::new(self.bounding_box(), &boxes)
         })
     }
 
-    /// The cell that holds a point and the point's reference coordinates; for a point outside of the mesh the
-    /// nearest cell, with coordinates outside of it.
-    pub fn locate(&self, mesh: &Mesh, point: [f64; 2]) -> (usize, [f64; 2]) {
-        let [i, j] = self.place(point);
+    fn search(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
         let mut best: Option<(f64, usize, [f64; 2])> = None;
-        for reach in 0..self.counts[0].max(self.counts[1]) {
-            for cell in self.ring([i, j], reach) {
-                let Some(local) = mesh.local_coordinates(cell, point) else {
+        for (reach, cells) in self.buckets().rings(point).enumerate() {
+            for cell in cells {
+                let Some(local) = self.natural_coordinates(cell, point) else {
                     continue;
                 };
-                let outside = mesh.shape(cell).outside(local);
+                let outside = self.shape(cell).outside(local);
                 if best.is_none_or(|(least, ..)| outside < least) {
                     best = Some((outside, cell, local));
                 }
@@ -68,36 +56,52 @@ impl Buckets {
         }
         match best {
             Some((_, cell, local)) => (cell, local),
-            None => far_away(mesh, point),
+            None => far_away(self, point),
         }
     }
 
-    /// The cells whose boxes touch the square of a point.
-    fn around(&self, point: [f64; 2]) -> &[usize] {
-        let [i, j] = self.place(point);
-        &self.cells[i * self.counts[1] + j]
-    }
-
-    /// The cells of all squares at a distance of `reach` squares.
-    fn ring(&self, [i, j]: [usize; 2], reach: usize) -> Vec<usize> {
-        let range = |middle: usize, count: usize| {
-            middle.saturating_sub(reach)..=(middle + reach).min(count - 1)
-        };
-        let mut found = Vec::new();
-        for a in range(i, self.counts[0]) {
-            for b in range(j, self.counts[1]) {
-                if a.abs_diff(i).max(b.abs_diff(j)) == reach {
-                    found.extend(&self.cells[a * self.counts[1] + b]);
-                }
+    /// The reference coordinates of a point in a cell, by Newton's method; nothing where it finds none.
+    fn natural_coordinates(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
+        let shape = self.shape(cell);
+        // Relative to a node of the cell, so that a mesh far from the origin loses no digits.
+        let origin = self.nodes[self.cell(cell)[0]];
+        let from_origin = |place: [f64; 2]| [place[0] - origin[0], place[1] - origin[1]];
+        let nodes = self.cell(cell).iter();
+        let places: Vec<[f64; 2]> = nodes.map(|node| from_origin(self.nodes[*node])).collect();
+        let size = places
+            .iter()
+            .flatten()
+            .fold(0.0, |size: f64, x| size.max(x.abs()));
+        let far = origin[0].abs().max(origin[1].abs());
+        let negligible = ROUNDING * size + 2.0 * f64::EPSILON * far;
+        let mut local = shape.centre();
+        for _ in 0..60 {
+            let values = shape.values(local);
+            let mut miss = from_origin(point);
+            for (place, value) in places.iter().zip(&values) {
+                miss = [miss[0] - value * place[0], miss[1] - value * place[1]];
+            }
+            // Where the Jacobian vanishes, as at the outer sides of cells graded by two, steps do not become short.
+            if miss[0].abs().max(miss[1].abs()) <= negligible {
+                return Some(local);
+            }
+            let map = self.map(cell, &shape.derivatives(local));
+            let jacobian = determinant(&map);
+            if jacobian == 0.0 || local.iter().any(|x| x.abs() > 50.0) {
+                return None;
+            }
+            let step = [
+                (map[1][1] * miss[0] - map[0][1] * miss[1]) / jacobian,
+                (map[0][0] * miss[1] - map[1][0] * miss[0]) / jacobian,
+            ];
+            local = [local[0] + step[0], local[1] + step[1]];
+            if step[0].abs().max(step[1].abs()) < 1e-13 {
+                return Some(local);
             }
         }
-        found.sort_unstable();
-        found.dedup();
-        found
+        None
     }
-}
 
-impl Mesh {
     /// Whether a point lies inside of a cell, farther from its sides than `margin` in reference coordinates; cells are
     /// left out where `own` holds.
     pub(super) fn holds_inside(
@@ -106,11 +110,10 @@ impl Mesh {
         margin: f64,
         own: impl Fn(usize) -> bool,
     ) -> bool {
-        let buckets = self.buckets.get_or_init(|| Buckets::new(self));
-        let around = buckets.around(point).iter();
+        let around = self.buckets().around(point).iter();
         let mut others = around.filter(|cell| !own(**cell) && self.is_in_box(**cell, point));
         others.any(|cell| {
-            let local = self.local_coordinates(*cell, point);
+            let local = self.natural_coordinates(*cell, point);
             local.is_some_and(|local| self.shape(*cell).depth(local) > margin)
         })
     }
@@ -124,21 +127,15 @@ impl Mesh {
     /// ends a, b and the point 2 m − ½ (a + b) beyond its middle m.
     pub(super) fn cell_box(&self, cell: usize) -> [[f64; 2]; 2] {
         let own = self.cell(cell);
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        let mut take = |place: [f64; 2]| {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(place[axis]);
-                high[axis] = high[axis].max(place[axis]);
-            }
-        };
-        own.iter().for_each(|node| take(self.nodes[*node]));
-        for edge in self.shape(cell).edges() {
-            if let [a, b, m] = edge[..] {
+        let edges = self.shape(cell).edges();
+        let beyond = edges.iter().filter_map(|edge| match edge[..] {
+            [a, b, m] => {
                 let [a, b, m] = [a, b, m].map(|node| self.nodes[own[node]]);
-                take([0, 1].map(|axis| 2.0 * m[axis] - 0.5 * (a[axis] + b[axis])));
+                Some([0, 1].map(|axis| 2.0 * m[axis] - 0.5 * (a[axis] + b[axis])))
             }
-        }
-        [low, high]
+            _ => None,
+        });
+        bounding_box(own.iter().map(|node| self.nodes[*node]).chain(beyond))
     }
 }
 
@@ -171,7 +168,7 @@ fn far_away(mesh: &Mesh, point: [f64; 2]) -> (usize, [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::CellShape;
+    use crate::mesh::cell_shape::CellShape;
 
     #[test]
     fn points_far_away_are_outside_of_the_nearest_cell() {

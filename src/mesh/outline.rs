@@ -16,15 +16,17 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::cell_shape::CellShape;
+use super::cells::Mesh;
+use super::geometry::{distance, polygon_area};
 use super::triangulate::fill;
-use super::{CellShape, Mesh};
 use crate::statistics::median;
 
 mod alpha_shape;
 mod lattice;
 mod polygon;
 
-use polygon::{Polygon, area};
+use polygon::Polygon;
 
 /// Lines are moved by less than so many spacings when they are straightened.
 const STRAIGHT: f64 = 0.55;
@@ -119,7 +121,7 @@ impl Outline {
             holes: Vec::new(),
         };
         for line in lines {
-            if area(&line) > 0.0 {
+            if polygon_area(&line) > 0.0 {
                 outline.outer = line;
             } else {
                 outline.holes.push(line);
@@ -142,7 +144,7 @@ impl Outline {
                 .holes
                 .iter()
                 .map(|hole| polygon::shifted(hole, gap))
-                .filter(|hole| area(hole) < 0.0)
+                .filter(|hole| polygon_area(hole) < 0.0)
                 .collect(),
         };
         outline.check()?;
@@ -163,9 +165,9 @@ impl Outline {
                 return Err("a line of the outline encloses no area".into());
             }
         }
-        lines.sort_by(|a, b| area(b).abs().total_cmp(&area(a).abs()));
+        lines.sort_by(|a, b| polygon_area(b).abs().total_cmp(&polygon_area(a).abs()));
         for (index, line) in lines.iter_mut().enumerate() {
-            if (area(line) > 0.0) != (index == 0) {
+            if (polygon_area(line) > 0.0) != (index == 0) {
                 line.reverse();
             }
         }
@@ -202,7 +204,7 @@ impl Outline {
 
     /// The area inside in mm².
     pub fn area(&self) -> f64 {
-        self.lines().map(|line| area(line)).sum()
+        self.lines().map(|line| polygon_area(line)).sum()
     }
 
     /// A mesh of cells of about the size `size` in mm (the length of their edges); `shape` is their kind, of three,
@@ -287,7 +289,7 @@ fn regularity(points: &[[f64; 2]], area: f64) -> f64 {
         let near = around.filter_map(|key| squares.get(&key)).flatten();
         let others = near.filter(|other| *other != point);
         others.fold(2.0 * side, |least: f64, other| {
-            least.min(polygon::length(*point, *other))
+            least.min(distance(*point, *other))
         })
     };
     median(points.iter().map(nearest)) / side

@@ -5,7 +5,8 @@
 
 use std::collections::HashMap;
 
-use super::{CellShape, Mesh};
+use super::cell_shape::CellShape;
+use super::cells::Mesh;
 
 impl Mesh {
     /// The mesh of the corners alone.
@@ -244,7 +245,7 @@ pub(super) fn key(a: usize, b: usize) -> [usize; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Shape;
+    use crate::mesh::shapes::Shape;
 
     #[test]
     fn finer_and_quadratic_meshes_have_the_same_outline() {

@@ -15,7 +15,8 @@
 
 use std::collections::BTreeMap;
 
-use super::{Mesh, determinant};
+use super::cells::Mesh;
+use super::geometry::determinant;
 use crate::error::Diagnostic;
 
 /// A turn between straight edges that may belong to a curve, in rad: up to an octagon's.
@@ -161,7 +162,7 @@ impl Mesh {
         let bumps: BTreeMap<&[usize], _> = straight
             .filter_map(|piece| Some((piece.edge, (piece, piece.bump()?))))
             .collect();
-        let of_group = |(name, group): (&String, &super::Group)| {
+        let of_group = |(name, group): (&String, &super::cells::Group)| {
             let own = group.edges.iter().filter_map(|edge| bumps.get(&edge[..]));
             let mut found = Polygon {
                 group: name.clone(),
@@ -297,7 +298,8 @@ fn chords(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{CellShape, Shape};
+    use crate::mesh::cell_shape::CellShape;
+    use crate::mesh::shapes::Shape;
 
     const RING: Shape = Shape::RingSector {
         radii: [10.0, 20.0],

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
-use super::{Block, CellShape, Mesh, mesh_of_blocks};
+use super::blocks::{Block, mesh_of_blocks};
+use super::cell_shape::CellShape;
+use super::cells::Mesh;
 
 /// A specimen by its measures in mm. All lie along X from 0, with the axis Y = 0 in their middle, except the ring.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,7 +10,6 @@
 //!
 //! Units stand in the names (`ux_mm`) or in brackets. Other columns are refused, see [`crate::markers::columns`].
 
-use super::{ImportSettings, Imported};
 use crate::document::Table;
 use crate::error::Error;
 use crate::markers::columns::{self, Names, Units, length, plain};
@@ -34,6 +33,30 @@ const KNOWN: [&str; 11] = [
     "uz",
 ];
 
+/// How a file is to be understood.
+#[derive(Clone, Debug)]
+pub struct ImportSettings {
+    /// The length of the file's unit in mm; mm where neither this nor the file says it.
+    pub unit: Option<f64>,
+    /// The array of a VTK file, where it must be named.
+    pub array: Option<String>,
+    /// The load factor.
+    pub factor: f64,
+    /// The time of a step, where it is not the load factor.
+    pub time: Option<f64>,
+    /// Columns of a table that are passed over.
+    pub ignored_columns: Vec<String>,
+}
+
+/// A displacement field at scattered points.
+#[derive(Clone, Debug)]
+pub struct Points {
+    /// Places in mm.
+    pub places: Vec<[f64; 2]>,
+    /// ux, uy of point after point in mm.
+    pub displacement: Vec<f64>,
+}
+
 /// A column that chooses rows, the scale of its numbers, and the number that is chosen.
 type Choice = (usize, f64, f64);
 
@@ -41,7 +64,7 @@ type Choice = (usize, f64, f64);
 ///
 /// # Errors
 /// [`Error::Input`] with what is wrong.
-pub fn read(table: &Table, settings: &ImportSettings) -> Result<Imported, Error> {
+pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
     let head = columns::common_unit(table, &LENGTHS);
     let units = Units {
         given: settings.unit.or(Some(1.0)),
@@ -68,7 +91,7 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Imported, Error>
             row[column] * unit
         })
     };
-    Ok(Imported::AtPoints {
+    Ok(Points {
         places: rows.iter().map(|row| pair(row, 0)).collect(),
         displacement: rows.iter().flat_map(|row| pair(row, 2)).collect(),
     })

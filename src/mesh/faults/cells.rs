@@ -2,9 +2,11 @@
 
 use std::collections::HashMap;
 
-use super::Found;
+use super::finding::Finding;
 use crate::error::Diagnostic;
-use crate::mesh::{CellShape, Mesh, determinant};
+use crate::mesh::cell_shape::CellShape;
+use crate::mesh::cells::Mesh;
+use crate::mesh::geometry::determinant;
 
 /// A Jacobian over the square of a cell's size that is none.
 const NOTHING: f64 = 1e-9;
@@ -16,7 +18,7 @@ const LONGEST: f64 = 50.0;
 /// Cells without area and cells that are turned inside out somewhere.
 pub fn without_sense(mesh: &Mesh) -> Vec<Diagnostic> {
     let mut samples: HashMap<CellShape, Vec<Vec<[f64; 2]>>> = HashMap::new();
-    let (mut empty, mut inverted) = (Found::default(), Found::default());
+    let (mut empty, mut inverted) = (Finding::default(), Finding::default());
     for cell in 0..mesh.cell_count() {
         let shape = mesh.shape(cell);
         let samples = samples.entry(shape).or_insert_with(|| {
@@ -73,7 +75,7 @@ pub fn given_twice(mesh: &Mesh) -> Vec<[usize; 2]> {
 
 /// The fault of cells given twice.
 pub fn twice_told(mesh: &Mesh, twice: &[[usize; 2]]) -> Option<Diagnostic> {
-    Found::of(twice.iter().map(|[_, again]| mesh.centre(*again))).error(
+    Finding::of(twice.iter().map(|[_, again]| mesh.centre(*again))).error(
         ["cell is given twice", "cells are given twice"],
         "write each cell once; in Gmsh a surface must belong to one physical group, or none be saved twice (Coherence)",
     )
@@ -81,7 +83,7 @@ pub fn twice_told(mesh: &Mesh, twice: &[[usize; 2]]) -> Option<Diagnostic> {
 
 /// A warning of cells with very small or large angles, or very long sides.
 pub fn badly_shaped(mesh: &Mesh) -> Option<Diagnostic> {
-    let (mut bad, mut worst) = (Found::default(), 90.0_f64);
+    let (mut bad, mut worst) = (Finding::default(), 90.0_f64);
     for cell in 0..mesh.cell_count() {
         let (angle, longest) = shape_of(mesh, cell);
         if angle < SMALLEST_ANGLE || longest > LONGEST {

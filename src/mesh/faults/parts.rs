@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::finding::{Allowed, Finding, at};
 use super::sides::Sides;
-use super::{Allowed, Found, at};
 use crate::error::Diagnostic;
 
 /// Sets of numbers that are joined step by step.
@@ -55,8 +55,8 @@ pub fn parts(sides: &Sides, allowed: Allowed) -> Option<Diagnostic> {
     }
     parts.sort_by_key(|(cells, _)| std::cmp::Reverse(*cells));
     let told = |(cells, place): &(usize, [f64; 2])| format!("{cells} cells near {} mm", at(*place));
-    let shown: Vec<String> = parts.iter().take(Found::SHOWN).map(told).collect();
-    let more = match parts.len().saturating_sub(Found::SHOWN) {
+    let shown: Vec<String> = parts.iter().take(Finding::SHOWN).map(told).collect();
+    let more = match parts.len().saturating_sub(Finding::SHOWN) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
@@ -78,7 +78,7 @@ pub fn hinges(sides: &Sides, allowed: Allowed) -> Option<Diagnostic> {
     let mut once = BTreeSet::new();
     let begins = sides.boundary().into_iter().map(|side| side.ends()[0]);
     let twice: BTreeSet<usize> = begins.filter(|node| !once.insert(*node)).collect();
-    Found::of(twice.into_iter().map(|node| sides.mesh.nodes[node])).error(
+    Finding::of(twice.into_iter().map(|node| sides.mesh.nodes[node])).error(
         [
             "node alone joins cells on both sides of it: a hinge",
             "nodes alone join cells on both sides of them: hinges",

@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::Found;
+use super::finding::Finding;
 use crate::error::Diagnostic;
-use crate::mesh::Mesh;
+use crate::mesh::cells::Mesh;
 use crate::mesh::refine::key;
 
 /// A side of a cell.
@@ -81,7 +81,7 @@ impl<'a> Sides<'a> {
         let overlapping = self.meeting().filter(|sides| {
             sides.len() > 2 || (sides.len() == 2 && sides[0].forward == sides[1].forward)
         });
-        let overlapping = Found::of(overlapping.map(|sides| self.place(sides[0]))).error(
+        let overlapping = Finding::of(overlapping.map(|sides| self.place(sides[0]))).error(
             [
                 "side has cells that overlap: two on the same side of it",
                 "sides have cells that overlap: two on the same side of each",
@@ -91,7 +91,7 @@ impl<'a> Sides<'a> {
         let apart = self
             .meeting()
             .filter(|sides| sides.len() == 2 && sides[0].middle != sides[1].middle);
-        let apart = Found::of(apart.map(|sides| self.place(sides[0]))).error(
+        let apart = Finding::of(apart.map(|sides| self.place(sides[0]))).error(
             [
                 "side has another node in its middle for each of its two cells",
                 "sides have another node in their middle for each of their two cells",

@@ -1,7 +1,8 @@
 //! Meshes with one fault each, and sound ones.
 
 use super::*;
-use crate::mesh::{CellShape, Shape};
+use crate::mesh::cell_shape::CellShape;
+use crate::mesh::shapes::Shape;
 
 /// A strip of 4 × 2 squares of 1 mm, by its nodes and cells.
 fn strip() -> (Vec<[f64; 2]>, Vec<Vec<usize>>) {

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use super::finding::{Allowed, Finding};
 use super::parts::Joined;
 use super::sides::{Side, Sides};
-use super::{Allowed, Found};
 use crate::error::Diagnostic;
-use crate::mesh::Mesh;
+use crate::mesh::cells::Mesh;
 
 /// What is nearer than this part of the shortest edge around is at the same place.
 const NEAR: f64 = 1e-3;
@@ -38,7 +38,7 @@ pub fn faults(sides: &Sides, allowed: Allowed) -> Vec<Diagnostic> {
         found.extend(seam.or_else(|| boundary.doubled_alone(&doubled)));
     }
     let places = hanging.iter().map(|node| sides.mesh.nodes[*node]);
-    found.extend(Found::of(places).error(
+    found.extend(Finding::of(places).error(
         [
             "node hangs on a cell's side without being its node",
             "nodes hang on a cell's side without being its nodes",
@@ -207,7 +207,7 @@ impl<'a> Boundary<'a> {
                 twice.push(self.sides.place(*side));
             }
         }
-        Found::of(twice).error(
+        Finding::of(twice).error(
             [
                 "side lies on another cell's without sharing its nodes: a seam of doubled nodes",
                 "sides lie on another cell's without sharing its nodes: a seam of doubled nodes",
@@ -217,7 +217,7 @@ impl<'a> Boundary<'a> {
     }
 
     fn doubled_alone(&self, doubled: &BTreeSet<usize>) -> Option<Diagnostic> {
-        Found::of(doubled.iter().map(|node| self.node(*node))).error(
+        Finding::of(doubled.iter().map(|node| self.node(*node))).error(
             [
                 "node lies where another one lies",
                 "nodes lie where others lie",
@@ -234,7 +234,7 @@ const SEAM: &str = "join them with merge_nodes = \"1e-6 mm\" in [specimen] (--me
 pub fn overlaps(mesh: &Mesh) -> Option<Diagnostic> {
     let corners = (0..mesh.nodes.len()).map(|node| mesh.nodes[node]);
     let centres = (0..mesh.cell_count()).map(|cell| mesh.place(cell, mesh.shape(cell).centre()));
-    let mut found = Found::default();
+    let mut found = Finding::default();
     for (index, place) in corners.chain(centres).enumerate() {
         let own = index.checked_sub(mesh.nodes.len());
         if mesh.holds_inside(place, INSIDE, |cell| {

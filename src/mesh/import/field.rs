@@ -1,10 +1,11 @@
 //! Displacement fields of other programs on their own meshes.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::{Raw, frd, gmsh, pvd, read_text, vtk};
-use crate::mesh::Mesh;
+use super::raw::{Raw, Step, read_text};
+use super::{frd, gmsh, pvd, vtk};
+use crate::mesh::cells::Mesh;
 use crate::units::{self, Dimension};
 
 /// A displacement field and its mesh.
@@ -42,12 +43,6 @@ pub struct ImportedStep {
 
 /// The time of a step may differ by so much of it from the one that is wanted.
 const NEAR: f64 = 1e-4;
-
-/// Displacements by the file's own number of the node.
-pub type Displacements = HashMap<u64, [f64; 2]>;
-
-/// A step of a field: its time, where the file says it, and its displacements.
-pub type Step = (Option<f64>, Displacements);
 
 /// Reads a field from VTK (`.vtu`, `.vtk`, `.pvd`), CalculiX (`.frd`) or Gmsh (`.msh` with `$NodeData`); `unit` is
 /// the length of the file's unit in mm. Of VTK's and Gmsh's arrays the one of the name `array` is taken; without a

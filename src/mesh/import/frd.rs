@@ -15,8 +15,8 @@
 
 use std::collections::HashMap;
 
-use super::Raw;
-use crate::mesh::CellShape;
+use super::raw::Raw;
+use crate::mesh::cell_shape::CellShape;
 
 /// A file, before a step is chosen.
 #[derive(Default)]

@@ -3,9 +3,8 @@
 use std::collections::HashMap;
 use std::str::{FromStr, SplitWhitespace};
 
-use super::field::{Displacements, Step};
-use super::{BINARY, Raw};
-use crate::mesh::CellShape;
+use super::raw::{BINARY, Displacements, Raw, Step};
+use crate::mesh::cell_shape::CellShape;
 
 /// Reads the text of a file.
 ///

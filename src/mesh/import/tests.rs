@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::PathBuf;
 
+use super::raw::counter_clockwise;
 use super::*;
+use crate::mesh::cell_shape::CellShape;
 
 fn with(name: &str, text: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();

@@ -20,7 +20,7 @@ use flate2::read::ZlibDecoder;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
-use super::vtk::UnstructuredGrid;
+use super::unstructured::{CUT_OFF, UnstructuredGrid};
 
 /// Points and cells that are read at most.
 const MOST: usize = 5_000_000;
@@ -347,8 +347,6 @@ impl<'a> XmlFile<'a> {
         }
     }
 }
-
-pub(super) const CUT_OFF: &str = "has a list of cells that is cut off";
 
 /// Bytes of a number of a type.
 fn width(kind: &str) -> Option<usize> {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::polygon::{self, area};
+use crate::mesh::geometry::{distance, polygon_area};
 use crate::mesh::triangulate::delaunay;
 use crate::statistics::median;
 
@@ -41,14 +41,14 @@ fn median_edge(points: &[[f64; 2]], triangles: &[[usize; 3]]) -> f64 {
         .flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
     // An edge between two triangles is counted once.
     let edges = edges.filter(|[a, b]| a < b);
-    median(edges.map(|[a, b]| polygon::length(points[*a], points[*b])))
+    median(edges.map(|[a, b]| distance(points[*a], points[*b])))
 }
 
 /// The radius of the circle through the corners of a triangle.
 fn radius(points: &[[f64; 2]], triangle: &[usize; 3]) -> f64 {
     let [a, b, c] = triangle.map(|point| points[point]);
     let twice = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-    let sides = [(a, b), (b, c), (c, a)].map(|(a, b)| polygon::length(a, b));
+    let sides = [(a, b), (b, c), (c, a)].map(|(a, b)| distance(a, b));
     sides.iter().product::<f64>() / (2.0 * twice.abs())
 }
 
@@ -102,7 +102,7 @@ fn largest_part(
         part[start] = number;
         while let Some(triangle) = open.pop() {
             let [a, b, c] = triangles[triangle];
-            sum += area(&[points[a], points[b], points[c]]);
+            sum += polygon_area(&[points[a], points[b], points[c]]);
             for edge in [[b, a], [c, b], [a, c]] {
                 if let Some(next) = by_edge.get(&edge)
                     && inside[*next]

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::polygon::Polygon;
+use crate::mesh::geometry::bounding_box;
 
 /// Lattice points are no nearer than so many sizes to a point of the lines.
 const NEAR: f64 = 0.7;
@@ -21,13 +22,7 @@ pub fn inside(lines: &[Polygon], on_lines: &[[f64; 2]], size: f64) -> Vec<[f64; 
         let mut points = around.filter_map(|key| squares.get(&key)).flatten();
         points.any(|p| (p[0] - point[0]).hypot(p[1] - point[1]) < NEAR * size)
     };
-    let heights = on_lines.iter().map(|point| point[1]);
-    let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| {
-        (low.min(y), high.max(y))
-    });
-    let left = on_lines
-        .iter()
-        .fold(f64::INFINITY, |least, point| least.min(point[0]));
+    let [[left, low], [_, high]] = bounding_box(on_lines.iter().copied());
     // Whole rows between the lowest and the highest point.
     let rows = ((high - low) / (0.75f64.sqrt() * size)).round().max(1.0);
     let step = (high - low) / rows;

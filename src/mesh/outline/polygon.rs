@@ -1,5 +1,7 @@
 //! Closed lines of straight edges.
 
+use crate::mesh::geometry::{distance as length, polygon_area};
+
 /// A turn of more than this is a corner: 40°.
 const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
@@ -30,25 +32,12 @@ impl<'a> Polygon<'a> {
     }
 }
 
-/// The area inside, positive where the line runs counter-clockwise.
-pub fn area(line: &[[f64; 2]]) -> f64 {
-    let twice = Polygon(line)
-        .edges()
-        .map(|[a, b]| a[0] * b[1] - b[0] * a[1]);
-    twice.sum::<f64>() / 2.0
-}
-
 /// Whether all points lie on one straight line.
 pub fn is_straight(line: &[[f64; 2]]) -> bool {
     let mut corners = line
         .windows(2)
-        .map(|pair| area(&[line[0], pair[0], pair[1]]));
+        .map(|pair| polygon_area(&[line[0], pair[0], pair[1]]));
     corners.all(|area| area == 0.0)
-}
-
-/// The distance of two points.
-pub fn length(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
 /// The distance of a point from an edge.

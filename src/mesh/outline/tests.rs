@@ -77,7 +77,7 @@ fn gaps_are_closed_and_holes_are_found() {
         .unwrap()
         .outline;
     assert_eq!(hole.holes.len(), 1);
-    let inside = -area(&hole.holes[0]);
+    let inside = -polygon_area(&hole.holes[0]);
     // Between the circle and the points around it.
     assert!(inside > 144.0 * PI && inside < 17.0 * 17.0 * PI, "{inside}");
     let mesh = hole.mesh(4.0, CellShape::Triangle6);

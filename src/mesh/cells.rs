@@ -1,0 +1,174 @@
+//! The mesh itself: nodes, cells, named groups and the boundary.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
+
+use super::buckets::Buckets;
+use super::cell_shape::CellShape;
+use super::geometry::bounding_box;
+use super::grid::Grid;
+
+/// A named part of the boundary, or a set of nodes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// Its nodes, ascending.
+    pub nodes: Vec<usize>,
+    /// Its edges, if it is a part of the boundary: both ends, then the middle where there is one, with the
+    /// specimen to the left.
+    pub edges: Vec<Vec<usize>>,
+}
+
+/// A flat mesh of triangles and quadrilaterals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Reference coordinates in mm.
+    pub nodes: Vec<[f64; 2]>,
+    shapes: Vec<CellShape>,
+    starts: Vec<usize>,
+    connectivity: Vec<usize>,
+    groups: BTreeMap<String, Group>,
+    pub(super) grid: Option<Grid>,
+    pub(super) buckets: OnceLock<Buckets>,
+    boundary: OnceLock<Vec<Vec<usize>>>,
+}
+
+impl Mesh {
+    /// A mesh of cells with their nodes in the order of [`CellShape::reference_nodes`].
+    ///
+    /// # Panics
+    /// When a cell has another number of nodes than its kind.
+    pub fn new(
+        nodes: Vec<[f64; 2]>,
+        cells: impl IntoIterator<Item = (CellShape, Vec<usize>)>,
+    ) -> Self {
+        let (mut shapes, mut starts, mut connectivity) = (Vec::new(), vec![0], Vec::new());
+        for (shape, nodes) in cells {
+            assert_eq!(nodes.len(), shape.nodes(), "nodes of a {shape:?}");
+            shapes.push(shape);
+            connectivity.extend(nodes);
+            starts.push(connectivity.len());
+        }
+        Self {
+            nodes,
+            shapes,
+            starts,
+            connectivity,
+            groups: BTreeMap::new(),
+            grid: None,
+            buckets: OnceLock::new(),
+            boundary: OnceLock::new(),
+        }
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// The kind of a cell.
+    pub fn shape(&self, cell: usize) -> CellShape {
+        self.shapes[cell]
+    }
+
+    /// The names of the finite elements that the cells are: `Q2`, or `T2 and Q2`.
+    pub fn element_names(&self) -> String {
+        let kinds = CellShape::NAMES.iter();
+        let used = kinds.filter(|(_, kind)| self.shapes.contains(kind));
+        let names: Vec<_> = used.map(|(name, _)| *name).collect();
+        names.join(" and ")
+    }
+
+    /// The degree of its cells, the higher one where there are several.
+    pub fn degree(&self) -> usize {
+        let degrees = self.shapes.iter().map(|shape| shape.degree());
+        degrees.max().unwrap_or(1)
+    }
+
+    /// The nodes of a cell, in the order of [`CellShape::reference_nodes`].
+    pub fn cell(&self, cell: usize) -> &[usize] {
+        &self.connectivity[self.starts[cell]..self.starts[cell + 1]]
+    }
+
+    /// The groups by name.
+    pub fn groups(&self) -> &BTreeMap<String, Group> {
+        &self.groups
+    }
+
+    /// Names a group of nodes; the boundary edges that lie within it belong to it.
+    pub fn name_nodes(&mut self, name: &str, nodes: &BTreeSet<usize>) {
+        let within = |edge: &&Vec<usize>| edge.iter().all(|node| nodes.contains(node));
+        let edges = self.boundary().iter().filter(within).cloned().collect();
+        self.put_group(name, nodes.iter().copied().collect(), edges);
+    }
+
+    /// Names the part of the boundary whose edges have all nodes where `inside` holds.
+    pub fn name_boundary(&mut self, name: &str, inside: impl Fn([f64; 2]) -> bool) {
+        let within = |edge: &&Vec<usize>| edge.iter().all(|node| inside(self.nodes[*node]));
+        let edges = self.boundary().iter().filter(within).cloned().collect();
+        self.name_edges(name, edges);
+    }
+
+    /// Names a group of boundary edges.
+    pub fn name_edges(&mut self, name: &str, edges: Vec<Vec<usize>>) {
+        self.put_group(name, edges.iter().flatten().copied().collect(), edges);
+    }
+
+    /// Names a group of nodes and edges as they are.
+    pub(super) fn put_group(&mut self, name: &str, mut nodes: Vec<usize>, edges: Vec<Vec<usize>>) {
+        nodes.sort_unstable();
+        nodes.dedup();
+        self.groups.insert(name.to_owned(), Group { nodes, edges });
+    }
+
+    /// The edges that belong to one cell alone, each with the specimen to its left.
+    pub fn boundary(&self) -> &[Vec<usize>] {
+        self.boundary.get_or_init(|| self.lonely_edges())
+    }
+
+    fn lonely_edges(&self) -> Vec<Vec<usize>> {
+        let mut edges: BTreeMap<[usize; 2], (usize, Vec<usize>)> = BTreeMap::new();
+        for cell in 0..self.cell_count() {
+            let nodes = self.cell(cell);
+            for local in self.shape(cell).edges() {
+                let edge: Vec<usize> = local.iter().map(|node| nodes[*node]).collect();
+                let key = [edge[0].min(edge[1]), edge[0].max(edge[1])];
+                edges.entry(key).or_insert((0, edge)).0 += 1;
+            }
+        }
+        let lonely = edges.into_values().filter(|(cells, _)| *cells == 1);
+        lonely.map(|(_, edge)| edge).collect()
+    }
+
+    /// Centre of a cell in mm: the mean of its corners.
+    pub fn centre(&self, cell: usize) -> [f64; 2] {
+        let corners = &self.cell(cell)[..self.shape(cell).corners()];
+        [0, 1].map(|axis| {
+            let sum: f64 = corners.iter().map(|node| self.nodes[*node][axis]).sum();
+            sum / corners.len() as f64
+        })
+    }
+
+    /// Lower left and upper right corner of the box around all nodes, in mm.
+    pub fn bounding_box(&self) -> [[f64; 2]; 2] {
+        bounding_box(self.nodes.iter().copied())
+    }
+
+    /// Middle of the box around all nodes, in mm.
+    pub fn middle(&self) -> [f64; 2] {
+        let [low, high] = self.bounding_box();
+        [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]))
+    }
+
+    /// `node 12 (35.0, 7.3) mm along x`, for messages.
+    pub fn describe_unknown(&self, unknown: usize) -> String {
+        let [x, y] = self.nodes[unknown / 2];
+        let axis = ["x", "y"][unknown % 2];
+        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
+    }
+
+    /// `cell 80 near (150.0, 0.0) mm`, for messages.
+    pub fn describe_cell(&self, cell: usize) -> String {
+        let [x, y] = self.centre(cell);
+        format!("cell {cell} near ({x:.1}, {y:.1}) mm")
+    }
+}

@@ -1,0 +1,100 @@
+//! What is found of a kind of fault, and what is allowed.
+
+use crate::error::Diagnostic;
+
+/// What looks like a fault but may be meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Allowed {
+    /// Slits: neighbouring cells with nodes of their own at the same places.
+    pub seams: bool,
+    /// Parts that are not attached to each other.
+    pub parts: bool,
+    /// Cells or parts that are joined in a single node.
+    pub hinges: bool,
+    /// Straight edges that turn as those of a curve.
+    pub polygons: bool,
+}
+
+impl Allowed {
+    /// The names that studies and options use.
+    pub const NAMES: [&'static str; 4] = ["seams", "parts", "hinges", "polygons"];
+
+    /// Those of some names; the first name that is not known otherwise.
+    ///
+    /// # Errors
+    /// The unknown name.
+    pub fn of_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
+        let mut allowed = Self::default();
+        for name in names {
+            match name {
+                "seams" => allowed.seams = true,
+                "parts" => allowed.parts = true,
+                "hinges" => allowed.hinges = true,
+                "polygons" => allowed.polygons = true,
+                other => return Err(other.to_owned()),
+            }
+        }
+        Ok(allowed)
+    }
+}
+
+/// How many things of a kind were found, and the places of the first ones.
+#[derive(Default)]
+pub struct Finding {
+    pub count: usize,
+    places: Vec<[f64; 2]>,
+}
+
+impl Finding {
+    pub const SHOWN: usize = 3;
+
+    pub fn add(&mut self, place: [f64; 2]) {
+        self.count += 1;
+        if self.places.len() < Self::SHOWN {
+            self.places.push(place);
+        }
+    }
+
+    pub fn of(places: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let mut found = Self::default();
+        places.into_iter().for_each(|place| found.add(place));
+        found
+    }
+
+    /// `3 cells have no area, near (1, 2), (2, 2) and (3, 2) mm`, as an error; `None` where nothing was found.
+    pub fn error(&self, [one, many]: [&str; 2], remedy: &str) -> Option<Diagnostic> {
+        let what = match self.count {
+            0 => return None,
+            1 => format!("one {one}"),
+            count => format!("{count} {many}"),
+        };
+        let message = format!("{what}, near {}", self.near());
+        Some(Diagnostic::error("", message).hint(remedy))
+    }
+
+    pub fn near(&self) -> String {
+        let places: Vec<String> = self.places.iter().map(|place| at(*place)).collect();
+        let beyond = match self.count - self.places.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        format!("{} mm{beyond}", places.join(", "))
+    }
+}
+
+/// A place with five digits.
+pub fn at([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", digits(x), digits(y))
+}
+
+fn digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return "0".into();
+    }
+    let place = 4 - value.abs().log10().floor() as i32;
+    let text = format!("{value:.*}", place.clamp(0, 12) as usize);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}

@@ -1,0 +1,160 @@
+//! The maps of cells, and fields between the nodes.
+
+use super::cell_shape::GAUSS_3;
+use super::cells::Mesh;
+use super::geometry::determinant;
+
+impl Mesh {
+    /// The area of all cells in mm².
+    pub fn area(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let points = self.shape(cell).product_quadrature(&GAUSS_3);
+            let parts = points
+                .into_iter()
+                .map(|(point, weight)| weight * self.gradients(cell, point).1);
+            parts.sum::<f64>()
+        };
+        (0..self.cell_count()).map(of_cell).sum()
+    }
+
+    /// The area in mm² that belongs to each node: that of a cell to its corners in equal parts.
+    pub fn corner_areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.nodes.len()];
+        for cell in 0..self.cell_count() {
+            let shape = self.shape(cell);
+            let rule = shape.quadrature().into_iter();
+            let area: f64 = rule
+                .map(|(point, weight)| weight * self.gradients(cell, point).1)
+                .sum();
+            for corner in &self.cell(cell)[..shape.corners()] {
+                areas[*corner] += area / shape.corners() as f64;
+            }
+        }
+        areas
+    }
+
+    /// The place in mm of a reference point of a cell.
+    pub fn place(&self, cell: usize, local: [f64; 2]) -> [f64; 2] {
+        let values = self.shape(cell).values(local);
+        [0, 1].map(|axis| {
+            let nodes = self.cell(cell).iter().zip(&values);
+            nodes
+                .map(|(node, value)| value * self.nodes[*node][axis])
+                .sum()
+        })
+    }
+
+    /// Displacement interpolated at a point; `displacement` holds ux, uy of node after node.
+    pub fn displacement_at(&self, displacement: &[f64], point: [f64; 2]) -> [f64; 2] {
+        let (cell, local) = self.locate(point);
+        let values = self.shape(cell).values(local);
+        let component = |axis: usize| {
+            let nodes = self.cell(cell).iter().zip(&values);
+            nodes
+                .map(|(node, value)| value * displacement[2 * node + axis])
+                .sum()
+        };
+        [component(0), component(1)]
+    }
+
+    /// Displacement interpolated at all nodes of another mesh of the specimen.
+    pub fn displacement_on(&self, displacement: &[f64], other: &Self) -> Vec<f64> {
+        let nodes = other.nodes.iter();
+        nodes
+            .flat_map(|node| self.displacement_at(displacement, *node))
+            .collect()
+    }
+
+    /// Gradients ∂Nₐ/∂X of a cell's shape functions in 1/mm, and the Jacobian of its map in mm², at a reference
+    /// point.
+    pub fn gradients(&self, cell: usize, local: [f64; 2]) -> (Vec<[f64; 2]>, f64) {
+        let derivatives = self.shape(cell).derivatives(local);
+        let map = self.map(cell, &derivatives);
+        let jacobian = determinant(&map);
+        let transform = |d: &[f64; 2]| {
+            [
+                (d[0] * map[1][1] - d[1] * map[1][0]) / jacobian,
+                (d[1] * map[0][0] - d[0] * map[0][1]) / jacobian,
+            ]
+        };
+        (derivatives.iter().map(transform).collect(), jacobian)
+    }
+
+    /// ∂Xᵢ/∂ξⱼ of a cell.
+    pub(super) fn map(&self, cell: usize, derivatives: &[[f64; 2]]) -> [[f64; 2]; 2] {
+        let mut map = [[0.0; 2]; 2];
+        for (node, derivative) in self.cell(cell).iter().zip(derivatives) {
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                map[i][j] += self.nodes[*node][i] * derivative[j];
+            }
+        }
+        map
+    }
+
+    /// Displacement gradient H₁₁, H₁₂, H₂₁, H₂₂ at a reference point of a cell.
+    pub fn gradient_at(&self, displacement: &[f64], cell: usize, local: [f64; 2]) -> [f64; 4] {
+        let (gradients, _) = self.gradients(cell, local);
+        let mut gradient = [0.0; 4];
+        for (node, derivative) in self.cell(cell).iter().zip(gradients) {
+            for (axis, direction) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                gradient[2 * axis + direction] +=
+                    displacement[2 * node + axis] * derivative[direction];
+            }
+        }
+        gradient
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::cell_shape::CellShape;
+    use crate::mesh::grid::Grid;
+
+    /// Nodes of a graded plate's mesh are found in it, wherever it lies, when it is a mesh of any cells.
+    #[test]
+    fn nodes_of_graded_cells_are_found_far_from_the_origin() {
+        for (grading, far) in [(1.0, 0.0), (2.0, 0.0), (2.0, 1e3), (3.0, 1e3), (1.0, 1e5)] {
+            let grid = Grid {
+                size: [50.0, 150.0],
+                cells: [8, 20],
+                grading,
+            };
+            let plate = Mesh::of_grid(grid, CellShape::Quad9);
+            let nodes = plate
+                .nodes
+                .iter()
+                .map(|[x, y]| [x + far, y - far])
+                .collect();
+            let cells =
+                (0..plate.cell_count()).map(|cell| (CellShape::Quad9, plate.cell(cell).to_vec()));
+            let mesh = Mesh::new(nodes, cells);
+            // The map of the cells at the sides is singular there where they are graded by two.
+            let on_top = (0..=37).map(|k| [50.0 * f64::from(k) / 37.0 + far, 150.0 - far]);
+            for place in mesh.nodes.iter().copied().chain(on_top) {
+                let outside = mesh.outside(place);
+                assert!(outside < 1e-5, "{grading} {far} {place:?}: {outside}");
+            }
+        }
+    }
+
+    #[test]
+    fn quadratic_fields_are_interpolated_exactly_by_nine_nodes() {
+        let mesh = Mesh::plate([3.0, 2.0], [3, 2], CellShape::Quad9);
+        let field = |[x, y]: [f64; 2]| [x * x - 2.0 * x * y, 0.5 * y * y + x];
+        let u: Vec<f64> = mesh.nodes.iter().flat_map(|node| field(*node)).collect();
+        let point = [1.3, 0.7];
+        let (found, exact) = (mesh.displacement_at(&u, point), field(point));
+        assert!((found[0] - exact[0]).abs() < 1e-14 && (found[1] - exact[1]).abs() < 1e-14);
+        let (cell, local) = mesh.locate(point);
+        let gradient = mesh.gradient_at(&u, cell, local);
+        let expected = [2.0 * 1.3 - 2.0 * 0.7, -2.6, 1.0, 0.7];
+        assert!(
+            gradient
+                .iter()
+                .zip(expected)
+                .all(|(g, e)| (g - e).abs() < 1e-13),
+            "{gradient:?}"
+        );
+    }
+}
