@@ -30,6 +30,7 @@ mod compare;
 mod containment;
 mod correct;
 mod export;
+mod fit;
 mod fit_message;
 mod identify;
 mod materials;

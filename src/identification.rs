@@ -24,9 +24,9 @@ use nalgebra::DVector;
 use crate::error::Error;
 use crate::statistics::{BSpline, Ends};
 use band::reach;
-use joint::{Joint, Linearised, State};
-use penalty::{Exponents, Penalised};
-use smoothing::{Sampled, Smoothed, nearest, smooth};
+use joint::{Joint, JointEquations, State};
+use penalty::{Exponents, PenalisedFit};
+use smoothing::{SignalSpline, SplineValues, nearest, smooth};
 
 mod band;
 mod basis;
@@ -36,6 +36,8 @@ mod penalty;
 mod recording;
 mod sample;
 mod smoothing;
+mod types;
+mod warnings;
 
 pub use band::Function;
 pub use basis::{Basis, Form, Shape, UnknownForm};
@@ -43,75 +45,11 @@ pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;
 pub use sample::Sample;
+pub use types::{FittedMotion, Identification, IdentificationSettings};
+use warnings::warnings;
 
 #[cfg(test)]
 mod tests;
-
-/// What is looked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IdentificationSettings {
-    /// The forms of K(·) and D(·).
-    pub forms: [Form; 2],
-    /// What is known of their shapes.
-    pub shapes: [Shape; 2],
-    /// What D(·) is a function of.
-    pub argument: Argument,
-}
-
-impl Identification {
-    /// The functions with their symbols and units.
-    pub fn functions(&self) -> [(&'static str, &'static str, &Function); 2] {
-        [
-            ("K", "N/mm", &self.stiffness),
-            ("D", "N·s/mm", &self.damping),
-        ]
-    }
-}
-
-impl Default for IdentificationSettings {
-    /// Free splines of the extension.
-    fn default() -> Self {
-        Self {
-            forms: [Form::SPLINE; 2],
-            shapes: [Shape::Free; 2],
-            argument: Argument::Extension,
-        }
-    }
-}
-
-/// The motion that was found, at the instants of the recording.
-#[derive(Clone, Debug, Default)]
-pub struct FoundMotion {
-    /// x in mm.
-    pub extension: Vec<f64>,
-    /// ẋ in mm/s.
-    pub rate: Vec<f64>,
-    /// ẍ in mm/s².
-    pub acceleration: Vec<f64>,
-    /// m ẍ + D ẋ + K x in N.
-    pub force: Vec<f64>,
-}
-
-/// What was found.
-#[derive(Clone, Debug)]
-pub struct Identification {
-    /// What was looked for.
-    pub settings: IdentificationSettings,
-    /// K(·) in N/mm.
-    pub stiffness: Function,
-    /// D(·) in N·s/mm.
-    pub damping: Function,
-    /// The motion.
-    pub motion: FoundMotion,
-    /// Standard deviations of extension in mm and force in N, from either signal alone.
-    pub noise: [f64; 2],
-    /// ‖r‖²/(N − p) over these: one where force, motion and forms fit together.
-    pub misfit: f64,
-    /// N − p.
-    pub freedom: f64,
-    /// What deserves attention.
-    pub warnings: Vec<String>,
-}
 
 /// Gauss–Newton steps allowed, and those at which the penalties are still chosen.
 const MOST_STEPS: usize = 60;
@@ -174,7 +112,7 @@ fn undetermined(what: &str) -> Error {
 fn begin<'a>(
     recording: &'a Recording,
     settings: IdentificationSettings,
-    (extension, force): &(Smoothed, Smoothed),
+    (extension, force): &(SignalSpline, SignalSpline),
 ) -> Option<(Joint<'a>, State)> {
     let times = &recording.times;
     let span = [times[0], times[times.len() - 1]];
@@ -188,7 +126,7 @@ fn begin<'a>(
             Err(_) => return None,
         }
     };
-    let orders = [0, 1, 2].map(|order| Sampled::new(&spline, times, order));
+    let orders = [0, 1, 2].map(|order| SplineValues::new(&spline, times, order));
     let range = |order: usize| {
         let values = (0..times.len()).map(|i| orders[order].value(i, &motion));
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
@@ -245,7 +183,7 @@ impl Fit<'_> {
     }
 
     /// Gauss–Newton steps until nothing moves; the functions with the motion as it is come first.
-    fn improve(&mut self) -> Result<Penalised, Error> {
+    fn improve(&mut self) -> Result<PenalisedFit, Error> {
         let unknown = || undetermined("K(·) and D(·)");
         let functions = &self.joint.functions;
         let fixed = self.joint.with_motion_fixed(&self.state);
@@ -278,7 +216,7 @@ impl Fit<'_> {
     }
 
     /// Takes the longest share of a step that lowers the penalised sum of squares, and returns that sum.
-    fn advance(&mut self, linearised: &Linearised, found: &Penalised) -> f64 {
+    fn advance(&mut self, linearised: &JointEquations, found: &PenalisedFit) -> f64 {
         const HALVINGS: i32 = 12;
         let functions = &found.coefficients - &self.state.functions;
         let motion = linearised.motion_step(&functions);
@@ -300,7 +238,7 @@ impl Fit<'_> {
         before
     }
 
-    fn merit(&self, state: &State, found: &Penalised) -> f64 {
+    fn merit(&self, state: &State, found: &PenalisedFit) -> f64 {
         let penalty = state.functions.dot(&(&found.penalty * &state.functions));
         self.joint.sum_of_squares(state) + penalty
     }
@@ -308,8 +246,8 @@ impl Fit<'_> {
     fn conclude(
         &self,
         settings: IdentificationSettings,
-        found: &Penalised,
-        signals: &(Smoothed, Smoothed),
+        found: &PenalisedFit,
+        signals: &(SignalSpline, SignalSpline),
     ) -> Option<Identification> {
         let joint = self.joint;
         let used = self.state.motion.len() as f64 + found.degrees.iter().sum::<f64>();
@@ -347,8 +285,8 @@ impl Fit<'_> {
         Some(identification)
     }
 
-    fn motion(&self) -> FoundMotion {
-        let mut motion = FoundMotion::default();
+    fn motion(&self) -> FittedMotion {
+        let mut motion = FittedMotion::default();
         for instant in 0..self.joint.recording.times.len() {
             let at = self.joint.instant(instant, &self.state);
             motion.extension.push(at.extension);
@@ -358,43 +296,4 @@ impl Fit<'_> {
         }
         motion
     }
-}
-
-fn warnings(
-    found: &Identification,
-    recording: &Recording,
-    signals: &(Smoothed, Smoothed),
-) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if signals.0.coarse || signals.1.coarse {
-        warnings
-            .push("the motion is sampled too coarsely for its noise to be told from it".to_owned());
-    }
-    let excess = (found.misfit - 1.0) / (2.0 / found.freedom).sqrt();
-    if excess > 4.0 {
-        warnings.push(format!(
-            "force and motion do not fit together: what is left is {:.2} times the noise; the mass, the length at rest or \
-             the forms are wrong, or there is more than one spring and one dashpot",
-            found.misfit.sqrt()
-        ));
-    }
-    for (name, _, function) in found.functions() {
-        let estimates: Vec<_> = function
-            .places(41)
-            .into_iter()
-            .map(|x| function.at(x))
-            .collect();
-        if estimates.iter().all(|estimate| estimate.interval[0] <= 0.0) {
-            warnings.push(format!("the recording does not tell {name}(·) from zero"));
-        }
-        if estimates.iter().any(|estimate| estimate.interval[1] < 0.0) {
-            warnings.push(format!(
-                "{name}(·) is negative somewhere: no passive spring does that"
-            ));
-        }
-    }
-    if recording.mass == 0.0 {
-        warnings.push("no mass is stated: inertia is left out".to_owned());
-    }
-    warnings
 }

@@ -178,20 +178,18 @@ fn take_curve(
     settings: &FitSettings,
     misfit: &Misfit,
 ) -> Result<Fit, Error> {
+    let refuse = |message: String, hint: &str| Error::input(format!("{}{message}", law.name), hint);
     let [test] = tests else {
         let hint = "the others can be compared with `gelbench materials plot`";
-        return Err(Error::input(format!("{}: takes one file", law.name), hint));
+        return Err(refuse(": takes one file".into(), hint));
     };
     if test.test != Test::Uniaxial {
         let hint = "give the file of a uniaxial test, or choose another law";
-        return Err(Error::input(
-            format!("{}: takes a uniaxial test", law.name),
-            hint,
-        ));
+        return Err(refuse(": takes a uniaxial test".into(), hint));
     }
     if let Some((key, _)) = settings.bounds.first() {
-        return Err(Error::input(
-            format!("{} has no parameter `{key}`", law.name),
+        return Err(refuse(
+            format!(" has no parameter `{key}`"),
             "leave the bound out",
         ));
     }
@@ -203,7 +201,7 @@ fn take_curve(
     let points: Vec<[f64; 2]> = test.observations.iter().map(point).collect();
     let curve = TableCurve::new(&points, true).map_err(|reason| {
         let hint = "cut the file to the loading branch from rest on, or fit another law";
-        Error::input(format!("{}: {reason}", law.name), hint)
+        refuse(format!(": {reason}"), hint)
     })?;
     let fitted: Box<dyn HyperelasticLaw> = Box::new(Marlow { curve });
     let assessment = Assessment {

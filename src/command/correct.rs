@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::terminal::{Outcome, print, progress_bar, warn};
 use crate::corrector::estimation::{EdgeCondition, MeasuredForce, Physics, Robust};
-use crate::error::Error;
+use crate::error::{Diagnostic, Error};
 use crate::markers::ReadSettings;
 use crate::mesh::{Allowed, CellShape, MeshReading};
 use crate::output::ResultFolder;
@@ -258,49 +258,49 @@ fn mesh_source(options: &Options) -> MeshSource {
 }
 
 /// An edge, an axis, a force and its standard deviation.
-fn force(text: &str) -> Result<MeasuredForce, String> {
-    let wanted = "write edge, axis and force, as in \"right x 1.2 N ± 0.02 N\"";
-    let mut words = text.splitn(3, ' ');
-    let (Some(edge), Some(axis), Some(values)) = (words.next(), words.next(), words.next()) else {
-        return Err(wanted.into());
+fn force(text: &str) -> Result<MeasuredForce, Diagnostic> {
+    let refuse = |reason: String| {
+        Diagnostic::error("", reason)
+            .hint("write edge, axis and force, as in \"right x 1.2 N ± 0.02 N\"")
     };
-    let axis = match axis {
-        "x" => 0,
-        "y" => 1,
-        _ => return Err(wanted.into()),
+    let words: Vec<&str> = text.splitn(3, ' ').collect();
+    let (edge, axis, values) = match words[..] {
+        [edge, "x", values] => (edge, 0, values),
+        [edge, "y", values] => (edge, 1, values),
+        _ => return Err(refuse("it is no force on an edge".into())),
     };
     let newtons = |text: &str| {
-        units::parse(text, Dimension::Force).map_err(|fault| format!("it {fault}; {wanted}"))
+        units::parse(text, Dimension::Force).map_err(|fault| refuse(format!("it {fault}")))
     };
     let values = values.replace("+-", "±");
-    match values.split_once('±') {
-        None => Ok(measured_force(edge, axis, newtons(&values)?, None)),
-        Some((force, deviation)) => {
-            let deviation = newtons(deviation)?;
-            Ok(measured_force(edge, axis, newtons(force)?, Some(deviation)))
-        }
-    }
+    let (value, deviation) = match values.split_once('±') {
+        None => (&*values, None),
+        Some((value, deviation)) => (value, Some(newtons(deviation)?)),
+    };
+    Ok(measured_force(edge, axis, newtons(value)?, deviation))
 }
 
 /// A length of zero or more in mm.
-fn gap(text: &str) -> Result<f64, String> {
-    match units::parse(text, Dimension::Length) {
-        Ok(length) if length >= 0.0 => Ok(length),
-        Ok(_) => Err("it must not be negative".into()),
-        Err(fault) => Err(format!("it {fault}; write it as in \"1.5 mm\"")),
-    }
+fn gap(text: &str) -> Result<f64, Diagnostic> {
+    within(text, |length| length >= 0.0, "it must not be negative")
 }
 
 /// A length greater than zero in mm.
-fn length(text: &str) -> Result<f64, String> {
-    match units::parse(text, Dimension::Length) {
-        Ok(length) if length > 0.0 => Ok(length),
-        Ok(_) => Err("it must be greater than zero".into()),
-        Err(fault) => Err(format!("it {fault}; write it as in \"2 mm\"")),
+fn length(text: &str) -> Result<f64, Diagnostic> {
+    within(text, |length| length > 0.0, "it must be greater than zero")
+}
+
+fn within(text: &str, holds: fn(f64) -> bool, wanted: &str) -> Result<f64, Diagnostic> {
+    let refuse = |reason: String| Diagnostic::error("", reason).hint("write it as in \"1.5 mm\"");
+    let length = units::parse(text, Dimension::Length);
+    let length = length.map_err(|fault| refuse(format!("it {fault}")))?;
+    match holds(length) {
+        true => Ok(length),
+        false => Err(refuse(wanted.to_owned())),
     }
 }
 
 /// The length in mm of a unit, or a length.
-fn unit(text: &str) -> Result<f64, String> {
-    super::compare::length(text).or_else(|reason| length(text).map_err(|_| reason))
+fn unit(text: &str) -> Result<f64, Diagnostic> {
+    units::factor(text, Dimension::Length).or_else(|_| length(text))
 }

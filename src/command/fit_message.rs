@@ -18,53 +18,12 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
             test.observations.len()
         );
     }
-    if !fit.parameters.is_empty() {
-        text += &format!("  residuals    {}\n", fit.settings.weighting.describe());
-    }
-    let estimates = quality.estimates.iter().zip(&quality.at_bound);
-    for (parameter, (estimate, at_bound)) in fit.parameters.iter().zip(estimates) {
-        let (key, value, unit) = (parameter.key, parameter.value, parameter.unit());
-        let [low, high] = estimate.interval;
-        text += &if *at_bound {
-            format!(
-                "  {key:<12} {} {unit}   held by a bound\n",
-                digits(value, 6)
-            )
-        } else {
-            format!(
-                "  {key:<12} {} ± {} {unit}   95 % {} … {}\n",
-                digits(value, 6),
-                digits(estimate.standard_error, 2),
-                digits(low, 5),
-                digits(high, 5)
-            )
-        };
-    }
+    text += &parameters(fit);
     text += &correlation(fit);
-    if fit.parameters.is_empty() {
-        text += "  the curve is taken as it was measured; nothing is fitted\n";
-    } else {
-        text += &format!(
-            "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {:.2}, largest relative error {:.2} %, sum of squares {} MPa²\n",
-            quality.rmse,
-            quality.nmad_percent,
-            quality.r_squared,
-            quality.aicc,
-            quality.largest_relative_error_percent,
-            digits(quality.sum_of_squares, 6)
-        );
-    }
-    text += &format!(
-        "  moduli       E₀ = {:.6} MPa, μ₀ = {:.6} MPa\n",
-        fit.fitted.youngs_modulus(),
-        fit.fitted.shear_modulus()
-    );
+    text += &figures(fit);
     for range in &quality.stable {
-        let [low, high] = range.stretches;
-        text += &format!(
-            "  stable       λ = {low:.3} … {high:.3} in {} tests (Drucker)\n",
-            range.mode.name()
-        );
+        let ([low, high], name) = (range.stretches, range.mode.name());
+        text += &format!("  stable       λ = {low:.3} … {high:.3} in {name} tests (Drucker)\n");
     }
     text += &curves(&*fit.fitted, quality.stretch_range, &|mode| match mode {
         Some(mode) if !quality.untested.contains(&mode) => "tested",
@@ -74,6 +33,47 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
         text += &format!("  warning: {warning}\n");
     }
     text
+}
+
+fn parameters(fit: &Fit) -> String {
+    if fit.parameters.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("  residuals    {}\n", fit.settings.weighting.describe());
+    let estimates = fit.quality.estimates.iter().zip(&fit.quality.at_bound);
+    for (parameter, (estimate, at_bound)) in fit.parameters.iter().zip(estimates) {
+        let (key, unit, value) = (parameter.key, parameter.unit(), digits(parameter.value, 6));
+        let [low, high] = estimate.interval.map(|end| digits(end, 5));
+        let error = digits(estimate.standard_error, 2);
+        text += &match at_bound {
+            true => format!("  {key:<12} {value} {unit}   held by a bound\n"),
+            false => {
+                format!("  {key:<12} {value} ± {error} {unit}   95 % {low} … {high}\n")
+            }
+        };
+    }
+    text
+}
+
+fn figures(fit: &Fit) -> String {
+    let quality = &fit.quality;
+    let residuals = match fit.parameters.is_empty() {
+        true => "  the curve is taken as it was measured; nothing is fitted\n".to_owned(),
+        false => format!(
+            "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {:.2}, largest relative error {:.2} %, sum of squares {} MPa²\n",
+            quality.rmse,
+            quality.nmad_percent,
+            quality.r_squared,
+            quality.aicc,
+            quality.largest_relative_error_percent,
+            digits(quality.sum_of_squares, 6)
+        ),
+    };
+    format!(
+        "{residuals}  moduli       E₀ = {:.6} MPa, μ₀ = {:.6} MPa\n",
+        fit.fitted.youngs_modulus(),
+        fit.fitted.shear_modulus()
+    )
 }
 
 /// A number with so many significant digits.

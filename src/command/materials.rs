@@ -2,21 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{ArgGroup, Args, Subcommand};
+use clap::Subcommand;
 
-use super::terminal::{Outcome, print, warn};
-use super::{fit_message, message};
-use crate::calibration::{
-    self, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, TestData, Weighting,
-};
-use crate::document::Statements;
-use crate::error::{Error, suggestion};
-use crate::material::Card;
-use crate::material::card::FitRecord;
-use crate::material::parameters::StressMeasure;
-use crate::material::registry::{CARDS, DATA, LAWS, Law};
+use super::fit::{ConvertArguments, FitArguments, convert, fit, load, refit, together};
+use super::message;
+use super::terminal::{Outcome, print};
+use crate::material::registry::{CARDS, LAWS};
 use crate::output;
-use crate::results::{comparison_chart, fit_json, fit_picture, material_chart};
+use crate::results::{comparison_chart, material_chart};
 
 #[derive(Subcommand)]
 pub enum Materials {
@@ -81,111 +74,6 @@ Samples:
   gelbench materials fit tensile.csv --all
   gelbench materials fit machine.csv --law gent --test uniaxial --area \"20 mm^2\" --length \"5 cm\" --bound jm=5..200";
 
-#[derive(Args)]
-#[command(group = ArgGroup::new("laws").required(true))]
-pub struct FitArguments {
-    /// Files of test data; all of them are fitted together
-    #[arg(required = true)]
-    data: Vec<PathBuf>,
-    /// The law
-    #[arg(long, group = "laws")]
-    law: Option<String>,
-    /// Fit all laws, rank them, and write the best one that is stable over the data
-    #[arg(long, group = "laws")]
-    all: bool,
-    /// absolute: differences of stress count alike; relative: relative differences do, where a stress below 1 % of its test's
-    /// largest counts as that 1 %
-    #[arg(long, default_value = "absolute")]
-    weighting: String,
-    /// Keep a parameter within limits, in MPa, rad or as a ratio
-    #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
-    bounds: Vec<String>,
-    /// How many starts are improved
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    starts: u16,
-    /// Name of the files that are written; the first file's and the law's where it is not given
-    #[arg(long)]
-    name: Option<String>,
-    /// Write into this folder
-    #[arg(long, value_name = "FOLDER", default_value = ".")]
-    output: PathBuf,
-    #[command(flatten)]
-    reading: ReadingArguments,
-}
-
-#[derive(Args)]
-pub struct ConvertArguments {
-    /// The file of test data
-    data: PathBuf,
-    /// Stress measure to write: nominal or cauchy
-    #[arg(long, value_name = "MEASURE")]
-    to_stress: Option<String>,
-    /// Strain measure to write: stretch, nominal or logarithmic
-    #[arg(long, value_name = "MEASURE")]
-    to_strain: Option<String>,
-    /// Unit of stress to write
-    #[arg(long, value_name = "UNIT", default_value = "MPa")]
-    to_unit: String,
-    /// The file to write; standard output where it is not given
-    #[arg(long, value_name = "FILE")]
-    output: Option<PathBuf>,
-    #[command(flatten)]
-    reading: ReadingArguments,
-}
-
-/// What the files of test data do not say themselves.
-#[derive(Args)]
-#[command(next_help_heading = "What the files do not say")]
-struct ReadingArguments {
-    /// uniaxial, planar, equibiaxial, biaxial or compression
-    #[arg(long, allow_hyphen_values = true)]
-    test: Option<String>,
-    /// nominal or cauchy
-    #[arg(long, allow_hyphen_values = true)]
-    stress: Option<String>,
-    /// stretch, nominal or logarithmic
-    #[arg(long, allow_hyphen_values = true)]
-    strain: Option<String>,
-    /// Unit of the stresses, or of the force
-    #[arg(long, value_name = "UNIT")]
-    stress_unit: Option<String>,
-    /// Unit of the strains, `-` or `%`, or of the displacement
-    #[arg(long, value_name = "UNIT", allow_hyphen_values = true)]
-    strain_unit: Option<String>,
-    /// Axis of the stress: 1 as the strain, 2 across
-    #[arg(long, allow_hyphen_values = true)]
-    direction: Option<String>,
-    /// ε₂/ε₁ of a biaxial test
-    #[arg(long, allow_hyphen_values = true)]
-    strain_ratio: Option<String>,
-    /// Cross-section of the specimen, where the file has forces
-    #[arg(long, allow_hyphen_values = true)]
-    area: Option<String>,
-    /// Length of the specimen, where the file has displacements
-    #[arg(long, allow_hyphen_values = true)]
-    length: Option<String>,
-}
-
-impl ReadingArguments {
-    fn reading(self) -> Statements {
-        let given = [
-            self.test,
-            self.stress,
-            self.strain,
-            self.stress_unit,
-            self.strain_unit,
-            self.direction,
-            self.strain_ratio,
-            self.area,
-            self.length,
-        ];
-        let pairs = calibration::KEYS.into_iter().zip(given);
-        pairs
-            .filter_map(|(key, value)| Some((key.to_owned(), value?)))
-            .collect()
-    }
-}
-
 /// Runs one of the commands.
 pub fn run(command: Materials) -> Outcome {
     match command {
@@ -197,10 +85,6 @@ pub fn run(command: Materials) -> Outcome {
         Materials::Refit { card } => refit(&card),
         Materials::Convert(arguments) => convert(*arguments),
     }
-}
-
-fn load(name: &str) -> Result<Card, Error> {
-    Card::load(name, Path::new("."))
 }
 
 fn list() -> Outcome {
@@ -232,23 +116,6 @@ fn plot(name: &str, file: Option<PathBuf>) -> Outcome {
     Ok(0)
 }
 
-/// All of some results, or the faults of all of them.
-fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Vec<T>, Error> {
-    let (mut good, mut faults) = (Vec::new(), Vec::new());
-    for result in results {
-        match result {
-            Ok(one) => good.push(one),
-            Err(Error::Input(found)) => faults.extend(found),
-            Err(other) => return Err(other),
-        }
-    }
-    if faults.is_empty() {
-        Ok(good)
-    } else {
-        Err(Error::Input(faults))
-    }
-}
-
 fn compare(names: &[String], file: &Path) -> Outcome {
     let cards = together(names.iter().map(|name| load(name)))?;
     let inputs: Vec<&Path> = names.iter().map(Path::new).collect();
@@ -256,187 +123,5 @@ fn compare(names: &[String], file: &Path) -> Outcome {
     output::save(file, &output::png(&comparison_chart(&cards).into()))?;
     let lines: String = cards.iter().map(message::moduli_line).collect();
     print(&format!("{lines}{} written\n", file.display()))?;
-    Ok(0)
-}
-
-fn fit(arguments: FitArguments) -> Outcome {
-    let reading = arguments.reading.reading();
-    let files = arguments.data.iter();
-    let tests = together(files.map(|path| TestData::read(path, &reading)))?;
-    tests.iter().for_each(|test| warn(&test.warnings));
-    let settings = FitSettings {
-        weighting: chosen("--weighting", &arguments.weighting, &Weighting::NAMES)?,
-        bounds: bounds(&arguments.bounds)?,
-        starts: arguments.starts.into(),
-    };
-    let fit = match &arguments.law {
-        Some(name) => calibration::fit(law(name)?, &tests, &settings)?,
-        None => {
-            let (fits, reasons) = calibration::rank(&tests, &settings);
-            print(&fit_message::ranking(&fits, &reasons))?;
-            best(fits)?
-        }
-    };
-    let first = arguments.data[0].file_stem().unwrap_or_default();
-    let usual = || format!("{}-{}", first.to_string_lossy(), fit.law.name);
-    let stem = arguments.name.unwrap_or_else(usual);
-    if Path::new(&stem).file_name().is_none() {
-        return Err(Error::input(
-            format!("--name \"{stem}\" names no file"),
-            "such as --name my-gel",
-        ));
-    }
-    let target = |ending: &str| arguments.output.join(format!("{stem}.{ending}"));
-    let card = target("toml");
-    guard(&card, &[target("png"), target("json")])?;
-    let folder = card.parent().unwrap_or(Path::new("."));
-    let relative = |path: &PathBuf| relative(path, folder);
-    let provenance = Provenance {
-        files: arguments.data.iter().map(relative).collect(),
-        reading,
-    };
-    let text = calibration::card_text(&fit, &tests, &provenance);
-    output::save(&card, text.as_bytes())?;
-    output::save(&target("png"), &output::png(&fit_picture(&fit, &tests)))?;
-    let json = format!("{:#}\n", fit_json(&fit, &tests));
-    output::save(&target("json"), json.as_bytes())?;
-    let card = card.display();
-    print(&format!(
-        "{}\nwritten: {card} with .png and .json; use it in a study as material.card = \"{card}\"\n",
-        fit_message::fit(&fit, &tests)
-    ))?;
-    Ok(0)
-}
-
-/// The first of the ranked fits that is stable over the data, else the first.
-fn best(fits: Vec<Fit>) -> Result<Fit, Error> {
-    let stable = fits.iter().position(|fit| fit.quality.is_stable());
-    let chosen = fits.into_iter().nth(stable.unwrap_or(0));
-    chosen.ok_or_else(|| Error::input("no law could be fitted", "look at the reasons above"))
-}
-
-/// What was not written by a fit is never replaced by one.
-fn guard(card: &Path, others: &[PathBuf]) -> Result<(), Error> {
-    let refuse = |path: &Path| {
-        let cause = "there is a file of this name that no fit has written; choose another --name";
-        Err(Error::write(path, cause))
-    };
-    if card.exists() {
-        let text = std::fs::read_to_string(card).unwrap_or_default();
-        let ours = text.lines().any(|line| line.trim() == "[fit]");
-        return if ours { Ok(()) } else { refuse(card) };
-    }
-    others
-        .iter()
-        .find(|path| path.exists())
-        .map_or(Ok(()), |path| refuse(path))
-}
-
-/// A file as a card in `folder` names it.
-fn relative(path: &Path, folder: &Path) -> String {
-    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let found = pathdiff::diff_paths(absolute(path), absolute(folder));
-    let found = found.unwrap_or_else(|| path.to_owned());
-    found.to_string_lossy().replace('\\', "/")
-}
-
-fn law(name: &str) -> Result<&'static Law, Error> {
-    Law::named(name).ok_or_else(|| {
-        let known: Vec<_> = LAWS.iter().map(|law| law.name).collect();
-        let message = format!("there is no law `{name}`");
-        Error::input(message, suggestion(name, &known, "laws:"))
-    })
-}
-
-fn chosen<T: Copy>(option: &str, name: &str, names: &[(&'static str, T)]) -> Result<T, Error> {
-    let found = names.iter().find(|(known, _)| *known == name);
-    found.map(|(_, choice)| *choice).ok_or_else(|| {
-        let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
-        let hint = format!("it must be one of {}", known.join(", "));
-        Error::input(format!("{option} {name} is not known"), hint)
-    })
-}
-
-/// Bounds as `key=low..high`.
-fn bounds(texts: &[String]) -> Result<Bounds, Error> {
-    let bound = |text: &String| {
-        let (key, range) = text.split_once('=')?;
-        let (low, high) = range.split_once("..")?;
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| !n.is_nan());
-        Some((key.trim().to_owned(), [number(low)?, number(high)?]))
-    };
-    let each = texts.iter().map(|text| {
-        bound(text).ok_or_else(|| {
-            Error::input(
-                format!("the bound `{text}` cannot be read"),
-                "write it as key=low..high, such as jm=5..200",
-            )
-        })
-    });
-    together(each)
-}
-
-fn refit(name: &str) -> Outcome {
-    let card = load(name)?;
-    let Some(record) = &card.fit else {
-        let hint = "cards written by `gelbench materials fit` have one";
-        return Err(Error::input(format!("the card {name} has no [fit]"), hint));
-    };
-    let shipped = CARDS.iter().any(|(known, _)| *known == name);
-    let folder = Path::new(name).parent().filter(|_| !shipped);
-    let tests = together(record.data.iter().map(|file| data(file, folder, record)))?;
-    let settings = FitSettings {
-        weighting: chosen("weighting", &record.weighting, &Weighting::NAMES)?,
-        bounds: bounds(&record.bounds)?,
-        starts: record.starts,
-    };
-    let fit = calibration::fit(law(&card.law_name)?, &tests, &settings)?;
-    let (text, same) = fit_message::refit(&card, &fit, &tests);
-    print(&text)?;
-    Ok(u8::from(!same))
-}
-
-/// Test data that a card names: of a shipped card from the program itself.
-fn data(file: &str, folder: Option<&Path>, record: &FitRecord) -> Result<TestData, Error> {
-    let pairs = record
-        .reading
-        .iter()
-        .filter_map(|pair| pair.split_once(": "));
-    let reading = pairs
-        .map(|(key, value)| (key.to_owned(), value.to_owned()))
-        .collect();
-    match (folder, DATA.iter().find(|(known, _)| *known == file)) {
-        (None, Some((name, text))) => TestData::parse(name, text, &reading),
-        _ => TestData::read(&folder.unwrap_or(Path::new("")).join(file), &reading),
-    }
-}
-
-fn convert(arguments: ConvertArguments) -> Outcome {
-    let data = TestData::read(&arguments.data, &arguments.reading.reading())?;
-    let stress = arguments
-        .to_stress
-        .map_or(Ok(data.stress_measure), |name| {
-            chosen("--to-stress", &name, &StressMeasure::NAMES)
-        })?;
-    let strain = arguments
-        .to_strain
-        .map_or(Ok(StrainColumn::Stretch), |name| {
-            chosen("--to-strain", &name, &StrainColumn::NAMES)
-        })?;
-    let unit = arguments.to_unit;
-    let text = Conversion {
-        stress,
-        strain,
-        unit,
-    }
-    .table(&data)?;
-    match arguments.output {
-        None => print(&text)?,
-        Some(file) => {
-            output::refuse_inputs(&file, &[&arguments.data])?;
-            output::save(&file, text.as_bytes())?;
-            print(&format!("{} written\n", file.display()))?;
-        }
-    }
     Ok(0)
 }

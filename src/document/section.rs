@@ -7,9 +7,10 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{Bound, Faults};
-use crate::error::{Diagnostic, Source, nearest, suggestion};
-use crate::units::{self, Dimension, Linear, LinearFault, QuantityFault};
+use super::Faults;
+use crate::error::{Diagnostic, Source, suggestion};
+
+mod values;
 
 /// One table of a document.
 #[derive(Debug)]
@@ -126,260 +127,9 @@ impl<'a> Section<'a> {
         self.written(key).is_some()
     }
 
-    /// A text.
-    pub fn text(&self, key: &'static str) -> String {
-        self.read(key, "text in quotes", |value| match value {
-            DeValue::String(text) => Some(text.to_string()),
-            _ => None,
-        })
-        .unwrap_or_default()
-    }
-
-    /// A text that may be missing, and is empty then.
-    pub fn optional_text(&self, key: &'static str) -> String {
-        if self.has(key) {
-            self.text(key)
-        } else {
-            String::new()
-        }
-    }
-
-    /// A list of texts.
-    pub fn texts(&self, key: &'static str) -> Vec<String> {
-        let text = |value: &DeValue<'_>| match value {
-            DeValue::String(text) => Some(text.to_string()),
-            _ => None,
-        };
-        self.read(key, "a list of texts in quotes", |value| match value {
-            DeValue::Array(items) => items.iter().map(|item| text(item.get_ref())).collect(),
-            _ => None,
-        })
-        .unwrap_or_default()
-    }
-
-    /// A truth value.
-    pub fn flag(&self, key: &'static str) -> bool {
-        self.read(key, "true or false", |value| match value {
-            DeValue::Boolean(flag) => Some(*flag),
-            _ => None,
-        })
-        .unwrap_or_default()
-    }
-
-    /// One of several names; nothing when it is missing or unknown, which is recorded as a fault.
-    pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<T> {
-        let name = self.read(key, "text in quotes", |value| match value {
-            DeValue::String(text) => Some(text.to_string()),
-            _ => None,
-        })?;
-        if let Some((_, choice)) = choices.iter().find(|(known, _)| *known == name) {
-            return Some(*choice);
-        }
-        let names: Vec<_> = choices
-            .iter()
-            .map(|(known, _)| format!("\"{known}\""))
-            .collect();
-        let mut hint = format!("one of {}", names.join(", "));
-        if let Some(near) = nearest(&name, choices.iter().map(|(known, _)| *known)) {
-            hint = format!("did you mean \"{near}\"? It must be {hint}");
-        }
-        self.fault(key, &format!("\"{name}\" is not known here"), &hint);
-        None
-    }
-
-    /// A whole number from `low` to `high`.
-    pub fn count(&self, key: &'static str, low: usize, high: usize) -> usize {
-        let wanted = format!("a whole number from {low} to {high}");
-        self.read(key, &wanted, |value| {
-            whole_number(value).filter(|n| (low..=high).contains(n))
-        })
-        .unwrap_or(low)
-    }
-
-    /// A list of exactly two whole numbers from `low` to `high`; nothing when it is wrong, which is recorded
-    /// as a fault.
-    pub fn count_pair(&self, key: &'static str, low: usize, high: usize) -> Option<[usize; 2]> {
-        let wanted = format!("two whole numbers from {low} to {high}, such as [60, 20]");
-        self.read(key, &wanted, |value| count_pair(value, low, high))
-    }
-
-    /// The same, or a word that leaves the choice to the program: nothing within the result.
-    pub fn count_pair_or(
-        &self,
-        word: &str,
-        key: &'static str,
-        [low, high]: [usize; 2],
-    ) -> Option<Option<[usize; 2]>> {
-        let wanted =
-            format!("two whole numbers from {low} to {high}, such as [60, 20], or \"{word}\"");
-        self.read(key, &wanted, |value| match value {
-            DeValue::String(text) => (text == word).then_some(None),
-            other => count_pair(other, low, high).map(Some),
-        })
-    }
-
-    /// A number without a dimension.
-    pub fn number(&self, key: &'static str, bound: Bound) -> f64 {
-        let Some(value) = self.value(key) else {
-            return f64::NAN;
-        };
-        match plain_number(value.get_ref()) {
-            Some(number) => self.bounded(key, value, number, bound),
-            None => {
-                self.fault_at(
-                    key,
-                    value,
-                    "must be a number",
-                    "write it without quotes, such as 1e-8",
-                );
-                f64::NAN
-            }
-        }
-    }
-
-    /// A quantity with a unit, in the internal unit of `dimension`.
-    pub fn quantity(&self, key: &'static str, dimension: Dimension, bound: Bound) -> f64 {
-        match self.value_like(key, dimension.example()) {
-            Some(value) => self.quantity_of(key, value, dimension, bound),
-            None => f64::NAN,
-        }
-    }
-
-    /// The size of a unit by its name alone, such as `"mm"`, or as a quantity, such as `"0.05 mm"`.
-    pub fn unit(&self, key: &'static str, dimension: Dimension) -> f64 {
-        let Some(value) = self.value_like(key, dimension.example()) else {
-            return f64::NAN;
-        };
-        let named = match value.get_ref() {
-            DeValue::String(name) => units::factor(name, dimension).ok(),
-            _ => None,
-        };
-        named.unwrap_or_else(|| self.quantity_of(key, value, dimension, Bound::Positive))
-    }
-
-    /// A length that may be linear in the place at rest, as text such as `"2 mm + 0.1 * X"`.
-    pub fn linear_length(&self, key: &'static str) -> Linear {
-        const EXAMPLE: &str = "\"2 mm\" or \"0.1 * X\"";
-        let nothing = Linear::constant(f64::NAN);
-        let Some(value) = self.value_like(key, EXAMPLE) else {
-            return nothing;
-        };
-        let DeValue::String(text) = value.get_ref() else {
-            self.fault_at(
-                key,
-                value,
-                "must be a length",
-                &format!("such as {EXAMPLE}"),
-            );
-            return nothing;
-        };
-        units::parse_linear_length(text).unwrap_or_else(|fault| {
-            self.fault_at(
-                key,
-                value,
-                &format!("\"{text}\" {fault}"),
-                LinearFault::HINT,
-            );
-            nothing
-        })
-    }
-
-    /// A list of quantities of one dimension.
-    pub fn quantities(&self, key: &'static str, dimension: Dimension, bound: Bound) -> Vec<f64> {
-        let example = format!("[{}, …]", dimension.example());
-        let Some(value) = self.value_like(key, &example) else {
-            return Vec::new();
-        };
-        match value.get_ref() {
-            DeValue::Array(items) => items
-                .iter()
-                .map(|item| self.quantity_of(key, item, dimension, bound))
-                .collect(),
-            _ => {
-                let hint = format!("write [{}, …]", dimension.example());
-                self.fault_at(key, value, "must be a list", &hint);
-                vec![f64::NAN]
-            }
-        }
-    }
-
-    fn quantity_of(
-        &self,
-        key: &'static str,
-        value: Value<'a>,
-        dimension: Dimension,
-        bound: Bound,
-    ) -> f64 {
-        let example = dimension.example();
-        let quantity = match value.get_ref() {
-            DeValue::String(text) => units::parse(text, dimension).map_err(|fault| {
-                let hint = match &fault {
-                    QuantityFault::UnknownUnit(unit) => {
-                        let known: Vec<_> = dimension.units().collect();
-                        suggestion(unit, &known, "known units:")
-                    }
-                    _ => format!("write a {} such as {example}", dimension.name()),
-                };
-                (format!("\"{text}\" {fault}"), hint)
-            }),
-            other => match plain_number(other) {
-                Some(number) if dimension == Dimension::Ratio => Ok(number),
-                Some(_) => Err((
-                    format!("a {} needs a unit", dimension.name()),
-                    format!("write it as text, such as {example}"),
-                )),
-                None => Err((
-                    format!("must be a {}", dimension.name()),
-                    format!("such as {example}"),
-                )),
-            },
-        };
-        match quantity {
-            Ok(number) => self.bounded(key, value, number, bound),
-            Err((message, hint)) => {
-                self.fault_at(key, value, &message, &hint);
-                f64::NAN
-            }
-        }
-    }
-
-    fn bounded(&self, key: &'static str, value: Value<'a>, number: f64, bound: Bound) -> f64 {
-        if let Some(wanted) = bound.violation(number) {
-            self.fault_at(
-                key,
-                value,
-                &format!("must be {wanted}"),
-                &format!("it is {}", self.written_text(value)),
-            );
-            return f64::NAN;
-        }
-        number
-    }
-
-    fn written_text(&self, value: Value<'a>) -> String {
-        self.source
-            .text
-            .get(value.span())
-            .unwrap_or_default()
-            .to_owned()
-    }
-
     /// Adds a finding about another file that this one names.
     pub fn add(&self, finding: Diagnostic) {
         self.faults.push(finding);
-    }
-
-    /// A heading: a text of one line.
-    pub fn heading(&self, key: &'static str) -> String {
-        let text = self.text(key);
-        if text.chars().any(char::is_control) {
-            self.fault(
-                key,
-                "must be one line of plain text",
-                "leave out line breaks",
-            );
-        }
-        text
     }
 
     /// Records a fault at the place of `key`.
@@ -421,25 +171,6 @@ impl<'a> Section<'a> {
             self.faults
                 .push(diagnostic.hint(hint).at(self.source, span));
         }
-    }
-
-    fn read<T>(
-        &self,
-        key: &'static str,
-        wanted: &str,
-        convert: impl Fn(&DeValue<'a>) -> Option<T>,
-    ) -> Option<T> {
-        let value = self.value(key)?;
-        let converted = convert(value.get_ref());
-        if converted.is_none() {
-            self.fault_at(
-                key,
-                value,
-                &format!("must be {wanted}"),
-                &format!("it is {}", self.written_text(value)),
-            );
-        }
-        converted
     }
 
     /// The value in the file, else the default; a fault when there is neither, or when the file must hold it.
@@ -535,31 +266,5 @@ fn shown(value: &DeValue<'_>) -> String {
                 .map(|(key, value)| format!("{} = {}", key.get_ref(), shown(value.get_ref())));
             format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
         }
-    }
-}
-
-fn plain_number(value: &DeValue<'_>) -> Option<f64> {
-    let text = match value {
-        DeValue::Float(number) => number.as_str(),
-        DeValue::Integer(number) if number.radix() == 10 => number.as_str(),
-        _ => return None,
-    };
-    text.parse().ok().filter(|number: &f64| number.is_finite())
-}
-
-fn count_pair(value: &DeValue<'_>, low: usize, high: usize) -> Option<[usize; 2]> {
-    let DeValue::Array(items) = value else {
-        return None;
-    };
-    let numbers = items.iter().map(|item| whole_number(item.get_ref()));
-    let numbers: Vec<usize> = numbers.collect::<Option<_>>()?;
-    let inside = numbers.iter().all(|n| (low..=high).contains(n));
-    inside.then(|| numbers.try_into().ok()).flatten()
-}
-
-fn whole_number(value: &DeValue<'_>) -> Option<usize> {
-    match value {
-        DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
-        _ => None,
     }
 }

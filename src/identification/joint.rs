@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::Basis;
-use super::penalty::Reduced;
+use super::penalty::NormalEquations;
 use super::recording::Recording;
-use super::smoothing::{Banded, Sampled};
+use super::smoothing::{BandMatrix, SplineValues};
 use crate::solve::{Cholesky, NotPositiveDefinite};
 use crate::statistics::LocalValues;
 
@@ -23,7 +23,7 @@ pub enum Argument {
 pub struct Joint<'a> {
     pub recording: &'a Recording,
     /// Values, first and second derivatives.
-    pub orders: [Sampled; 3],
+    pub orders: [SplineValues; 3],
     /// Standard deviations of extension and force.
     pub noise: [f64; 2],
     /// K(·) and D(·).
@@ -52,16 +52,16 @@ pub struct Instant {
 }
 
 /// The equations of one Gauss–Newton step.
-pub struct Linearised {
+pub struct JointEquations {
     /// What is left when the motion is eliminated.
-    pub reduced: Reduced,
+    pub reduced: NormalEquations,
     elimination: Cholesky,
     /// H⁻¹ G and H⁻¹ g of the motion.
     by_functions: DMatrix<f64>,
     by_data: DVector<f64>,
 }
 
-impl Linearised {
+impl JointEquations {
     /// The step of the motion that belongs to a step of the functions.
     pub fn motion_step(&self, functions: &DVector<f64>) -> DVector<f64> {
         &self.by_data - &self.by_functions * functions
@@ -124,9 +124,9 @@ impl Joint<'_> {
     }
 
     /// The normal equations with the motion as it is: K(·) and D(·) by linear least squares.
-    pub fn with_motion_fixed(&self, state: &State) -> Reduced {
+    pub fn with_motion_fixed(&self, state: &State) -> NormalEquations {
         let count = state.functions.len();
-        let mut reduced = Reduced::new(count);
+        let mut reduced = NormalEquations::new(count);
         for instant in 0..self.recording.times.len() {
             let at = self.instant(instant, state);
             let [_, left] = self.left(instant, &at);
@@ -143,10 +143,10 @@ impl Joint<'_> {
     ///
     /// # Errors
     /// [`NotPositiveDefinite`] when the instants do not determine the motion.
-    pub fn linearise(&self, state: &State) -> Result<Linearised, NotPositiveDefinite> {
+    pub fn linearise(&self, state: &State) -> Result<JointEquations, NotPositiveDefinite> {
         let (motions, count) = (state.motion.len(), state.functions.len());
-        let mut reduced = Reduced::new(count);
-        let mut matrix = Banded::new(motions)?;
+        let mut reduced = NormalEquations::new(count);
+        let mut matrix = BandMatrix::new(motions)?;
         let mut coupling = DMatrix::zeros(motions, count);
         let mut pull = vec![0.0; motions];
         for instant in 0..self.recording.times.len() {
@@ -177,7 +177,7 @@ impl Joint<'_> {
         reduced.information -= coupling.transpose() * &by_functions;
         reduced.gradient -= coupling.transpose() * &by_data;
         reduced.sum -= DVector::from_vec(pull).dot(&by_data);
-        Ok(Linearised {
+        Ok(JointEquations {
             reduced,
             elimination,
             by_functions,

@@ -2,7 +2,11 @@
 
 use std::fmt::Write;
 
-use super::{Argument, Form, Function, Identification, Recording};
+use super::band::Function;
+use super::basis::Form;
+use super::joint::Argument;
+use super::recording::Recording;
+use super::types::Identification;
 use crate::document::quoted;
 
 /// Points of a table.
@@ -29,7 +33,7 @@ pub fn law_text(found: &Identification, recording: &Recording, file: &str) -> St
         Some((length, area)) => (length / area, length, ["MPa", "MPa·s"]),
         None => (1.0, 1.0, ["N/mm", "N·s/mm"]),
     };
-    let written = |function, unit| Written {
+    let written = |function, unit| FunctionText {
         function,
         factor,
         scale,
@@ -56,7 +60,7 @@ pub fn law_text(found: &Identification, recording: &Recording, file: &str) -> St
 }
 
 /// A function on its way to a file.
-struct Written<'a> {
+struct FunctionText<'a> {
     function: &'a Function,
     /// Of its values.
     factor: f64,
@@ -65,7 +69,7 @@ struct Written<'a> {
     unit: &'static str,
 }
 
-impl Written<'_> {
+impl FunctionText<'_> {
     fn text(&self) -> String {
         match self.function.basis.form {
             Form::Constant | Form::Polynomial(_) => self.polynomial(),

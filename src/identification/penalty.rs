@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::basis::Basis;
+use super::basis::{Basis, Shape};
 use crate::statistics::inverse;
 
 /// Normal equations of the coefficients of K(·) and D(·).
 #[derive(Clone, Debug)]
-pub struct Reduced {
+pub struct NormalEquations {
     /// A = Jᵀ J, over the noise.
     pub information: DMatrix<f64>,
     /// b = Jᵀ r.
@@ -44,7 +44,7 @@ const SHAPE_WEIGHT: f64 = 1e6;
 
 /// A minimum of the penalised sum of squares.
 #[derive(Clone, Debug)]
-pub struct Penalised {
+pub struct PenalisedFit {
     /// The coefficients.
     pub coefficients: DVector<f64>,
     /// The penalty as a quadratic form.
@@ -57,7 +57,7 @@ pub struct Penalised {
     pub sum: f64,
 }
 
-impl Reduced {
+impl NormalEquations {
     /// No data yet.
     pub fn new(count: usize) -> Self {
         Self {
@@ -80,15 +80,12 @@ impl Reduced {
         from: &DVector<f64>,
         functions: &[Basis; 2],
         exponents: Exponents,
-    ) -> Option<Penalised> {
+    ) -> Option<PenalisedFit> {
         /// Changes of which differences have the wrong sign; more than there are differences is a circle.
         const MOST: usize = 40;
         let mut found = self.solve(from, from, functions, exponents)?;
         for _ in 0..MOST {
-            if functions
-                .iter()
-                .all(|basis| basis.shape == super::Shape::Free)
-            {
+            if functions.iter().all(|basis| basis.shape == Shape::Free) {
                 break;
             }
             let next = self.solve(from, &found.coefficients, functions, exponents)?;
@@ -108,7 +105,7 @@ impl Reduced {
         shaped: &DVector<f64>,
         functions: &[Basis; 2],
         exponents: Exponents,
-    ) -> Option<Penalised> {
+    ) -> Option<PenalisedFit> {
         let size = from.len();
         let mut penalty = DMatrix::zeros(size, size);
         let mut first = 0;
@@ -138,7 +135,7 @@ impl Reduced {
         let hat = &inverse * &self.information;
         let degrees = [(0, split), (split, size - split)]
             .map(|(first, count)| hat.view((first, first), (count, count)).trace());
-        Some(Penalised {
+        Some(PenalisedFit {
             coefficients,
             penalty,
             inverse,

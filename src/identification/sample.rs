@@ -6,7 +6,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::Recording;
+use super::recording::Recording;
 
 /// A spring that stiffens with a dashpot that grows, shaken by a force of several frequencies:
 ///

@@ -8,7 +8,7 @@ const FEWEST: usize = 4;
 
 /// A signal's own spline.
 #[derive(Clone, Debug)]
-pub struct Smoothed {
+pub struct SignalSpline {
     /// Equal parts of the duration.
     pub intervals: usize,
     /// Standard deviation of the noise, in the signal's unit.
@@ -19,12 +19,12 @@ pub struct Smoothed {
 
 /// The values of a spline's functions, or of their derivatives, at each instant.
 #[derive(Clone, Debug)]
-pub struct Sampled {
+pub struct SplineValues {
     /// First function and values, instant after instant.
     pub rows: Vec<(usize, LocalValues)>,
 }
 
-impl Sampled {
+impl SplineValues {
     /// Derivatives of some order at all `times`.
     pub fn new(spline: &BSpline, times: &[f64], order: usize) -> Self {
         Self {
@@ -41,12 +41,12 @@ impl Sampled {
 }
 
 /// A symmetric matrix of B-splines: sums of products of neighbouring functions.
-pub struct Banded {
+pub struct BandMatrix {
     cholesky: Cholesky,
     values: Vec<f64>,
 }
 
-impl Banded {
+impl BandMatrix {
     /// The zero matrix for so many functions.
     ///
     /// # Errors
@@ -100,8 +100,8 @@ pub fn nearest(
     times: &[f64],
     signal: &[f64],
 ) -> Result<Vec<f64>, NotPositiveDefinite> {
-    let sampled = Sampled::new(spline, times, 0);
-    let mut matrix = Banded::new(spline.count())?;
+    let sampled = SplineValues::new(spline, times, 0);
+    let mut matrix = BandMatrix::new(spline.count())?;
     let mut right = vec![0.0; spline.count()];
     for ((first, row), value) in sampled.rows.iter().zip(signal) {
         matrix.add(*first, row);
@@ -114,15 +114,15 @@ pub fn nearest(
 
 /// The number of equal parts for which generalised cross-validation, (‖y − ŷ‖²/n)/(1 − p/n)² with p functions, is
 /// least, and the noise ‖y − ŷ‖²/(n − p) that is left.
-pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<Smoothed> {
+pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpline> {
     let n = times.len() as f64;
     let range = [times[0], times[times.len() - 1]];
-    let mut best: Option<(f64, Smoothed)> = None;
+    let mut best: Option<(f64, SignalSpline)> = None;
     let (mut intervals, most) = (2, times.len() / FEWEST);
     while intervals <= most {
         let spline = BSpline::new(range, intervals, degree, Ends::Uniform);
         if let Ok(coefficients) = nearest(&spline, times, signal) {
-            let sampled = Sampled::new(&spline, times, 0);
+            let sampled = SplineValues::new(&spline, times, 0);
             let left = signal.iter().enumerate();
             let left = left.map(|(i, y)| (y - sampled.value(i, &coefficients)).powi(2));
             let free = n - spline.count() as f64;
@@ -132,7 +132,7 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<Smoothed> 
                 let noise = variance.sqrt();
                 best = Some((
                     score,
-                    Smoothed {
+                    SignalSpline {
                         intervals,
                         noise,
                         coarse: false,

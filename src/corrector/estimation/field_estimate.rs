@@ -9,7 +9,7 @@ use crate::statistics::Estimate;
 /// displacements, forces and parameters e comes from the same equations on cells half as large, of stress and thickness from the
 /// recovered gradient. They know nothing of a wrong material or a wrong thickness.
 /// `± reach · standard error` is the 95 % interval.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct FieldEstimate {
     /// ux, uy of node after node in mm.
     pub displacement: Vec<f64>,

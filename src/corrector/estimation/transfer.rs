@@ -86,26 +86,15 @@ pub fn transfer(
         cells: cells.collect::<Result<_, _>>()?,
         forces: forces(&edges, &reactions),
         markers: differences(mesh, &field, (given, displacement)),
-        noise: 0.0,
         known_noise: true,
         noise_scale: 1.0,
-        effective_parameters: 0.0,
-        degrees_of_freedom: 0.0,
-        reach: 0.0,
-        interior_forces: Vec::new(),
         rule: RULE,
-        smoothing: Vec::new(),
         edges: edges.iter().map(outcome).collect(),
-        parameters: Vec::new(),
         steps,
-        holds_mesh_error: false,
-        growth: 0.0,
-        force_checks: Vec::new(),
-        contradiction: None,
-        whiteness: None,
         reactions,
         multipliers,
         displacement: field,
+        ..FieldEstimate::default()
     })
 }
 

@@ -1,0 +1,71 @@
+//! What is looked for in a recording, and what was found.
+
+use super::band::Function;
+use super::basis::{Form, Shape};
+use super::joint::Argument;
+
+/// What is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IdentificationSettings {
+    /// The forms of K(·) and D(·).
+    pub forms: [Form; 2],
+    /// What is known of their shapes.
+    pub shapes: [Shape; 2],
+    /// What D(·) is a function of.
+    pub argument: Argument,
+}
+
+impl Identification {
+    /// The functions with their symbols and units.
+    pub fn functions(&self) -> [(&'static str, &'static str, &Function); 2] {
+        [
+            ("K", "N/mm", &self.stiffness),
+            ("D", "N·s/mm", &self.damping),
+        ]
+    }
+}
+
+impl Default for IdentificationSettings {
+    /// Free splines of the extension.
+    fn default() -> Self {
+        Self {
+            forms: [Form::SPLINE; 2],
+            shapes: [Shape::Free; 2],
+            argument: Argument::Extension,
+        }
+    }
+}
+
+/// The motion that was found, at the instants of the recording.
+#[derive(Clone, Debug, Default)]
+pub struct FittedMotion {
+    /// x in mm.
+    pub extension: Vec<f64>,
+    /// ẋ in mm/s.
+    pub rate: Vec<f64>,
+    /// ẍ in mm/s².
+    pub acceleration: Vec<f64>,
+    /// m ẍ + D ẋ + K x in N.
+    pub force: Vec<f64>,
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Identification {
+    /// What was looked for.
+    pub settings: IdentificationSettings,
+    /// K(·) in N/mm.
+    pub stiffness: Function,
+    /// D(·) in N·s/mm.
+    pub damping: Function,
+    /// The motion.
+    pub motion: FittedMotion,
+    /// Standard deviations of extension in mm and force in N, from either signal alone.
+    pub noise: [f64; 2],
+    /// ‖r‖²/(N − p) over these: one where force, motion and forms fit together.
+    pub misfit: f64,
+    /// N − p.
+    pub freedom: f64,
+    /// What deserves attention.
+    pub warnings: Vec<String>,
+}

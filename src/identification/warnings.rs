@@ -1,0 +1,45 @@
+//! What deserves attention in an identification.
+
+use super::recording::Recording;
+use super::smoothing::SignalSpline;
+use super::types::Identification;
+
+/// The warnings of an identification from the splines of extension and force.
+pub fn warnings(
+    found: &Identification,
+    recording: &Recording,
+    signals: &(SignalSpline, SignalSpline),
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if signals.0.coarse || signals.1.coarse {
+        warnings
+            .push("the motion is sampled too coarsely for its noise to be told from it".to_owned());
+    }
+    let excess = (found.misfit - 1.0) / (2.0 / found.freedom).sqrt();
+    if excess > 4.0 {
+        warnings.push(format!(
+            "force and motion do not fit together: what is left is {:.2} times the noise; the mass, the length at rest or \
+             the forms are wrong, or there is more than one spring and one dashpot",
+            found.misfit.sqrt()
+        ));
+    }
+    for (name, _, function) in found.functions() {
+        let estimates: Vec<_> = function
+            .places(41)
+            .into_iter()
+            .map(|x| function.at(x))
+            .collect();
+        if estimates.iter().all(|estimate| estimate.interval[0] <= 0.0) {
+            warnings.push(format!("the recording does not tell {name}(·) from zero"));
+        }
+        if estimates.iter().any(|estimate| estimate.interval[1] < 0.0) {
+            warnings.push(format!(
+                "{name}(·) is negative somewhere: no passive spring does that"
+            ));
+        }
+    }
+    if recording.mass == 0.0 {
+        warnings.push("no mass is stated: inertia is left out".to_owned());
+    }
+    warnings
+}
