@@ -1,6 +1,7 @@
 //! What a plate's study asks for: the plate, the models and how they are solved, what is written.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::corrector::climb::ClimbSettings;
 use crate::corrector::{CorrectorSettings, DifferenceScheme};
@@ -81,6 +82,14 @@ pub struct OutputSettings {
 }
 
 impl Study {
+    /// The same study of another material, such as a law of the caller's: see [`Card::of_law`].
+    #[must_use]
+    pub fn with_card(mut self, card: Card) -> Self {
+        self.problem.law = Arc::clone(&card.law);
+        self.card = card;
+        self
+    }
+
     /// Whether the reference is the corrected field once more: the same equations on the same nodes.
     pub fn is_its_own_reference(&self) -> bool {
         let scheme = self.corrector.scheme;
