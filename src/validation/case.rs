@@ -6,7 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::document::Section;
 use crate::mesh::Mesh;
-pub use crate::results::Wanted;
+use crate::results::Wanted;
 use crate::results::{Line, Stroke, mesh_outlines};
 use crate::statistics::median;
 

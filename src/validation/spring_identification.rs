@@ -7,12 +7,14 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::case::{Check, Claim, Outcome, Prepared, Progress, Wanted, limit, number};
+use super::case::{
+    Block, Check, Claim, Figure, Outcome, Prepared, Progress, check, limit, mean, number, row,
+    section, share, table,
+};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::identification::{Function, Identification, IdentificationSettings, Sample, identify};
 use crate::results::identification_picture;
-use crate::results::{Block, Figure};
 use crate::statistics::median;
 use crate::units::Dimension;
 
@@ -25,23 +27,19 @@ struct Settings {
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("recording");
-    let sample = Sample {
-        duration: section.quantity("duration", Dimension::Time, Bound::Positive),
-        instants: section.count("instants", 100, 100_000),
-        noise: section.quantity("noise", Dimension::Ratio, Bound::Positive),
-        seed: section.count("first_seed", 0, usize::MAX) as u64,
-    };
-    let trials = section.count("trials", 3, 10_000);
-    section.unknown_keys();
-    let section = root.section("comparison");
-    let places = section.count("places", 3, 1000);
-    section.unknown_keys();
-    let settings = Settings {
-        sample,
-        trials,
+    let places = section(root, "comparison", |comparison| {
+        comparison.count("places", 3, 1000)
+    });
+    let settings = section(root, "recording", |recording| Settings {
+        sample: Sample {
+            duration: recording.quantity("duration", Dimension::Time, Bound::Positive),
+            instants: recording.count("instants", 100, 100_000),
+            noise: recording.quantity("noise", Dimension::Ratio, Bound::Positive),
+            seed: recording.count("first_seed", 0, usize::MAX) as u64,
+        },
+        trials: recording.count("trials", 3, 10_000),
         places,
-    };
+    });
     Box::new(move |progress| compute(settings, progress))
 }
 
@@ -80,7 +78,7 @@ fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
     Ok(Outcome {
         checks: checks(&trials, good),
         claims: vec![claim(&settings, good)],
-        blocks: vec![explanation(&settings), table(&trials, &places)],
+        blocks: vec![explanation(&settings), error_table(&trials, &places)],
         figures: vec![Figure::new(
             "spring_identification.png",
             format!(
@@ -124,9 +122,10 @@ fn compare(found: &Identification, places: &[f64]) -> Trial {
     })
 }
 
-fn share(trials: &[Trial], index: usize, holds: impl Fn(&Place) -> bool) -> f64 {
-    let all = || trials.iter().flat_map(|trial| &trial[index]);
-    100.0 * all().filter(|place| holds(place)).count() as f64 / all().count() as f64
+/// Share of the trials and places where something holds, in %.
+fn share_of_places(trials: &[Trial], index: usize, holds: impl Fn(&Place) -> bool) -> f64 {
+    let all = trials.iter().flat_map(|trial| &trial[index]);
+    share(all.map(holds))
 }
 
 /// Median of |error| over trials and places, in % of the truth.
@@ -136,33 +135,27 @@ fn median_error(trials: &[Trial], index: usize) -> f64 {
 }
 
 fn checks(trials: &[Trial], good: usize) -> Vec<Check> {
-    let percent = 100.0 * good as f64 / trials.len() as f64;
-    let mut checks = vec![Check::new(
-        format!(
-            "trials of {} with K(·) and D(·) within the 95 % band at all places",
-            trials.len()
-        ),
-        "%",
-        Wanted::AtLeast(90.0),
-        "95 %, less what chance allows",
-        percent,
-    )];
+    let count = trials.len();
+    let what = format!("trials of {count} with K(·) and D(·) within the 95 % band at all places");
+    let chance = "95 %, less what chance allows";
+    let good = check(what, "%", 100.0 * good as f64 / count as f64);
+    let mut checks = vec![good.at_least(90.0, chance)];
     for (index, name) in ["K(·)", "D(·)"].into_iter().enumerate() {
+        let within = share_of_places(trials, index, |place| place.within_interval);
+        let error = median_error(trials, index);
         checks.extend([
-            Check::new(
+            check(
                 format!("{name}: places within their own 95 % interval"),
                 "%",
-                Wanted::AtLeast(90.0),
-                "95 %, less what chance allows",
-                share(trials, index, |place| place.within_interval),
-            ),
-            Check::new(
+                within,
+            )
+            .at_least(90.0, chance),
+            check(
                 format!("{name}: error, median over trials and places"),
                 "%",
-                Wanted::AtMost(5.0),
-                "the noise of one instant",
-                median_error(trials, index),
-            ),
+                error,
+            )
+            .at_most(5.0, "the noise of one instant"),
         ]);
     }
     checks
@@ -192,34 +185,24 @@ fn explanation(settings: &Settings) -> Block {
     ))
 }
 
-fn table(trials: &[Trial], places: &[f64]) -> Block {
+fn error_table(trials: &[Trial], places: &[f64]) -> Block {
     const ROWS: usize = 10;
-    let count = trials.len() as f64;
-    let mean = |index: usize, place: usize, of: fn(&Place) -> f64| -> f64 {
-        trials
-            .iter()
-            .map(|trial| of(&trial[index][place]))
-            .sum::<f64>()
-            / count
+    let mean = |index: usize, place: usize, of: fn(&Place) -> f64| {
+        mean(trials.iter().map(|trial| of(&trial[index][place])))
+    };
+    let cells = |index: usize, place: usize| {
+        [
+            TRUTH[index](places[place]),
+            mean(index, place, |one| one.error),
+            mean(index, place, |one| one.standard_error),
+        ]
     };
     let rows = (0..places.len()).step_by((places.len() / ROWS).max(1));
-    let row = |place: usize| {
-        let mut cells = vec![number(places[place])];
-        for (index, truth) in TRUTH.iter().enumerate() {
-            cells.push(number(truth(places[place])));
-            cells.push(number(mean(index, place, |one| one.error)));
-            cells.push(number(mean(index, place, |one| one.standard_error)));
-        }
-        cells
-    };
-    let head = [
-        "x [mm]",
-        "K [N/mm]",
-        "mean error of K",
-        "mean standard error of K",
-        "D [N·s/mm]",
-        "mean error of D",
-        "mean standard error of D",
-    ];
-    Block::table(&head, rows.map(row))
+    let rows = rows.map(|place| {
+        let numbers = [0, 1].map(|index| cells(index, place));
+        row(number(places[place]), numbers.concat())
+    });
+    let head = "x [mm] | K [N/mm] | mean error of K | mean standard error of K | \
+                D [N·s/mm] | mean error of D | mean standard error of D";
+    table(head, rows)
 }

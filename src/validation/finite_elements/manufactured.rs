@@ -15,7 +15,7 @@ use crate::mesh::{CellShape, GAUSS_5, Mesh};
 use crate::problem::{BoundaryProblem, Support};
 use crate::results::{Axis, Line, LineChart, PALETTE, Stroke};
 use crate::solve::State;
-use crate::validation::case::{Check, Figure, Outcome, Prepared, Progress, Wanted};
+use crate::validation::case::{Check, Figure, Outcome, Prepared, Progress, check, line, section};
 
 /// For messages.
 const NAME: &str = "manufactured solution";
@@ -25,12 +25,10 @@ const SIDE: f64 = 10.0;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
-    let section = root.section("mesh");
-    let cells = section.count("coarsest", 2, 32);
-    section.unknown_keys();
-    let section = root.section("field");
-    let amplitude = section.number("amplitude", Bound::Within(1e-3, 0.1));
-    section.unknown_keys();
+    let cells = section(root, "mesh", |mesh| mesh.count("coarsest", 2, 32));
+    let amplitude = section(root, "field", |field| {
+        field.number("amplitude", Bound::Within(1e-3, 0.1))
+    });
     Box::new(move |progress| compute(cells, amplitude, progress))
 }
 
@@ -92,106 +90,142 @@ fn compute(coarsest: usize, amplitude: f64, progress: Progress) -> Result<Outcom
     let mut lines = Vec::new();
     for ((name, shape), colour) in CellShape::NAMES.into_iter().zip(PALETTE) {
         progress(name);
-        let meshes = [1, 2, 4].map(|finer| coarsest * finer);
-        let mut errors = Vec::new();
-        for cells in meshes {
-            errors.push(error(shape, cells, amplitude)?);
-        }
-        let degree = shape.degree() as f64;
-        for (norm, label) in [(0, "L2"), (1, "H1")] {
-            let order = (errors[1][norm] / errors[2][norm]).log2();
-            let expected = degree + 1.0 - norm as f64;
-            outcome.checks.push(Check::new(
-                format!("{name}: |order in {label} − {expected}|"),
-                "–",
-                Wanted::AtMost(0.1),
-                "approximation theory",
-                (order - expected).abs(),
-            ));
-            let points = meshes.iter().zip(&errors);
-            lines.push(Line {
-                label: format!("{name}, {label}"),
-                points: points
-                    .map(|(cells, error)| [SIDE / *cells as f64, error[norm]])
-                    .collect(),
-                colour,
-                stroke: if norm == 0 {
-                    Stroke::Marked
-                } else {
-                    Stroke::Dashed
-                },
-            });
-        }
+        let convergence = Convergence::new(name, shape, coarsest, amplitude)?;
+        outcome.checks.extend(convergence.checks());
+        lines.extend(convergence.lines(colour));
     }
+    let x = Axis::logarithmic("size of the cells [mm]");
+    let y = Axis::logarithmic("relative error [–]");
     outcome.figures.push(Figure::new(
         "manufactured_solution.png",
         "Error of every element over the size of its cells.",
-        LineChart {
-            title: "Manufactured solution".into(),
-            x: Axis::logarithmic("size of the cells [mm]"),
-            y: Axis::logarithmic("relative error [–]"),
-            lines,
-            band: None,
-        },
+        LineChart::new("Manufactured solution", x, y, lines),
     ));
     Ok(outcome)
 }
 
-/// The solution on a distorted mesh and the exact field.
-pub fn solved(
-    shape: CellShape,
-    cells: usize,
-    amplitude: f64,
-) -> Result<(Mesh, State, Field), Error> {
-    let mesh = distorted([SIDE; 2], [cells; 2], shape);
-    let field = Field::new(amplitude);
-    let problem = sheet();
-    let energy = problem.finite_elements(&mesh);
-    let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
-    model.impose_field("boundary", |point| field.displacement(point));
-    model.add_forces(&forces(&mesh, &problem, field));
-    let state = solve(&model, NAME, 1)?;
-    drop(model);
-    Ok((mesh, state, field))
+/// Relative errors in L2 and in H1.
+struct Errors {
+    l2: f64,
+    h1: f64,
 }
 
-/// The force of the right side in N and the exact one.
-pub struct Force {
+/// An element on three meshes, each twice as fine as the one before.
+struct Convergence {
+    name: &'static str,
+    shape: CellShape,
+    /// Sizes of the cells in mm.
+    sizes: [f64; 3],
+    errors: [Errors; 3],
+}
+
+impl Convergence {
+    fn new(
+        name: &'static str,
+        shape: CellShape,
+        coarsest: usize,
+        amplitude: f64,
+    ) -> Result<Self, Error> {
+        let cells = [1, 2, 4].map(|finer| coarsest * finer);
+        let [coarse, middle, fine] = cells.map(|cells| Errors::new(shape, cells, amplitude));
+        Ok(Self {
+            name,
+            shape,
+            sizes: cells.map(|cells| SIDE / cells as f64),
+            errors: [coarse?, middle?, fine?],
+        })
+    }
+
+    /// The errors of the three meshes in both norms.
+    fn norms(&self) -> [(&'static str, [f64; 3]); 2] {
+        [
+            ("L2", self.errors.each_ref().map(|errors| errors.l2)),
+            ("H1", self.errors.each_ref().map(|errors| errors.h1)),
+        ]
+    }
+
+    fn checks(&self) -> [Check; 2] {
+        let degree = self.shape.degree() as f64;
+        let [l2, h1] = self.norms();
+        [(l2, degree + 1.0), (h1, degree)].map(|((norm, [_, middle, fine]), expected)| {
+            let order = (middle / fine).log2();
+            let what = format!("{}: |order in {norm} − {expected}|", self.name);
+            check(what, "–", (order - expected).abs()).at_most(0.1, "approximation theory")
+        })
+    }
+
+    fn lines(&self, colour: [u8; 3]) -> [Line; 2] {
+        let [l2, h1] = self.norms();
+        [(l2, Stroke::Marked), (h1, Stroke::Dashed)].map(|((norm, errors), stroke)| {
+            let label = format!("{}, {norm}", self.name);
+            line(&label, &self.sizes, &errors, colour, stroke)
+        })
+    }
+}
+
+/// The solution on a distorted mesh and the exact field.
+pub struct Solved {
+    pub mesh: Mesh,
+    pub state: State,
+    pub field: Field,
+}
+
+impl Solved {
+    pub fn new(shape: CellShape, cells: usize, amplitude: f64) -> Result<Self, Error> {
+        let mesh = distorted([SIDE; 2], [cells; 2], shape);
+        let field = Field::new(amplitude);
+        let problem = sheet();
+        let energy = problem.finite_elements(&mesh);
+        let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+        model.impose_field("boundary", |point| field.displacement(point));
+        model.add_forces(&forces(&mesh, &problem, field));
+        let state = solve(&model, NAME, 1)?;
+        drop(model);
+        Ok(Self { mesh, state, field })
+    }
+}
+
+/// The solution between four rollers, on which the chosen field slides without shear.
+pub struct Pull {
+    pub mesh: Mesh,
+    pub state: State,
+    /// The force of the right side in N.
     pub found: f64,
+    /// The exact one.
     pub exact: f64,
     /// The field that a unit motion of the side brings about.
     pub influence: Vec<f64>,
 }
 
-/// The solution between four rollers, on which the chosen field slides without shear, and the force of the right one.
-pub fn between_rollers(
-    shape: CellShape,
-    cells: usize,
-    amplitude: f64,
-) -> Result<(Mesh, State, Force), Error> {
-    let mesh = distorted([SIDE; 2], [cells; 2], shape);
-    let field = Field::new(amplitude);
-    let sides = ["left", "right", "bottom", "top"];
-    let problem = BoundaryProblem {
-        supports: sides.map(|side| (side.into(), Support::Roller)).into(),
-        ..sheet()
-    };
-    let energy = problem.finite_elements(&mesh);
-    let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
-    model.add_forces(&forces(&mesh, &problem, field));
-    let state = solve(&model, NAME, 1)?;
-    let influence = model.influence(&state, "right", 0);
-    let force = Force {
-        found: model.reaction(&state, "right")[0],
-        exact: side_force(&problem, field),
-        influence: influence.map_err(|fault| Error::Solve {
+impl Pull {
+    pub fn new(shape: CellShape, cells: usize, amplitude: f64) -> Result<Self, Error> {
+        let mesh = distorted([SIDE; 2], [cells; 2], shape);
+        let field = Field::new(amplitude);
+        let sides = ["left", "right", "bottom", "top"];
+        let problem = BoundaryProblem {
+            supports: sides.map(|side| (side.into(), Support::Roller)).into(),
+            ..sheet()
+        };
+        let energy = problem.finite_elements(&mesh);
+        let mut model = problem.on(&mesh, &energy).map_err(misfit)?;
+        model.add_forces(&forces(&mesh, &problem, field));
+        let state = solve(&model, NAME, 1)?;
+        let influence = model.influence(&state, "right", 0);
+        let influence = influence.map_err(|fault| Error::Solve {
             model: NAME.to_owned(),
             step: "load factor 1".to_owned(),
             fault,
-        })?,
-    };
-    drop(model);
-    Ok((mesh, state, force))
+        })?;
+        let found = model.reaction(&state, "right")[0];
+        drop(model);
+        Ok(Self {
+            mesh,
+            state,
+            found,
+            exact: side_force(&problem, field),
+            influence,
+        })
+    }
 }
 
 /// t ∫ P₁₁ dY along the right side in N, by a midpoint rule: P₁₁ is even about both ends, so that it is exact but for
@@ -204,31 +238,49 @@ fn side_force(problem: &BoundaryProblem, field: Field) -> f64 {
     problem.thickness * step * stresses.sum::<f64>()
 }
 
-/// Relative errors in L2 and in H1 on a distorted mesh.
-fn error(shape: CellShape, cells: usize, amplitude: f64) -> Result<[f64; 2], Error> {
-    let (mesh, state, field) = solved(shape, cells, amplitude)?;
-    let mut sums = [[0.0; 2]; 2];
-    each_point(&mesh, |cell, local, place, volume| {
+impl Errors {
+    /// On a distorted mesh.
+    fn new(shape: CellShape, cells: usize, amplitude: f64) -> Result<Self, Error> {
+        let Solved { mesh, state, field } = Solved::new(shape, cells, amplitude)?;
         let u = &state.displacement;
-        let values = mesh.shape(cell).values(local);
-        let found = [0, 1].map(|axis| {
-            let nodes = mesh.cell(cell).iter().zip(&values);
-            nodes
-                .map(|(node, value)| value * u[2 * node + axis])
-                .sum::<f64>()
+        let (mut values, mut gradients) = (Squares::default(), Squares::default());
+        each_point(&mesh, |cell, local, place, volume| {
+            let weights = mesh.shape(cell).values(local);
+            let found = [0, 1].map(|axis| -> f64 {
+                let nodes = mesh.cell(cell).iter().zip(&weights);
+                nodes
+                    .map(|(node, weight)| weight * u[2 * node + axis])
+                    .sum()
+            });
+            values.add(volume, &found, &field.displacement(place));
+            let found = mesh.gradient_at(u, cell, local);
+            gradients.add(volume, &found, &field.gradient(place));
         });
-        let exact = field.displacement(place);
-        for axis in 0..2 {
-            sums[0][0] += volume * (found[axis] - exact[axis]).powi(2);
-            sums[0][1] += volume * exact[axis].powi(2);
+        Ok(Self {
+            l2: values.relative(),
+            h1: gradients.relative(),
+        })
+    }
+}
+
+/// Squares of errors and of exact values, integrated over the sheet.
+#[derive(Default)]
+struct Squares {
+    error: f64,
+    size: f64,
+}
+
+impl Squares {
+    fn add(&mut self, volume: f64, found: &[f64], exact: &[f64]) {
+        for (found, exact) in found.iter().zip(exact) {
+            self.error += volume * (found - exact).powi(2);
+            self.size += volume * exact.powi(2);
         }
-        let exact = field.gradient(place);
-        for (found, exact) in mesh.gradient_at(u, cell, local).iter().zip(exact) {
-            sums[1][0] += volume * (found - exact).powi(2);
-            sums[1][1] += volume * exact.powi(2);
-        }
-    });
-    Ok(sums.map(|[error, size]| (error / size).sqrt()))
+    }
+
+    fn relative(&self) -> f64 {
+        (self.error / self.size).sqrt()
+    }
 }
 
 /// Nodal forces in N of the body force.

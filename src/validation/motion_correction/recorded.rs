@@ -1,53 +1,24 @@
 //! A recorded motion with noise and an unknown start.
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
-use super::{Body, Settings, corrected_energy, integrate, percent, sheet_model};
-use crate::corrector::motion::EquationOfMotion;
+use super::bodies::{Body, Fields, Models, PlateInTime, Steps, check_even, fault, percent};
 use crate::corrector::{CorrectorSettings, Solver};
 use crate::document::{Bound, Section};
-use crate::dynamics::{Dashpots, SheetViscosity};
 use crate::error::Error;
-use crate::finite_element::{Element, FiniteElements};
-use crate::mass_spring::DashpotLaw;
-use crate::results::Block;
 use crate::units::Dimension;
-use crate::validation::case::{Check, Outcome, Progress, Wanted, limit, number};
-use crate::validation::plate::Plate;
+use crate::validation::case::{
+    Outcome, Progress, Spread, check, limit, mean, normal_numbers, removed_percent, row, table,
+};
 
 /// What is recorded.
 pub struct Recording {
     cells: [usize; 2],
     noise: f64,
+    /// In a period.
     steps: usize,
     instants: usize,
     seeds: u64,
-}
-
-impl Recording {
-    pub fn read(root: &Section) -> Self {
-        let section = root.section("recording");
-        let cells = section.count_pair("cells", 2, 400).unwrap_or([2, 2]);
-        if cells.iter().any(|count| count % 2 == 1) {
-            section.fault(
-                "cells",
-                "must be even",
-                "two by two cells are taken together",
-            );
-        }
-        let recording = Self {
-            cells,
-            noise: section.quantity("noise", Dimension::Ratio, Bound::Positive),
-            steps: section.count("steps", 20, 10_000),
-            instants: section.count("instants", 5, 1000),
-            seeds: section.count("seeds", 2, 1000) as u64,
-        };
-        section.unknown_keys();
-        recording
-    }
 }
 
 /// The data decide to this part; a smaller further move is left undone.
@@ -58,108 +29,93 @@ const SMOOTHING: CorrectorSettings = CorrectorSettings {
     solver: Solver::Automatic,
 };
 
-/// Noise before and after, over the seeds; the finite elements' motion is the truth, the springs' the first guess.
-pub fn compute(
-    settings: &Settings,
-    progress: Progress,
-    outcome: &mut Outcome,
-) -> Result<(), Error> {
-    let recording = &settings.recording;
-    let plate = Plate {
-        cells: recording.cells,
-        ..settings.plate.clone()
-    };
-    let lattice = plate.lattice();
-    let law = DashpotLaw::Material(settings.material.clone());
-    let dashpots = Dashpots::new(&lattice, &law);
-    let springs = settings.body(&lattice.model(&plate.problem), &lattice.mesh, &dashpots)?;
-    let energy = corrected_energy(&plate.problem, &lattice);
-    let sheet = SheetViscosity::new(&energy, &settings.material);
-    let scheme = settings.body(
-        &sheet_model(&plate.problem, &lattice.mesh, &energy),
-        &lattice.mesh,
-        &sheet,
-    )?;
-    let elements = FiniteElements::new(&plate.problem, settings.plate.cells, Element::Q2);
-    let viscosity = SheetViscosity::new(elements.energy(), &settings.material);
-    let reference = settings.body(&elements.model(&plate.problem), &elements.mesh, &viscosity)?;
-    let step = Settings::period(&reference)? / recording.steps as f64;
-    let run = |body: &Body, finer| integrate(body, step, recording.instants - 1, 1, finer);
-    let exact = run(&reference, 8)?;
-    let exact: Vec<Vec<f64>> = exact
-        .iter()
-        .map(|field| reference.mesh.displacement_on(field, &lattice.mesh))
-        .collect();
-    let guess = run(&springs, 8)?;
-    let equation = EquationOfMotion::new(&scheme.motion, step, 0.25)
-        .map_err(|reason| Error::input(reason.to_string(), "change the motion"))?;
-    progress("seeds");
-    let one = |seed: u64| -> Result<[f64; 2], Error> {
-        let data = disturbed(&exact, &scheme, recording.noise, seed);
-        let found = equation
-            .smooth(&data, &guess, recording.instants, SMOOTHING)
-            .map_err(Settings::fault)?;
-        Ok([percent(&data, &exact), percent(&found, &exact)])
-    };
-    let errors: Vec<[f64; 2]> = (1..=recording.seeds)
-        .into_par_iter()
-        .map(one)
-        .collect::<Result<_, _>>()?;
-    let mean =
-        |which: usize| errors.iter().map(|error| error[which]).sum::<f64>() / errors.len() as f64;
-    let (before, after) = (mean(0), mean(1));
-    let removed = |[before, after]: &[f64; 2]| 100.0 * (1.0 - after / before);
-    let worst = errors.iter().map(removed).fold(f64::INFINITY, f64::min);
-    let what = format!(
-        "recorded motion of {} instants: noise removed, worst of {} seeds",
-        recording.instants, recording.seeds
-    );
-    outcome.checks.push(Check::new(
-        what,
-        "%",
-        Wanted::AtLeast(50.0),
-        "√(2/n) of white noise would be left",
-        worst,
-    ));
-    let head = [
-        "recorded motion",
-        "deviation from the finite elements, mean [%]",
-    ];
-    outcome.blocks.push(Block::table(
-        &head,
-        [
-            vec![
-                "springs, the first guess".into(),
-                number(percent(&guess, &exact)),
-            ],
-            vec![
-                format!("with {} % noise", limit(100.0 * recording.noise)),
-                number(before),
-            ],
-            vec!["corrected, start unknown".into(), number(after)],
-        ],
-    ));
-    Ok(())
+/// The deviation of one seed's motion from the truth in %.
+struct Deviation {
+    before: f64,
+    after: f64,
 }
 
-/// White noise on every unknown that is not held, over the root mean square of all.
-fn disturbed(exact: &[Vec<f64>], body: &Body, noise: f64, seed: u64) -> Vec<Vec<f64>> {
-    let all = exact.concat();
-    let size = noise * (all.iter().map(|u| u * u).sum::<f64>() / all.len() as f64).sqrt();
-    let held = body.motion.held(0.0);
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut draw = |u: &f64, held: bool| -> f64 {
-        let normal: f64 = StandardNormal.sample(&mut random);
-        if held { *u } else { u + size * normal }
-    };
-    exact
-        .iter()
-        .map(|field| {
-            field
-                .iter()
-                .zip(&held)
-                .map(|(u, held)| draw(u, *held))
-                .collect()
-        })
-        .collect()
+impl Recording {
+    pub fn read(section: &Section) -> Self {
+        let cells = section.count_pair("cells", 2, 400).unwrap_or([2, 2]);
+        check_even(section, cells);
+        Self {
+            cells,
+            noise: section.quantity("noise", Dimension::Ratio, Bound::Positive),
+            steps: section.count("steps", 20, 10_000),
+            instants: section.count("instants", 5, 1000),
+            seeds: section.count("seeds", 2, 1000) as u64,
+        }
+    }
+
+    /// Noise before and after, over the seeds; the finite elements' motion is the truth, the springs' the first guess.
+    pub fn compare(
+        &self,
+        plate: &PlateInTime,
+        progress: Progress,
+        outcome: &mut Outcome,
+    ) -> Result<(), Error> {
+        let models = Models::new(plate, self.cells);
+        let viscosities = models.viscosities();
+        let bodies = models.bodies(&viscosities)?;
+        let steps = Steps {
+            step: bodies.reference.period()? / self.steps as f64,
+            count: self.instants - 1,
+            every: 1,
+            finer: 8,
+        };
+        let (exact, guess) = (bodies.exact(steps)?, bodies.springs.integrate(steps)?);
+        let equation = bodies.equation(steps.step)?;
+        progress("seeds");
+        let one = |seed: u64| -> Result<Deviation, Error> {
+            let data = self.disturbed(&exact, &bodies.scheme, seed);
+            let found = equation.smooth(&data, &guess, self.instants, SMOOTHING);
+            Ok(Deviation {
+                before: percent(&data, &exact),
+                after: percent(&found.map_err(fault)?, &exact),
+            })
+        };
+        let seeds = (1..=self.seeds).into_par_iter();
+        let deviations: Vec<Deviation> = seeds.map(one).collect::<Result<_, _>>()?;
+        self.report(&deviations, percent(&guess, &exact), outcome);
+        Ok(())
+    }
+
+    fn report(&self, deviations: &[Deviation], guess: f64, outcome: &mut Outcome) {
+        let removed = deviations
+            .iter()
+            .map(|one| removed_percent(one.before, one.after));
+        let (instants, seeds) = (self.instants, self.seeds);
+        let what = format!(
+            "recorded motion of {instants} instants: noise removed, worst of {seeds} seeds"
+        );
+        let worst = check(what, "%", Spread::of(removed).least);
+        let source = "√(2/n) of white noise would be left";
+        outcome.checks.push(worst.at_least(50.0, source));
+        let noise = format!("with {} % noise", limit(100.0 * self.noise));
+        let rows = [
+            row("springs, the first guess", [guess]),
+            row(noise, [mean(deviations.iter().map(|one| one.before))]),
+            row(
+                "corrected, start unknown",
+                [mean(deviations.iter().map(|one| one.after))],
+            ),
+        ];
+        let head = "recorded motion | deviation from the finite elements, mean [%]";
+        outcome.blocks.push(table(head, rows));
+    }
+
+    /// White noise on every unknown that is not held, over the root mean square of all.
+    fn disturbed(&self, exact: &Fields, body: &Body, seed: u64) -> Fields {
+        let size = self.noise * mean(exact.iter().flatten().map(|u| u * u)).sqrt();
+        let held = body.motion.held(0.0);
+        let mut draws = normal_numbers(seed);
+        let mut disturbed = exact.clone();
+        for field in &mut disturbed {
+            for ((u, held), draw) in field.iter_mut().zip(&held).zip(&mut draws) {
+                *u += if *held { 0.0 } else { size * draw };
+            }
+        }
+        disturbed
+    }
 }
