@@ -1,4 +1,4 @@
-//! How far a field on the lattice is from the converged finite elements, in percent.
+//! How far a field on the lattice is from converged finite elements, in percent.
 //!
 //! All sums run over the nodes of the lattice with the area A that belongs to each; v is the reference
 //! field interpolated at the node and a the affine stretch:

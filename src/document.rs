@@ -1,4 +1,4 @@
-//! TOML documents read with places: every fault of a file is collected, none hides another.
+//! TOML documents, read with the place of every value: all faults of a file are collected, and none hides another.
 //!
 //! A [`Section`] hands out values. When a value is missing or wrong it records a [`Diagnostic`] and
 //! hands out a placeholder, so that reading goes on; [`Faults::finish`] then refuses the whole

@@ -1,4 +1,4 @@
-//! Errors by who must act on them: the author of a file, the author of a model, or the keeper of the disk.
+//! Errors, sorted by who must act on them: the author of a file, the author of a model, or the keeper of the disk.
 
 use std::fmt;
 use std::ops::Range;

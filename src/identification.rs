@@ -1,18 +1,18 @@
 //! From recorded force and motion to the functions K(·) and D(·) of a spring with a dashpot.
 //!
 //! ```text
-//! m ẍ + D(·) ẋ + K(·) x = f                        x: extension beyond the length at rest, f: force that pulls
+//! m ẍ + D(·) ẋ + K(·) x = f                        x: extension beyond the length at rest, f: tensile force
 //! minimise  ‖x̃ − x‖²/s_x² + ‖f̃ − f‖²/s_f² + penalty      over the motion x(t), K(·) and D(·)
 //! ```
 //!
 //! Both signals are data of one motion. It is a spline of degree 5 over time, with as many parts as generalised
 //! cross-validation asks for in either signal, and its derivatives are exact. No noisy signal is ever differentiated
-//! or put into a regressor, so that noise makes no bias of first order: a regression of f̃ on derivatives of x̃
+//! or put into a regressor, so that noise causes no bias of first order: a regression of f̃ on derivatives of x̃
 //! underestimates K and D. What is left of either signal's own spline gives its noise s_x, s_f.
 //!
 //! K(·) and D(·) are constants, polynomials, or cubic B-splines with a penalty on the squares of third differences
 //! of their coefficients. Its weights are a tenth of those of least generalised cross-validation, so that intervals hold;
-//! splines may be held to rise or to fall. Force and motion must be sampled at the same instants, their noise be white.
+//! splines may be constrained to rise or to fall. Force and motion must be sampled at the same instants, and their noise must be white.
 //!
 //! # References
 //! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems, Eq. 2–5;

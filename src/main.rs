@@ -1,4 +1,4 @@
-//! The command: arguments to call, to print, to exit code.
+//! The command `gelbench`.
 
 use std::process::ExitCode;
 

@@ -1,8 +1,8 @@
-//! Systems of two unknowns a node on the nodes of a rectangular grid, solved by multigrid.
+//! Systems with two unknowns per node of a rectangular grid, solved by multigrid.
 //!
 //! Each node is coupled with its eight neighbours. The nodes of one X make up a *line*; the first and the last
-//! line are held, all others are free. Numbers are of single precision: this is the inside of a preconditioner,
-//! whose rounding the iteration around it takes away again.
+//! line are held, all others are free. Numbers have single precision: this is the inside of a preconditioner,
+//! whose rounding the iteration around it removes.
 //!
 //! | step | how |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! Statistics, each formula once: quantiles and tail probabilities, estimates with their intervals, robust measures of
+//! Statistics, each formula in one place: quantiles and tail probabilities, estimates with their intervals, robust measures of
 //! scale, the inverse of normal matrices, B-splines.
 
 use nalgebra::DMatrix;

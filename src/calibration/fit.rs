@@ -1,11 +1,11 @@
-//! The parameters of a law that come nearest to some tests.
+//! The parameters with which a law comes nearest to some tests.
 //!
 //! ```text
 //! min Σᵢ (wᵢ (σᵢ − σ(p; λᵢ)))²,   w = 1 (absolute)   or   w = 1/max(|σᵢ|, 1 % of the test's largest) (relative)
 //! ```
 //!
-//! σ is the stress that the test measured, nominal or Cauchy. Energies are proportional to their parameters
-//! of the dimension of a stress; given the others, these follow by linear least squares. Starts are drawn for
+//! σ is the stress that the test measured, nominal or Cauchy. Energies are linear in their parameters
+//! that have the dimension of a stress; given the others, these follow by linear least squares. Starts are drawn for
 //! the others alone (a fixed sequence, the same on every machine), completed linearly, and the best of them
 //! are improved by Levenberg–Marquardt.
 //!

@@ -1,4 +1,4 @@
-//! The search for the parameters of the smallest sum of squares: starts that are drawn, completed by linear least squares,
+//! The search for the parameters with the smallest sum of squares: starts that are drawn, completed by linear least squares,
 //! and improved.
 
 use rand::{RngExt, SeedableRng};

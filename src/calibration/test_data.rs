@@ -1,4 +1,4 @@
-//! Test data: what was stretched how far, and what stress was measured.
+//! Test data: how far a specimen was stretched, and the stress that was measured.
 
 use std::path::Path;
 

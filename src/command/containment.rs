@@ -1,4 +1,4 @@
-//! A fault of the program itself, told in one message.
+//! A fault of the program itself, reported in one message.
 
 use std::any::Any;
 use std::io::Write;

@@ -4,7 +4,7 @@
 //! minimise ½ ‖H u − d‖²_W   subject to   F(u) = 0 at inner nodes and free edges
 //! ```
 //!
-//! d are displacements of markers at any places, H interpolates the field of the mesh there, W = 1/variance. As F(u) = 0
+//! d are the displacements of markers anywhere on the sheet, H interpolates the field of the mesh there, W = 1/variance. As F(u) = 0
 //! leaves only the displacements of the loaded edges free, u = u(p) where p are the coefficients of smooth functions along these
 //! edges (cubic B-splines) and three numbers for every rigid grip. Their sensitivities follow from the tangent K,
 //!
@@ -13,14 +13,14 @@
 //! ```
 //!
 //! and each Gauss–Newton step is a small regression with the equations linearised about the field reached so far; the
-//! first one is a polynomial through the markers, never the noisy data. How smooth an edge is, the data decide by restricted
+//! first one is a polynomial through the markers, never the noisy data. The data decide how smooth an edge is, by restricted
 //! maximum likelihood. Intervals follow from the covariance C of p, to first order in the noise:
 //!
 //! ```text
 //! Cov(u) = S C Sᵀ,   Cov(P) = A:∇S C (A:∇S)ᵀ,   S = ∂u/∂p,   A = ∂P/∂F
 //! ```
 //!
-//! The multipliers ζ of F(u) = 0 follow from one solution with the residuals, K ζ = Hᵀ W (d − H u): they tell where the data
+//! The multipliers ζ of F(u) = 0 follow from one solution with the residuals, K ζ = Hᵀ W (d − H u): they show where the data
 //! pull the field away from equilibrium.
 
 use crate::error::{Diagnostic, Error};

@@ -2,7 +2,7 @@
 //!
 //! A file holds the bytes `gelbench factor`, a version, the names and rows of the conditions, the factor, and a
 //! CRC-32 of all that. A factor fits a corrector with the same conditions by name and number of rows, the same
-//! unknowns and the same weights; it may have been taken at another field. `output::save` writes the bytes.
+//! unknowns and the same weights; it may come from another field. `output::save` writes the bytes.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What a table says of itself in the lines above its rows, and what is said of it elsewhere.
+//! What a table states about itself in the lines above its rows, and what the user states about it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

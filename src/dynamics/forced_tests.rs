@@ -1,6 +1,6 @@
 //! A damped spring under a force that changes in time: the steady state of the steps themselves, and that of the body.
 //!
-//! Under f = F (1 + sin Ω t) all that is left after a while is u = F/k + Im(Û e^(iΩt)). The steps have a closed form too: with
+//! Under f = F (1 + sin Ω t) what remains after a while is u = F/k + Im(Û e^(iΩt)). The steps have a closed form too: with
 //! z = e^(iΩh) every instant is z times the one before, and
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! The forces of a body in a step of time, and their tangent.
+//! The forces of a body in a time step, and their tangent.
 
 use super::viscosity::{ElementMotion, Memory, Viscosity, ViscousLocal};
 use crate::solve::vector::gather;

@@ -1,4 +1,4 @@
-//! One step of time.
+//! One time step.
 
 use super::motion::Motion;
 use super::state::BodyState;

@@ -1,8 +1,8 @@
 //! The columns of a table of displacements: found by name, lengths with their units, and none of them overlooked.
 //!
-//! A reader names the columns that it takes. Columns that other programs write and that say nothing of the displacement
+//! A reader names the columns that it takes. Columns that other programs write and that say nothing about the displacement
 //! ([`is_harmless`]) are passed over, and so are those that the user names; any other one is refused, because a column that
-//! nobody reads is a wish that nobody fulfils.
+//! is silently ignored may hold what the user relies on.
 
 use crate::document::{Column, Table, plain_name};
 use crate::error::{Diagnostic, Error, nearest, suggestion};

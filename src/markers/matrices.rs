@@ -2,7 +2,7 @@
 //!
 //! Ncorr writes no table of points: its results are the matrices `plot_u_ref_formatted` and `plot_v_ref_formatted`
 //! of `data_dic_save.displacements` in MATLAB, one row of the image after the other, in the unit that was chosen
-//! there. Saved by `writematrix(u, 'frame_1_u.csv')` and the same for v, two files are one frame. The distance of
+//! there. Saved by `writematrix(u, 'frame_1_u.csv')` and the same for v, two files are one frame. The distance between
 //! the points is (`dispinfo.spacing` + 1) · `dispinfo.pixtounits`. Points outside of the region of interest are zero
 //! in both; rows count downwards, so that y and v are turned up.
 //!

@@ -1,4 +1,4 @@
-//! Whether lengths fit each other: places and displacements, markers and a mesh.
+//! Whether lengths are consistent: positions with displacements, markers with a mesh.
 
 use super::frames::{Frame, Marker, MarkerSeries};
 use crate::error::{Diagnostic, Error};

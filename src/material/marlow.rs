@@ -20,8 +20,8 @@
 //! Ψ″ is unbounded at rest, but the tangent multiplies it by (∂I₁/∂F)² ~ x². The stretch is found from
 //! I₁ − 3 by the root of x³ + 3x² − (I₁ − 3)(1 + x) = 0, so that no digit is lost near rest.
 //!
-//! **Not covered.** Dependence on I₂: planar and equibiaxial tension are predictions, and compression is
-//! what the tension curve says about the same I₁.
+//! **Not covered.** Dependence on I₂: planar and equibiaxial tension are predictions, and compression follows
+//! from the tension curve at the same I₁.
 //!
 //! # References
 //! R. S. Marlow, in: Constitutive Models for Rubber III, Balkema (2003), p. 157, ISBN 90-5809-566-5

@@ -1,6 +1,6 @@
-//! A material of every kind: the shipped cards, and parameters of a usual soft material for the laws that no card uses.
+//! One material of every kind: the shipped cards, and parameters typical of a soft material for the laws that no card uses.
 //!
-//! Tests and validation cases that hold for all laws run over these.
+//! Tests and validation cases that cover all laws run over these.
 
 use std::path::Path;
 use std::sync::Arc;

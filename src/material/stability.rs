@@ -8,7 +8,7 @@
 //! ```
 //!
 //! D is the plane-stress tangent of the Kirchhoff stress without spin, the thickness following from
-//! incompressibility; where the axes of strain stay, it is ∂τᵢ/∂εⱼ with εᵢ = ln λᵢ. It has to be positive
+//! incompressibility; where the axes of strain are fixed, it is ∂τᵢ/∂εⱼ with εᵢ = ln λᵢ. It has to be positive
 //! definite, which says more than a rising curve in one test.
 //!
 //! # References

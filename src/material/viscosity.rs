@@ -7,7 +7,7 @@
 //!
 //! The first is an incompressible Newtonian fluid in parallel with the law, as a thin sheet with free surfaces sees it:
 //! a strip has 3 η. The second is Fung's convolution of the in-plane second Piola–Kirchhoff stress; the law of the card
-//! is that of long times, gᵢ is the share of the stress right after a sudden stretch that relaxes with the time τᵢ.
+//! is that of long times, gᵢ is the share of the stress right after a sudden stretch that relaxes with the time constant τᵢ.
 //!
 //! # References
 //! Y. C. Fung, Biomechanics: Mechanical Properties of Living Tissues, Springer (1993), § 7.6,

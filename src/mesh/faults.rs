@@ -1,4 +1,4 @@
-//! What is wrong with a mesh: cells that are no cells, cells that lie on each other, and cells that touch without being
+//! What is wrong with a mesh: cells that are none, cells that overlap, and cells that touch without being
 //! joined.
 //!
 //! | fault | what the finite elements would make of it |
@@ -11,8 +11,8 @@
 //! | parts that are not attached | each moves on its own |
 //! | cell with very small or large angles (a warning) | large errors, bad condition |
 //!
-//! A side's node is at a place, or on a side, when it is nearer than a thousandth of the shortest edge there. The time goes
-//! like n log n with the number of cells.
+//! A side's node is at a place, or on a side, when it is nearer than a thousandth of the shortest edge there. The time
+//! grows like n log n with the number of cells n.
 
 use std::collections::HashSet;
 

@@ -1,7 +1,7 @@
 //! The smooth curve that the edges of a boundary stand for.
 //!
 //! An edge of two nodes is a chord, one of three nodes a parabola; where neighbouring edges go on in nearly the same
-//! direction a curve is meant, and the small turn δ from the end of one to the begin of the next tells how far the edges
+//! direction a curve is meant, and the small turn δ from the end of one to the start of the next tells how far the edges
 //! are from it. Each of the two edges takes its share of the turn, ψ, and the curve lies beside the edge by c(s) along
 //! the left normal of its chord, −1 ≤ s ≤ 1, with c'(±1) = ½ ℓ ψ:
 //!

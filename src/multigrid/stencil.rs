@@ -1,4 +1,4 @@
-//! The symmetric operator of a grid: nine blocks of 2 × 2 a node, of which five are kept.
+//! The symmetric operator of a grid: nine blocks of 2 × 2 per node, of which five are kept.
 //!
 //! A block couples a node with itself, with the next one on its line (N), and with three on the line after
 //! (E, NE, SE); the other four are transposes of the neighbours' blocks. The blocks come from the bilinear
@@ -8,7 +8,7 @@
 //! K = Σ_cells ∫ A_iJkL ∂φa/∂X_J ∂φb/∂X_L dV
 //!   = Σ_cells P dx(a,b) my(a,b) + Q mx(a,b) dy(a,b) + R sx(a) sy(b) + Rᵀ sy(a) sx(b)
 //! P = t A_i1k1 hy/hx,   Q = t A_i2k2 hx/hy,   R = ¼ t A_i1k2                                   [N/mm]
-//! d = ±1, m = ⅓ or ⅙ for the same and for different ends, s = ±1 by the side of the cell
+//! d = ±1, m = ⅓ or ⅙ for the same or different ends, s = ±1 according to the side of the cell
 //! ```
 
 use std::cell::RefCell;

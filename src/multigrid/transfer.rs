@@ -1,4 +1,4 @@
-//! Between two grids on one rectangle, along one axis at a time.
+//! Transfer between two grids on one rectangle, along one axis at a time.
 
 use super::vector::Vector;
 

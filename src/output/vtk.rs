@@ -1,4 +1,4 @@
-//! VTK files: one `.vtu` a grid, and a `.pvd` a series that plays its grids.
+//! VTK files: one `.vtu` per grid, and one `.pvd` per series, which plays its grids.
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};

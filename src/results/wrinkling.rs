@@ -1,4 +1,4 @@
-//! Where a sheet is under compression, which it cannot bear: it wrinkles or buckles out of its plane.
+//! Where a sheet is under compression, which it cannot bear: it would wrinkle or buckle out of its plane.
 
 use nalgebra::Vector4;
 

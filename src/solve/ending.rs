@@ -1,8 +1,8 @@
 //! Why a path of equilibria ends.
 //!
 //! Near a critical state the tangent K has a direction φ of vanishing stiffness. With q = ∂r/∂s, the change of
-//! the loads by the load factor s, φ · q ≠ 0 is a limit point: the load has its maximum there. φ · q = 0 is
-//! a bifurcation: the body may leave its path along φ, it buckles or wrinkles.
+//! the loads with the load factor s, φ · q ≠ 0 is a limit point: the load has its maximum there. φ · q = 0 is
+//! a bifurcation: the body may leave its path along φ, as in buckling or wrinkling.
 //!
 //! # References
 //! P. Wriggers, Nonlinear Finite Element Methods, Springer (2008), § 7.1, doi:10.1007/978-3-540-71001-1

@@ -1,4 +1,4 @@
-//! Factorisation of sparse matrices. The only file that names faer.
+//! Factorisation of sparse matrices. Only this file names faer.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! FIELD ─markers─▶ frames ─────┐
-//! mesh, outline or markers ───┼─▶ MarkerStudy ─estimate─▶ one FieldEstimate a frame
+//! mesh, outline or markers ───┼─▶ MarkerStudy ─estimate─▶ one FieldEstimate per frame
 //! conditions.toml ────────────┘
 //! ```
 

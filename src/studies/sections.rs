@@ -1,4 +1,4 @@
-//! Sections that studies of several kinds have: material, plate, Newton's method, tolerances.
+//! Sections that several kinds of study share: material, plate, Newton's method, tolerances.
 
 use std::path::Path;
 use std::sync::Arc;

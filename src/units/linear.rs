@@ -1,4 +1,4 @@
-//! Quantities that are linear in the place, as text: `"2 mm + 0.1 * X - 5 % * Y"`.
+//! Quantities that are linear in the reference coordinates, as text: `"2 mm + 0.1 * X - 5 % * Y"`.
 
 use std::fmt;
 

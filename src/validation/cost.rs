@@ -1,9 +1,9 @@
-//! The cost of the corrected plate beside finite elements, measured side by side in one run.
+//! The cost of the corrected plate compared with finite elements, measured side by side in one run.
 //!
 //! Both paths of the corrector are measured: the direct one, which starts at the springs' field on the same nodes, and the
-//! climb, which is the default of studies. Each is set beside the finite elements with the same equations on the same
-//! nodes, solved with one sparse factorisation for each Newton iteration. Finite elements that are tuned as well as they
-//! can be stand in `cargo bench --bench corrected_plate`.
+//! climb, which is the default of studies. Each is compared with the finite elements with the same equations on the same
+//! nodes, solved with one sparse factorisation for each Newton iteration. Finite elements tuned as well as they
+//! can be are in `cargo bench --bench corrected_plate`.
 
 use std::path::Path;
 use std::time::Instant;

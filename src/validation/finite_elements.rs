@@ -1,4 +1,4 @@
-//! The finite elements beside mathematics: what every case of them needs.
+//! The finite elements compared with mathematics: what all of these cases need.
 
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -7,7 +7,7 @@
 //! order 4     u₋ − 2 u₀ + u₊ + k h² (u₋ + 10 u₀ + u₊)/12 = 0                         (Numerov, c = 0)
 //! ```
 //!
-//! Both are D u + k M u + c G u = 0 with matrices D, M, G of one row for each inner instant.
+//! Both are D u + k M u + c G u = 0 with matrices D, M, G that have one row for each inner instant.
 //!
 //! # References
 //! B. Numerov, Mon. Not. R. Astron. Soc. 84, 592 (1924), doi:10.1093/mnras/84.8.592

@@ -1,4 +1,4 @@
-//! The built-in finite elements at equal mesh beside dolfinx, scikit-fem and FElupe.
+//! The built-in finite elements compared with dolfinx, scikit-fem and FElupe on the same mesh.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What the cases on the plate share: one stretch of a clamped plate, its lattice and its reference.
+//! What the cases of the plate share: one stretch of a clamped plate, its lattice and its reference.
 
 use std::path::Path;
 

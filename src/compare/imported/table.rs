@@ -5,7 +5,7 @@
 //! | `x`, `y` | place at rest |
 //! | `ux`, `uy` | displacement |
 //! | `stretch`, `load_factor`, `factor` | the load factor of a row; a stretch in % is one too |
-//! | `time` | the time of a row, the load factor unless `--time` says another one |
+//! | `time` | the time of a row, the load factor unless `--time` says otherwise |
 //! | `z`, `uz` | of a sheet that stays flat |
 //!
 //! Units stand in the names (`ux_mm`) or in brackets. Other columns are refused, see [`crate::markers::columns`].

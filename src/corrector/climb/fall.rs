@@ -7,13 +7,13 @@
 //! |e − z| = (1/θ − 1) |z|
 //! ```
 //!
-//! Conjugate gradients tell θ as they go, by Lanczos' matrix of their step lengths α and shares β:
+//! Conjugate gradients reveal θ as they go, through Lanczos' matrix of their step lengths α and shares β:
 //!
 //! ```text
 //! T = tridiagonal:   Tⱼⱼ = 1/αⱼ + βⱼ₋₁/αⱼ₋₁,   Tⱼ,ⱼ₊₁ = √βⱼ/αⱼ
 //! ```
 //!
-//! and corrections that fall by a factor ρ each leave ρ/(1 − ρ) of the last one: the larger one counts, with room for
+//! and corrections that each fall by a factor ρ leave ρ/(1 − ρ) of the last one: the larger one counts, with room for
 //! what few iterations do not see. As one sheet under one stretch has much the same θ on all grids, the smallest one of the
 //! coarser grids, which take more iterations, counts too.
 //!

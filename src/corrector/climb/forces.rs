@@ -1,4 +1,4 @@
-//! The governing equation F(u) = ∂Π/∂u on a grid, many elements at a time.
+//! The governing equation F(u) = ∂Π/∂u on a grid, evaluated for many elements at a time.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;

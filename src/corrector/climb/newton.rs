@@ -1,4 +1,4 @@
-//! Plain Newton on the finest grid alone, with the same multigrid: the ablation of the climb.
+//! Plain Newton on the finest grid alone, with the same multigrid: what the climb is compared with.
 
 use super::{Climb, Climbed, Field, Inverted, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};

@@ -1,6 +1,6 @@
 //! Edges moved to where they belong without folding the cells beside them.
 //!
-//! On a fine mesh an edge cannot jump by more than the size of a cell. Then the inside is moved along by the tangent,
+//! On a fine mesh an edge cannot jump by more than the size of a cell. The inside is then moved along with the tangent,
 //! Δu = −K⁻¹ K_B Δu_B, as far in one go as all cells stay admissible.
 
 use crate::error::SolveFault;

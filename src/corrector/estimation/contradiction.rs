@@ -1,6 +1,6 @@
 //! Whether the data contradict what is said of the edges.
 //!
-//! Edges that are said to be free, rigid or known are let go, to move in unknown smooth ways, in one linearised step from the
+//! Edges that are said to be free, rigid or known are released, to move in unknown smooth ways, in one linearised step from the
 //! field that was found. Where the misfit falls by more than noise would let it (F test), something is wrong with what was
 //! said, or with law and thickness.
 

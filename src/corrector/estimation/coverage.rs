@@ -1,4 +1,4 @@
-//! Whether standard errors and levels are what they say, over seeds of noise.
+//! Whether standard errors and levels are what they claim to be, over seeds of noise.
 //!
 //! Bounds are those of χ², the normal or Poisson's distribution at some four standard deviations: what is tested holds by
 //! far on sound code, and fails where an error is a fifth too small.

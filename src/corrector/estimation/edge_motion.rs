@@ -1,4 +1,4 @@
-//! How the loaded edges of a specimen move, by as few numbers as their conditions allow.
+//! How the loaded edges of a specimen move, in as few numbers as their conditions allow.
 
 use std::collections::BTreeMap;
 

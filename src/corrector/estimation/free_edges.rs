@@ -1,4 +1,4 @@
-//! Which of the edges that nobody names are free: the data say it.
+//! Which of the edges without a stated condition are free, as the data decide.
 
 use super::equations::Equations;
 use super::field_estimate::EdgeForce;

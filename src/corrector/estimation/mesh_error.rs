@@ -1,4 +1,4 @@
-//! The mesh's own error of an estimated field, from the same equations on cells half as large.
+//! The mesh's own error in an estimated field, from the same equations on cells half as large.
 //!
 //! ```text
 //! d = u_{h/2}(p) − u_h(p)                      at the motion p of the edges that was found

@@ -1,4 +1,4 @@
-//! Linear least squares with rough parts held down, each by as much as the data say.
+//! Linear least squares with penalties on roughness, each weighted as the data decide.
 //!
 //! ```text
 //! data        r = A δ + noise,   variance v/wᵢ                                     n rows
@@ -10,7 +10,7 @@
 //! v  ← Σ w r²/(n − tr(M⁻¹AᵀWA)/v)
 //! ```
 //!
-//! The λⱼ are those of largest restricted likelihood, found by the fixed point of Fellner and Schall; one whose data know
+//! The λⱼ maximise the restricted likelihood, found by the fixed point of Fellner and Schall; one whose data know
 //! nothing of roughness grows without bound, and what it holds down becomes as smooth as it can be. M⁻¹ is the covariance given
 //! the data, the bias of the smoothing included, so that its intervals cover (Nychka).
 //!

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! ū is the given field interpolated at the nodes. As many equations as unknowns are left, so that the field does not
-//! depend on the norm; the multipliers ζ, K ζ = ū − u, tell where the given field contradicts the physics. An edge
+//! depend on the norm; the multipliers ζ, K ζ = ū − u, show where the given field contradicts the physics. An edge
 //! that is known has its known displacement instead of ū, a rigid one the rigid motion nearest to ū.
 
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Whether what is left of the markers is white noise: Moran's I of the residuals of neighbours.
+//! Whether the markers' residuals are white noise: Moran's I over neighbours.
 //!
 //! ```text
 //! I = Σᵢⱼ wᵢⱼ zᵢ zⱼ / Σᵢ zᵢ² · N/S₀,   wᵢⱼ = 1/4 for the four nearest neighbours j of marker i, S₀ = Σ wᵢⱼ

@@ -1,4 +1,4 @@
-//! The sides of all cells, sorted by their ends: which cells meet at each, and what of them is the boundary.
+//! The sides of all cells, sorted by their ends: which cells meet at each, and which of them make up the boundary.
 
 use std::collections::HashSet;
 

@@ -7,7 +7,7 @@
 //!  -4  DISP …                     displacements: -1, node, D1, D2, D3
 //! ```
 //!
-//! CalculiX makes solids of the elements of a sheet. Where the file holds them (`OUTPUT=3D`), their lower faces become
+//! CalculiX turns the elements of a sheet into solids. Where the file holds them (`OUTPUT=3D`), their lower faces become
 //! the cells, and the displacement of a node is the mean of all nodes above it.
 //!
 //! # References

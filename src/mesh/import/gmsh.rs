@@ -1,4 +1,4 @@
-//! Gmsh's ASCII files of the versions 2.2 and 4.1.
+//! Gmsh's ASCII files, versions 2.2 and 4.1.
 
 use std::collections::HashMap;
 use std::str::{FromStr, SplitWhitespace};

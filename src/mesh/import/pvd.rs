@@ -1,4 +1,4 @@
-//! ParaView's collections of files.
+//! ParaView's collections of files (`.pvd`).
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};

@@ -1,4 +1,4 @@
-//! VTK's unstructured grids, and its legacy files (`.vtk`); those as XML are read by [`super::vtu`].
+//! VTK's unstructured grids, and its legacy files (`.vtk`); the XML files are read by [`super::vtu`].
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Fields that move, as an animated PNG: every browser plays it, and where it is not played its first picture shows.
+//! Fields that move, as an animated PNG: every browser plays it, and other programs show its first picture.
 
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Writer};
 use resvg::tiny_skia::Pixmap;

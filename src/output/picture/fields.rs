@@ -1,4 +1,4 @@
-//! Fields on deformed plates, several beside each other on one colour scale.
+//! Fields on deformed plates, several side by side on one colour scale.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;

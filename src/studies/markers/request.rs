@@ -1,4 +1,4 @@
-//! What is to be corrected, and how.
+//! What to correct, and how.
 
 use std::path::PathBuf;
 

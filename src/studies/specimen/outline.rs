@@ -1,4 +1,4 @@
-//! What is meshed of a specimen, and how.
+//! What of a specimen is meshed, and how.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Meshes of other programs with curved sides: the stated error of the force beside the true one.
+//! Meshes of other programs with curved sides: the stated error of the force compared with the true one.
 //!
 //! A mesh that is read has parabolas for circles, and so have its refinements: the stated error consists of the
 //! discretisation's, by three meshes, and the outline's, by the force on rounded sides. The true force is that of elements

@@ -2,7 +2,7 @@
 //!
 //! A quarter is meshed: X and Y are axes of symmetry. The concentration is the stress beside the hole over the
 //! mean stress of the whole strip; in a plane it does not depend on Poisson's ratio. Howland's values are
-//! successive approximations by hand; a hole that is small beside the width has Kirsch's concentration of 3.
+//! successive approximations by hand; a hole that is small compared with the width has Kirsch's concentration of 3.
 //!
 //! # References
 //! R. C. J. Howland, Phil. Trans. R. Soc. Lond. A 229, 49 (1930), doi:10.1098/rsta.1930.0002

@@ -1,4 +1,4 @@
-//! A ring under pressure inside. At small strain: Lamé's solution; at large strain: a round ring, and the displacements
+//! A ring under internal pressure. At small strain: Lamé's solution; at large strain: a round ring, and the displacements
 //! and the supports' forces of a solution in one dimension.
 //!
 //! ```text
