@@ -2,15 +2,17 @@
 //! be trusted.
 //!
 //! ```text
-//! table ─test_data─▶ TestData ─fit─▶ Fit ─quality─▶ Quality ─▶ card, picture, JSON
+//! table ─reading─▶ TestData ─fit─▶ Fit ─quality─▶ Quality ─▶ card, picture, JSON
 //! ```
 
 mod card_text;
 mod conversion;
 mod fit;
+mod layout;
 mod least_squares;
 mod misfit;
 mod quality;
+mod reading;
 mod search;
 mod settings;
 mod test_data;
@@ -20,8 +22,9 @@ pub use card_text::{Provenance, card_text};
 pub use conversion::Conversion;
 pub use fit::{Fit, fit, rank};
 pub use quality::{Quality, StableRange};
+pub use reading::KEYS;
 pub use settings::{Bounds, FitSettings, Weighting};
-pub use test_data::{KEYS, Observation, StrainColumn, Test, TestData};
+pub use test_data::{Observation, StrainColumn, Test, TestData};
 
 #[cfg(test)]
 mod quality_tests;

@@ -13,6 +13,7 @@ use crate::error::{Diagnostic, Error, Severity, Source};
 
 mod decimals;
 mod head;
+mod lines;
 mod section;
 mod table;
 

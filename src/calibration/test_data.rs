@@ -1,28 +1,9 @@
 //! Test data: how far a specimen was stretched, and the stress that was measured.
 
-use std::path::Path;
-
-use crate::document::{Head, Statements, Table, name_of};
-use crate::error::{Diagnostic, Error};
+use crate::document::{Statements, name_of};
+use crate::error::Diagnostic;
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
-
-mod layout;
-
-use layout::Layout;
-
-/// What a file or the command line must say about test data.
-pub const KEYS: [&str; 9] = [
-    "test",
-    "stress measure",
-    "strain measure",
-    "stress unit",
-    "strain unit",
-    "direction",
-    "strain ratio",
-    "area",
-    "length",
-];
 
 /// The kinds of test that a sheet can be put to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,30 +104,6 @@ pub struct TestData {
 }
 
 impl TestData {
-    /// Reads a file; `reading` says what the file does not, by [`KEYS`].
-    ///
-    /// # Errors
-    /// [`Error::Input`] with file, line and reason; nothing is ever guessed.
-    pub fn read(path: &Path, reading: &Statements) -> Result<Self, Error> {
-        Self::of_table(&Table::read(path)?, reading)
-    }
-
-    /// Reads a text.
-    ///
-    /// # Errors
-    /// As [`Self::read`].
-    pub fn parse(name: &str, text: &str, reading: &Statements) -> Result<Self, Error> {
-        Self::of_table(&Table::parse(name, text)?, reading)
-    }
-
-    fn of_table(table: &Table, reading: &Statements) -> Result<Self, Error> {
-        let head = Head::new(table, &KEYS, reading)?;
-        let layout = Layout::new(&head).map_err(input)?;
-        let hint = "every row holds finite numbers; units stand in the line of names";
-        table.check_numbers(layout.columns(), hint)?;
-        layout.read(&head).map_err(input)
-    }
-
     /// The stress of a law at an observation, in the measure of the data, in MPa.
     pub fn stress_of(&self, law: &dyn HyperelasticLaw, observation: &Observation) -> f64 {
         let axis = observation.axis;
@@ -216,10 +173,6 @@ impl TestData {
     }
 }
 
-fn input(fault: Box<Diagnostic>) -> Error {
-    Error::Input(vec![*fault])
-}
-
 /// The strain across at a strain along, between sorted observations.
 fn interpolate(sorted: &[&Observation], along: usize, x: f64) -> f64 {
     let mut before = sorted.first().map_or([0.0; 2], |one| one.strains);
@@ -237,6 +190,3 @@ fn interpolate(sorted: &[&Observation], along: usize, x: f64) -> f64 {
     }
     before[1 - along]
 }
-
-#[cfg(test)]
-mod tests;

@@ -15,14 +15,14 @@ impl Decimals {
     /// The number in a field.
     ///
     /// # Errors
-    /// Says why it is none.
-    pub fn read(&mut self, field: &str) -> Result<f64, String> {
+    /// [`NotANumber`] says why it is none.
+    pub fn read(&mut self, field: &str) -> Result<f64, NotANumber> {
         let value = number(field).ok_or_else(|| match field {
-            "" => "a field is empty".to_owned(),
-            _ => format!("\"{field}\" is not a number"),
+            "" => NotANumber::Empty,
+            _ => NotANumber::Text(field.to_owned()),
         })?;
         if !value.is_finite() {
-            return Err(format!("{field} is not a finite number"));
+            return Err(NotANumber::Infinite(field.to_owned()));
         }
         self.point |= field.contains('.');
         if let Some((whole, decimals)) = field.split_once(',') {
@@ -33,9 +33,7 @@ impl Decimals {
             self.ungrouped |= value.abs() >= 100.0;
         }
         match self.point && self.comma {
-            true => Err(format!(
-                "\"{field}\": decimal points and decimal commas are mixed in this file"
-            )),
+            true => Err(NotANumber::Mixed(field.to_owned())),
             false => Ok(value),
         }
     }
@@ -44,6 +42,19 @@ impl Decimals {
     pub fn are_ambiguous(&self) -> bool {
         self.comma && !self.surely_decimal && self.ungrouped
     }
+}
+
+/// Why a field is no number.
+#[derive(Clone, Debug, thiserror::Error)]
+pub(super) enum NotANumber {
+    #[error("a field is empty")]
+    Empty,
+    #[error("\"{0}\" is not a number")]
+    Text(String),
+    #[error("{0} is not a finite number")]
+    Infinite(String),
+    #[error("\"{0}\": decimal points and decimal commas are mixed in this file")]
+    Mixed(String),
 }
 
 /// A number with a decimal point or one decimal comma.

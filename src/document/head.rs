@@ -13,11 +13,14 @@ pub type Statements = BTreeMap<String, String>;
 /// The result of looking something up in a head.
 pub type Faulty<T> = Result<T, Box<Diagnostic>>;
 
+/// Values with their places, by their keys.
+type Pairs = BTreeMap<String, (String, Range<usize>)>;
+
 /// The head of a table together with what the command line says.
 pub struct Head<'a> {
     /// The table.
     pub table: &'a Table,
-    pairs: BTreeMap<String, (String, Range<usize>)>,
+    pairs: Pairs,
     given: &'a Statements,
 }
 
@@ -29,7 +32,7 @@ impl<'a> Head<'a> {
     pub fn new(table: &'a Table, known: &[&str], given: &'a Statements) -> Result<Self, Error> {
         Ok(Self {
             table,
-            pairs: table.pairs(known).map_err(Error::Input)?,
+            pairs: pairs(table, known).map_err(Error::Input)?,
             given,
         })
     }
@@ -179,4 +182,46 @@ impl<'a> Head<'a> {
         let pair = self.pairs.get(key);
         pair.map_or(0..0, |(_, place)| place.clone())
     }
+}
+
+/// The `key: value` pairs of the lines that begin with `#`, the first of each key with its place; several with one
+/// of the `known` keys first may stand on one line, separated by semicolons.
+///
+/// # Errors
+/// The known keys that stand twice with different values.
+pub(super) fn pairs(table: &Table, known: &[&str]) -> Result<Pairs, Vec<Diagnostic>> {
+    let (mut pairs, mut faults) = (BTreeMap::new(), Vec::new());
+    let known = |key: &str| known.contains(&&*plain_key(key));
+    let mut start = 0;
+    for line in table.source.text.split_inclusive('\n') {
+        let place = start..start + line.trim_end().len();
+        start += line.len();
+        let Some(comment) = line.strip_prefix('#') else {
+            continue;
+        };
+        let several = known(comment.split(':').next().unwrap_or_default());
+        let parts = comment.split(|letter| several && letter == ';');
+        for (key, value) in parts.filter_map(|part| part.split_once(':')) {
+            let (key, value) = (plain_key(key), value.trim().to_owned());
+            match pairs.get(&key) {
+                Some((first, _)) if known(&key) && *first != value => {
+                    let message = format!("the {key} is said twice in different ways");
+                    faults.push(table.fault(place.clone(), message, "say it once"));
+                }
+                Some(_) => {}
+                None => {
+                    pairs.insert(key, (value, place.clone()));
+                }
+            }
+        }
+    }
+    match faults.is_empty() {
+        true => Ok(pairs),
+        false => Err(faults),
+    }
+}
+
+/// A key of the head in lower case with spaces.
+fn plain_key(key: &str) -> String {
+    key.trim().to_lowercase().replace('_', " ")
 }

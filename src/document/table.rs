@@ -1,13 +1,13 @@
 //! Tables of numbers as laboratories write them: commas, semicolons or tabs, decimal points or commas, a head of
 //! `# key: value` lines, names with units in brackets.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
 use super::Faults;
-use super::decimals::{Decimals, is_hole, is_number};
+use super::decimals::{Decimals, NotANumber, is_hole};
+use super::lines::{delimiter, is_name, line_at, plain_text};
 use crate::error::{Diagnostic, Error, Source};
 
 /// A column's name and unit.
@@ -39,7 +39,7 @@ pub fn plain_name(name: &str) -> String {
 }
 
 /// A field that is no number: its row and what is wrong.
-type FieldFault = Option<(usize, String)>;
+type FieldFault = Option<(usize, NotANumber)>;
 
 /// A table as it stands in a file.
 #[derive(Debug)]
@@ -260,102 +260,12 @@ impl Table {
     pub fn refuse_columns(&self, message: impl Into<String>, hint: &str) -> Error {
         self.refuse(self.columns_place.clone(), message, hint)
     }
-
-    /// The `key: value` pairs of the lines that begin with `#`, the first of each key with its place; several with one
-    /// of the `known` keys first may stand on one line, separated by semicolons.
-    ///
-    /// # Errors
-    /// The known keys that stand twice with different values.
-    pub(super) fn pairs(
-        &self,
-        known: &[&str],
-    ) -> Result<BTreeMap<String, (String, Range<usize>)>, Vec<Diagnostic>> {
-        let (mut pairs, mut faults) = (BTreeMap::new(), Vec::new());
-        let known = |key: &str| known.contains(&&*plain_key(key));
-        let mut start = 0;
-        for line in self.source.text.split_inclusive('\n') {
-            let place = start..start + line.trim_end().len();
-            start += line.len();
-            let Some(comment) = line.strip_prefix('#') else {
-                continue;
-            };
-            let several = known(comment.split(':').next().unwrap_or_default());
-            let parts = comment.split(|letter| several && letter == ';');
-            for (key, value) in parts.filter_map(|part| part.split_once(':')) {
-                let (key, value) = (plain_key(key), value.trim().to_owned());
-                match pairs.get(&key) {
-                    Some((first, _)) if known(&key) && *first != value => {
-                        let message = format!("the {key} is said twice in different ways");
-                        faults.push(self.fault(place.clone(), message, "say it once"));
-                    }
-                    Some(_) => {}
-                    None => {
-                        pairs.insert(key, (value, place.clone()));
-                    }
-                }
-            }
-        }
-        match faults.is_empty() {
-            true => Ok(pairs),
-            false => Err(faults),
-        }
-    }
-}
-
-/// A text without byte-order mark and old line ends; lines that begin with stars, as some programs write them first,
-/// become remarks.
-fn plain_text(text: &str) -> String {
-    let text = text.trim_start_matches('\u{feff}');
-    let text = match text.contains('\n') {
-        true => text.to_owned(),
-        false => text.replace('\r', "\n"),
-    };
-    if !text.starts_with("***") {
-        return text;
-    }
-    let remark = |line: &str| match line.strip_prefix('*') {
-        Some(rest) => format!("#{rest}"),
-        None => line.to_owned(),
-    };
-    text.split_inclusive('\n').map(remark).collect()
-}
-
-/// The separator of the first line that is no comment.
-fn delimiter(text: &str) -> Option<u8> {
-    let line = text
-        .split(['\n', '\r'])
-        .find(|line| !line.trim().is_empty() && !line.starts_with('#'))?;
-    [b';', b'\t', b',']
-        .into_iter()
-        .find(|delimiter| line.as_bytes().contains(delimiter))
-}
-
-/// A key of the head in lower case with spaces.
-fn plain_key(key: &str) -> String {
-    key.trim().to_lowercase().replace('_', " ")
-}
-
-/// The line of a record: csv points to what stands before it, remarks and empty lines too.
-fn line_at(text: &str, from: usize) -> Range<usize> {
-    let mut start = from;
-    for line in text[from..].split_inclusive('\n') {
-        if !line.trim().is_empty() && !line.starts_with('#') {
-            return start..start + line.trim_end().len();
-        }
-        start += line.len();
-    }
-    from..from
-}
-
-/// Whether a field is a name or a unit: it does not begin as a number does.
-fn is_name(field: &str) -> bool {
-    let digits = field.trim_start_matches(['+', '-', '.', ',']);
-    !is_number(field) && !digits.starts_with(|first: char| first.is_ascii_digit())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::head::pairs;
 
     fn rows(text: &str) -> Vec<Vec<f64>> {
         let table = Table::parse("a.csv", text).unwrap();
@@ -389,7 +299,7 @@ mod tests {
         assert_eq!(table.columns[0].name, "nominal_stress");
         assert_eq!(table.columns[0].unit.as_deref(), Some("kPa"));
         assert_eq!(table.columns[1].unit, None);
-        let head = table.pairs(&["test"]).unwrap();
+        let head = pairs(&table, &["test"]).unwrap();
         assert_eq!(head["test"].0, "uniaxial");
         assert_eq!(head["direction"].0, "2");
     }
@@ -442,12 +352,12 @@ mod tests {
         let text =
             "#test:uniaxial\r# source: Smith A 2001; Jones B: Aorta tests\ra [-],b [MPa]\r1,2\r";
         let table = Table::parse("a.csv", text).unwrap();
-        let head = table.pairs(&["test"]).unwrap();
+        let head = pairs(&table, &["test"]).unwrap();
         assert_eq!(head["test"].0, "uniaxial");
         assert_eq!(head["source"].0, "Smith A 2001; Jones B: Aorta tests");
         assert_eq!(table.rows.len(), 1);
         let twice = Table::parse("a.csv", "# test: planar\n# test: uniaxial\na,b\n1,2\n").unwrap();
-        let faults = twice.pairs(&["test"]).unwrap_err();
+        let faults = pairs(&twice, &["test"]).unwrap_err();
         assert!(
             faults[0]
                 .to_string()

@@ -1,6 +1,7 @@
 //! Reading of test data.
 
 use super::*;
+use crate::calibration::Observation;
 
 fn read(text: &str, reading: &[(&str, &str)]) -> Result<TestData, String> {
     let reading = reading

@@ -1,6 +1,6 @@
 //! What the columns of a table mean, and the rows read by it.
 
-use super::{Observation, StrainColumn, Test, TestData};
+use super::test_data::{Observation, StrainColumn, Test, TestData};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
