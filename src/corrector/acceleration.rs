@@ -15,10 +15,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Corrector, Factor, Step, difference};
+use super::correction::Step;
+use super::factor::{Factor, row_scales};
+use super::system::{Corrector, SHORTEST_STEP};
 use crate::error::SolveFault;
 use crate::solve::NotPositiveDefinite;
-use crate::solve::vector::{largest, norm};
+use crate::solve::vector::{difference, largest, moved, norm};
 
 /// Iterates that are combined.
 const DEPTH: usize = 12;
@@ -37,7 +39,7 @@ pub fn accelerate(
     start: &[f64],
     factor: &mut Factor,
 ) -> Result<(Vec<f64>, Vec<Step>), SolveFault> {
-    let scales = super::factor::row_scales(factor.jacobian(), factor.weights());
+    let scales = row_scales(factor.jacobian(), factor.weights());
     let values = |field: &[f64]| {
         corrector
             .values(field)
@@ -96,7 +98,7 @@ fn shortened(
     acceptable: &dyn Fn(&[f64], &[f64]) -> bool,
 ) -> Option<(Vec<f64>, Vec<f64>, f64)> {
     let mut length = 1.0;
-    while length > super::step::SHORTEST_STEP {
+    while length > SHORTEST_STEP {
         let way = field.iter().zip(proposed);
         let next: Vec<f64> = way.map(|(from, to)| from + length * (to - from)).collect();
         if let Ok(values) = corrector.values(&next)
@@ -128,7 +130,7 @@ impl History {
                 self.step_changes.remove(0);
             }
         }
-        let mut next: Vec<f64> = field.iter().zip(step).map(|(u, step)| u + step).collect();
+        let mut next = moved(field, 1.0, step);
         for (index, gamma) in self.coefficients(step).into_iter().enumerate() {
             let changes = self.field_changes[index]
                 .iter()

@@ -30,12 +30,13 @@ mod start;
 mod tangents;
 #[cfg(test)]
 mod tests;
+mod way;
 
 pub use grid::{Field, Grid};
 pub use level::Work;
-use level::{Ending, Inverted, Level, Reached, Sheet};
+use level::{Ending, Inverted, Iteration, Level, Sheet};
 pub use path::{Grips, Interactive, RigidMotion};
-pub use start::{Start, Way};
+pub use way::{Start, Way};
 
 /// How exactly the climb solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +66,7 @@ impl Default for ClimbSettings {
 
 /// A corrected field at one stretch.
 #[derive(Clone, Debug)]
-pub struct Climbed {
+pub struct ClimbSolution {
     /// Displacements in mm on the finest grid.
     pub field: Field,
     /// Force on the moving grip in N.
@@ -85,7 +86,7 @@ pub struct Climbed {
     pub way: Way,
 }
 
-impl Climbed {
+impl ClimbSolution {
     /// All evaluations of F, linearisations and cycles as fractions of one on a grid with so many nodes.
     pub fn fine_work(&self, nodes: usize) -> [f64; 3] {
         let mut sums = [0.0; 3];
@@ -186,7 +187,7 @@ impl<'a> Climb<'a> {
     ///
     /// # Errors
     /// [`Error::Solve`] when no field was found.
-    pub fn correct(&mut self, stretch: f64) -> Result<Climbed, Error> {
+    pub fn correct(&mut self, stretch: f64) -> Result<ClimbSolution, Error> {
         self.weakest = 1.0;
         let first = self.first_field(stretch)?;
         self.ascend(first, stretch)
@@ -206,9 +207,9 @@ impl<'a> Climb<'a> {
         index: usize,
         field: &mut Field,
         enough: &dyn Fn(f64, f64) -> bool,
-    ) -> Result<Reached, SolveFault> {
+    ) -> Result<Iteration, SolveFault> {
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
-        let mut whole: Option<Reached> = None;
+        let mut whole: Option<Iteration> = None;
         for _ in 0..LINEARISATIONS {
             let level = &mut self.levels[index];
             level
@@ -276,7 +277,7 @@ impl<'a> Climb<'a> {
 
     /// The field extrapolated after Richardson from the finest grid and the one before it; nothing where there is
     /// one grid alone.
-    pub fn extrapolated(&self, climbed: &Climbed) -> Option<Field> {
+    pub fn extrapolated(&self, climbed: &ClimbSolution) -> Option<Field> {
         let change = climbed.change.as_ref()?;
         let mut field = climbed.field.clone();
         field.add(climbed.discretisation_error / change.size(), change);

@@ -8,7 +8,7 @@ pub use forces::{Equilibrium, TotalForce};
 
 /// The rows of a condition, linearised: c(u + δ) ≈ c(u) + B δ.
 #[derive(Clone, Debug)]
-pub struct Linearised {
+pub struct Linearisation {
     /// c(u).
     pub values: Vec<f64>,
     /// B = ∂c/∂u.
@@ -27,7 +27,7 @@ pub trait Condition {
     ///
     /// # Errors
     /// [`Inadmissible`] when a cell is inverted.
-    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible>;
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible>;
 
     /// Values at `u`.
     ///
@@ -124,8 +124,8 @@ impl Condition for Linear {
         self.right_hand_side.len()
     }
 
-    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
-        Ok(Linearised {
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
+        Ok(Linearisation {
             values: self.values(u)?,
             jacobian: self.rows.clone(),
         })
@@ -177,7 +177,7 @@ impl Condition for EnclosedArea {
         1
     }
 
-    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
         let place =
             |(node, [x, y]): &(usize, [f64; 2])| (*node, [x + u[2 * node], y + u[2 * node + 1]]);
         let places: Vec<_> = self.line.iter().map(place).collect();
@@ -191,7 +191,7 @@ impl Condition for EnclosedArea {
         }
         let mut jacobian = SparseRows::new(u.len());
         jacobian.push(row);
-        Ok(Linearised {
+        Ok(Linearisation {
             values: vec![area - self.area],
             jacobian,
         })
@@ -230,7 +230,7 @@ pub struct Function<F> {
     curvature: Option<Box<Curvature>>,
 }
 
-impl<F: Fn(&[f64]) -> Linearised> Function<F> {
+impl<F: Fn(&[f64]) -> Linearisation> Function<F> {
     /// The conditions that `function` returns, always as many `rows`, linearised at any field.
     pub fn new(name: &str, rows: usize, function: F) -> Self {
         Self {
@@ -255,7 +255,7 @@ impl<F: Fn(&[f64]) -> Linearised> Function<F> {
     }
 }
 
-impl<F: Fn(&[f64]) -> Linearised> Condition for Function<F> {
+impl<F: Fn(&[f64]) -> Linearisation> Condition for Function<F> {
     fn name(&self) -> &str {
         &self.name
     }
@@ -264,7 +264,7 @@ impl<F: Fn(&[f64]) -> Linearised> Condition for Function<F> {
         self.rows
     }
 
-    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
         Ok((self.function)(u))
     }
 

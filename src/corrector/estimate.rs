@@ -10,8 +10,10 @@
 //!
 //! to first order in the noise. The interval uses Student's distribution with m − q degrees of freedom.
 
-use super::{Correction, Corrector, difference};
+use super::correction::Correction;
+use super::system::Corrector;
 use crate::error::SolveFault;
+use crate::solve::vector::difference;
 use crate::statistics::{Estimate, student_reach};
 
 impl Corrector<'_> {

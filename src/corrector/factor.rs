@@ -25,7 +25,6 @@
 //!
 //! **Unknowns without data** have weight zero: parameters of the conditions that are found with the field.
 
-use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::solve::{Cholesky, NotPositiveDefinite, SparseLu, SparseRows};
@@ -33,18 +32,10 @@ use crate::solve::{Cholesky, NotPositiveDefinite, SparseLu, SparseRows};
 mod forms;
 
 use forms::{
-    Symmetric, cholesky, dense, kkt, normal, project_cholesky, project_dense, project_kkt,
+    Form, Symmetric, cholesky, dense, kkt, normal, project_cholesky, project_dense, project_kkt,
 };
+pub use forms::{Projection, row_scales};
 pub(super) use forms::{project_curved, weighted_qr};
-
-/// Step and multipliers of one projection.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Projection {
-    /// δ.
-    pub step: Vec<f64>,
-    /// ψ, one number a row of B.
-    pub multipliers: Vec<f64>,
-}
 
 /// Which form of the projection is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,20 +71,6 @@ impl std::fmt::Debug for Factor {
             self.solver()
         )
     }
-}
-
-enum Form {
-    Dense {
-        q: DMatrix<f64>,
-        r: DMatrix<f64>,
-    },
-    Cholesky {
-        scaled: SparseRows,
-        scales: Vec<f64>,
-        cholesky: Cholesky,
-    },
-    Kkt(SparseLu),
-    Symmetric(Symmetric),
 }
 
 impl Factor {
@@ -291,23 +268,4 @@ pub(super) struct FactorParts {
     pub unknowns: Option<Vec<usize>>,
     pub solver: Solver,
     pub cholesky: Option<(Vec<f64>, Vec<f64>)>,
-}
-
-/// 1/√(B W⁻¹ Bᵀ)ᵢᵢ of each row; unknowns without data do not count, unless there are no others.
-pub fn row_scales(jacobian: &SparseRows, weights: &[f64]) -> Vec<f64> {
-    let scale = |row: usize| {
-        let entries = || jacobian.row(row).iter();
-        let with_data = entries().filter(|(column, _)| weights[*column] > 0.0);
-        let square: f64 = with_data
-            .map(|(column, value)| value * value / weights[*column])
-            .sum();
-        let plain: f64 = entries().map(|(_, value)| value * value).sum();
-        let square = if square > 0.0 { square } else { plain };
-        if square > 0.0 {
-            1.0 / square.sqrt()
-        } else {
-            1.0
-        }
-    };
-    (0..jacobian.len()).map(scale).collect()
 }

@@ -24,9 +24,10 @@
 
 use rayon::prelude::*;
 
-use super::{Condition, Corrector, CorrectorSettings, Linearised};
-use crate::dynamics::{Memory, Motion, StepForces};
+use super::{Condition, Corrector, CorrectorSettings, Linearisation};
+use crate::dynamics::{Memory, Motion, StepForces, Viscosity};
 use crate::error::SolveFault;
+use crate::solve::vector::{add_scaled, gather};
 use crate::solve::{Assembly, Inadmissible, SparseRows};
 
 mod window;
@@ -59,14 +60,21 @@ struct Link {
     by_ends: [Vec<f64>; 2],
 }
 
-/// A stretch of instants, linearised.
-struct Stretch {
+/// Consecutive instants, linearised.
+struct Interval {
     frames: Vec<Frame>,
     links: Vec<Link>,
 }
 
-/// What an equation takes of an instant: its number, and the factors of M u/h² and of g.
-type Term = (usize, f64, f64);
+/// What an equation takes of an instant.
+struct Term {
+    /// The instant's number.
+    instant: usize,
+    /// Factor of M u/h².
+    inertia: f64,
+    /// Factor of g.
+    elastic: f64,
+}
 
 /// Why the equation of motion between three instants does not hold for a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -86,16 +94,13 @@ impl<'a> EquationOfMotion<'a> {
     /// The equation of `motion` at instants from time 0 on that are `step` apart in s, with β = `weight`.
     ///
     /// # Errors
-    /// A [`MotionFault`].
+    /// [`MotionFault`] where the motion has no such equation.
     pub fn new(motion: &'a Motion<'a>, step: f64, weight: f64) -> Result<Self, MotionFault> {
-        if motion
-            .supports
-            .iter()
-            .any(|support| support.until.is_some_and(|until| until > 0.0))
-        {
+        let mut releases = motion.supports.iter().filter_map(|support| support.until);
+        if releases.any(|until| until > 0.0) {
             return Err(MotionFault::LettingGo);
         }
-        let remembers = |viscosity: &dyn crate::dynamics::Viscosity| {
+        let remembers = |viscosity: &dyn Viscosity| {
             (0..motion.energy.elements()).any(|element| viscosity.memory(element) > 0)
         };
         if motion.viscosity.is_some_and(remembers) {
@@ -118,10 +123,10 @@ impl<'a> EquationOfMotion<'a> {
     }
 
     /// Corrects a recorded motion with an unknown start: all unknowns at all instants, of which `data` are measured and
-    /// `start` is a guess without noise. Each stretch of `instants` is corrected by itself.
+    /// `start` is a guess without noise. Every so many `instants` are corrected by themselves.
     ///
     /// # Errors
-    /// A [`SolveFault`] when a stretch has no solution that is found.
+    /// A [`SolveFault`] when some instants have no solution that is found.
     ///
     /// # Panics
     /// When `data` and `start` have different numbers of instants.
@@ -147,7 +152,7 @@ impl<'a> EquationOfMotion<'a> {
                     .collect()
             };
             let size = own * self.assembly.free().len();
-            let condition = Stacked {
+            let condition = StackedEquations {
                 equation: self,
                 first,
                 instants: own,
@@ -169,11 +174,7 @@ impl<'a> EquationOfMotion<'a> {
 
     /// The free unknowns of a field.
     fn free(&self, field: &[f64]) -> Vec<f64> {
-        self.assembly
-            .free()
-            .iter()
-            .map(|unknown| field[*unknown])
-            .collect()
+        gather(self.assembly.free(), field)
     }
 
     /// The whole field of an instant from its free unknowns.
@@ -189,8 +190,8 @@ impl<'a> EquationOfMotion<'a> {
         field
     }
 
-    /// All instants and steps of a stretch whose first instant has the number `first`.
-    fn linearise(&self, first: usize, states: &[Vec<f64>]) -> Result<Stretch, Inadmissible> {
+    /// Consecutive instants and the steps between them; the first instant has the number `first`.
+    fn linearise(&self, first: usize, states: &[Vec<f64>]) -> Result<Interval, Inadmissible> {
         let numbered: Vec<_> = states.iter().enumerate().collect();
         let fields: Vec<Vec<f64>> = numbered
             .par_iter()
@@ -203,7 +204,7 @@ impl<'a> EquationOfMotion<'a> {
         let links = fields
             .par_windows(2)
             .map(|pair| self.link(&pair[0], &pair[1]));
-        Ok(Stretch {
+        Ok(Interval {
             frames,
             links: links.collect::<Result<_, _>>()?,
         })
@@ -260,48 +261,58 @@ impl<'a> EquationOfMotion<'a> {
     /// What the equation of a row takes of each instant; row 0 is the start.
     fn terms(&self, row: usize) -> Vec<Term> {
         let beta = self.weight;
+        let term = |instant, inertia, elastic| Term {
+            instant,
+            inertia,
+            elastic,
+        };
         match row {
-            0 => vec![(0, -1.0, 0.5 - beta), (1, 1.0, beta)],
+            0 => vec![term(0, -1.0, 0.5 - beta), term(1, 1.0, beta)],
             _ => vec![
-                (row - 1, 1.0, beta),
-                (row, -2.0, 1.0 - 2.0 * beta),
-                (row + 1, 1.0, beta),
+                term(row - 1, 1.0, beta),
+                term(row, -2.0, 1.0 - 2.0 * beta),
+                term(row + 1, 1.0, beta),
             ],
         }
     }
 
     /// F of a row; without the start's velocity.
-    fn value(&self, row: usize, stretch: &Stretch, states: &[Vec<f64>]) -> Vec<f64> {
+    fn value(&self, row: usize, interval: &Interval, states: &[Vec<f64>]) -> Vec<f64> {
         let mut sum = vec![0.0; self.assembly.free().len()];
-        for (instant, inertia, elastic) in self.terms(row) {
-            let own = states[instant].iter().zip(&stretch.frames[instant].force);
+        for Term {
+            instant,
+            inertia,
+            elastic,
+        } in self.terms(row)
+        {
+            let own = states[instant].iter().zip(&interval.frames[instant].force);
             for ((sum, unknown), (u, force)) in sum.iter_mut().zip(self.assembly.free()).zip(own) {
                 *sum += inertia * self.inertia(*unknown) * u + elastic * force;
             }
         }
         for link in row.saturating_sub(1)..=row {
-            let own = sum.iter_mut().zip(&stretch.links[link].force);
-            own.for_each(|(sum, force)| *sum += 0.5 * force);
+            add_scaled(&mut sum, 0.5, &interval.links[link].force);
         }
         sum
     }
 
     /// ∂F/∂u of a row by one of its instants, on the pattern of the stiffness: symmetric.
-    fn block(&self, row: usize, instant: usize, stretch: &Stretch) -> Vec<f64> {
-        let terms = self.terms(row);
-        let Some((_, inertia, elastic)) = terms.into_iter().find(|(own, ..)| *own == instant)
+    fn block(&self, row: usize, instant: usize, interval: &Interval) -> Vec<f64> {
+        let mut terms = self.terms(row).into_iter();
+        let Some(Term {
+            inertia, elastic, ..
+        }) = terms.find(|own| own.instant == instant)
         else {
             return vec![0.0; self.assembly.pattern().entries()];
         };
-        let mut values: Vec<f64> = stretch.frames[instant]
+        let mut values: Vec<f64> = interval.frames[instant]
             .stiffness
             .iter()
             .map(|k| elastic * k)
             .collect();
         for link in row.saturating_sub(1)..=row {
             if let Some(end) = instant.checked_sub(link).filter(|end| *end < 2) {
-                let own = values.iter_mut().zip(&stretch.links[link].by_ends[end]);
-                own.for_each(|(sum, c)| *sum += 0.5 * c);
+                add_scaled(&mut values, 0.5, &interval.links[link].by_ends[end]);
             }
         }
         let diagonal = self.assembly.pattern().diagonal();
@@ -323,21 +334,21 @@ impl<'a> EquationOfMotion<'a> {
     }
 }
 
-/// The equations of a stretch of instants, one above the other, over the free unknowns of all its instants.
-struct Stacked<'a> {
+/// The equations of consecutive instants, one above the other, over the free unknowns of all its instants.
+struct StackedEquations<'a> {
     equation: &'a EquationOfMotion<'a>,
     first: usize,
     instants: usize,
 }
 
-impl Stacked<'_> {
+impl StackedEquations<'_> {
     fn states(&self, field: &[f64]) -> Vec<Vec<f64>> {
         let size = self.equation.assembly.free().len();
         field.chunks_exact(size).map(<[f64]>::to_vec).collect()
     }
 }
 
-impl Condition for Stacked<'_> {
+impl Condition for StackedEquations<'_> {
     fn name(&self) -> &str {
         NAME
     }
@@ -346,15 +357,15 @@ impl Condition for Stacked<'_> {
         (self.instants - 2) * self.equation.assembly.free().len()
     }
 
-    fn linearise(&self, field: &[f64]) -> Result<Linearised, Inadmissible> {
+    fn linearise(&self, field: &[f64]) -> Result<Linearisation, Inadmissible> {
         let (equation, states) = (self.equation, self.states(field));
         let size = equation.assembly.free().len();
-        let stretch = equation.linearise(self.first, &states)?;
+        let interval = equation.linearise(self.first, &states)?;
         let (mut values, mut jacobian) = (Vec::new(), SparseRows::new(field.len()));
         for row in 1..self.instants - 1 {
-            values.extend(equation.value(row, &stretch, &states));
+            values.extend(equation.value(row, &interval, &states));
             let blocks = [row - 1, row, row + 1].map(|instant| {
-                let block = equation.block(row, instant, &stretch);
+                let block = equation.block(row, instant, &interval);
                 (instant, equation.assembly.pattern().full_rows(&block))
             });
             for unknown in 0..size {
@@ -366,6 +377,6 @@ impl Condition for Stacked<'_> {
                 jacobian.push(entries);
             }
         }
-        Ok(Linearised { values, jacobian })
+        Ok(Linearisation { values, jacobian })
     }
 }

@@ -1,12 +1,10 @@
 //! From one field to the next: the steps of the non-linear correction.
 
-use super::{Corrector, Factor, Projection, System, difference, factor};
+use super::factor::{Factor, Projection, project_curved};
+use super::system::{Corrector, SHORTEST_STEP, System};
 use crate::error::SolveFault;
 use crate::solve::SparseRows;
-use crate::solve::vector::largest;
-
-/// The shortest share of a step that is tried.
-pub const SHORTEST_STEP: f64 = 1e-4;
+use crate::solve::vector::{difference, largest, moved};
 
 /// The exact penalty ½ ‖u − ū‖²_W + ρ Σ |cᵢ|/√(B W⁻¹ Bᵀ)ᵢᵢ, compared with that of the field before.
 ///
@@ -95,7 +93,7 @@ impl Corrector<'_> {
             }
             length *= 0.5;
         }
-        let field = along(before, step, length);
+        let field = moved(before, length, step);
         let inverted = self.values(&field).map_err(|fault| self.inverted(fault));
         inverted.map(|_| (field, length))
     }
@@ -110,7 +108,7 @@ impl Corrector<'_> {
         step: &[f64],
         length: f64,
     ) -> Option<Vec<f64>> {
-        let mut field = along(before, step, length);
+        let mut field = moved(before, length, step);
         let mut values = self.values(&field).ok()?;
         for _ in 0..RETURNS {
             if merit.accepts(&field, &values) {
@@ -118,13 +116,9 @@ impl Corrector<'_> {
             }
             // The linearised conditions ask for a part of the step in proportion to its length only.
             let asked = merit.system.values.iter().map(|c| (1.0 - length) * c);
-            let excess: Vec<f64> = values
-                .iter()
-                .zip(asked)
-                .map(|(c, asked)| c - asked)
-                .collect();
+            let excess: Vec<f64> = values.iter().zip(asked).map(|(c, own)| c - own).collect();
             let back = factor.project(&excess, &vec![0.0; field.len()]).ok()?;
-            let returned = along(&field, &back.step, 1.0);
+            let returned = moved(&field, 1.0, &back.step);
             let next = self.values(&returned).ok()?;
             if merit.defect_of(&next) > 0.5 * merit.defect_of(&values) {
                 return None;
@@ -155,10 +149,10 @@ impl Corrector<'_> {
         let imbalance = self.imbalance(system, data, before, &plain.multipliers);
         for part in PARTS {
             let scaled = curvature.scaled(&vec![part; before.len()]);
-            let curved = factor::project_curved(jacobian, &self.weights, &scaled, values, &pull);
+            let curved = project_curved(jacobian, &self.weights, &scaled, values, &pull);
             let Ok(curved) = curved else { continue };
             // Near the solution the merit no longer resolves a good step, but the imbalance does.
-            let field = along(before, &curved.step, 1.0);
+            let field = moved(before, 1.0, &curved.step);
             if let Ok(next) = self.linearise(&field)
                 && self.imbalance(&next, data, &field, &curved.multipliers) < 0.5 * imbalance
             {
@@ -201,13 +195,4 @@ impl Corrector<'_> {
             .collect();
         largest(&system.scaled(&system.values)).max(largest(&forces))
     }
-}
-
-/// u + α δ.
-fn along(field: &[f64], step: &[f64], length: f64) -> Vec<f64> {
-    field
-        .iter()
-        .zip(step)
-        .map(|(u, step)| u + length * step)
-        .collect()
 }

@@ -3,16 +3,18 @@
 use std::path::Path;
 
 use super::*;
+use crate::error::SolveFault;
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
-use crate::solve::State;
-use crate::solve::{Newton, NewtonSettings};
+use crate::solve::vector::{difference, largest};
+use crate::solve::{Inadmissible, Newton, NewtonSettings, SparseRows, State};
 
 use plate::KnownConditions;
 
 mod closed_forms;
+mod conditions;
 mod instrument;
 
 const SETTINGS: CorrectorSettings = CorrectorSettings {
@@ -193,7 +195,7 @@ impl Condition for Offset<'_> {
         self.inner.rows()
     }
 
-    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
         let mut linearised = self.inner.linearise(u)?;
         linearised.values[self.row] -= self.offset;
         Ok(linearised)

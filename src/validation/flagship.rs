@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::case::{Block, Outcome, Prepared, Progress, check, number, section, table};
 use super::plate::NEWTON;
 use crate::corrector::DifferenceScheme;
-use crate::corrector::climb::{Climb, ClimbSettings, Climbed};
+use crate::corrector::climb::{Climb, ClimbSettings, ClimbSolution};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::material::samples;
@@ -84,7 +84,7 @@ struct Plate {
 /// What became of a plate at one stretch.
 struct Found {
     law: &'static str,
-    climbed: Result<Climbed, Error>,
+    climbed: Result<ClimbSolution, Error>,
     /// Distance to the direct method's field over the discretisation error; not a number where one of them is missing.
     share: f64,
     /// Whether the direct method has a field.
@@ -137,7 +137,7 @@ impl Plate {
 }
 
 /// Root mean square distance of a climbed field to another one over its discretisation error.
-fn share(climbed: &Climbed, direct: &[f64]) -> f64 {
+fn share(climbed: &ClimbSolution, direct: &[f64]) -> f64 {
     let field = climbed.field.to_nodes();
     let squares = field.iter().zip(direct).map(|(a, b)| (a - b).powi(2));
     let distance = (squares.sum::<f64>() / (0.5 * direct.len() as f64)).sqrt();

@@ -9,7 +9,7 @@ use super::case::{
     Block, Check, Claim, Figure, Outcome, Prepared, check, largest, line, number, percent, row,
     section, table,
 };
-use crate::corrector::{Corrector, CorrectorSettings, Function, Linearised, Solver};
+use crate::corrector::{Corrector, CorrectorSettings, Function, Linearisation, Solver};
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::results::{Axis, LineChart, Stroke};
@@ -75,7 +75,7 @@ fn corrector(spring: &Spring) -> Corrector<'static> {
         let mut jacobian = SparseRows::new(u.len());
         (0..u.len()).for_each(|i| jacobian.push([(i, -2.0 * k * u[i])]));
         let values = forces.iter().zip(u).map(|(f, u)| f - k * u * u).collect();
-        Linearised { values, jacobian }
+        Linearisation { values, jacobian }
     });
     let settings = CorrectorSettings {
         tolerance: 1e-12,

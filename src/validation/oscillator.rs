@@ -15,7 +15,7 @@
 use nalgebra::DMatrix;
 
 use crate::corrector::{
-    Condition, Corrector, CorrectorSettings, Factor, Function, Linear, Linearised, Solver,
+    Condition, Corrector, CorrectorSettings, Factor, Function, Linear, Linearisation, Solver,
 };
 use crate::error::SolveFault;
 use crate::solve::SparseRows;
@@ -171,7 +171,7 @@ impl Differences {
         Corrector::new(vec![Box::new(function)], weights, settings)
     }
 
-    fn linearise(&self, z: &[f64], constants: usize) -> Linearised {
+    fn linearise(&self, z: &[f64], constants: usize) -> Linearisation {
         let (u, constants) = (&z[..self.points], &z[self.points..self.points + constants]);
         let by_field = self.combined(constants, z.len());
         let by_constant: Vec<Vec<f64>> = self.operators[1..]
@@ -186,7 +186,7 @@ impl Differences {
         }
         let mut padded = u.to_vec();
         padded.resize(z.len(), 0.0);
-        Linearised {
+        Linearisation {
             values: by_field.multiply(&padded),
             jacobian,
         }

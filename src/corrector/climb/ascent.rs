@@ -1,6 +1,8 @@
 //! From grid to grid: the field on its way up.
 
-use super::{Climb, Climbed, Field, Inverted, Level, Reached, Way, Work, at_stretch, inverted};
+use super::{
+    Climb, ClimbSolution, Field, Inverted, Iteration, Level, Way, Work, at_stretch, inverted,
+};
 use crate::error::{Error, SolveFault};
 
 /// The ratio of the changes of two grids where it is not known yet, and the ratios that are believed.
@@ -97,7 +99,11 @@ fn geometric_tail(change: f64, ratio: f64) -> f64 {
 
 impl Climb<'_> {
     /// From the corrected field on the first grid to the finest one.
-    pub(super) fn ascend(&mut self, mut ascent: Ascent, stretch: f64) -> Result<Climbed, Error> {
+    pub(super) fn ascend(
+        &mut self,
+        mut ascent: Ascent,
+        stretch: f64,
+    ) -> Result<ClimbSolution, Error> {
         while ascent.index + 1 < self.levels.len() {
             if self.step_up(&mut ascent).is_err() {
                 self.step_up_by_load_path(&mut ascent, stretch)?;
@@ -114,7 +120,7 @@ impl Climb<'_> {
         if let Some((_, work)) = ascent.work.last_mut() {
             work.evaluations += 1;
         }
-        Ok(Climbed {
+        Ok(ClimbSolution {
             force,
             discretisation_error: ascent.discretisation_error(),
             field: ascent.field,
@@ -158,7 +164,7 @@ impl Climb<'_> {
         ascent: &Ascent,
         interpolated: &Field,
         field: &mut Field,
-    ) -> Result<Reached, SolveFault> {
+    ) -> Result<Iteration, SolveFault> {
         let finest = index + 1 == self.levels.len();
         let tolerance = match finest {
             true => self.settings.tolerance,

@@ -81,14 +81,14 @@ impl Work {
 
 /// How far an iteration came.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reached {
+pub struct Iteration {
     /// Its corrections: the first says how far the start was away, the last one has been applied.
     pub fall: Fall,
     /// What it took.
     pub work: Work,
 }
 
-impl Reached {
+impl Iteration {
     /// This iteration and one that went on from it, as one.
     pub fn followed_by(mut self, more: Self) -> Self {
         self.work.add(more.work);
@@ -158,7 +158,7 @@ impl Level {
         u: &mut Field,
         multigrid: &mut Multigrid,
         ending: &Ending,
-    ) -> Result<Reached, Inverted> {
+    ) -> Result<Iteration, Inverted> {
         let mut work = Work {
             evaluations: 1,
             ..Work::default()
@@ -186,7 +186,7 @@ impl Level {
             let pairs = u[free.clone()].iter_mut().zip(&correction[free.clone()]);
             pairs.for_each(|(u, correction)| *u -= correction);
         }
-        Ok(Reached { fall, work })
+        Ok(Iteration { fall, work })
     }
 
     /// The correction z = M⁻¹ r of the residual; returns r · z.

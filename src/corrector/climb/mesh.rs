@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Climb, Climbed, Grid};
+use super::{Climb, ClimbSolution, Grid};
 use crate::mesh::{CellShape, Mesh, Side};
 use crate::problem::DeformedSheet;
 
@@ -14,7 +14,7 @@ impl Climb<'_> {
     }
 
     /// A climbed field, ready to be asked at any point of the plate.
-    pub fn deformed(&self, climbed: &Climbed) -> DeformedSheet {
+    pub fn deformed(&self, climbed: &ClimbSolution) -> DeformedSheet {
         let law = Arc::clone(&self.problem.law);
         DeformedSheet::new(self.mesh(), climbed.field.to_nodes(), law)
     }

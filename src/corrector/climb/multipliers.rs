@@ -1,6 +1,6 @@
 //! The Lagrange multipliers of a climbed field.
 
-use super::{Climb, Climbed, Field};
+use super::{Climb, ClimbSolution, Field};
 use crate::error::{Error, SolveFault};
 use crate::problem::ClampedPlate;
 
@@ -23,7 +23,7 @@ impl Climb<'_> {
     pub fn multipliers(
         &mut self,
         data: &[f64],
-        climbed: &Climbed,
+        climbed: &ClimbSolution,
         stretch: f64,
     ) -> Result<Vec<f64>, Error> {
         let found = self.solve_multipliers(data, &climbed.field);

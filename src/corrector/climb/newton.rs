@@ -1,6 +1,6 @@
 //! Plain Newton on the finest grid alone, with the same multigrid: what the climb is compared with.
 
-use super::{Climb, Climbed, Field, Inverted, Start, Way, Work, inverted};
+use super::{Climb, ClimbSolution, Field, Inverted, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};
 use crate::problem::ClampedPlate;
 
@@ -27,7 +27,7 @@ impl Climb<'_> {
         stretch: f64,
         tolerance: f64,
         linear_tolerance: f64,
-    ) -> Result<Climbed, Error> {
+    ) -> Result<ClimbSolution, Error> {
         let found = self.newton(stretch, [tolerance, linear_tolerance]);
         found.map_err(|fault| Error::Solve {
             model: "corrector (Newton from the affine stretch)".into(),
@@ -40,7 +40,7 @@ impl Climb<'_> {
         &mut self,
         stretch: f64,
         [tolerance, linear_tolerance]: [f64; 2],
-    ) -> Result<Climbed, SolveFault> {
+    ) -> Result<ClimbSolution, SolveFault> {
         let mut field = self.affine(stretch);
         let mut work = Work::default();
         let mut relative = f64::NAN;
@@ -55,7 +55,7 @@ impl Climb<'_> {
             if relative <= tolerance {
                 let force = self.force(&field).map_err(|Inverted| inverted())?;
                 work.evaluations += 1;
-                return Ok(Climbed {
+                return Ok(ClimbSolution {
                     field,
                     force,
                     change: None,

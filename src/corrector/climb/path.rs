@@ -1,6 +1,8 @@
 //! Many states, each near the one before: a path of stretches, and grips that are moved by hand.
 
-use super::{Climb, Climbed, Ending, Field, Inverted, Reached, Start, Way, Work, inverted};
+use std::fmt;
+
+use super::{Climb, ClimbSolution, Ending, Field, Inverted, Iteration, Start, Way, Work, inverted};
 use crate::error::{Error, SolveFault};
 use crate::problem::DeformedSheet;
 
@@ -37,9 +39,24 @@ pub struct Grips {
     pub right: RigidMotion,
 }
 
+impl fmt::Display for Grips {
+    /// `(0, 0) mm turned by 0° and (75, 0) mm turned by 2°`, left and right.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { left, right } = self;
+        write!(f, "{left} and {right}")
+    }
+}
+
+impl fmt::Display for RigidMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([x, y], angle) = (self.displacement, self.angle.to_degrees());
+        write!(f, "({x:.3}, {y:.3}) mm turned by {angle:.2}°")
+    }
+}
+
 /// A state of a path or of a plate in the hand.
 #[derive(Clone, Debug)]
-struct Known {
+struct KnownState {
     parameter: f64,
     field: Field,
 }
@@ -54,7 +71,7 @@ impl Climb<'_> {
     pub fn follow(
         &mut self,
         stretches: &[f64],
-        told: &mut dyn FnMut(&Climbed),
+        told: &mut dyn FnMut(&ClimbSolution),
     ) -> Result<(), Error> {
         let [first, between @ .., last] = stretches else {
             for stretch in stretches {
@@ -70,7 +87,7 @@ impl Climb<'_> {
         let relative_error = at_first.min(at_last);
         let [first_state, last_state] = ends;
         told(&first_state);
-        let mut known = vec![Known {
+        let mut known = vec![KnownState {
             parameter: *first,
             field: first_state.field,
         }];
@@ -96,7 +113,7 @@ impl Climb<'_> {
             if known.len() == HISTORY {
                 known.remove(0);
             }
-            known.push(Known {
+            known.push(KnownState {
                 parameter: stretch,
                 field: climbed.field,
             });
@@ -108,11 +125,11 @@ impl Climb<'_> {
     /// The state at one stretch from those before, extrapolated; the operators are written anew where they no longer serve.
     fn near_known(
         &mut self,
-        known: &[Known],
+        known: &[KnownState],
         stretch: f64,
         relative_error: f64,
         anew: bool,
-    ) -> Result<Climbed, SolveFault> {
+    ) -> Result<ClimbSolution, SolveFault> {
         let mut field = combine(known, &value_shares(known, stretch));
         if anew {
             self.linearise_below(self.levels.len() - 1, &field)?;
@@ -120,7 +137,7 @@ impl Climb<'_> {
         let error = relative_error * self.departure(&field, stretch);
         let reached = self.near(&mut field, error)?;
         let force = self.force_along(&combine(known, &rate_shares(known, stretch)));
-        Ok(Climbed::near(field, force, error, reached))
+        Ok(ClimbSolution::near(field, force, error, reached))
     }
 
     /// The root mean square over the nodes of a field's departure from the affine stretch in mm.
@@ -136,7 +153,7 @@ impl Climb<'_> {
 
     /// Corrects a field that is near the result, with the operators written before, to a share of its
     /// discretisation error.
-    fn near(&mut self, field: &mut Field, error: f64) -> Result<Reached, SolveFault> {
+    fn near(&mut self, field: &mut Field, error: f64) -> Result<Iteration, SolveFault> {
         let finest = self.levels.len() - 1;
         let limit = self.settings.tolerance * error;
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
@@ -167,9 +184,9 @@ impl Climb<'_> {
     }
 }
 
-impl Climbed {
+impl ClimbSolution {
     /// A state found near another one.
-    fn near(field: Field, force: f64, discretisation_error: f64, reached: Reached) -> Self {
+    fn near(field: Field, force: f64, discretisation_error: f64, reached: Iteration) -> Self {
         let nodes = field.components[0].len();
         let cells = [nodes / field.width - 1, field.width - 1];
         Self {
@@ -186,7 +203,7 @@ impl Climbed {
 }
 
 /// The sum of the known fields, each with its share.
-fn combine(known: &[Known], shares: &[f64]) -> Field {
+fn combine(known: &[KnownState], shares: &[f64]) -> Field {
     let mut field = known[0].field.clone();
     field.scale(shares[0]);
     for (state, share) in known.iter().zip(shares).skip(1) {
@@ -196,14 +213,14 @@ fn combine(known: &[Known], shares: &[f64]) -> Field {
 }
 
 /// The shares of the known states in the polynomial through them and the state of rest, at another parameter.
-fn value_shares(known: &[Known], parameter: f64) -> Vec<f64> {
+fn value_shares(known: &[KnownState], parameter: f64) -> Vec<f64> {
     shares(known, |others| {
         others.iter().map(|other| parameter - other).product()
     })
 }
 
 /// The shares of the known states in that polynomial's derivative.
-fn rate_shares(known: &[Known], parameter: f64) -> Vec<f64> {
+fn rate_shares(known: &[KnownState], parameter: f64) -> Vec<f64> {
     shares(known, |others| {
         let without = |left_out: usize| -> f64 {
             let kept = others
@@ -218,7 +235,7 @@ fn rate_shares(known: &[Known], parameter: f64) -> Vec<f64> {
 
 /// For each state what `product` says of the parameters of the others and of the state of rest, over what the
 /// Lagrange polynomial has at the state itself.
-fn shares(known: &[Known], product: impl Fn(&[f64]) -> f64) -> Vec<f64> {
+fn shares(known: &[KnownState], product: impl Fn(&[f64]) -> f64) -> Vec<f64> {
     let at_rest = (known.len() < HISTORY).then_some(0.0);
     let share = |own: usize| {
         let others = known.iter().enumerate().filter(|(other, _)| *other != own);
@@ -237,7 +254,7 @@ fn shares(known: &[Known], product: impl Fn(&[f64]) -> f64) -> Vec<f64> {
 pub struct Interactive<'a> {
     climb: Climb<'a>,
     grips: Grips,
-    climbed: Climbed,
+    climbed: ClimbSolution,
     /// The discretisation error relative to the size of the field.
     relative_error: f64,
 }
@@ -265,7 +282,7 @@ impl<'a> Interactive<'a> {
     }
 
     /// The corrected field and the forces at the grips as they are.
-    pub fn state(&self) -> &Climbed {
+    pub fn state(&self) -> &ClimbSolution {
         &self.climbed
     }
 
@@ -284,9 +301,10 @@ impl<'a> Interactive<'a> {
     ///
     /// # Errors
     /// [`Error::Solve`] when the field cannot follow; the state before is kept.
-    pub fn move_grips(&mut self, grips: Grips) -> Result<&Climbed, Error> {
+    pub fn move_grips(&mut self, grips: Grips) -> Result<&ClimbSolution, Error> {
+        const PARTS: [usize; 4] = [1, 2, 4, 8];
         let mut found = Err(SolveFault::Singular);
-        for parts in [1, 2, 4, 8] {
+        for parts in PARTS {
             found = self.move_in(parts, grips);
             if found.is_ok() {
                 break;
@@ -294,14 +312,18 @@ impl<'a> Interactive<'a> {
         }
         self.climbed = found.map_err(|fault| Error::Solve {
             model: "corrector (climb)".into(),
-            step: "a motion of the grips".into(),
+            step: format!(
+                "a motion of the grips from {} to {grips} (in {} parts too; the field before is kept: move them \
+                 less far at a time, or begin anew at that stretch)",
+                self.grips, PARTS[PARTS.len() - 1]
+            ),
             fault,
         })?;
         self.grips = grips;
         Ok(&self.climbed)
     }
 
-    fn move_in(&mut self, parts: usize, grips: Grips) -> Result<Climbed, SolveFault> {
+    fn move_in(&mut self, parts: usize, grips: Grips) -> Result<ClimbSolution, SolveFault> {
         let mut field = self.climbed.field.clone();
         let mut work = Work::default();
         let mut reached = None;
@@ -319,7 +341,7 @@ impl<'a> Interactive<'a> {
         let (error, mut reached) = reached.expect("one part at least");
         reached.work.evaluations += 1;
         let force = self.climb.force(&field).map_err(|Inverted| inverted())?;
-        Ok(Climbed::near(field, force, error, reached))
+        Ok(ClimbSolution::near(field, force, error, reached))
     }
 
     /// Moves the grips by a share of the way that is left, and the nodes between them in proportion.

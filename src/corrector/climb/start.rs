@@ -3,97 +3,15 @@
 //! The corrector does not care where ū came from, so that several starts are tried in a fixed order until one can be
 //! corrected: see [`Start`].
 
-use std::fmt;
 use std::sync::Arc;
 
 use super::ascent::Ascent;
+use super::way::{Start, Way};
 use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE, Work};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings, MassSpring};
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
-
-/// What a corrected field was first made from, in the order in which it is tried.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
-    /// Springs alone, in equilibrium on a coarse lattice.
-    Springs,
-    /// Springs with the area term of each cell, which keeps cells from collapsing.
-    SpringsWithAreaTerm,
-    /// Springs at the first of so many equal load steps.
-    LoadSteps(usize),
-    /// The affine stretch, contracted across away from the grips.
-    ContractedStretch,
-    /// Newton's method with a sparse factor along a path of load steps.
-    LoadPath,
-    /// The affine stretch on the finest grid: the ablation [`Climb::newton_from_affine`].
-    AffineStretch,
-    /// States found before, in [`Climb::follow`] and [`super::Interactive`].
-    StatesBefore,
-}
-
-impl Start {
-    /// Whether springs had a part in it.
-    pub fn by_springs(self) -> bool {
-        matches!(
-            self,
-            Self::Springs | Self::SpringsWithAreaTerm | Self::LoadSteps(_)
-        )
-    }
-}
-
-impl fmt::Display for Start {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Springs => f.write_str("springs"),
-            Self::SpringsWithAreaTerm => f.write_str("springs with the area term"),
-            Self::LoadSteps(steps) => write!(f, "springs at the first of {steps} load steps"),
-            Self::ContractedStretch => f.write_str("the affine stretch, contracted across"),
-            Self::LoadPath => f.write_str("Newton's method along a path of load steps"),
-            Self::AffineStretch => f.write_str("the affine stretch"),
-            Self::StatesBefore => f.write_str("states before"),
-        }
-    }
-}
-
-/// How a climb came to its field.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Way {
-    /// What the field on the first grid was made from.
-    pub start: Start,
-    /// Cells of the first grid.
-    pub cells: [usize; 2],
-    /// How far the start was from the corrected field on the first grid, root mean square over its nodes in mm, in the
-    /// first load step; not a number where nothing was corrected.
-    pub away: f64,
-    /// Cells of the finer grids on which the iteration found no field, so that Newton's method along a path of load steps
-    /// was taken there.
-    pub by_load_path: Vec<[usize; 2]>,
-}
-
-impl Way {
-    /// From one start on a grid with so many cells.
-    pub(super) fn from_start(start: Start, cells: [usize; 2]) -> Self {
-        Self {
-            start,
-            cells,
-            away: f64::NAN,
-            by_load_path: Vec::new(),
-        }
-    }
-}
-
-impl fmt::Display for Way {
-    /// `springs on 8 × 4 cells`, and `; Newton's method along a path of load steps on 60 × 20 cells` where it was needed.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [along, across] = self.cells;
-        write!(f, "{} on {along} × {across} cells", self.start)?;
-        for [along, across] in &self.by_load_path {
-            write!(f, "; {} on {along} × {across} cells", Start::LoadPath)?;
-        }
-        Ok(())
-    }
-}
 
 /// A corrected field on the first grid.
 pub(super) struct First {

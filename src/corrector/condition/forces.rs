@@ -1,6 +1,6 @@
 //! Conditions on the internal forces of a potential.
 
-use super::{Condition, Linearised};
+use super::{Condition, Linearisation};
 use crate::solve::vector::{largest, moved};
 use crate::solve::{Assembly, Inadmissible, Potential, SkewCoupling, SparseRows};
 
@@ -56,13 +56,13 @@ impl Condition for Equilibrium<'_> {
         self.unknowns.len()
     }
 
-    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
         let (residual, full) = internal_forces(self.potential, self.assembly, u)?;
         let mut jacobian = SparseRows::new(u.len());
         for unknown in &self.unknowns {
             jacobian.push(full[*unknown].iter().copied());
         }
-        Ok(Linearised {
+        Ok(Linearisation {
             values: self.unbalanced(&residual),
             jacobian,
         })
@@ -128,7 +128,7 @@ impl Condition for TotalForce<'_> {
         1
     }
 
-    fn linearise(&self, u: &[f64]) -> Result<Linearised, Inadmissible> {
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
         let (residual, full) = internal_forces(self.potential, self.assembly, u)?;
         let mut jacobian = SparseRows::new(u.len());
         jacobian.push(
@@ -136,7 +136,7 @@ impl Condition for TotalForce<'_> {
                 .iter()
                 .flat_map(|unknown| full[*unknown].iter().copied()),
         );
-        Ok(Linearised {
+        Ok(Linearisation {
             values: self.unbalanced(&residual),
             jacobian,
         })

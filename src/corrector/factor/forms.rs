@@ -2,8 +2,31 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Form, Projection, row_scales};
 use crate::solve::{Cholesky, NotPositiveDefinite, SparseLu, SparseRows, SymmetricPattern};
+
+/// Step and multipliers of one projection.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Projection {
+    /// δ.
+    pub step: Vec<f64>,
+    /// ψ, one number a row of B.
+    pub multipliers: Vec<f64>,
+}
+
+/// A factorised system in one of the forms.
+pub(in crate::corrector) enum Form {
+    Dense {
+        q: DMatrix<f64>,
+        r: DMatrix<f64>,
+    },
+    Cholesky {
+        scaled: SparseRows,
+        scales: Vec<f64>,
+        cholesky: Cholesky,
+    },
+    Kkt(SparseLu),
+    Symmetric(Symmetric),
+}
 
 /// δ and ψ of the system with the curvature C of the conditions: [W + C, Bᵀ; B, 0] [δ; ψ] = [W (ū − u); −c].
 ///
@@ -262,4 +285,23 @@ impl Symmetric {
         }
         Ok(Projection { step, multipliers })
     }
+}
+
+/// 1/√(B W⁻¹ Bᵀ)ᵢᵢ of each row; unknowns without data do not count, unless there are no others.
+pub fn row_scales(jacobian: &SparseRows, weights: &[f64]) -> Vec<f64> {
+    let scale = |row: usize| {
+        let entries = || jacobian.row(row).iter();
+        let with_data = entries().filter(|(column, _)| weights[*column] > 0.0);
+        let square: f64 = with_data
+            .map(|(column, value)| value * value / weights[*column])
+            .sum();
+        let plain: f64 = entries().map(|(_, value)| value * value).sum();
+        let square = if square > 0.0 { square } else { plain };
+        if square > 0.0 {
+            1.0 / square.sqrt()
+        } else {
+            1.0
+        }
+    };
+    (0..jacobian.len()).map(scale).collect()
 }

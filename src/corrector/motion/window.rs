@@ -1,10 +1,10 @@
 //! Newton's method in time with a known start: windows, a retained factor, and multipliers.
 
-use super::{EquationOfMotion, Stretch};
+use super::{EquationOfMotion, Interval};
 use crate::dynamics::Start;
 use crate::error::SolveFault;
 use crate::solve::Cholesky;
-use crate::solve::vector::largest;
+use crate::solve::vector::{add_scaled, difference, largest, spread};
 
 /// How a motion is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub struct CorrectedMotion {
     pub windows: usize,
 }
 
-/// A stretch of instants on the way.
+/// Consecutive instants on the way.
 struct Window {
     /// The number of the first instant, which is known.
     first: usize,
@@ -43,7 +43,7 @@ struct Window {
 }
 
 /// The factor of ∂F/∂u of the newest instant.
-struct Retained {
+struct RetainedFactor {
     cholesky: Cholesky,
     fresh: bool,
     made: usize,
@@ -71,7 +71,7 @@ impl EquationOfMotion<'_> {
             .assembly
             .analyse(self.motion.energy)
             .map_err(singular)?;
-        let mut retained = Retained {
+        let mut retained = RetainedFactor {
             cholesky,
             fresh: false,
             made: 0,
@@ -92,8 +92,8 @@ impl EquationOfMotion<'_> {
             let mut window = self.window(&corrected.displacement, data, count);
             let solved = self.solve(&mut window, &velocity, &mut retained, settings);
             match solved {
-                Ok((stretch, iterations)) => {
-                    self.append(&window, data, &stretch, &mut retained, &mut corrected)?;
+                Ok((interval, iterations)) => {
+                    self.append(&window, data, &interval, &mut retained, &mut corrected)?;
                     corrected.iterations += iterations;
                     corrected.windows += 1;
                     steps = (2 * steps).min(settings.steps.max(1));
@@ -115,11 +115,7 @@ impl EquationOfMotion<'_> {
             .map(|field| self.free(field))
             .collect();
         let wrong = |instant: usize| -> Vec<f64> {
-            let pair = self
-                .free(&known[instant])
-                .into_iter()
-                .zip(self.free(&data[instant]));
-            pair.map(|(u, data)| u - data).collect()
+            difference(&self.free(&known[instant]), &self.free(&data[instant]))
         };
         let (before, now) = (wrong(first), wrong(last));
         for ahead in 1..=count {
@@ -143,27 +139,27 @@ impl EquationOfMotion<'_> {
         &self,
         window: &mut Window,
         velocity: &[f64],
-        retained: &mut Retained,
+        retained: &mut RetainedFactor,
         settings: WindowSettings,
-    ) -> Result<(Stretch, usize), SolveFault> {
+    ) -> Result<(Interval, usize), SolveFault> {
         let mut last = f64::INFINITY;
         for iteration in 0..=settings.max_iterations {
-            let stretch = self.linearise(window.first, &window.states);
-            let stretch = stretch.map_err(|fault| self.inverted(fault))?;
-            let values = self.values(window, &stretch, velocity);
+            let interval = self.linearise(window.first, &window.states);
+            let interval = interval.map_err(|fault| self.inverted(fault))?;
+            let values = self.values(window, &interval, velocity);
             let residual = values
                 .iter()
                 .fold(0.0, |most: f64, row| most.max(largest(row)))
-                / self.scale(&stretch, window);
+                / self.scale(&interval, window);
             if !residual.is_finite() {
                 return Err(SolveFault::NotFinite("the corrected motion".into()));
             }
             let settled = residual < ROUNDING_FLOOR && residual > 0.5 * last;
             if residual <= settings.tolerance || settled {
-                return Ok((stretch, iteration));
+                return Ok((interval, iteration));
             }
             if !retained.fresh || residual > SLOW * last {
-                let newest = self.block(window.begin, window.begin + 1, &stretch);
+                let newest = self.block(window.begin, window.begin + 1, &interval);
                 retained
                     .cholesky
                     .factorise(&newest)
@@ -171,7 +167,7 @@ impl EquationOfMotion<'_> {
                 retained.fresh = true;
                 retained.made += 1;
             }
-            self.sweep(window, &stretch, &values, &mut retained.cholesky);
+            self.sweep(window, &interval, &values, &mut retained.cholesky);
             last = residual;
         }
         Err(SolveFault::Stalled {
@@ -182,10 +178,10 @@ impl EquationOfMotion<'_> {
     }
 
     /// F of all rows.
-    fn values(&self, window: &Window, stretch: &Stretch, velocity: &[f64]) -> Vec<Vec<f64>> {
+    fn values(&self, window: &Window, interval: &Interval, velocity: &[f64]) -> Vec<Vec<f64>> {
         let rows = window.begin..window.states.len() - 1;
         let mut values: Vec<Vec<f64>> = rows
-            .map(|row| self.value(row, stretch, &window.states))
+            .map(|row| self.value(row, interval, &window.states))
             .collect();
         if window.begin == 0 {
             let own = values[0].iter_mut().zip(self.assembly.free()).zip(velocity);
@@ -195,8 +191,8 @@ impl EquationOfMotion<'_> {
     }
 
     /// The largest force in N: elastic, or that of inertia.
-    fn scale(&self, stretch: &Stretch, window: &Window) -> f64 {
-        let forces = stretch.frames.iter().map(|frame| largest(&frame.force));
+    fn scale(&self, interval: &Interval, window: &Window) -> f64 {
+        let forces = interval.frames.iter().map(|frame| largest(&frame.force));
         let second = window.states.windows(3).map(|three| {
             let free = self.assembly.free().iter().enumerate();
             free.fold(0.0, |most: f64, (i, unknown)| {
@@ -211,7 +207,7 @@ impl EquationOfMotion<'_> {
     fn sweep(
         &self,
         window: &mut Window,
-        stretch: &Stretch,
+        interval: &Interval,
         values: &[Vec<f64>],
         cholesky: &mut Cholesky,
     ) {
@@ -221,15 +217,11 @@ impl EquationOfMotion<'_> {
             let mut right: Vec<f64> = value.iter().map(|f| -f).collect();
             let earliest = (window.begin + 1).max(row.saturating_sub(1));
             for (instant, change) in changes.iter().enumerate().take(row + 1).skip(earliest) {
-                let moved = pattern.multiply(&self.block(row, instant, stretch), change);
-                right
-                    .iter_mut()
-                    .zip(moved)
-                    .for_each(|(right, moved)| *right -= moved);
+                let moved = pattern.multiply(&self.block(row, instant, interval), change);
+                add_scaled(&mut right, -1.0, &moved);
             }
             cholesky.substitute(&mut right);
-            let own = window.states[row + 1].iter_mut().zip(&right);
-            own.for_each(|(u, change)| *u += change);
+            add_scaled(&mut window.states[row + 1], 1.0, &right);
             changes[row + 1] = right;
         }
     }
@@ -239,20 +231,17 @@ impl EquationOfMotion<'_> {
         &self,
         window: &Window,
         data: &[Vec<f64>],
-        stretch: &Stretch,
-        retained: &mut Retained,
+        interval: &Interval,
+        retained: &mut RetainedFactor,
         corrected: &mut CorrectedMotion,
     ) -> Result<(), SolveFault> {
-        let multipliers = self.multipliers(window, data, stretch, &mut retained.cholesky)?;
+        let multipliers = self.multipliers(window, data, interval, &mut retained.cholesky)?;
         for (row, psi) in (window.begin..).zip(multipliers) {
             let instant = window.first + row + 1;
             corrected
                 .displacement
                 .push(self.whole(instant, &window.states[row + 1]));
-            let mut whole = vec![0.0; self.motion.energy.unknowns()];
-            for (unknown, value) in self.assembly.free().iter().zip(psi) {
-                whole[*unknown] = value;
-            }
+            let whole = spread(self.assembly.free(), &psi, self.motion.energy.unknowns());
             corrected.multipliers.push(whole);
         }
         Ok(())
@@ -263,7 +252,7 @@ impl EquationOfMotion<'_> {
         &self,
         window: &Window,
         data: &[Vec<f64>],
-        stretch: &Stretch,
+        interval: &Interval,
         cholesky: &mut Cholesky,
     ) -> Result<Vec<Vec<f64>>, SolveFault> {
         let pattern = self.assembly.pattern();
@@ -271,19 +260,13 @@ impl EquationOfMotion<'_> {
         let mut psi: Vec<Vec<f64>> = vec![Vec::new(); rows];
         for row in (window.begin..rows).rev() {
             let instant = row + 1;
-            let data = self.free(&data[window.first + instant]).into_iter();
-            let mut right: Vec<f64> = data
-                .zip(&window.states[instant])
-                .map(|(data, u)| data - u)
-                .collect();
+            let data = self.free(&data[window.first + instant]);
+            let mut right = difference(&data, &window.states[instant]);
             for (later, psi) in psi.iter().enumerate().skip(instant).take(2) {
-                let moved = pattern.multiply(&self.block(later, instant, stretch), psi);
-                right
-                    .iter_mut()
-                    .zip(moved)
-                    .for_each(|(right, moved)| *right -= moved);
+                let moved = pattern.multiply(&self.block(later, instant, interval), psi);
+                add_scaled(&mut right, -1.0, &moved);
             }
-            psi[row] = self.refined(&self.block(row, instant, stretch), &right, cholesky)?;
+            psi[row] = self.refined(&self.block(row, instant, interval), &right, cholesky)?;
         }
         Ok(psi.split_off(window.begin))
     }
@@ -305,16 +288,9 @@ impl EquationOfMotion<'_> {
                 return Ok(found);
             }
             cholesky.substitute(&mut defect);
-            found
-                .iter_mut()
-                .zip(&defect)
-                .for_each(|(x, change)| *x += change);
+            add_scaled(&mut found, 1.0, &defect);
             let product = self.assembly.pattern().multiply(values, &found);
-            defect = right
-                .iter()
-                .zip(product)
-                .map(|(b, product)| b - product)
-                .collect();
+            defect = difference(right, &product);
         }
         Err(SolveFault::Singular)
     }

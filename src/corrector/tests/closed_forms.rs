@@ -70,7 +70,7 @@ fn a_function_hands_on_its_curvature() {
         rows.push([(0, value)]);
         rows
     };
-    let square = Function::new("u² = 4", 1, move |u: &[f64]| Linearised {
+    let square = Function::new("u² = 4", 1, move |u: &[f64]| Linearisation {
         values: vec![u[0] * u[0] - 4.0],
         jacobian: rows(2.0 * u[0]),
     });
@@ -80,7 +80,7 @@ fn a_function_hands_on_its_curvature() {
 }
 
 fn curvature_error_of(condition: &dyn Condition) -> f64 {
-    super::instrument::curvature_error(condition, &[3.0], &[5.0])
+    super::conditions::curvature_error(condition, &[3.0], &[5.0])
 }
 
 /// u₀ = 1 and 10 u₀ = 10 say the same; 10 u₀ = 5 does not.

@@ -5,7 +5,7 @@ use proptest::test_runner::{Config, RngSeed, TestRunner};
 
 use super::*;
 use crate::corrector::DifferenceScheme;
-use crate::corrector::climb::{ClimbSettings, Climbed};
+use crate::corrector::climb::{ClimbSettings, ClimbSolution};
 use crate::material::samples;
 use crate::mesh::{CellShape, Mesh};
 
@@ -38,7 +38,7 @@ fn direct(
 }
 
 /// Root mean square over the nodes of the distance to the direct method's field in mm.
-fn distance(climbed: &Climbed, direct: &[f64]) -> f64 {
+fn distance(climbed: &ClimbSolution, direct: &[f64]) -> f64 {
     let field = climbed.field.to_nodes();
     let squares = field.iter().zip(direct).map(|(a, b)| (a - b).powi(2));
     (squares.sum::<f64>() / (0.5 * direct.len() as f64)).sqrt()
@@ -48,7 +48,7 @@ fn check(
     problem: &ClampedPlate,
     cells: [usize; 2],
     scheme: DifferenceScheme,
-) -> Result<Climbed, String> {
+) -> Result<ClimbSolution, String> {
     let stretch = problem.stretches[0];
     let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::FAST);
     let Ok(expected) = direct(problem, cells, scheme) else {
