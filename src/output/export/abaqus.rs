@@ -9,7 +9,8 @@
 //! # References
 //! Abaqus 2016 Analysis User's Guide, 22.5.1 and 22.5.3; G. Dhondt, CalculiX `CrunchiX` User's Manual 2.20, `*HYPERELASTIC`
 
-use super::{Held, Model, ascii, number};
+use super::model::{Held, Model};
+use super::text::{ascii, number};
 use crate::material::{Card, Code, CodeLaw};
 use crate::mesh::CellShape;
 

@@ -7,7 +7,8 @@
 //! # References
 //! S. A. Maas et al., FEBio User's Manual 4.x; `FEBioMech` in <https://github.com/febiosoftware/FEBio>
 
-use super::{Held, Model, ascii, number};
+use super::model::{Held, Model};
+use super::text::{ascii, number};
 use crate::material::CodeLaw;
 use crate::mesh::CellShape;
 

@@ -1,7 +1,9 @@
 use std::path::Path;
 
 use super::*;
-use crate::mesh::Shape;
+use crate::material::Card;
+use crate::mesh::{CellShape, Mesh, Shape};
+use crate::problem::{BoundaryProblem, Load, Support};
 
 mod laws;
 mod solids;
@@ -42,15 +44,8 @@ fn written(card: &Card, code: Code, shape: CellShape) -> Result<InputFile, Error
     export.input_file(code)
 }
 
-/// ```text
-///   4───5───6      cells 1 and 2, each 2 × 2 mm: left clamped, right turned by 0.5, pressure from below,
-///   │ 1 │ 2 │      traction on top
-///   1───2───3
-/// ```
-#[test]
-fn supports_loads_and_steps_are_those_of_the_study() {
-    let card = Card::load("neo-hooke", Path::new(".")).unwrap();
-    let mesh = Mesh::new(
+fn two_cells() -> Mesh {
+    let mut mesh = Mesh::new(
         vec![
             [0.0, 0.0],
             [2.0, 0.0],
@@ -64,11 +59,22 @@ fn supports_loads_and_steps_are_those_of_the_study() {
             (CellShape::Quad4, vec![1, 2, 5, 4]),
         ],
     );
-    let mut mesh = mesh;
     mesh.name_boundary("left", |[x, _]| x == 0.0);
     mesh.name_boundary("right", |[x, _]| x == 4.0);
     mesh.name_boundary("bottom", |[_, y]| y == 0.0);
     mesh.name_boundary("top", |[_, y]| y == 2.0);
+    mesh
+}
+
+/// ```text
+///   4───5───6      cells 1 and 2, each 2 × 2 mm: left clamped, right turned by 0.5, pressure from below,
+///   │ 1 │ 2 │      traction on top
+///   1───2───3
+/// ```
+#[test]
+fn supports_loads_and_steps_are_those_of_the_study() {
+    let card = Card::load("neo-hooke", Path::new(".")).unwrap();
+    let mesh = two_cells();
     let export = Export {
         title: "Zwei Zellen, μ",
         problem: &problem(&card),

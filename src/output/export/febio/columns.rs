@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::mesh::CellShape;
-use crate::output::export::Model;
+use crate::output::export::model::Model;
 
 /// The columns of nodes above the nodes of the sheet: their numbers from the middle of the sheet upwards.
 pub struct Columns(pub BTreeMap<usize, Vec<usize>>);

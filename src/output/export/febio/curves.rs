@@ -1,7 +1,8 @@
 //! How loads and turns grow with time.
 
 use super::xml::Xml;
-use crate::output::export::{Held, Model, number};
+use crate::output::export::model::{Held, Model};
+use crate::output::export::text::number;
 
 /// Points of the path of a turn between two load factors.
 const TURN_POINTS: u32 = 8;

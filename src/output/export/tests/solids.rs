@@ -1,5 +1,7 @@
 //! The solids that stand for a sheet in FEBio.
 
+use std::collections::BTreeMap;
+
 use super::*;
 
 /// A `.feb` file as its lists of numbers by tag and number.

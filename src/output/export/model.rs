@@ -1,0 +1,299 @@
+//! A problem in the words that all codes share.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::text::{Names, ascii, number};
+use crate::error::Diagnostic;
+use crate::material::{Card, Code, CodeLaw};
+use crate::mesh::{CellShape, Mesh};
+use crate::problem::{BoundaryProblem, Drive, Load, Support};
+
+/// What is exported.
+#[derive(Clone, Copy)]
+pub struct Export<'a> {
+    /// The heading.
+    pub title: &'a str,
+    /// Thickness, supports and loads.
+    pub problem: &'a BoundaryProblem,
+    /// The material.
+    pub card: &'a Card,
+    /// The finite elements.
+    pub mesh: &'a Mesh,
+    /// Load factors, ascending.
+    pub factors: &'a [f64],
+    /// Bulk modulus over the initial shear modulus, for codes that know no incompressible sheet.
+    pub bulk_ratio: f64,
+}
+
+impl Export<'_> {
+    /// The bulk modulus in MPa that stands for incompressibility; infinite where the code has incompressible sheets.
+    fn bulk_modulus(&self, code: Code) -> f64 {
+        match code {
+            Code::Abaqus => f64::INFINITY,
+            _ => self.bulk_ratio * self.card.law.shear_modulus(),
+        }
+    }
+
+    fn law(&self, code: Code) -> Result<CodeLaw, Diagnostic> {
+        let law = self.card.law.in_code(code, self.bulk_modulus(code));
+        let known = law.filter(|law| code == Code::Abaqus || *law != CodeLaw::TensionCurve);
+        known.ok_or_else(|| {
+            let (name, card) = (code.name(), self.card);
+            let message = format!("{name} has no law that equals `{}` of the card `{}`", card.law_name, card.name);
+            Diagnostic::error("", message).hint(format!(
+                "it has {}; fit such a card to the same data, as with `gelbench materials fit DATA.csv --law ogden-2`",
+                code.laws()
+            ))
+        })
+    }
+}
+
+/// The problem in the words that all codes share; nodes and cells are numbered as in the mesh.
+pub struct Model<'a> {
+    pub given: &'a Export<'a>,
+    pub code: Code,
+    pub law: CodeLaw,
+    /// Kind and nodes of the cells; those in the middle of quadrilaterals only where the code knows them.
+    pub cells: Vec<(CellShape, &'a [usize])>,
+    /// The nodes of the cells, ascending.
+    pub nodes: Vec<usize>,
+    /// Node sets by name.
+    pub sets: Vec<(String, Vec<usize>)>,
+    /// Parts of the boundary by name: cell and side within it.
+    pub surfaces: Vec<(String, Vec<Side>)>,
+    pub held: Vec<Held>,
+    /// Node and axis that follow another node's motion along the axis: those of grips with a given force.
+    pub ties: Vec<Tie>,
+    /// Dead nodal forces in N at load factor 1.
+    pub forces: Vec<(usize, [f64; 2])>,
+    /// Pressures in MPa at load factor 1, by the number of their surface.
+    pub pressures: Vec<(usize, f64)>,
+}
+
+/// A cell and the number of an edge within it.
+pub type Side = (usize, usize);
+
+/// A node that moves along an axis as another one does.
+pub struct Tie {
+    pub node: usize,
+    pub axis: usize,
+    pub follows: usize,
+}
+
+/// A component of displacement that a support prescribes on a node set.
+pub struct Held {
+    /// The number of its set.
+    pub set: usize,
+    pub axis: usize,
+    pub support: Support,
+}
+
+impl Held {
+    /// The displacement in mm at load factor 1 where it is the same for all nodes and grows with the factor; the others
+    /// go out node by node.
+    pub fn uniform(&self) -> Option<f64> {
+        match self.support {
+            Support::Displacement(displacement) => displacement[self.axis],
+            Support::Roller => Some(0.0),
+            Support::Grip(drives) => match drives[self.axis] {
+                Drive::Displacement(displacement) => Some(displacement),
+                Drive::Force(_) => None,
+            },
+            Support::LinearDisplacement(_) | Support::Radial { .. } | Support::Rotation { .. } => {
+                None
+            }
+        }
+    }
+
+    /// The displacement of a node at a place, in mm.
+    pub fn at(&self, place: [f64; 2], factor: f64) -> f64 {
+        self.support
+            .displacement(place, self.axis, factor)
+            .unwrap_or_default()
+    }
+}
+
+impl<'a> Model<'a> {
+    pub fn new(given: &'a Export<'a>, code: Code) -> Result<Self, Diagnostic> {
+        let mesh = given.mesh;
+        let all = || (0..mesh.cell_count()).map(|cell| (mesh.shape(cell), mesh.cell(cell)));
+        // A nine-node face fits no six-node triangle's neighbour in space.
+        let keeps = code == Code::FeBio && all().all(|(shape, _)| shape == CellShape::Quad9);
+        let cells: Vec<_> = all()
+            .map(|(shape, nodes)| match shape {
+                CellShape::Quad9 if !keeps => (CellShape::Quad8, &nodes[..8]),
+                _ => (shape, nodes),
+            })
+            .collect();
+        let nodes: BTreeSet<usize> = cells.iter().flat_map(|(_, own)| *own).copied().collect();
+        let mut names = Names::default();
+        let (mut sets, mut surfaces, mut group_surfaces) =
+            (Vec::new(), Vec::new(), BTreeMap::new());
+        let sides = sides(&cells);
+        for (group, content) in mesh.groups() {
+            let own = content.nodes.iter().filter(|node| nodes.contains(node));
+            let name = names.give(group);
+            if !content.edges.is_empty() {
+                group_surfaces.insert(group.as_str(), surfaces.len());
+                let edges = content.edges.iter();
+                let edges = edges.map(|edge| sides[&[edge[0], edge[1]]]).collect();
+                surfaces.push((names.give(&format!("{name}_EDGES")), edges));
+            }
+            sets.push((name, own.copied().collect()));
+        }
+        let mut model = Self {
+            given,
+            code,
+            law: given.law(code)?,
+            cells,
+            nodes: nodes.into_iter().collect(),
+            sets,
+            surfaces,
+            held: Vec::new(),
+            ties: Vec::new(),
+            forces: Vec::new(),
+            pressures: Vec::new(),
+        };
+        model.hold(&mut names)?;
+        model.tie()?;
+        model.load(&group_surfaces)?;
+        Ok(model)
+    }
+
+    /// Supports: on the set of their group, or on one of their own where another support replaces a part.
+    fn hold(&mut self, names: &mut Names) -> Result<(), Diagnostic> {
+        let held = self.given.problem.held_by(self.given.mesh)?;
+        for (number, (_, support)) in self.given.problem.supports.iter().enumerate() {
+            for axis in [0, 1] {
+                let own = self.nodes.iter().copied();
+                let own = own.filter(|node| held.get(&(2 * node + axis)) == Some(&number));
+                let own: Vec<usize> = own.collect();
+                if own.is_empty() {
+                    continue;
+                }
+                let known = self.sets.iter().position(|(_, nodes)| *nodes == own);
+                let set = known.unwrap_or_else(|| {
+                    self.sets.push((names.give("HELD"), own));
+                    self.sets.len() - 1
+                });
+                self.held.push(Held {
+                    set,
+                    axis,
+                    support: *support,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Grips with a given force: their nodes follow one of them, which takes the force.
+    fn tie(&mut self) -> Result<(), Diagnostic> {
+        let ties = self.given.problem.ties(self.given.mesh)?;
+        if self.code == Code::FeBio && !ties.is_empty() {
+            let message = "a grip with a given force cannot be exported to FEBio";
+            return Err(Diagnostic::error("support", message)
+                .hint("give the grip a displacement, or export to Abaqus or CalculiX"));
+        }
+        let ties = ties.into_iter().map(|(unknown, follows)| Tie {
+            node: unknown / 2,
+            axis: unknown % 2,
+            follows: follows / 2,
+        });
+        let known = ties.filter(|tie| self.nodes.binary_search(&tie.node).is_ok());
+        self.ties = known.collect();
+        Ok(())
+    }
+
+    fn load(&mut self, surfaces: &BTreeMap<&str, usize>) -> Result<(), Diagnostic> {
+        let problem = self.given.problem;
+        let mut forces = problem.dead_forces(self.given.mesh)?;
+        for (unknown, follows) in problem.ties(self.given.mesh)? {
+            forces[follows] += std::mem::take(&mut forces[unknown]);
+        }
+        for (node, force) in forces.chunks_exact(2).enumerate() {
+            if force == [0.0; 2] {
+                continue;
+            }
+            if self.nodes.binary_search(&node).is_err() {
+                let [x, y] = self.given.mesh.nodes[node];
+                let message = format!(
+                    "a force acts on the middle of a cell at ({x}, {y}) mm, where {} has no node",
+                    self.code.name()
+                );
+                return Err(Diagnostic::error("load", message)
+                    .hint("let it act on a group of the boundary"));
+            }
+            self.forces.push((node, [force[0], force[1]]));
+        }
+        for (group, load) in &problem.loads {
+            if let Load::Pressure(pressure) = load {
+                self.pressures.push((surfaces[group.as_str()], *pressure));
+            }
+        }
+        Ok(())
+    }
+
+    /// Where the file differs from the study, in ASCII.
+    pub fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        let code = self.code.name();
+        let shapes = |shape| self.cells.iter().any(|(own, _)| *own == shape);
+        let nine = (0..self.given.mesh.cell_count())
+            .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
+        if nine && shapes(CellShape::Quad8) {
+            remarks.push(
+                "nine-node quadrilaterals go out as eight-node ones, without their middle nodes"
+                    .into(),
+            );
+        }
+        if self.code == Code::CalculiX && self.cells.iter().any(|(own, _)| own.degree() == 1) {
+            remarks.push("CalculiX makes linear solids of its own kind of CPS3 and CPS4: compare quadratic elements, or fine meshes".into());
+        }
+        if self.code != Code::Abaqus {
+            remarks.push(format!(
+                "{code} has no incompressible sheet: the bulk modulus is {} MPa, {} times the initial shear modulus",
+                number(self.given.bulk_modulus(self.code)),
+                self.given.bulk_ratio
+            ));
+        }
+        if !self.pressures.is_empty() {
+            remarks.push(match self.code {
+                Code::Abaqus => "the pressure of gelbench acts on the thickness at rest; see whether yours acts on the deformed thickness".into(),
+                Code::CalculiX | Code::FeBio => format!(
+                    "{code} lays the pressure on the deformed thickness, gelbench on the thickness at rest: the forces differ by the stretch across the thickness at the loaded edge"
+                ),
+            });
+        }
+        if self.law == CodeLaw::TensionCurve {
+            remarks.push("the law depends on the first invariant alone and goes out as Marlow's law with points of its tension curve".into());
+        }
+        remarks
+    }
+
+    /// The lines at the head of every file.
+    pub fn head(&self) -> Vec<String> {
+        let card = self.given.card;
+        let mut lines = vec![
+            format!("written by gelbench {}", env!("CARGO_PKG_VERSION")),
+            "units: mm, N, MPa = N/mm^2, mJ; the total time is the load factor".into(),
+            format!("material: card {}, law {}", card.name, card.law_name),
+        ];
+        lines.extend(
+            self.remarks()
+                .into_iter()
+                .map(|line| format!("remark: {line}")),
+        );
+        lines.into_iter().map(|line| ascii(&line)).collect()
+    }
+}
+
+/// The edges of all cells by their ends, in the order that leaves the cell to the left.
+fn sides(cells: &[(CellShape, &[usize])]) -> HashMap<[usize; 2], Side> {
+    let mut sides = HashMap::new();
+    for (cell, (shape, nodes)) in cells.iter().enumerate() {
+        for (side, edge) in shape.edges().iter().enumerate() {
+            sides.insert([nodes[edge[0]], nodes[edge[1]]], (cell, side));
+        }
+    }
+    sides
+}
