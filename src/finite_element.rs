@@ -8,7 +8,7 @@ use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{ClampedPlate, Model};
 use crate::solve::{NewtonSettings, State};
 
-use error_estimate::{ErrorEstimate, Solved};
+use error_estimate::{ErrorEstimate, SheetSolution};
 use recovery::Recovery;
 
 pub mod convergence;
@@ -104,7 +104,7 @@ impl FiniteElements {
         recovery: &Recovery,
     ) -> Result<ErrorEstimate, SolveFault> {
         let influence = self.model(plate).influence(state, Side::Right.name(), 0)?;
-        let solved = Solved {
+        let solved = SheetSolution {
             law: &*plate.law,
             thickness: plate.thickness,
             mesh: &self.mesh,

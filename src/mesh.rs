@@ -17,6 +17,7 @@ mod plate;
 mod refine;
 mod rounding;
 mod shapes;
+mod strips;
 mod triangulate;
 
 pub use blocks::{Block, mesh_of_blocks};
@@ -28,6 +29,6 @@ pub use import::{
     ImportedField, ImportedSeries, ImportedStep, MeshReading, import, import_field, import_series,
 };
 pub use nodal_field::NodalField;
-pub use outline::{Found, Outline};
+pub use outline::{Outline, OutlineOfPoints};
 pub use rounding::Polygon;
 pub use shapes::Shape;

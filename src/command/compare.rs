@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::export::not_for_other_codes;
 use super::terminal::{Outcome, print, progress_bar, warn};
-use crate::compare::imported::{Difference, ImportSettings, Imported, ModelField, Sites};
+use crate::compare::imported::{Difference, ExternalField, ImportSettings, ModelField, Sites};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
@@ -49,12 +49,12 @@ pub struct Options {
 }
 
 /// What is compared, before and after it is computed.
-struct Compared {
+struct Comparison {
     title: String,
     law: Arc<dyn HyperelasticLaw>,
     thickness: f64,
     factor: f64,
-    imported: Imported,
+    imported: ExternalField,
     sites: Sites,
     fields: [ModelField; 3],
 }
@@ -105,7 +105,7 @@ fn doubts(differences: &[Difference]) -> Vec<Diagnostic> {
 }
 
 /// Computes what is compared.
-fn compute(options: &Options) -> Result<Compared, Error> {
+fn compute(options: &Options) -> Result<Comparison, Error> {
     let path = &options.study;
     let text = sections::read_text(path)?;
     let bar = progress_bar(0);
@@ -122,7 +122,7 @@ fn compute(options: &Options) -> Result<Compared, Error> {
     Ok(compared)
 }
 
-fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Compared, Error> {
+fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Comparison, Error> {
     let study = Study::of_file(&options.study, text)?;
     warn(&study.warnings);
     let problem = &study.problem;
@@ -130,7 +130,7 @@ fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Compare
     let factor = options.factor.unwrap_or(last);
     let lattice = Mesh::plate(problem.size, study.cells, CellShape::Quad4);
     let (imported, sites) = import(options, factor, &lattice)?;
-    Ok(Compared {
+    Ok(Comparison {
         title: study.title.clone(),
         law: Arc::clone(&problem.law),
         thickness: problem.thickness,
@@ -146,7 +146,7 @@ fn shape(
     case: &Kind,
     text: &str,
     told: &dyn Fn(&str),
-) -> Result<Compared, Error> {
+) -> Result<Comparison, Error> {
     let (title, specimen, warnings) = specimen::load(case, &options.study, text)?;
     warn(&warnings);
     let last = specimen.factors[specimen.factors.len() - 1];
@@ -160,7 +160,7 @@ fn shape(
         ));
     }
     let (imported, sites) = import(options, factor, &specimen.outline.lattice())?;
-    Ok(Compared {
+    Ok(Comparison {
         title,
         law: Arc::clone(&specimen.problem.law),
         thickness: specimen.problem.thickness,
@@ -172,7 +172,7 @@ fn shape(
 }
 
 /// Reads the field, before anything is computed, and places it on the specimen.
-fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(Imported, Sites), Error> {
+fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(ExternalField, Sites), Error> {
     let settings = ImportSettings {
         unit: options.unit,
         array: options.array.clone(),
@@ -180,7 +180,7 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(Imported, S
         time: options.time,
         ignored_columns: options.ignore_columns.clone(),
     };
-    let imported = Imported::read(&options.field, &settings)?;
+    let imported = ExternalField::read(&options.field, &settings)?;
     let sites = imported.sites(lattice).map_err(|reason| {
         let message = format!("{}: {reason}", options.field.display());
         Error::input(
@@ -191,7 +191,7 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(Imported, S
     Ok((imported, sites))
 }
 
-fn summary(compared: &Compared, differences: &[Difference]) -> String {
+fn summary(compared: &Comparison, differences: &[Difference]) -> String {
     let mut text = format!(
         "deviation from the imported field at the load factor {} ({})\n\
          model             displacement [%]  largest difference [mm]  at x, y [mm]\n",
@@ -209,7 +209,7 @@ fn summary(compared: &Compared, differences: &[Difference]) -> String {
 }
 
 fn write(
-    compared: &Compared,
+    compared: &Comparison,
     (differences, doubts): (&[Difference], &[Diagnostic]),
     file: &Path,
     folder: &mut ResultFolder,
@@ -220,12 +220,12 @@ fn write(
     };
     for field in &compared.fields {
         let grid = match &compared.imported {
-            Imported::OnMesh(imported) => {
+            ExternalField::OnMesh(imported) => {
                 let (mesh, u) = (&field.mesh, &field.displacement);
                 let expected = imported.mesh.displacement_on(&imported.displacement, mesh);
                 Grid::sheet(sheet, mesh, u).with(Array::imported(u, &expected))
             }
-            Imported::AtPoints(points) => {
+            ExternalField::AtPoints(points) => {
                 let own = compared.sites.at(field);
                 let grid = Grid::scattered(&points.places, &own);
                 grid.with(Array::imported(&own, &points.displacement))
@@ -243,10 +243,10 @@ fn write(
     output::write_document(folder, "report", &blocks, &[])
 }
 
-fn report(compared: &Compared, differences: &[Difference], file: &Path) -> Vec<Block> {
+fn report(compared: &Comparison, differences: &[Difference], file: &Path) -> Vec<Block> {
     let weighting = match compared.imported {
-        Imported::OnMesh(_) => "at the nodes of the lattice, weighted by area",
-        Imported::AtPoints(_) => "at the imported points, all with the same weight",
+        ExternalField::OnMesh(_) => "at the nodes of the lattice, weighted by area",
+        ExternalField::AtPoints(_) => "at the imported points, all with the same weight",
     };
     let row = |(field, difference): (&ModelField, &Difference)| {
         let [x, y] = difference.place;

@@ -22,7 +22,7 @@ pub use table::{ImportSettings, Points};
 
 /// A displacement field of another program.
 #[derive(Clone, Debug)]
-pub enum Imported {
+pub enum ExternalField {
     /// On a mesh of its own.
     OnMesh(Box<ImportedField>),
     /// At scattered points.
@@ -76,7 +76,7 @@ const NEAR_CELLS: f64 = 0.25;
 /// Boxes around meshes of the same specimen may differ by so much of their size.
 const NEAR_SIZE: f64 = 0.02;
 
-impl Imported {
+impl ExternalField {
     /// Reads `.vtu`, `.vtk`, `.pvd`, `.msh`, `.frd` or `.csv`.
     ///
     /// # Errors

@@ -44,7 +44,7 @@ use crate::mesh::{GAUSS_3, Mesh};
 
 /// A finite-element solution of a sheet.
 #[derive(Clone, Copy)]
-pub struct Solved<'a> {
+pub struct SheetSolution<'a> {
     /// The material.
     pub law: &'a dyn HyperelasticLaw,
     /// Thickness in mm.
@@ -141,7 +141,7 @@ struct Point {
     stress: Gradient,
 }
 
-impl Solved<'_> {
+impl SheetSolution<'_> {
     /// Estimates the error of the field by the recovery on its mesh, and of the force whose influence field z is given.
     pub fn estimate(&self, recovery: &Recovery, influence: &[f64]) -> ErrorEstimate {
         let mesh = self.mesh;
@@ -168,7 +168,7 @@ impl Solved<'_> {
         self.distance(|cell, local| field.at(self.mesh, cell, local))
     }
 
-    /// The distance in the energy norm to the field whose displacement gradient at a reference point of a cell is given:
+    /// The distance in the energy norm to the field whose displacement gradient at a point of a cell in natural coordinates is given:
     /// the true error, where that field is the exact one.
     pub fn distance(&self, gradient: impl Fn(usize, [f64; 2]) -> [f64; 4]) -> EnergyError {
         let mut found = EnergyError::of_cells(self.mesh.cell_count());
@@ -244,7 +244,7 @@ mod tests {
             for kind in [CellShape::Triangle3, CellShape::Quad4] {
                 let mesh = Shape::Strip { size: [12.0, 6.0] }.mesh(4, kind);
                 let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
-                let solved = Solved {
+                let solved = SheetSolution {
                     law: &law,
                     thickness: 2.0,
                     mesh: &mesh,
@@ -272,7 +272,7 @@ mod tests {
         let mesh = Shape::Strip { size: [12.0, 6.0] }.mesh(2, CellShape::Triangle6);
         let field = |[x, y]: &[f64; 2]| [h[0] * x + h[1] * y, h[2] * x + h[3] * y];
         let u: Vec<f64> = mesh.nodes.iter().flat_map(field).collect();
-        let solved = Solved {
+        let solved = SheetSolution {
             law: &law,
             thickness: 2.0,
             mesh: &mesh,
@@ -298,7 +298,7 @@ mod tests {
             .iter()
             .flat_map(|[x, y]| [-0.2 * x, -0.2 * y])
             .collect();
-        let solved = Solved {
+        let solved = SheetSolution {
             law: &law,
             thickness: 2.0,
             mesh: &mesh,

@@ -109,7 +109,7 @@ impl Fit {
 }
 
 impl RecoveredGradient {
-    /// G*₁₁, G*₁₂, G*₂₁, G*₂₂ at a reference point of a cell.
+    /// G*₁₁, G*₁₂, G*₂₁, G*₂₂ at a point of a cell in natural coordinates.
     pub fn at(&self, mesh: &Mesh, cell: usize, local: [f64; 2]) -> [f64; 4] {
         let shape = mesh.shape(cell);
         let place = mesh.place(cell, local);

@@ -1,4 +1,4 @@
-//! The kinds of cells: reference nodes, shape functions, quadrature.
+//! The kinds of cells: natural nodes, shape functions, quadrature.
 
 /// The kind of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,7 +15,7 @@ pub enum CellShape {
     Quad9,
 }
 
-/// A point of the reference cell and its weight.
+/// A point in natural coordinates and its weight.
 pub type QuadraturePoint = ([f64; 2], f64);
 
 const QUAD: [[f64; 2]; 9] = [
@@ -102,10 +102,10 @@ impl CellShape {
         }
     }
 
-    /// Reference coordinates (ξ, η) of the nodes: corners counter-clockwise, then mid-sides beginning
+    /// Natural coordinates (ξ, η) of the nodes: corners counter-clockwise, then mid-sides beginning
     /// between the first two corners, then the centre. Quadrilaterals lie in −1…1, triangles in ξ, η ≥ 0, ξ + η ≤ 1.
     /// This is the order of VTK, Gmsh and Abaqus.
-    pub fn reference_nodes(self) -> &'static [[f64; 2]] {
+    pub fn natural_nodes(self) -> &'static [[f64; 2]] {
         if self.is_triangle() {
             &TRIANGLE[..self.nodes()]
         } else {
@@ -113,7 +113,7 @@ impl CellShape {
         }
     }
 
-    /// The middle of the reference cell.
+    /// The natural coordinates of the middle of a cell.
     pub fn centre(self) -> [f64; 2] {
         if self.is_triangle() {
             [1.0 / 3.0; 2]
@@ -164,7 +164,7 @@ impl CellShape {
         pairs.map(point).collect()
     }
 
-    /// Values Nₐ of the shape functions at a reference point.
+    /// Values Nₐ of the shape functions at a point in natural coordinates.
     pub fn values(self, [x, y]: [f64; 2]) -> Vec<f64> {
         match self {
             Self::Triangle3 => vec![1.0 - x - y, x, y],
@@ -185,14 +185,14 @@ impl CellShape {
                 .map(|node| serendipity(*node, [x, y]).0)
                 .collect(),
             Self::Quad4 | Self::Quad9 => self
-                .reference_nodes()
+                .natural_nodes()
                 .iter()
                 .map(|node| self.factor(node[0], x)[0] * self.factor(node[1], y)[0])
                 .collect(),
         }
     }
 
-    /// Derivatives [∂Nₐ/∂ξ, ∂Nₐ/∂η] of the shape functions at a reference point.
+    /// Derivatives [∂Nₐ/∂ξ, ∂Nₐ/∂η] of the shape functions at a point in natural coordinates.
     pub fn derivatives(self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
         match self {
             Self::Triangle3 => vec![[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]],
@@ -217,7 +217,7 @@ impl CellShape {
                     let [b, db] = self.factor(node[1], y);
                     [da * b, a * db]
                 };
-                self.reference_nodes().iter().map(derivative).collect()
+                self.natural_nodes().iter().map(derivative).collect()
             }
         }
     }
@@ -231,12 +231,12 @@ impl CellShape {
         }
     }
 
-    /// How far a reference point lies outside of the cell; zero inside.
+    /// How far a point in natural coordinates lies outside of the cell; zero inside.
     pub fn outside(self, local: [f64; 2]) -> f64 {
         (-self.depth(local)).max(0.0)
     }
 
-    /// How far a reference point lies inside of the cell; negative outside.
+    /// How far a point in natural coordinates lies inside of the cell; negative outside.
     pub fn depth(self, [x, y]: [f64; 2]) -> f64 {
         if self.is_triangle() {
             x.min(y).min(1.0 - x - y)
@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn shape_functions_are_one_at_their_node_and_sum_up_to_one() {
         for (_, shape) in CellShape::NAMES {
-            for (i, node) in shape.reference_nodes().iter().enumerate() {
+            for (i, node) in shape.natural_nodes().iter().enumerate() {
                 for (j, value) in shape.values(*node).into_iter().enumerate() {
                     let expected = if i == j { 1.0 } else { 0.0 };
                     assert!((value - expected).abs() < 1e-15, "{shape:?} {i} {j}");

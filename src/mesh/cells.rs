@@ -33,7 +33,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A mesh of cells with their nodes in the order of [`CellShape::reference_nodes`].
+    /// A mesh of cells with their nodes in the order of [`CellShape::natural_nodes`].
     ///
     /// # Panics
     /// When a cell has another number of nodes than its kind.
@@ -84,7 +84,7 @@ impl Mesh {
         degrees.max().unwrap_or(1)
     }
 
-    /// The nodes of a cell, in the order of [`CellShape::reference_nodes`].
+    /// The nodes of a cell, in the order of [`CellShape::natural_nodes`].
     pub fn cell(&self, cell: usize) -> &[usize] {
         &self.connectivity[self.starts[cell]..self.starts[cell + 1]]
     }

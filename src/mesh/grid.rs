@@ -83,7 +83,7 @@ impl Grid {
         from + (self.line(axis, cell + 1, cells) - from) * part as f64 / degree as f64
     }
 
-    /// The cell that holds a point, and the point's reference coordinates in it.
+    /// The cell that holds a point, and the point's natural coordinates in it.
     pub(super) fn locate(self, point: [f64; 2]) -> (usize, [f64; 2]) {
         let place = |axis: usize| {
             let cells = self.cells[axis];

@@ -33,7 +33,7 @@ impl Mesh {
         areas
     }
 
-    /// The place in mm of a reference point of a cell.
+    /// The place in mm of a point of a cell in natural coordinates.
     pub fn place(&self, cell: usize, local: [f64; 2]) -> [f64; 2] {
         let values = self.shape(cell).values(local);
         [0, 1].map(|axis| {
@@ -91,7 +91,7 @@ impl Mesh {
         map
     }
 
-    /// Displacement gradient H₁₁, H₁₂, H₂₁, H₂₂ at a reference point of a cell.
+    /// Displacement gradient H₁₁, H₁₂, H₂₁, H₂₂ at a point of a cell in natural coordinates.
     pub fn gradient_at(&self, displacement: &[f64], cell: usize, local: [f64; 2]) -> [f64; 4] {
         let (gradients, _) = self.gradients(cell, local);
         let mut gradient = [0.0; 4];

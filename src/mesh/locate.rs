@@ -8,7 +8,7 @@ use super::geometry::{bounding_box, determinant};
 const ROUNDING: f64 = 2e-15;
 
 impl Mesh {
-    /// The cell that holds a point, and the point's reference coordinates in it; for a point outside of the mesh
+    /// The cell that holds a point, and the point's natural coordinates in it; for a point outside of the mesh
     /// the nearest cell.
     pub fn locate(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
         match self.grid {
@@ -60,7 +60,7 @@ impl Mesh {
         }
     }
 
-    /// The reference coordinates of a point in a cell, by Newton's method; nothing where it finds none.
+    /// The natural coordinates of a point in a cell, by Newton's method; nothing where it finds none.
     fn natural_coordinates(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
         let shape = self.shape(cell);
         // Relative to a node of the cell, so that a mesh far from the origin loses no digits.
@@ -102,7 +102,7 @@ impl Mesh {
         None
     }
 
-    /// Whether a point lies inside of a cell, farther from its sides than `margin` in reference coordinates; cells are
+    /// Whether a point lies inside of a cell, farther from its sides than `margin` in natural coordinates; cells are
     /// left out where `own` holds.
     pub(super) fn holds_inside(
         &self,
@@ -153,7 +153,7 @@ fn far_away(mesh: &Mesh, point: [f64; 2]) -> (usize, [f64; 2]) {
     let from = mesh.place(cell, start);
     let (gradients, _) = mesh.gradients(cell, start);
     // ∂ξ/∂X = Σ ξₐ ∂Nₐ/∂X over the nodes of the cell.
-    let nodes = || shape.reference_nodes().iter().zip(&gradients);
+    let nodes = || shape.natural_nodes().iter().zip(&gradients);
     let local = [0, 1].map(|axis| {
         let slope = |along: usize| {
             nodes()

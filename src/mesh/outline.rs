@@ -42,7 +42,7 @@ pub struct Outline {
 
 /// An outline found around points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct OutlineOfPoints {
     /// The lines.
     pub outline: Outline,
     /// The spacing of the points in mm.
@@ -67,7 +67,7 @@ impl Outline {
     ///
     /// # Errors
     /// Says why the points have no outline, or that they lie in several parts.
-    pub fn of_points(points: &[[f64; 2]]) -> Result<Found, String> {
+    pub fn of_points(points: &[[f64; 2]]) -> Result<OutlineOfPoints, String> {
         let mut points = points.to_vec();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         points.dedup();
@@ -103,7 +103,7 @@ impl Outline {
             ));
         }
         outline.check()?;
-        Ok(Found {
+        Ok(OutlineOfPoints {
             outline,
             spacing,
             doubts,

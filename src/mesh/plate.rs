@@ -48,7 +48,7 @@ impl Mesh {
                 let (column, row) = (i * degree + step(*x), j * degree + step(*y));
                 column * (steps[1] + 1) + row
             };
-            (shape, shape.reference_nodes().iter().map(node).collect())
+            (shape, shape.natural_nodes().iter().map(node).collect())
         };
         let mut mesh = Self::new(nodes, all.map(cell));
         mesh.grid = Some(grid);

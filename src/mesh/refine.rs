@@ -93,7 +93,7 @@ impl Mesh {
     }
 }
 
-/// A point of a cell that is a node: its number, and its reference coordinates in the cell.
+/// A point of a cell that is a node: its number, and its natural coordinates in the cell.
 #[derive(Clone, Copy)]
 pub(super) struct Point {
     pub node: usize,
@@ -133,7 +133,7 @@ impl<'a> Subdivision<'a> {
     pub fn corners(&self, cell: usize) -> Vec<Point> {
         let shape = self.mesh.shape(cell);
         let nodes = self.mesh.cell(cell)[..shape.corners()].iter();
-        let places = nodes.zip(shape.reference_nodes());
+        let places = nodes.zip(shape.natural_nodes());
         places
             .map(|(node, local)| Point {
                 node: *node,

@@ -152,7 +152,7 @@ pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
         let mut places = Vec::new();
         for edge in shape.edges() {
             let along = [0, 1, 2, 3].map(|i| f64::from(i) / 4.0);
-            let [from, to] = [edge[0], edge[1]].map(|node| shape.reference_nodes()[node]);
+            let [from, to] = [edge[0], edge[1]].map(|node| shape.natural_nodes()[node]);
             for share in along {
                 let local = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
                 let values = shape.values(local);

@@ -32,7 +32,7 @@ fn written(name: &str, text: &str) -> tempfile::TempPath {
 }
 
 fn refusal(name: &str, text: &str) -> String {
-    match Imported::read(&written(name, text), &SETTINGS) {
+    match ExternalField::read(&written(name, text), &SETTINGS) {
         Err(told) => told.to_string(),
         Ok(imported) => imported.sites(&model([6, 2]).mesh).unwrap_err(),
     }
@@ -104,7 +104,7 @@ fn frd(scale: f64, last_x: &str) -> String {
 #[test]
 fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
     let model = model([6, 2]);
-    let imported = Imported::read(&written(".frd", &frd(1.0, "")), &SETTINGS).unwrap();
+    let imported = ExternalField::read(&written(".frd", &frd(1.0, "")), &SETTINGS).unwrap();
     let difference = imported
         .sites(&model.mesh)
         .unwrap()
@@ -118,7 +118,7 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
             time,
             ..SETTINGS
         };
-        let imported = Imported::read(&written(".frd", &frd(1.0, "")), &first).unwrap();
+        let imported = ExternalField::read(&written(".frd", &frd(1.0, "")), &first).unwrap();
         let difference = imported
             .sites(&model.mesh)
             .unwrap()
@@ -136,7 +136,7 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
         unit: Some(1000.0),
         ..SETTINGS
     };
-    let imported = Imported::read(&written(".frd", &frd(1e-3, "")), &metres).unwrap();
+    let imported = ExternalField::read(&written(".frd", &frd(1e-3, "")), &metres).unwrap();
     let difference = imported
         .sites(&model.mesh)
         .unwrap()
@@ -149,7 +149,7 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
 fn points_of_a_table_are_compared_where_they_are() {
     let table =
         "stretch,X_cm,Y_cm,ux_mm,uy_mm\n0.25,1,0.5,9,9\n0.5,1,0.5,1.1,-0.25\n0.5,2,0.5,2.1,-0.45\n";
-    let imported = Imported::read(&written(".csv", table), &SETTINGS).unwrap();
+    let imported = ExternalField::read(&written(".csv", table), &SETTINGS).unwrap();
     let sites = imported.sites(&model([6, 2]).mesh).unwrap();
     let difference = sites.difference(&model([6, 2])).unwrap();
     // Off by 0.2 mm at (20, 5) mm alone.
@@ -161,10 +161,11 @@ fn points_of_a_table_are_compared_where_they_are() {
     );
 }
 
-#[test]
-fn fields_that_do_not_fit_are_refused_with_the_reason() {
+/// Files that are refused: ending, text, and what is told.
+fn refused() -> Vec<(&'static str, String, &'static str)> {
     let head = "X_mm,Y_mm,ux_mm,uy_mm\n";
-    for (name, text, told) in [
+    let sound = || frd(1.0, "");
+    vec![
         (
             ".frd",
             frd(1e-3, ""),
@@ -173,17 +174,17 @@ fn fields_that_do_not_fit_are_refused_with_the_reason() {
         (".frd", frd(1.0, "NaN"), "that is no number"),
         (
             ".frd",
-            frd(1.0, "").replace("5.00000E-01    ", "7.50000E-01    "),
+            sound().replace("5.00000E-01    ", "7.50000E-01    "),
             "no step at the time 0.5; it has 0.25, 0.75: choose one with --time",
         ),
         (
             ".frd",
-            frd(1.0, "").replace("DISP", "STRE"),
+            sound().replace("DISP", "STRE"),
             "holds no displacements",
         ),
         (
             ".frd",
-            frd(1.0, "").replace("    1    0    1\n", "    3    0    1\n"),
+            sound().replace("    1    0    1\n", "    3    0    1\n"),
             "elements of the kind 3",
         ),
         (
@@ -238,7 +239,12 @@ fn fields_that_do_not_fit_are_refused_with_the_reason() {
             String::new(),
             "is no .vtu, .vtk, .pvd, .msh, .frd or .csv file",
         ),
-    ] {
+    ]
+}
+
+#[test]
+fn fields_that_do_not_fit_are_refused_with_the_reason() {
+    for (name, text, told) in refused() {
         let found = refusal(name, &text);
         assert!(
             found.to_lowercase().contains(&told.to_lowercase()),
@@ -256,11 +262,12 @@ fn columns_choose_rows_and_are_passed_over_by_wish() {
         ignored_columns: vec!["uz".into(), "note".into()],
         ..SETTINGS
     };
-    let imported = Imported::read(&written(".csv", table), &settings).unwrap();
+    let imported = ExternalField::read(&written(".csv", table), &settings).unwrap();
     let sites = imported.sites(&model([6, 2]).mesh).unwrap();
     assert_eq!(sites.places, [[10.0, 5.0]]);
     assert!(sites.difference(&model([6, 2])).unwrap().percent < 1e-10);
-    let told = Imported::read(&written(".csv", "x,y,ux,uy\n1,2,3,4\n"), &settings).unwrap_err();
+    let told =
+        ExternalField::read(&written(".csv", "x,y,ux,uy\n1,2,3,4\n"), &settings).unwrap_err();
     assert!(told.to_string().contains("no column `time`"), "{told}");
 }
 
@@ -269,7 +276,7 @@ fn displacements_in_another_unit_are_told_by_their_magnitude() {
     let table = "X_mm,Y_mm,ux_mm,uy_mm\n10,5,0.0011,-0.00025\n20,5,0.0021,-0.00025\n";
     let model = model([6, 2]);
     let difference = |settings: &ImportSettings| {
-        let imported = Imported::read(&written(".csv", table), settings).unwrap();
+        let imported = ExternalField::read(&written(".csv", table), settings).unwrap();
         imported
             .sites(&model.mesh)
             .unwrap()
@@ -283,7 +290,7 @@ fn displacements_in_another_unit_are_told_by_their_magnitude() {
         unit: Some(1000.0),
         ..SETTINGS
     };
-    let imported = Imported::read(&written(".csv", metres), &settings).unwrap();
+    let imported = ExternalField::read(&written(".csv", metres), &settings).unwrap();
     let right = imported
         .sites(&model.mesh)
         .unwrap()

@@ -35,7 +35,7 @@ impl Grid {
                     let step = |natural: f64| ((natural + 1.0) * side as f64 / 2.0) as usize;
                     (i + step(*a)) * y.len() + j + step(*b)
                 };
-                (shape, shape.reference_nodes().iter().map(node).collect())
+                (shape, shape.natural_nodes().iter().map(node).collect())
             }),
         );
         let last = [x, y].map(|places| places[places.len() - 1]);

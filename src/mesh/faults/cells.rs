@@ -23,7 +23,7 @@ pub fn without_sense(mesh: &Mesh) -> Vec<Diagnostic> {
         let shape = mesh.shape(cell);
         let samples = samples.entry(shape).or_insert_with(|| {
             let points = shape.quadrature().into_iter().map(|(point, _)| point);
-            let nodes = shape.reference_nodes().iter().copied();
+            let nodes = shape.natural_nodes().iter().copied();
             let points = points.chain(nodes);
             points.map(|point| shape.derivatives(point)).collect()
         });

@@ -7,9 +7,9 @@ use super::sides::Sides;
 use crate::error::Diagnostic;
 
 /// Sets of numbers that are joined step by step.
-pub struct Joined(Vec<usize>);
+pub struct DisjointSets(Vec<usize>);
 
-impl Joined {
+impl DisjointSets {
     pub fn new(count: usize) -> Self {
         Self((0..count).collect())
     }
@@ -36,7 +36,7 @@ pub fn parts(sides: &Sides, allowed: Allowed) -> Option<Diagnostic> {
         return None;
     }
     let mesh = sides.mesh;
-    let mut joined = Joined::new(mesh.nodes.len());
+    let mut joined = DisjointSets::new(mesh.nodes.len());
     for cell in sides.cells() {
         let nodes = mesh.cell(cell);
         nodes[1..]

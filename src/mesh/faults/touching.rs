@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::finding::{Allowed, Finding};
-use super::parts::Joined;
+use super::parts::DisjointSets;
 use super::sides::{Side, Sides};
 use crate::error::Diagnostic;
 use crate::mesh::cells::Mesh;
 
 /// What is nearer than this part of the shortest edge around is at the same place.
 const NEAR: f64 = 1e-3;
-/// A node is inside of a cell when it lies this far from its sides, in reference coordinates.
+/// A node is inside of a cell when it lies this far from its sides, in natural coordinates.
 const INSIDE: f64 = 1e-2;
 
 /// Doubled and hanging nodes.
@@ -20,8 +20,8 @@ pub fn faults(sides: &Sides, allowed: Allowed) -> Vec<Diagnostic> {
     for node in boundary.shortest.keys() {
         for (side, which) in boundary.touched(*node) {
             match which {
-                Touched::Node(other) => doubled.push([*node, other]),
-                Touched::Side => hanging.push((*node, side)),
+                Contact::Node(other) => doubled.push([*node, other]),
+                Contact::Side => hanging.push((*node, side)),
             }
         }
     }
@@ -50,7 +50,7 @@ pub fn faults(sides: &Sides, allowed: Allowed) -> Vec<Diagnostic> {
 }
 
 /// What of the boundary a node is at.
-enum Touched {
+enum Contact {
     Node(usize),
     Side,
 }
@@ -130,7 +130,7 @@ impl<'a> Boundary<'a> {
     }
 
     /// The sides that a node lies on without being their node.
-    fn touched(&self, node: usize) -> Vec<(Side, Touched)> {
+    fn touched(&self, node: usize) -> Vec<(Side, Contact)> {
         let place = self.node(node);
         let around = self.squares.get(&self.square(place));
         let around = around.into_iter().flatten().map(|side| self.all[*side]);
@@ -143,10 +143,10 @@ impl<'a> Boundary<'a> {
             let is_near =
                 |other: [f64; 2]| (other[0] - place[0]).hypot(other[1] - place[1]) <= near;
             if let Some(other) = own.into_iter().find(|other| is_near(self.node(*other))) {
-                return Some((side, Touched::Node(other)));
+                return Some((side, Contact::Node(other)));
             }
             let foot = self.foot(side, place)?;
-            is_near(foot).then_some((side, Touched::Side))
+            is_near(foot).then_some((side, Contact::Side))
         };
         around.filter_map(touch).collect()
     }
@@ -193,7 +193,7 @@ impl<'a> Boundary<'a> {
 
     /// Sides of the boundary that lie on each other.
     fn seam(&self, doubled: &[[usize; 2]]) -> Option<Diagnostic> {
-        let mut same = Joined::new(self.sides.mesh.nodes.len());
+        let mut same = DisjointSets::new(self.sides.mesh.nodes.len());
         doubled
             .iter()
             .for_each(|[one, other]| same.join(*one, *other));

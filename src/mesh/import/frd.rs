@@ -47,66 +47,38 @@ enum Block {
     Displacements,
 }
 
+/// What of a file has been read.
+struct Reader {
+    results: Results,
+    block: Block,
+    time: Option<f64>,
+    /// Whether an element was a solid.
+    solid: bool,
+    /// Width of a node's number: the short format has five digits, the long one ten.
+    width: usize,
+    /// Kind and nodes of the element that is being read.
+    element: Option<(usize, Vec<u64>)>,
+}
+
 /// Reads the text of a file.
 ///
 /// # Errors
 /// Says what is wrong or cannot be read.
 pub fn read(text: &str) -> Result<Results, String> {
-    let mut results = Results::default();
-    let (mut block, mut time, mut solid) = (Block::Other, None, false);
-    // Width of a node's number: the short format has five digits, the long one ten.
-    let mut width = 10;
-    let mut element: Option<(usize, Vec<u64>)> = None;
-    for (index, line) in text.lines().enumerate() {
-        let fault = |what: &str| format!("has no {what} in line {}", index + 1);
-        let words: Vec<&str> = line.split_whitespace().collect();
-        match (&block, words.as_slice()) {
-            (_, ["2C" | "3C", .., format]) => {
-                width = digits(format)?;
-                block = match words[0] {
-                    "2C" => Block::Nodes,
-                    _ => Block::Elements,
-                };
-            }
-            (_, [first, ..]) if first.starts_with("100C") => {
-                time = line.get(12..24).and_then(|field| field.trim().parse().ok());
-                width = digits(words[words.len() - 1])?;
-            }
-            (_, ["-4", "DISP", ..]) => {
-                let time = time.ok_or_else(|| fault("time for displacements"))?;
-                results.steps.push((time, HashMap::new()));
-                block = Block::Displacements;
-            }
-            (_, ["-3", ..]) => {
-                solid |= keep(&mut results.raw, element.take())?;
-                block = Block::Other;
-            }
-            (Block::Nodes, ["-1", ..]) => {
-                let [x, y, z] = numbers(line, width).ok_or_else(|| fault("place of a node"))?;
-                let node = node(line, width).ok_or_else(|| fault("number of a node"))?;
-                results.raw.places.insert(node, [x, y, z]);
-            }
-            (Block::Displacements, ["-1", ..]) => {
-                let [x, y, _] = numbers(line, width).ok_or_else(|| fault("displacement"))?;
-                let node = node(line, width).ok_or_else(|| fault("number of a node"))?;
-                let (_, field) = results.steps.last_mut().expect("a step was begun");
-                field.insert(node, [x, y]);
-            }
-            (Block::Elements, ["-1", _, kind, ..]) => {
-                solid |= keep(&mut results.raw, element.take())?;
-                element = Some((kind.parse().map_err(|_| fault("kind"))?, Vec::new()));
-            }
-            (Block::Elements, ["-2", ..]) => {
-                let own = &mut element.as_mut().ok_or_else(|| fault("element"))?.1;
-                let nodes = line.as_bytes()[3..].chunks(width);
-                for field in nodes {
-                    let field = std::str::from_utf8(field).unwrap_or_default().trim();
-                    own.push(field.parse().map_err(|_| fault("number of a node"))?);
-                }
-            }
-            _ => {}
-        }
+    let mut reader = Reader {
+        results: Results::default(),
+        block: Block::Other,
+        time: None,
+        solid: false,
+        width: 10,
+        element: None,
+    };
+    for (line, number) in text.lines().zip(1..) {
+        reader.line(line, &|what| format!("has no {what} in line {number}"))?;
     }
+    let Reader {
+        mut results, solid, ..
+    } = reader;
     if results.steps.is_empty() {
         return Err("holds no displacements (DISP); ask CalculiX for *NODE FILE with U".into());
     }
@@ -116,16 +88,78 @@ pub fn read(text: &str) -> Result<Results, String> {
     Ok(results)
 }
 
+impl Reader {
+    fn line(&mut self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<(), String> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match (&self.block, words.as_slice()) {
+            (_, ["2C" | "3C", .., format]) => {
+                self.width = digits(format)?;
+                self.block = match words[0] {
+                    "2C" => Block::Nodes,
+                    _ => Block::Elements,
+                };
+            }
+            (_, [first, ..]) if first.starts_with("100C") => {
+                self.time = line.get(12..24).and_then(|field| field.trim().parse().ok());
+                self.width = digits(words[words.len() - 1])?;
+            }
+            (_, ["-4", "DISP", ..]) => {
+                let time = self.time.ok_or_else(|| fault("time for displacements"))?;
+                self.results.steps.push((time, HashMap::new()));
+                self.block = Block::Displacements;
+            }
+            (_, ["-3", ..]) => {
+                self.keep_element()?;
+                self.block = Block::Other;
+            }
+            (Block::Nodes, ["-1", ..]) => {
+                let place = numbers(line, self.width).ok_or_else(|| fault("place of a node"))?;
+                self.results
+                    .raw
+                    .places
+                    .insert(self.node(line, fault)?, place);
+            }
+            (Block::Displacements, ["-1", ..]) => {
+                let [x, y, _] = numbers(line, self.width).ok_or_else(|| fault("displacement"))?;
+                let node = self.node(line, fault)?;
+                let (_, field) = self.results.steps.last_mut().expect("a step was begun");
+                field.insert(node, [x, y]);
+            }
+            (Block::Elements, ["-1", _, kind, ..]) => {
+                self.keep_element()?;
+                self.element = Some((kind.parse().map_err(|_| fault("kind"))?, Vec::new()));
+            }
+            (Block::Elements, ["-2", ..]) => {
+                let (_, own) = self.element.as_mut().ok_or_else(|| fault("element"))?;
+                for field in line.as_bytes()[3..].chunks(self.width) {
+                    let field = std::str::from_utf8(field).unwrap_or_default().trim();
+                    own.push(field.parse().map_err(|_| fault("number of a node"))?);
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn keep_element(&mut self) -> Result<(), String> {
+        self.solid |= keep(&mut self.results.raw, self.element.take())?;
+        Ok(())
+    }
+
+    fn node(&self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<u64, String> {
+        let number = line
+            .get(3..3 + self.width)
+            .and_then(|field| field.trim().parse().ok());
+        number.ok_or_else(|| fault("number of a node"))
+    }
+}
+
 fn digits(format: &str) -> Result<usize, String> {
     match format {
         "0" => Ok(5),
         "1" => Ok(10),
         _ => Err("is binary or no result file; use *NODE FILE, which writes ASCII".into()),
     }
-}
-
-fn node(line: &str, width: usize) -> Option<u64> {
-    line.get(3..3 + width)?.trim().parse().ok()
 }
 
 /// Three numbers of twelve columns each; what is left out at the end of a line is zero.

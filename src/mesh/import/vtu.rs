@@ -12,15 +12,15 @@
 //! VTK XML formats, <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>
 
 use std::collections::BTreeMap;
-use std::io::Read;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::read::ZlibDecoder;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
 use super::unstructured::{CUT_OFF, UnstructuredGrid};
+
+mod decode;
+
+use decode::{Header, Numbers, decode_base64, inflate, width};
 
 /// Points and cells that are read at most.
 const MOST: usize = 5_000_000;
@@ -32,12 +32,12 @@ const MOST_NODES: usize = 64;
 type Attributes = BTreeMap<String, String>;
 
 /// An array as it stands in the file.
-struct Encoded {
+struct DataArray {
     attributes: Attributes,
     text: String,
 }
 
-impl Encoded {
+impl DataArray {
     fn attribute(&self, name: &str) -> &str {
         self.attributes.get(name).map_or("", String::as_str)
     }
@@ -59,7 +59,7 @@ struct Layout {
     file: Attributes,
     piece: Option<Attributes>,
     /// `Points`, `Cells`, `PointData` or `CellData`, and its arrays.
-    arrays: Vec<(String, Encoded)>,
+    arrays: Vec<(String, DataArray)>,
     appended_encoding: String,
 }
 
@@ -106,7 +106,7 @@ impl Layout {
     fn of(text: &str) -> Result<Self, String> {
         let mut reader = Reader::from_str(text);
         let mut layout = Self::default();
-        let (mut part, mut open) = (String::new(), None::<Encoded>);
+        let (mut part, mut open) = (String::new(), None::<DataArray>);
         // Keys with texts of their own may stand within an array.
         let mut within = 0_usize;
         loop {
@@ -155,8 +155,8 @@ impl Layout {
     }
 }
 
-fn encoded(tag: &BytesStart) -> Result<Encoded, String> {
-    Ok(Encoded {
+fn encoded(tag: &BytesStart) -> Result<DataArray, String> {
+    Ok(DataArray {
         attributes: attributes(tag)?,
         text: String::new(),
     })
@@ -168,8 +168,7 @@ struct XmlFile<'a> {
     appended: &'a [u8],
     /// Where appended arrays begin, ascending.
     offsets: Vec<usize>,
-    big_endian: bool,
-    wide_header: bool,
+    binary: Numbers,
     compressed: bool,
     points: usize,
     cells: usize,
@@ -210,8 +209,10 @@ impl<'a> XmlFile<'a> {
         Ok(Self {
             appended,
             offsets,
-            big_endian: file("byte_order") == "BigEndian",
-            wide_header: file("header_type") == "UInt64",
+            binary: Numbers {
+                big_endian: file("byte_order") == "BigEndian",
+                wide_header: file("header_type") == "UInt64",
+            },
             compressed,
             points: count("NumberOfPoints")?,
             cells: count("NumberOfCells")?,
@@ -248,7 +249,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The array of a name in a part, or its only one.
-    fn needed(&self, part: &str, name: Option<&str>) -> Result<&'a Encoded, String> {
+    fn needed(&self, part: &str, name: Option<&str>) -> Result<&'a DataArray, String> {
         let mut own = self.layout.arrays.iter().filter(|(of, _)| of == part);
         let found = own.find(|(_, array)| name.is_none_or(|name| array.attribute("Name") == name));
         let (_, array) = found.ok_or_else(|| {
@@ -262,7 +263,7 @@ impl<'a> XmlFile<'a> {
     fn arrays(&self, part: &str, tuples: usize) -> Result<Vec<(String, Vec<f64>)>, String> {
         let own = self.layout.arrays.iter().filter(|(of, _)| of == part);
         let numbers = own.filter(|(_, array)| width(array.attribute("type")).is_some());
-        let decode = |(_, array): &(String, Encoded)| {
+        let decode = |(_, array): &(String, DataArray)| {
             let components = array.components()?;
             // A tensor of a symmetric kind has six, a whole one nine.
             if components > 9 {
@@ -277,7 +278,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// So many numbers of an array.
-    fn values(&self, array: &Encoded, count: usize) -> Result<Vec<f64>, String> {
+    fn values(&self, array: &DataArray, count: usize) -> Result<Vec<f64>, String> {
         let name = array.attribute("Name");
         let named = |reason: String| format!("has the array `{name}`, which {reason}");
         let kind = array.attribute("type");
@@ -293,18 +294,20 @@ impl<'a> XmlFile<'a> {
         }
         let bytes = self.bytes(array, count * width).map_err(named)?;
         let numbers = bytes.chunks_exact(width);
-        Ok(numbers.map(|bytes| self.number(kind, bytes)).collect())
+        Ok(numbers
+            .map(|bytes| self.binary.number(kind, bytes))
+            .collect())
     }
 
     /// The bytes of an array, of which there must be so many.
-    fn bytes(&self, array: &Encoded, wanted: usize) -> Result<Vec<u8>, String> {
+    fn bytes(&self, array: &DataArray, wanted: usize) -> Result<Vec<u8>, String> {
         let stored = match array.attribute("format") {
             "binary" => decode_base64(array.text.as_bytes())?,
             "appended" => self.appended(array)?,
             other => return Err(format!("is in the format `{other}`")),
         };
         let mut header = Header {
-            file: self,
+            numbers: self.binary,
             bytes: &stored,
         };
         if !self.compressed {
@@ -318,7 +321,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The bytes of an appended array, with what stands behind them.
-    fn appended(&self, array: &Encoded) -> Result<Vec<u8>, String> {
+    fn appended(&self, array: &DataArray) -> Result<Vec<u8>, String> {
         let start = array.attribute("offset").parse().ok();
         let start = start.filter(|start: &usize| *start < self.appended.len());
         let start = start.ok_or("begins behind the end of the file")?;
@@ -330,109 +333,6 @@ impl<'a> XmlFile<'a> {
             _ => decode_base64(stored),
         }
     }
-
-    fn number(&self, kind: &str, bytes: &[u8]) -> f64 {
-        let mut own = [0; 8];
-        own[..bytes.len()].copy_from_slice(bytes);
-        if self.big_endian {
-            own[..bytes.len()].reverse();
-        }
-        let whole = u64::from_le_bytes(own);
-        let shift = 64 - 8 * bytes.len() as u32;
-        match kind {
-            "Float32" => f64::from(f32::from_bits(whole as u32)),
-            "Float64" => f64::from_bits(whole),
-            _ if kind.starts_with('U') => whole as f64,
-            _ => ((whole << shift) as i64 >> shift) as f64,
-        }
-    }
-}
-
-/// Bytes of a number of a type.
-fn width(kind: &str) -> Option<usize> {
-    match kind {
-        "Int8" | "UInt8" => Some(1),
-        "Int16" | "UInt16" => Some(2),
-        "Int32" | "UInt32" | "Float32" => Some(4),
-        "Int64" | "UInt64" | "Float64" => Some(8),
-        _ => None,
-    }
-}
-
-/// The numbers at the beginning of an array's bytes.
-struct Header<'a> {
-    file: &'a XmlFile<'a>,
-    bytes: &'a [u8],
-}
-
-impl Header<'_> {
-    fn next(&mut self) -> Result<usize, String> {
-        let (kind, width) = match self.file.wide_header {
-            true => ("UInt64", 8),
-            false => ("UInt32", 4),
-        };
-        let (own, rest) = self.bytes.split_at_checked(width).ok_or("is cut off")?;
-        self.bytes = rest;
-        Ok(self.file.number(kind, own) as usize)
-    }
-}
-
-/// The data of compressed blocks, of which there must be so many bytes.
-fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, String> {
-    let (blocks, size, last) = (header.next()?, header.next()?, header.next()?);
-    let full = if last == 0 {
-        blocks
-    } else {
-        blocks.saturating_sub(1)
-    };
-    let total = full.checked_mul(size).and_then(|sum| sum.checked_add(last));
-    // A block holds at least a byte, but for an array without values.
-    if total != Some(wanted) || blocks > wanted.max(1) {
-        return Err(format!(
-            "does not have the {wanted} bytes that belong to it"
-        ));
-    }
-    let sizes: Result<Vec<usize>, String> = (0..blocks).map(|_| header.next()).collect();
-    let (mut data, mut rest) = (Vec::new(), header.bytes);
-    for size in sizes? {
-        let (block, behind) = rest.split_at_checked(size).ok_or("is cut off")?;
-        rest = behind;
-        let left = (wanted - data.len()) as u64;
-        let read = ZlibDecoder::new(block)
-            .take(left + 1)
-            .read_to_end(&mut data);
-        read.map_err(|cause| format!("cannot be decompressed: {cause}"))?;
-        if data.len() > wanted {
-            break;
-        }
-    }
-    match data.len() == wanted {
-        true => Ok(data),
-        false => Err(format!(
-            "does not have the {wanted} bytes that belong to it"
-        )),
-    }
-}
-
-/// Bytes from base64, in which white space may stand and several parts with their own padding may follow one another.
-fn decode_base64(text: &[u8]) -> Result<Vec<u8>, String> {
-    // What follows appended data is XML again.
-    let end = text.iter().position(|byte| *byte == b'<');
-    let own = text[..end.unwrap_or(text.len())].iter().copied();
-    let plain: Vec<u8> = own.filter(|byte| !byte.is_ascii_whitespace()).collect();
-    let (mut bytes, mut start) = (Vec::new(), 0);
-    while start < plain.len() {
-        let padding = plain[start..].iter().position(|byte| *byte == b'=');
-        let end = padding.map_or(plain.len(), |place| (start + place + 1).next_multiple_of(4));
-        // Parts begin at multiples of four, for each is padded to them.
-        let part = plain.get(start..end).ok_or("is no base64")?;
-        let decoded = STANDARD
-            .decode(part)
-            .map_err(|cause| format!("is no base64: {cause}"))?;
-        bytes.extend(decoded);
-        start = end;
-    }
-    Ok(bytes)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@
 //! # References
 //! Abaqus 2016 Analysis User's Guide, 22.5.1 and 22.5.3; G. Dhondt, CalculiX `CrunchiX` User's Manual 2.20, `*HYPERELASTIC`
 
-use super::model::{Held, Model};
+use super::model::{Constraint, Model};
 use super::text::{ascii, number};
 use crate::material::{Card, Code, CodeLaw};
 use crate::mesh::CellShape;
@@ -159,7 +159,7 @@ fn step(model: &Model, before: f64, factor: f64, deck: &mut Deck) {
     deck.line("*END STEP");
 }
 
-fn boundary(model: &Model, held: &Held, factor: f64, deck: &mut Deck) {
+fn boundary(model: &Model, held: &Constraint, factor: f64, deck: &mut Deck) {
     let (name, nodes) = &model.sets[held.set];
     let axis = held.axis + 1;
     if let Some(displacement) = held.uniform() {

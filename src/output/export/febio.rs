@@ -7,7 +7,7 @@
 //! # References
 //! S. A. Maas et al., FEBio User's Manual 4.x; `FEBioMech` in <https://github.com/febiosoftware/FEBio>
 
-use super::model::{Held, Model};
+use super::model::{Constraint, Model};
 use super::text::{ascii, number};
 use crate::material::CodeLaw;
 use crate::mesh::CellShape;
@@ -178,7 +178,7 @@ fn sets(model: &Model, columns: &Columns, file: &mut Xml) {
 
 const MID_PLANE: &str = "MIDDLE_OF_THE_SHEET";
 
-fn turned<'a>(model: &'a Model) -> impl Iterator<Item = &'a Held> {
+fn turned<'a>(model: &'a Model) -> impl Iterator<Item = &'a Constraint> {
     model.held.iter().filter(|held| held.uniform().is_none())
 }
 

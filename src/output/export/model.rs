@@ -61,7 +61,7 @@ pub struct Model<'a> {
     pub sets: Vec<(String, Vec<usize>)>,
     /// Parts of the boundary by name: cell and side within it.
     pub surfaces: Vec<(String, Vec<Side>)>,
-    pub held: Vec<Held>,
+    pub held: Vec<Constraint>,
     /// Node and axis that follow another node's motion along the axis: those of grips with a given force.
     pub ties: Vec<Tie>,
     /// Dead nodal forces in N at load factor 1.
@@ -81,14 +81,14 @@ pub struct Tie {
 }
 
 /// A component of displacement that a support prescribes on a node set.
-pub struct Held {
+pub struct Constraint {
     /// The number of its set.
     pub set: usize,
     pub axis: usize,
     pub support: Support,
 }
 
-impl Held {
+impl Constraint {
     /// The displacement in mm at load factor 1 where it is the same for all nodes and grows with the factor; the others
     /// go out node by node.
     pub fn uniform(&self) -> Option<f64> {
@@ -176,7 +176,7 @@ impl<'a> Model<'a> {
                     self.sets.push((names.give("HELD"), own));
                     self.sets.len() - 1
                 });
-                self.held.push(Held {
+                self.held.push(Constraint {
                     set,
                     axis,
                     support: *support,

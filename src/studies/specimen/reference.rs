@@ -437,7 +437,7 @@ fn estimate_all(
     let recovery = Recovery::new(mesh);
     let estimate = |state| {
         let influence = model.influence(state, &measured.group, measured.axis);
-        let solved = error_estimate::Solved {
+        let solved = error_estimate::SheetSolution {
             law: &*specimen.problem.law,
             thickness: specimen.problem.thickness,
             mesh,

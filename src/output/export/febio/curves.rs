@@ -1,7 +1,7 @@
 //! How loads and turns grow with time.
 
 use super::xml::Xml;
-use crate::output::export::model::{Held, Model};
+use crate::output::export::model::{Constraint, Model};
 use crate::output::export::text::number;
 
 /// Points of the path of a turn between two load factors.
@@ -13,7 +13,7 @@ pub struct Curves(Vec<Vec<[f64; 2]>>);
 
 impl Curves {
     /// The number of the curve of a node that a support turns, exact at every load factor and at points between.
-    pub fn turn(&mut self, model: &Model, held: &Held, node: usize) -> usize {
+    pub fn turn(&mut self, model: &Model, held: &Constraint, node: usize) -> usize {
         let place = model.given.mesh.nodes[node];
         let mut points = vec![[0.0, 0.0]];
         for factor in model.given.factors {

@@ -1,7 +1,7 @@
 //! Estimated over true error on smooth problems.
 
 use crate::error::Error;
-use crate::finite_element::error_estimate::{EnergyError, Solved};
+use crate::finite_element::error_estimate::{EnergyError, SheetSolution};
 use crate::finite_element::recovery::Recovery;
 use crate::mesh::{CellShape, Mesh};
 use crate::validation::case::{Block, Check, check, row, table};
@@ -39,9 +39,9 @@ pub fn checks(name: &str, shape: CellShape, cells: usize) -> Result<[Check; 2], 
 }
 
 /// Calls with a solution of the case's sheet.
-pub fn on<T>(mesh: &Mesh, displacement: &[f64], call: impl FnOnce(&Solved) -> T) -> T {
+pub fn on<T>(mesh: &Mesh, displacement: &[f64], call: impl FnOnce(&SheetSolution) -> T) -> T {
     let problem = sheet();
-    call(&Solved {
+    call(&SheetSolution {
         law: &*problem.law,
         thickness: problem.thickness,
         mesh,
@@ -49,7 +49,7 @@ pub fn on<T>(mesh: &Mesh, displacement: &[f64], call: impl FnOnce(&Solved) -> T)
     })
 }
 
-fn effectivity(solved: &Solved, exact: &EnergyError) -> f64 {
+fn effectivity(solved: &SheetSolution, exact: &EnergyError) -> f64 {
     (solved.energy_estimate().squared() / exact.squared()).sqrt()
 }
 

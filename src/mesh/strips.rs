@@ -1,0 +1,118 @@
+//! Strips of varying width, and strips with a hole, as curved blocks.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+use super::blocks::{Block, mesh_of_blocks};
+use super::cell_shape::CellShape;
+use super::cells::Mesh;
+
+/// A number of cells, one at least.
+pub fn count(cells: f64) -> usize {
+    (cells.round() as usize).max(1)
+}
+
+/// A strip whose half width varies along it.
+pub fn strip(
+    size: [f64; 2],
+    across: usize,
+    kind: CellShape,
+    half_width: impl Fn(f64) -> f64,
+) -> Mesh {
+    let lengths = Lengths::new(size[0], &half_width);
+    let along = 2 * count(lengths.total() * across as f64 / 2.0);
+    let block = Block {
+        map: Box::new(move |[s, t]| {
+            let x = lengths.place(s);
+            [x, (2.0 * t - 1.0) * half_width(x)]
+        }),
+        cells: [along, across],
+        sides: ["bottom", "right", "top", "left"],
+    };
+    mesh_of_blocks(&[block], kind)
+}
+
+/// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows evenly between them.
+struct Lengths {
+    /// x and l(x).
+    table: Vec<[f64; 2]>,
+}
+
+impl Lengths {
+    fn new(length: f64, half_width: &impl Fn(f64) -> f64) -> Self {
+        const STEPS: usize = 2000;
+        let step = length / STEPS as f64;
+        let mut table = vec![[0.0, 0.0]];
+        for i in 1..=STEPS {
+            let middle = (i as f64 - 0.5) * step;
+            let before = table[i - 1][1];
+            table.push([i as f64 * step, before + step / (2.0 * half_width(middle))]);
+        }
+        Self { table }
+    }
+
+    /// The length over the width, in the mean along the strip.
+    fn total(&self) -> f64 {
+        self.table[self.table.len() - 1][1]
+    }
+
+    /// The place at a share of l.
+    fn place(&self, share: f64) -> f64 {
+        let wanted = share * self.total();
+        let next = self
+            .table
+            .partition_point(|[_, l]| *l < wanted)
+            .clamp(1, self.table.len() - 1);
+        let [[x0, l0], [x1, l1]] = [self.table[next - 1], self.table[next]];
+        x0 + (x1 - x0) * (wanted - l0) / (l1 - l0)
+    }
+}
+
+/// A strip with a hole: four blocks between the hole and a square around it, and a block at each end.
+pub fn with_hole([length, width]: [f64; 2], radius: f64, across: usize, kind: CellShape) -> Mesh {
+    let half = width.min(length) / 2.0;
+    let middle = length / 2.0;
+    let around = count(across as f64 / 2.0) * 2;
+    let radial = count((half - radius) / width * across as f64 * 1.2).max(2);
+    let ends = count((middle - half) / width * across as f64);
+    // The side of the square that lies in the direction `quarter` · 90°.
+    let spoke = move |quarter: f64, side: [&'static str; 2]| {
+        let [outer, hole] = side;
+        Block {
+            map: Box::new(move |[s, t]: [f64; 2]| {
+                let angle = (2.0 * t - 1.0) * FRAC_PI_4;
+                let (from, to) = (
+                    [radius * angle.cos(), radius * angle.sin()],
+                    [half, half * angle.tan()],
+                );
+                let [x, y] = [0, 1].map(|axis| from[axis] + s * (to[axis] - from[axis]));
+                let (sine, cosine) = (quarter * FRAC_PI_2).sin_cos();
+                [middle + cosine * x - sine * y, sine * x + cosine * y]
+            }),
+            cells: [radial, around],
+            sides: ["", outer, "", hole],
+        }
+    };
+    let whole = |side: &'static str| if middle > half { "" } else { side };
+    let mut blocks = vec![
+        spoke(0.0, [whole("right"), "hole"]),
+        spoke(1.0, ["top", "hole"]),
+        spoke(2.0, [whole("left"), "hole"]),
+        spoke(3.0, ["bottom", "hole"]),
+    ];
+    if middle > half {
+        for (start, sides) in [
+            (0.0, ["bottom", "", "top", "left"]),
+            (middle + half, ["bottom", "right", "top", ""]),
+        ] {
+            blocks.push(Block {
+                map: Box::new(move |[s, t]: [f64; 2]| {
+                    let angle = (2.0 * t - 1.0) * FRAC_PI_4;
+                    [start + s * (middle - half), half * angle.tan()]
+                }),
+                cells: [ends, around],
+                sides,
+            });
+        }
+    }
+    mesh_of_blocks(&blocks, kind)
+}
