@@ -11,8 +11,10 @@ mod loads;
 mod model;
 mod plate;
 mod pressure;
+mod reactions;
 mod rigid;
 pub mod sheet_energy;
+mod solution;
 mod ties;
 
 pub use balance::{Balance, Resultant};
@@ -21,6 +23,8 @@ pub use boundary_conditions::{Drive, Load, Support};
 pub use deformed::{DeformedSheet, PointFault, Stress};
 pub use model::Model;
 pub use plate::{ClampedPlate, Measures};
+pub use reactions::GroupState;
+pub use solution::Solution;
 
 #[cfg(test)]
 mod tests;

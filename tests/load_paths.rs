@@ -150,7 +150,7 @@ fn held(supports: &[(&str, Support)]) -> (Vec<State>, [f64; 2], [f64; 2]) {
     let states = model.solve(&[0.5, 1.0], NEWTON, &|_| ()).unwrap();
     let last = &states[1];
     let (moved, force) = (
-        model.displacement(last, "right"),
+        model.at_groups(last, &["right"])[0].displacement,
         model.reaction(last, "right"),
     );
     (states, moved, force)

@@ -5,22 +5,19 @@ use super::condition::{Condition, Equilibrium, Linear};
 use super::plate::{EQUILIBRIUM, GRIPS};
 use super::{Correction, Corrector, CorrectorSettings, Describe};
 use crate::error::SolveFault;
-use crate::mesh::Mesh;
+use crate::problem::Model;
 use crate::solve::{Assembly, Loading, State};
 
 /// Cells and nodes of a mesh by their places.
-struct Names<'a> {
-    mesh: &'a Mesh,
-    loading: &'a dyn Loading,
-}
+struct Names<'a>(&'a Model<'a>);
 
 impl Describe for Names<'_> {
     fn element(&self, element: usize) -> String {
-        self.loading.describe(element)
+        self.0.describe(element)
     }
 
     fn unknown(&self, unknown: usize) -> String {
-        self.mesh.describe_unknown(unknown)
+        self.0.describe_unknown(unknown)
     }
 }
 
@@ -33,25 +30,24 @@ pub struct CorrectedField {
     pub correction: Correction,
 }
 
-/// Corrects a displacement field on the nodes of a mesh at a load factor; the iteration begins at `start`.
+/// Corrects a displacement field on the nodes of a model at a load factor; the iteration begins at `start`.
 ///
 /// # Errors
 /// A [`SolveFault`] when no corrected field was found.
 pub fn correct(
-    mesh: &Mesh,
-    loading: &dyn Loading,
+    model: &Model,
     data: &[f64],
     start: &[f64],
     factor: f64,
     settings: CorrectorSettings,
 ) -> Result<CorrectedField, SolveFault> {
-    let potential = loading.potential(factor);
+    let potential = model.potential(factor);
     let size = potential.unknowns();
     let assembly = Assembly::new(&*potential, &vec![false; size]);
-    let held = loading.held();
+    let held = model.held();
     let free: Vec<usize> = (0..size).filter(|unknown| !held[*unknown]).collect();
     let mut imposed = data.to_vec();
-    loading.impose(factor, &mut imposed);
+    model.impose(factor, &mut imposed);
     let supports = (0..size)
         .filter(|unknown| held[*unknown])
         .map(|unknown| (unknown, imposed[unknown]));
@@ -59,17 +55,17 @@ pub fn correct(
         Box::new(Equilibrium::new(EQUILIBRIUM, &*potential, &assembly, free)),
         Box::new(Linear::prescribed(GRIPS, size, supports)),
     ];
-    let names = Names { mesh, loading };
+    let names = Names(model);
     let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(&names);
     let correction = corrector.correct(data, start)?;
     let mut displacement = correction.field().to_vec();
     // Tied unknowns, on which no condition depends, follow.
-    loading.impose(factor, &mut displacement);
+    model.impose(factor, &mut displacement);
     let mut residual = vec![0.0; size];
     let energy =
         Assembly::residual(&*potential, &displacement, &mut residual).map_err(|fault| {
             SolveFault::Inverted {
-                element: loading.describe(fault.element),
+                element: model.describe(fault.element),
             }
         })?;
     let convergence = correction.convergence(energy);

@@ -1,6 +1,5 @@
 //! A boundary value problem on a mesh: its solution, and what follows from its states.
 
-use super::balance::{Balance, Body};
 use super::constraints::{Constraints, Motion};
 use super::groups::shares;
 use super::loads::Loads;
@@ -9,7 +8,7 @@ use super::ties::TiedPotential;
 use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::solve::{
-    Assembly, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
+    Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
 };
 
 /// Names an element or the end of a path.
@@ -25,10 +24,10 @@ pub struct Model<'a> {
     pub energy: &'a dyn Potential,
     /// Names an element of the energy with its place, for messages.
     pub describe: Name<'a, usize>,
-    constraints: Constraints,
-    loads: Loads,
+    pub(super) constraints: Constraints,
+    pub(super) loads: Loads,
     /// E t in N/mm.
-    stiffness: f64,
+    pub(super) stiffness: f64,
     /// The field at load factor 1 of which every first guess is a multiple; `None` where the tangent predicts it.
     guess: Option<Vec<f64>>,
     /// What the load factor is called in messages.
@@ -212,85 +211,6 @@ impl<'a> Model<'a> {
             field[*unknown] = field[*master];
         }
         Ok(field)
-    }
-
-    /// The force of the supports on a group in N, from a state: the internal forces of its nodes less the loads on them,
-    /// along the axes along which supports hold or pull them.
-    ///
-    /// # Panics
-    /// When the mesh has no such group.
-    pub fn reaction(&self, state: &State, name: &str) -> [f64; 2] {
-        let forces = self.support_forces(state);
-        let nodes = &self.mesh.groups()[name].nodes;
-        [0, 1].map(|axis| nodes.iter().map(|node| forces[2 * node + axis]).sum())
-    }
-
-    /// The mean displacement of a group in mm, over the length of its edges, from a state.
-    ///
-    /// # Panics
-    /// When the mesh has no such group.
-    pub fn displacement(&self, state: &State, name: &str) -> [f64; 2] {
-        let mut sum = [0.0; 2];
-        for (node, share) in shares(self.mesh, &self.mesh.groups()[name]) {
-            for (axis, sum) in sum.iter_mut().enumerate() {
-                *sum += share * state.displacement[2 * node + axis];
-            }
-        }
-        sum
-    }
-
-    /// The moment of the supports' forces on a group about the middle of its deformed nodes in N·mm,
-    /// counter-clockwise, from a state.
-    ///
-    /// # Panics
-    /// When the mesh has no such group.
-    pub fn reaction_moment(&self, state: &State, name: &str) -> f64 {
-        let nodes = &self.mesh.groups()[name].nodes;
-        let place = |node: usize, axis: usize| {
-            self.mesh.nodes[node][axis] + state.displacement[2 * node + axis]
-        };
-        let middle = [0, 1].map(|axis| {
-            let places = nodes.iter().map(|node| place(*node, axis));
-            places.sum::<f64>() / nodes.len() as f64
-        });
-        let forces = self.support_forces(state);
-        let moment = |node: &usize| {
-            let [x, y] = [0, 1].map(|axis| place(*node, axis) - middle[axis]);
-            x * forces[2 * node + 1] - y * forces[2 * node]
-        };
-        nodes.iter().map(moment).sum()
-    }
-
-    /// The forces of the supports in N at each unknown, from a state: those of grips that are pulled too. Not a number where
-    /// the state is inverted.
-    pub fn support_forces(&self, state: &State) -> Vec<f64> {
-        let Constraints { held, ties, forces } = &self.constraints;
-        let mut internal = vec![0.0; state.displacement.len()];
-        let loads = self.loads.without_pulls();
-        let loads = loads.at(self.energy, state.factor);
-        let known = Assembly::residual(&loads, &state.displacement, &mut internal);
-        let masters = forces.iter().map(|(master, _)| master);
-        let mut supports = vec![0.0; internal.len()];
-        for unknown in held.keys().chain(ties.keys()).chain(masters) {
-            supports[*unknown] = if known.is_ok() {
-                internal[*unknown]
-            } else {
-                f64::NAN
-            };
-        }
-        supports
-    }
-
-    /// The balance of all forces of supports and loads, and of their moments, on the deformed body.
-    pub fn balance(&self, state: &State) -> Balance {
-        /// Rounding of a body that moves without strain, relative to E t times its largest displacement.
-        const NEGLIGIBLE: f64 = 1e-4;
-        let u = &state.displacement;
-        let body = Body::new(self.mesh, u);
-        let supports = body.resultant(&self.support_forces(state));
-        let loads = self.loads.resultant(state.factor, u, &body);
-        let largest = u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-        body.balance(supports, loads, NEGLIGIBLE * self.stiffness * largest)
     }
 }
 

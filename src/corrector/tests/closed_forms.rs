@@ -212,7 +212,7 @@ fn a_corrected_specimen_is_in_equilibrium_with_loads_supports_and_ties() {
         .zip(&state.displacement)
         .map(|(n, u)| u + 0.05 * n)
         .collect();
-    let found = specimen::correct(&mesh, &model, &data, &state.displacement, 1.0, SETTINGS);
+    let found = specimen::correct(&model, &data, &state.displacement, 1.0, SETTINGS);
     let found = found.unwrap();
     assert!(largest_difference(&found.state.displacement, &state.displacement) < 1e-8);
     // Stationary in every unknown: W (u − ū) + Bᵀ ψ = 0.

@@ -1,7 +1,9 @@
 //! Pictures and grids of a specimen.
 
-use super::{Models, Specimen};
+use super::problem::Specimen;
+use super::results::models::Models;
 use crate::mesh::Mesh;
+use crate::problem::Solution;
 use crate::results::{Array, FieldFigure, Figure, Grid, GridSeries, Panel, mesh_outlines};
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
@@ -27,8 +29,9 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
     let at = format!("load factor {}", specimen.factors[step]);
     let fields = || {
         let models = models.named().into_iter();
-        models.filter_map(|(name, _, mesh, solved)| {
-            Some((name, mesh, &*solved.states.get(step)?.displacement))
+        models.filter_map(|model| {
+            let u = model.solution.displacement(step)?;
+            Some((model.name, &model.solution.mesh, u))
         })
     };
     let size = |(name, mesh, u): (&str, &Mesh, &[f64])| {
@@ -59,10 +62,10 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
 fn estimated_error(models: &Models, step: usize, at: &str) -> Option<FieldFigure> {
     let reference = &models.reference;
     let energy = &reference.estimates.get(step)?.as_ref()?.energy;
-    let displacement = &reference.solved.states.get(step)?.displacement;
+    let displacement = &reference.finest.states.get(step)?.displacement;
     Some(FieldFigure::estimated_error(
         at,
-        &reference.mesh,
+        &reference.finest.mesh,
         displacement,
         energy,
     ))
@@ -79,7 +82,7 @@ pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec
         (reached > 0).then(|| GridSeries::steps(name, steps))
     };
     let (uncorrected, corrected) = (&on_lattice.uncorrected, &on_lattice.corrected);
-    let on_lattice_of = |name, model: &super::Solved| {
+    let on_lattice_of = |name, model: &Solution| {
         series(name, model.reached(), &|step| {
             let u = &model.states[step].displacement;
             let difference = expected.get(step).map(|v| Array::to_finite_elements(u, v));
@@ -92,7 +95,11 @@ pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec
     let elements = series("finite_element", reference.reached(), &|step| {
         let error = reference.estimates[step].as_ref();
         let error = error.map(|estimate| Array::estimated_error(&estimate.energy));
-        field(&reference.mesh, &reference.solved.states[step].displacement).with_in_cells(error)
+        field(
+            &reference.finest.mesh,
+            &reference.finest.states[step].displacement,
+        )
+        .with_in_cells(error)
     });
     let all = [
         on_lattice_of("mass_spring", uncorrected),

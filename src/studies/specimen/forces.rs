@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::solved::{GroupState, Solved};
-use super::{Models, Specimen};
+use super::problem::Specimen;
+use super::results::models::Models;
+use crate::problem::{GroupState, Solution};
 use crate::results::Block;
 use crate::results::number;
 
@@ -22,9 +23,13 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let mut rows = Vec::new();
     for (step, factor) in specimen.factors.iter().enumerate() {
         for (index, group) in specimen.groups().iter().enumerate() {
-            for (model, _, _, solved) in models.named() {
-                if let Some(groups) = solved.groups(step) {
-                    let names = [factor.to_string(), (*group).to_owned(), model.to_owned()];
+            for model in models.named() {
+                if let Some(groups) = model.solution.groups(step) {
+                    let names = [
+                        factor.to_string(),
+                        (*group).to_owned(),
+                        model.name.to_owned(),
+                    ];
                     rows.push(names.into_iter().chain(cells(&groups[index])).collect());
                 }
             }
@@ -44,24 +49,21 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
 /// Balances above this are worth a warning.
 const UNBALANCED: f64 = 1e-9;
 
-/// The larger of two balances; one that is no number is worse than any.
-pub fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
-
 /// The worst balance of all models.
 pub fn worst_balance(models: &Models) -> Option<f64> {
     let balances = models.named().into_iter();
     balances
-        .filter_map(|(_, _, _, solved)| solved.balance)
+        .filter_map(|model| model.solution.worst_balance())
         .reduce(f64::max)
 }
 
 /// The balance of each model in a sentence.
 fn balance(models: &Models) -> String {
     let balances = models.named().into_iter();
-    let told =
-        balances.filter_map(|(name, _, _, solved)| Some(format!("{name} {:.1e}", solved.balance?)));
+    let told = balances.filter_map(|model| {
+        let balance = model.solution.worst_balance()?;
+        Some(format!("{} {balance:.1e}", model.name))
+    });
     format!(
         "Balance: supports and loads together leave, at the worst load factor and over the largest force or moment: {}.",
         told.collect::<Vec<_>>().join(", ")
@@ -95,17 +97,17 @@ pub fn json(specimen: &Specimen, models: &Models) -> Value {
         });
         ((*name).to_owned(), value)
     };
-    let step = |solved: &Solved, step: usize| {
-        let states = solved.groups(step)?;
+    let step = |solution: &Solution, step: usize| {
+        let states = solution.groups(step)?;
         let all: serde_json::Map<_, _> = groups.iter().zip(states).map(group).collect();
         Some(json!({ "load_factor": specimen.factors[step], "groups": all }))
     };
-    let model = |solved: &Solved| {
+    let model = |solution: &Solution| {
         let steps = 0..specimen.factors.len();
-        let steps: Vec<_> = steps.filter_map(|own| step(solved, own)).collect();
-        json!({ "steps": steps, "balance": solved.balance })
+        let steps: Vec<_> = steps.filter_map(|own| step(solution, own)).collect();
+        json!({ "steps": steps, "balance": solution.worst_balance() })
     };
     let named = models.named().into_iter();
-    let named = named.map(|(_, key, _, solved)| (key.to_owned(), json!(model(solved))));
+    let named = named.map(|own| (own.file.to_owned(), model(own.solution)));
     Value::Object(named.collect())
 }

@@ -1,12 +1,15 @@
 //! What is told about a specimen: what the study says, deviations, own errors, forces, warnings.
 
 use super::files::{figures, grids};
-use super::paths::Start;
-use super::verdict::{Deviation, checks};
+use super::problem::Specimen;
+use super::results::lattice::Start;
+use super::results::models::Models;
+use super::results::verdict::{Deviation, checks};
 use super::warnings::warnings;
-use super::{Models, Solved, Specimen, forces, statement};
+use super::{forces, statement};
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::Judgement;
+use crate::problem::Solution;
 use crate::results::Block;
 use crate::results::{Check, Outcome};
 
@@ -66,9 +69,14 @@ fn deviations(
 /// The finite elements' displacements at the lattice's nodes, at the load factors that they reach.
 fn expected(models: &Models) -> Vec<Vec<f64>> {
     let (reference, lattice) = (&models.reference, &models.on_lattice.springs.mesh);
-    let states = reference.solved.states.iter();
+    let states = reference.finest.states.iter();
     states
-        .map(|state| reference.mesh.displacement_on(&state.displacement, lattice))
+        .map(|state| {
+            reference
+                .finest
+                .mesh
+                .displacement_on(&state.displacement, lattice)
+        })
         .collect()
 }
 
@@ -77,14 +85,11 @@ fn deviation(models: &Models, step: usize, expected: &[f64]) -> Option<Deviation
     let reference = &models.reference;
     let lattice = &models.on_lattice.springs.mesh;
     let what = &reference.measured;
-    let measured = reference.solved.measured(what, step)?;
-    let of = |solved: &Solved| {
+    let measured = what.at(&reference.finest, step)?;
+    let of = |solved: &Solution| {
         let field = &solved.states.get(step)?.displacement;
         let displacement = area_weighted_percent(lattice, field, expected);
-        Some([
-            displacement,
-            percent(solved.measured(what, step)?, measured),
-        ])
+        Some([displacement, percent(what.at(solved, step)?, measured)])
     };
     Some(Deviation {
         springs: of(&models.on_lattice.uncorrected),
@@ -132,7 +137,7 @@ fn row(
         text(own(0), 4),
         text(springs(1), 2),
         text(corrected(1), 3),
-        text(reference.solved.measured(&reference.measured, step), 5),
+        text(reference.measured.at(&reference.finest, step), 5),
         text(reference.three_meshes_percent(step), 4),
         text(reference.recovered_percent(step), 4),
         text(reference.energy_percent(step), 4),

@@ -3,44 +3,19 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::outline::{MESH, Outline, SHAPES, read_outline};
-use super::supports::Given;
+use super::problem::{Outline, Refinement, Specimen};
 use crate::document::{Bound, Section};
 use crate::error::suggestion;
-use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Load};
 use crate::studies::sections::{Tolerances, read_card};
 use crate::units::Dimension;
 
-/// When local refinement ends.
-#[derive(Clone, Copy)]
-pub struct Refinement {
-    /// Estimated error in the energy norm in % at the worst load factor.
-    pub error_percent: f64,
-    /// Cells that are not exceeded.
-    pub most_cells: usize,
-}
+mod outline;
+mod supports;
 
-/// A specimen, its supports and loads, and how finely it is meshed.
-pub struct Specimen {
-    /// For file names.
-    pub name: String,
-    /// Thickness, material, supports and loads.
-    pub problem: BoundaryProblem,
-    /// The card of its material.
-    pub card: Card,
-    /// Load factors, ascending.
-    pub factors: Vec<f64>,
-    /// The group that is measured.
-    pub group: String,
-    /// What the corrected field has to reach.
-    pub tolerances: Tolerances,
-    /// How far the finite elements are refined locally; `None` where they have three meshes.
-    pub refinement: Option<Refinement>,
-    /// What is meshed, and how.
-    pub outline: Outline,
-}
+use outline::{SHAPES, read_outline};
+use supports::Given;
 
 /// What a study must say of the specimen; cells and lattice have defaults.
 const MEASURES: &[&str] = &[
@@ -112,7 +87,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         outline,
     };
     given.check(root, &specimen.problem, &mesh);
-    specimen.check_refinement(root);
+    check_refinement(root, &specimen);
     Some(specimen)
 }
 
@@ -144,44 +119,12 @@ fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refi
     })
 }
 
-impl Specimen {
-    /// A specimen on a mesh, as if it had been read from a file, with all loads at once.
-    pub fn of_mesh(
-        card: Card,
-        problem: BoundaryProblem,
-        mesh: Mesh,
-        element: CellShape,
-        group: &str,
-    ) -> Self {
-        Self {
-            name: MESH.into(),
-            problem,
-            card,
-            factors: vec![1.0],
-            group: group.into(),
-            tolerances: Tolerances {
-                displacement_percent: 1.0,
-                departure_percent: None,
-                force_percent: 1.0,
-                correction_percent: 1.0,
-            },
-            refinement: None,
-            outline: Outline::File {
-                mesh: Box::new(mesh),
-                element,
-                polygons: false,
-            },
-        }
-    }
-
-    /// A force that nodes share equally is another one on a mesh that is refined locally.
-    fn check_refinement(&self, root: &Section) {
-        let forces = |(_, load): &(String, Load)| matches!(load, Load::Force(_));
-        if self.refinement.is_some() && self.problem.loads.iter().any(forces) {
-            let message =
-                "a force is shared by the nodes of its group, which local refinement changes";
-            let hint = "write it as a traction, or leave out `adaptive`";
-            root.fault("load", message, hint);
-        }
+/// A force that nodes share equally is another one on a mesh that is refined locally.
+fn check_refinement(root: &Section, specimen: &Specimen) {
+    let forces = |(_, load): &(String, Load)| matches!(load, Load::Force(_));
+    if specimen.refinement.is_some() && specimen.problem.loads.iter().any(forces) {
+        let message = "a force is shared by the nodes of its group, which local refinement changes";
+        let hint = "write it as a traction, or leave out `adaptive`";
+        root.fault("load", message, hint);
     }
 }

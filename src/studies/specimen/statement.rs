@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::Specimen;
+use super::problem::Specimen;
 use crate::problem::{Drive, Load, Support};
 use crate::results::{Block, material_json, material_statement};
 use crate::units::Linear;

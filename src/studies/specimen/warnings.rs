@@ -2,19 +2,20 @@
 
 use nalgebra::{Matrix2, Vector4};
 
-use super::{Models, Specimen};
+use super::problem::Specimen;
+use super::results::models::Models;
 use crate::material::Card;
 use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
+use crate::problem::Solution;
 use crate::results::wrinkling;
 
 /// All warnings, each in a sentence.
 pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
-    let (mesh, solved) = (&models.reference.mesh, &models.reference.solved);
+    let Solution { mesh, states, .. } = &models.reference.finest;
     let loads = || {
-        let states = solved.states.iter();
-        states.map(|state| {
+        states.iter().map(|state| {
             (
                 format!("load factor {}", state.factor),
                 &*state.displacement,

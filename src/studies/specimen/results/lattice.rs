@@ -1,16 +1,15 @@
-//! The paths of a specimen's models, each as far as it goes.
+//! Springs and corrected springs on the lattice of a specimen, each as far as its path goes.
 
 use super::end::End;
-use super::read::Specimen;
-use super::solved::Solved;
-use crate::corrector::specimen::{CorrectedField, correct};
+use crate::corrector::specimen::correct;
 use crate::corrector::{CorrectorSettings, Solver};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::MassSpring;
-use crate::mesh::Mesh;
-use crate::problem::Model;
+use crate::problem::{Model, Solution};
+use crate::solve::vector::difference;
 use crate::solve::{NewtonSettings, PathEnd, State};
 use crate::studies::Progress;
+use crate::studies::specimen::problem::Specimen;
 
 const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
@@ -23,10 +22,6 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
     max_steps: 60,
     solver: Solver::Automatic,
 };
-
-/// Names of models: for people, and at the begin of files' names.
-const SPRINGS: [&str; 2] = ["mass-spring", "mass_spring"];
-const CORRECTED: [&str; 2] = ["corrector", "corrected"];
 
 /// Where the corrector began at a load factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,29 +40,22 @@ pub struct OnLattice {
     /// The lattice.
     pub springs: MassSpring,
     /// Before the correction.
-    pub uncorrected: Solved,
+    pub uncorrected: Solution,
     /// After it.
-    pub corrected: Solved,
+    pub corrected: Solution,
     /// Where the corrector began at each load factor that it reached.
     pub starts: Vec<Start>,
 }
 
-/// Solves as many load factors as can be reached; where others cannot, the end is told.
-pub fn solve(
-    specimen: &Specimen,
-    model: &Model,
-    names: [&str; 2],
-    mesh: &Mesh,
-    ends: &mut Vec<End>,
-) -> Solved {
-    let states = match model.solve(&specimen.factors, NEWTON, &|_| ()) {
-        Ok(states) => states,
-        Err(end) => {
-            ends.push(End::of_path(names, specimen, (mesh, model), &end));
-            end.states
-        }
-    };
-    Solved::new(specimen, model, states)
+/// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
+/// begin with.
+pub fn solve(specimen: &Specimen, model: &Model, file: &str, ends: &mut Vec<End>) -> Solution {
+    let states = model.solve(&specimen.factors, NEWTON, &|_| ());
+    let states = states.unwrap_or_else(|end| {
+        ends.push(End::of_path(specimen, model, file, &end));
+        end.states
+    });
+    Solution::new(model, &specimen.groups(), states)
 }
 
 impl OnLattice {
@@ -82,16 +70,18 @@ impl OnLattice {
         let lattice = specimen.outline.lattice();
         let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
         let lattice = &springs.mesh;
-        let model = specimen.on(lattice, springs.potential())?;
+        let model = specimen
+            .on(lattice, springs.potential())?
+            .named("mass-spring");
         let model = model.describing(|element| springs.describe_element(element));
-        let uncorrected = solve(specimen, &model, SPRINGS, lattice, ends);
+        let uncorrected = solve(specimen, &model, "mass_spring", ends);
         drop(model);
 
         progress("corrector");
         let energy = problem.finite_elements(lattice);
-        let model = specimen.on(lattice, &energy)?;
-        let (states, starts) = Corrections::new(specimen, &model, lattice).all(&uncorrected, ends);
-        let corrected = Solved::new(specimen, &model, states);
+        let model = specimen.on(lattice, &energy)?.named("corrector");
+        let (states, starts) = Corrections::new(specimen, &model).all(&uncorrected, ends);
+        let corrected = Solution::new(&model, &specimen.groups(), states);
         drop(model);
         Ok(Self {
             springs,
@@ -106,36 +96,31 @@ impl OnLattice {
 struct Corrections<'a> {
     specimen: &'a Specimen,
     model: &'a Model<'a>,
-    lattice: &'a Mesh,
     /// The equilibria of the lattice's cells by load steps from rest, once they are wanted.
     steps: Option<Result<Vec<State>, PathEnd>>,
 }
 
 impl<'a> Corrections<'a> {
-    fn new(specimen: &'a Specimen, model: &'a Model<'a>, lattice: &'a Mesh) -> Self {
+    fn new(specimen: &'a Specimen, model: &'a Model<'a>) -> Self {
         Self {
             specimen,
             model,
-            lattice,
             steps: None,
         }
     }
 
     /// Corrects as many load factors as can be.
-    fn all(mut self, uncorrected: &Solved, ends: &mut Vec<End>) -> (Vec<State>, Vec<Start>) {
+    fn all(mut self, uncorrected: &Solution, ends: &mut Vec<End>) -> (Vec<State>, Vec<Start>) {
         let (mut states, mut starts) = (Vec::new(), Vec::new());
-        let mut change = vec![0.0; 2 * self.lattice.nodes.len()];
+        let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
         for (step, factor) in self.specimen.factors.iter().enumerate() {
-            let springs = uncorrected
-                .states
-                .get(step)
-                .map(|state| &*state.displacement);
+            let springs = uncorrected.displacement(step);
             match self.at(step, *factor, springs, &change) {
-                Ok((field, start)) => {
+                Ok((state, start)) => {
                     if let Some(data) = springs {
-                        change = difference(&field.state.displacement, data);
+                        change = difference(&state.displacement, data);
                     }
-                    states.push(field.state);
+                    states.push(state);
                     starts.push(start);
                 }
                 Err(end) => {
@@ -154,7 +139,7 @@ impl<'a> Corrections<'a> {
         factor: f64,
         springs: Option<&[f64]>,
         change: &[f64],
-    ) -> Result<(CorrectedField, Start), Box<End>> {
+    ) -> Result<(State, Start), Box<End>> {
         if let Some(data) = springs {
             // What the correction has changed at the load factor before is nearly right at this one.
             let near: Vec<f64> = data
@@ -166,7 +151,7 @@ impl<'a> Corrections<'a> {
                 return Ok((field, Start::Springs));
             }
         }
-        let (specimen, model, lattice) = (self.specimen, self.model, self.lattice);
+        let (specimen, model) = (self.specimen, self.model);
         let factors = &specimen.factors;
         let steps = self
             .steps
@@ -176,7 +161,7 @@ impl<'a> Corrections<'a> {
             Err(end) => match end.states.get(step) {
                 Some(state) => state,
                 None => {
-                    let end = End::of_path(CORRECTED, specimen, (lattice, model), end);
+                    let end = End::of_path(specimen, model, "corrected", end);
                     return Err(Box::new(end));
                 }
             },
@@ -184,20 +169,11 @@ impl<'a> Corrections<'a> {
         let reached = reached.displacement.clone();
         let start = springs.map_or(Start::Alone, |_| Start::LoadSteps);
         let found = self.correct(springs.unwrap_or(&reached), &reached, factor);
-        let found = found.map_err(|fault| Box::new(End::at(CORRECTED[0], factor, fault)));
+        let found = found.map_err(|fault| Box::new(End::at(&model.name, factor, fault)));
         found.map(|field| (field, start))
     }
 
-    fn correct(
-        &self,
-        data: &[f64],
-        start: &[f64],
-        factor: f64,
-    ) -> Result<CorrectedField, SolveFault> {
-        correct(self.lattice, self.model, data, start, factor, CORRECTOR)
+    fn correct(&self, data: &[f64], start: &[f64], factor: f64) -> Result<State, SolveFault> {
+        Ok(correct(self.model, data, start, factor, CORRECTOR)?.state)
     }
-}
-
-fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

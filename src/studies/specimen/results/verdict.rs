@@ -1,8 +1,9 @@
 //! What a specimen's study requires, judged by finite elements with an error of their own.
 
-use super::{Models, Specimen};
+use super::models::Models;
 use crate::compare::judgement::{Judgement, judge, judge_correction};
 use crate::results::{Check, Wanted};
+use crate::studies::specimen::problem::Specimen;
 
 /// The deviations of one load factor at which the corrected field and the finite elements both exist, in %.
 #[derive(Clone, Copy, Debug)]

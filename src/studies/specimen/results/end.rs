@@ -1,13 +1,12 @@
 //! Paths that end before their last load factor.
 
 use super::measured::Measured;
-use super::read::Specimen;
-use super::solved::{GroupState, group_states};
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
-use crate::problem::Model;
+use crate::problem::{GroupState, Model};
 use crate::results::{Block, Check, Grid, GridSeries, Outcome};
 use crate::solve::{PathEnd, State};
+use crate::studies::specimen::problem::Specimen;
 
 /// Where the path of one model ended, and why.
 pub struct End {
@@ -29,22 +28,17 @@ struct Last {
 }
 
 impl End {
-    /// The end of the path of a model with the names `[model, file]` on a mesh.
-    pub fn of_path(
-        [name, file]: [&str; 2],
-        specimen: &Specimen,
-        (mesh, model): (&Mesh, &Model),
-        end: &PathEnd,
-    ) -> Self {
+    /// The end of the path of a model; `file` is what its file's name begins with.
+    pub fn of_path(specimen: &Specimen, model: &Model, file: &str, end: &PathEnd) -> Self {
         let state = end.last.as_deref().or(end.states.last());
         Self {
-            model: name.to_owned(),
+            model: model.name.clone(),
             step: end.describe(),
             fault: end.fault.clone(),
             last: state.map(|state| Last {
                 file: format!("{file}_end"),
-                mesh: mesh.clone(),
-                groups: group_states(specimen, model, state),
+                mesh: model.mesh.clone(),
+                groups: model.at_groups(state, &specimen.groups()),
                 state: state.clone(),
                 between: end.last.is_some(),
             }),

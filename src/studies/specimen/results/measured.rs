@@ -1,9 +1,8 @@
 //! What is compared at the measured group: the force of its supports, or a displacement where that force is given.
 
-use super::read::Specimen;
-use super::solved::GroupState;
 use crate::mesh::Mesh;
-use crate::problem::{Drive, Load, Support};
+use crate::problem::{Drive, GroupState, Load, Solution, Support};
+use crate::studies::specimen::problem::Specimen;
 
 /// A force or a displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +34,11 @@ impl Measured {
             Quantity::Force => own.force[self.axis],
             Quantity::Displacement => own.displacement[self.axis],
         }
+    }
+
+    /// The value at the load factor of a number, in N or mm; `None` where a solution has not reached it.
+    pub fn at(&self, solution: &Solution, step: usize) -> Option<f64> {
+        solution.groups(step).map(|groups| self.of(groups))
     }
 
     /// `force` or `displacement`.
@@ -79,21 +83,9 @@ struct Pushed<'a> {
 }
 
 impl Specimen {
-    /// All groups that are held, loaded or measured, in the order of the study.
-    pub fn groups(&self) -> Vec<&str> {
-        let supports = self.problem.supports.iter().map(|(group, _)| group);
-        let loads = self.problem.loads.iter().map(|(group, _)| group);
-        let mut all: Vec<&str> = Vec::new();
-        for group in supports.chain(loads).chain([&self.group]) {
-            if !all.contains(&group.as_str()) {
-                all.push(group);
-            }
-        }
-        all
-    }
-
-    /// What is measured, by what happens at the groups in the last state of a model on a mesh: along the axis of the larger component. A force that
-    /// equilibrium alone gives says nothing of a model; then it is the displacement of what the loads push.
+    /// What is measured, by what happens at the groups in the last state of a model on a mesh: along the axis of the larger
+    /// component. A force that equilibrium alone gives says nothing of a model; then it is the displacement of what the
+    /// loads push.
     pub fn measured(&self, mesh: &Mesh, last: &[GroupState]) -> Measured {
         let moved: Vec<_> = self
             .pushed()

@@ -1,12 +1,7 @@
 //! What of a specimen is meshed, and how.
 
-use std::path::Path;
-
-use crate::document::{Bound, Section};
-use crate::error::Severity;
-use crate::mesh::{Allowed, CellShape, Mesh, MeshReading, Shape, import};
+use crate::mesh::{CellShape, Mesh, Shape};
 use crate::results::number;
-use crate::units::Dimension;
 
 /// What is meshed, and how.
 pub enum Outline {
@@ -23,98 +18,6 @@ pub enum Outline {
         element: CellShape,
         polygons: bool,
     },
-}
-
-/// The shape that is read from a file.
-pub const MESH: &str = "mesh";
-
-pub const SHAPES: [&str; 6] = [
-    MESH,
-    "strip",
-    "strip-with-hole",
-    "notched-strip",
-    "dog-bone",
-    "ring-sector",
-];
-
-/// The outline under a shape's name; nothing where it has faults, which are recorded.
-pub fn read_outline(
-    section: &Section,
-    name: &str,
-    folder: &Path,
-    element: CellShape,
-) -> Option<Outline> {
-    if name == MESH {
-        let (mesh, allowed) = read_mesh(section, folder)?;
-        return Some(Outline::File {
-            mesh: Box::new(mesh),
-            element,
-            polygons: allowed.polygons,
-        });
-    }
-    let shape = read_shape(section, name);
-    let cells = section.count("cells", 2, 400);
-    if !cells.is_multiple_of(2) {
-        let hint = format!("one of the meshes has half as many; take {}", cells + 1);
-        section.fault("cells", "must be even", &hint);
-    }
-    let kinds = [
-        ("quadrilaterals", CellShape::Quad4),
-        ("triangles", CellShape::Triangle3),
-    ];
-    let lattice = section.choice("lattice", &kinds)?;
-    Some(Outline::Shape {
-        shape,
-        cells,
-        lattice,
-        element,
-    })
-}
-
-/// The mesh of a file; nothing where it cannot be used, with the faults recorded.
-fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
-    let file = section.text("file");
-    let unit = section.unit("file_unit", Dimension::Length);
-    let merge_nodes = section
-        .has("merge_nodes")
-        .then(|| section.quantity("merge_nodes", Dimension::Length, Bound::Positive));
-    let names = match section.has("allowed") {
-        true => section.texts("allowed"),
-        false => Vec::new(),
-    };
-    let allowed = Allowed::of_names(names.iter().map(String::as_str));
-    if let Err(unknown) = &allowed {
-        let hint = format!("one of {}", Allowed::NAMES.join(", "));
-        section.fault(
-            "allowed",
-            &format!("\"{unknown}\" is not known here"),
-            &hint,
-        );
-    }
-    if file.is_empty() {
-        section.fault("file", "must name a mesh", "such as \"specimen.msh\"");
-    }
-    if file.is_empty() || !unit.is_finite() || merge_nodes.is_some_and(f64::is_nan) {
-        return None;
-    }
-    let reading = MeshReading {
-        unit,
-        merge_nodes,
-        allowed: allowed.ok()?,
-    };
-    let read = import(&folder.join(&file), reading);
-    let (mesh, told) = match read {
-        Ok((mesh, told)) => (Some(mesh), told),
-        Err(told) => (None, told),
-    };
-    for found in told {
-        let hint = found.hint.unwrap_or_default();
-        match found.severity {
-            Severity::Error => section.fault("file", &found.message, &hint),
-            Severity::Warning => section.warning("file", &found.message, &hint),
-        }
-    }
-    Some((mesh?, reading.allowed))
 }
 
 impl Outline {
@@ -244,34 +147,6 @@ impl Outline {
             shape.fit(&mut mesh);
         }
         mesh
-    }
-}
-
-fn read_shape(section: &Section, name: &str) -> Shape {
-    let length = |key| section.quantity(key, Dimension::Length, Bound::Positive);
-    if name == "ring-sector" {
-        return Shape::RingSector {
-            radii: [length("inner_radius"), length("outer_radius")],
-            angle: section.quantity("angle", Dimension::Angle, Bound::Positive),
-        };
-    }
-    let size = [length("length"), length("width")];
-    match name {
-        "strip-with-hole" => Shape::StripWithHole {
-            size,
-            radius: 0.5 * length("hole_diameter"),
-        },
-        "notched-strip" => Shape::NotchedStrip {
-            size,
-            depth: length("notch_depth"),
-            half_length: 0.5 * length("notch_length"),
-        },
-        "dog-bone" => Shape::DogBone {
-            size,
-            narrow: [length("narrow_length"), length("narrow_width")],
-            shoulder: length("shoulder_length"),
-        },
-        _ => Shape::Strip { size },
     }
 }
 

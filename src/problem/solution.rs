@@ -1,0 +1,61 @@
+//! The equilibria of a model along a path, and what happens at the groups of its mesh.
+
+use super::model::Model;
+use super::reactions::GroupState;
+use crate::mesh::Mesh;
+use crate::solve::State;
+
+/// The equilibria of a model at the load factors that it reaches.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// The mesh of the model.
+    pub mesh: Mesh,
+    /// One for each load factor.
+    pub states: Vec<State>,
+    /// What happens at some groups in each state.
+    groups: Vec<Vec<GroupState>>,
+    /// What is left of all forces and moments together over the largest of them, in each state.
+    pub balances: Vec<f64>,
+}
+
+impl Solution {
+    /// States of a model, with what happens at groups of its mesh.
+    pub fn new(model: &Model, groups: &[&str], states: Vec<State>) -> Self {
+        let balance = |state| model.balance(state).relative();
+        Self {
+            mesh: model.mesh.clone(),
+            balances: states.iter().map(balance).collect(),
+            groups: states
+                .iter()
+                .map(|state| model.at_groups(state, groups))
+                .collect(),
+            states,
+        }
+    }
+
+    /// How many load factors were reached.
+    pub fn reached(&self) -> usize {
+        self.states.len()
+    }
+
+    /// ux, uy of node after node in mm at the load factor of a number; `None` where it was not reached.
+    pub fn displacement(&self, step: usize) -> Option<&[f64]> {
+        Some(&self.states.get(step)?.displacement)
+    }
+
+    /// What happens at the groups at the load factor of a number; `None` where it was not reached.
+    pub fn groups(&self, step: usize) -> Option<&[GroupState]> {
+        self.groups.get(step).map(Vec::as_slice)
+    }
+
+    /// What happens at the groups at the last load factor that was reached.
+    pub fn last_groups(&self) -> Option<&[GroupState]> {
+        self.groups.last().map(Vec::as_slice)
+    }
+
+    /// The worst balance of all states, one that is no number being worse than any; `None` where there are no states.
+    pub fn worst_balance(&self) -> Option<f64> {
+        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+        self.balances.iter().copied().reduce(worse)
+    }
+}

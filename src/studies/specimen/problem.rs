@@ -1,0 +1,103 @@
+//! What a specimen's study asks for: the problem, its outline and meshes, what is measured.
+
+use crate::error::Error;
+use crate::material::Card;
+use crate::mesh::{CellShape, Mesh};
+use crate::problem::{BoundaryProblem, Model};
+use crate::results::Sheet;
+use crate::solve::Potential;
+use crate::studies::sections::Tolerances;
+
+mod outline;
+
+pub use outline::Outline;
+
+/// The shape that is read from a file.
+pub const MESH: &str = "mesh";
+
+/// When local refinement ends.
+#[derive(Clone, Copy)]
+pub struct Refinement {
+    /// Estimated error in the energy norm in % at the worst load factor.
+    pub error_percent: f64,
+    /// Cells that are not exceeded.
+    pub most_cells: usize,
+}
+
+/// A specimen, its supports and loads, and how finely it is meshed.
+pub struct Specimen {
+    /// For file names.
+    pub name: String,
+    /// Thickness, material, supports and loads.
+    pub problem: BoundaryProblem,
+    /// The card of its material.
+    pub card: Card,
+    /// Load factors, ascending.
+    pub factors: Vec<f64>,
+    /// The group that is measured.
+    pub group: String,
+    /// What the corrected field has to reach.
+    pub tolerances: Tolerances,
+    /// How far the finite elements are refined locally; `None` where they have three meshes.
+    pub refinement: Option<Refinement>,
+    /// What is meshed, and how.
+    pub outline: Outline,
+}
+
+impl Specimen {
+    /// A specimen on a mesh, as if it had been read from a file, with all loads at once.
+    pub fn of_mesh(
+        card: Card,
+        problem: BoundaryProblem,
+        mesh: Mesh,
+        element: CellShape,
+        group: &str,
+    ) -> Self {
+        Self {
+            name: MESH.into(),
+            problem,
+            card,
+            factors: vec![1.0],
+            group: group.into(),
+            tolerances: Tolerances {
+                displacement_percent: 1.0,
+                departure_percent: None,
+                force_percent: 1.0,
+                correction_percent: 1.0,
+            },
+            refinement: None,
+            outline: Outline::File {
+                mesh: Box::new(mesh),
+                element,
+                polygons: false,
+            },
+        }
+    }
+
+    /// What stresses follow from.
+    pub fn sheet(&self) -> Sheet<'_> {
+        Sheet {
+            law: &*self.problem.law,
+            thickness: self.problem.thickness,
+        }
+    }
+
+    /// The problem on a mesh; groups were checked when the study was read.
+    pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Potential) -> Result<Model<'a>, Error> {
+        let found = self.problem.on(mesh, energy);
+        found.map_err(|fault| Error::Input(vec![fault]))
+    }
+
+    /// All groups that are held, loaded or measured, in the order of the study.
+    pub fn groups(&self) -> Vec<&str> {
+        let supports = self.problem.supports.iter().map(|(group, _)| group);
+        let loads = self.problem.loads.iter().map(|(group, _)| group);
+        let mut all: Vec<&str> = Vec::new();
+        for group in supports.chain(loads).chain([&self.group]) {
+            if !all.contains(&group.as_str()) {
+                all.push(group);
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,220 @@
+//! How the finite elements of a specimen are found: on three meshes, each twice as fine as the one before, or by local
+//! refinement.
+
+use super::end::{End, last_groups};
+use super::lattice::solve;
+use super::measured::Measured;
+use super::reference::{Reference, Round};
+use crate::error::Error;
+use crate::finite_element::error_estimate::{self, ErrorEstimate, bulk};
+use crate::finite_element::recovery::Recovery;
+use crate::mesh::Mesh;
+use crate::problem::Solution;
+use crate::solve::State;
+use crate::studies::specimen::problem::{Refinement, Specimen};
+
+/// The part of the squared error that is refined in a round.
+const SHARE: f64 = 0.5;
+
+/// Cells up to which the finite elements are refined once more where they are too coarse to judge.
+const MOST_CELLS: usize = 30_000;
+
+/// Begin of the names of the files of the meshes, from coarse to fine.
+const FILES: [&str; 3] = ["finite_element_coarse", "finite_element_middle", FILE];
+const FILE: &str = "finite_element";
+
+impl Reference {
+    /// Solves the specimen on three meshes, or on as many as the goal of local refinement takes.
+    pub fn solve(specimen: &Specimen, ends: &mut Vec<End>) -> Result<Self, Error> {
+        match specimen.refinement {
+            Some(goal) => Self::adaptive(specimen, goal, ends),
+            None => Self::halved(specimen, ends),
+        }
+    }
+
+    fn halved(specimen: &Specimen, ends: &mut Vec<End>) -> Result<Self, Error> {
+        let meshes = specimen.outline.reference_meshes();
+        let meshes = meshes.iter().zip(FILES);
+        let solutions = meshes.map(|(mesh, file)| on_mesh(specimen, mesh, file, ends));
+        let solutions = solutions.collect::<Result<Vec<_>, _>>()?;
+        Self::of_meshes(specimen, solutions, Vec::new(), ends)
+    }
+
+    /// The reference on the last of some meshes.
+    fn of_meshes(
+        specimen: &Specimen,
+        mut meshes: Vec<Solution>,
+        rounds: Vec<Round>,
+        ends: &[End],
+    ) -> Result<Self, Error> {
+        let finest = meshes.pop().expect("a mesh at least");
+        let measured = measured(specimen, &finest, ends);
+        let middle = meshes.last().filter(|_| rounds.is_empty());
+        Ok(Self {
+            estimates: estimates(specimen, &finest, &measured)?,
+            outline: outline_errors(specimen, &measured, middle)?,
+            coarser: meshes.split_off(meshes.len().saturating_sub(2)),
+            finest,
+            measured,
+            rounds,
+        })
+    }
+
+    /// Whether one more halving of the cells is possible and not too much work.
+    pub fn may_be_finer(&self, specimen: &Specimen) -> bool {
+        specimen.outline.is_shape()
+            && self.rounds.is_empty()
+            && self.reached() == specimen.factors.len()
+            && 4 * self.finest.mesh.cell_count() <= MOST_CELLS
+    }
+
+    /// The reference with cells of half the size: the two finer ones of its meshes, and one more.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a group of the mesh cannot be held or loaded as the study says.
+    pub fn finer(mut self, specimen: &Specimen, ends: &mut Vec<End>) -> Result<Self, Error> {
+        let mesh = specimen.outline.reference_mesh(3);
+        let finer = on_mesh(specimen, &mesh, FILE, ends)?;
+        let mut meshes = self.coarser.split_off(self.coarser.len() - 1);
+        meshes.extend([self.finest, finer]);
+        Self::of_meshes(specimen, meshes, Vec::new(), ends)
+    }
+
+    fn adaptive(specimen: &Specimen, goal: Refinement, ends: &mut Vec<End>) -> Result<Self, Error> {
+        let mut triangles = specimen.outline.first_triangles();
+        let (mut rounds, mut meshes) = (Vec::new(), Vec::new());
+        let ends_before = ends.len();
+        loop {
+            // A finer mesh may reach what a coarser one did not.
+            ends.truncate(ends_before);
+            let mesh = specimen.outline.elements_on(&triangles);
+            let solution = on_mesh(specimen, &mesh, FILE, ends)?;
+            let measured = measured(specimen, &solution, ends);
+            let estimates = estimates(specimen, &solution, &measured)?;
+            meshes.push(solution);
+            rounds.push(Round::of(&meshes[rounds.len()], &measured, &estimates));
+            let reached = rounds[rounds.len() - 1].energy_percent <= goal.error_percent;
+            // The error of the displacement takes two meshes.
+            let done = estimates.iter().all(Option::is_none) || reached && rounds.len() > 1;
+            let finer = || {
+                let marked = bulk(&indicators(mesh.cell_count(), &estimates), SHARE);
+                specimen.outline.fitted(triangles.refined_where(&marked))
+            };
+            let next = (!done).then(finer);
+            match next.filter(|next| next.cell_count() <= goal.most_cells) {
+                Some(next) => triangles = next,
+                None => return Self::of_meshes(specimen, meshes, rounds, ends),
+            }
+        }
+    }
+}
+
+/// The finest finite elements alone: without the coarser meshes that an error by three of them takes.
+pub fn finest(specimen: &Specimen, ends: &mut Vec<End>) -> Result<Solution, Error> {
+    if let Some(goal) = specimen.refinement {
+        return Ok(Reference::adaptive(specimen, goal, ends)?.finest);
+    }
+    let [_, _, mesh] = specimen.outline.reference_meshes();
+    on_mesh(specimen, &mesh, FILE, ends)
+}
+
+/// The finite elements on a mesh; `file` is what their files begin with.
+fn on_mesh(
+    specimen: &Specimen,
+    mesh: &Mesh,
+    file: &str,
+    ends: &mut Vec<End>,
+) -> Result<Solution, Error> {
+    let energy = specimen.problem.finite_elements(mesh);
+    let model = specimen.on(mesh, &energy)?;
+    Ok(solve(specimen, &model, file, ends))
+}
+
+impl Round {
+    fn of(solution: &Solution, measured: &Measured, estimates: &[Option<ErrorEstimate>]) -> Self {
+        let worst = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let known = || estimates.iter().enumerate();
+        let known = || known().filter_map(|(step, estimate)| Some((step, estimate.as_ref()?)));
+        let mut errors = known().filter_map(|(step, estimate)| {
+            let own = measured.at(solution, step)?;
+            Some(100.0 * (estimate.force / own).abs())
+        });
+        let mut energies = known().map(|(_, estimate)| estimate.energy.percent());
+        Self {
+            cells: solution.mesh.cell_count(),
+            nodes: solution.mesh.nodes.len(),
+            energy_percent: worst(&mut energies),
+            measured_percent: worst(&mut errors),
+        }
+    }
+}
+
+/// What is measured, by the last state on a mesh; where it has none, by that of another path.
+fn measured(specimen: &Specimen, solution: &Solution, ends: &[End]) -> Measured {
+    match (solution.last_groups(), last_groups(ends)) {
+        (Some(groups), _) => specimen.measured(&solution.mesh, groups),
+        (None, Some((mesh, groups))) => specimen.measured(mesh, groups),
+        (None, None) => specimen.measured_at_rest(),
+    }
+}
+
+/// What the curves that a file's edges stand for change in what is measured at each load factor; `None` where there are
+/// no such edges.
+fn outline_errors(
+    specimen: &Specimen,
+    what: &Measured,
+    middle: Option<&Solution>,
+) -> Result<Option<Vec<f64>>, Error> {
+    let Some((rounded, whole)) = specimen.outline.rounded_mesh() else {
+        return Ok(None);
+    };
+    // Where a path ends is told of the meshes whose results are given.
+    let mut untold = Vec::new();
+    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, FILE, &mut untold);
+    let rounded = on(&rounded)?;
+    let halved;
+    let middle = match middle {
+        Some(middle) => middle,
+        None => {
+            halved = on(&specimen.outline.reference_mesh(1))?;
+            &halved
+        }
+    };
+    let steps = 0..rounded.reached().min(middle.reached());
+    let change = |step| Some(whole * (what.at(&rounded, step)? - what.at(middle, step)?));
+    Ok(Some(steps.filter_map(change).collect()))
+}
+
+/// The squared relative error of each cell, summed over the load factors.
+fn indicators(cells: usize, estimates: &[Option<ErrorEstimate>]) -> Vec<f64> {
+    let mut sums = vec![0.0; cells];
+    for estimate in estimates.iter().flatten() {
+        for (sum, cell) in sums.iter_mut().zip(&estimate.energy.cells) {
+            *sum += cell / estimate.energy.norm_squared;
+        }
+    }
+    sums
+}
+
+/// The estimated errors of a solution at each load factor; `None` where the tangent of that state gives none.
+fn estimates(
+    specimen: &Specimen,
+    solution: &Solution,
+    measured: &Measured,
+) -> Result<Vec<Option<ErrorEstimate>>, Error> {
+    let mesh = &solution.mesh;
+    let energy = specimen.problem.finite_elements(mesh);
+    let model = specimen.on(mesh, &energy)?;
+    let recovery = Recovery::new(mesh);
+    let estimate = |state: &State| {
+        let influence = model.influence(state, &measured.group, measured.axis);
+        let solved = error_estimate::SheetSolution {
+            law: &*specimen.problem.law,
+            thickness: specimen.problem.thickness,
+            mesh,
+            displacement: &state.displacement,
+        };
+        Some(solved.estimate(&recovery, &influence.ok()?))
+    };
+    Ok(solution.states.iter().map(estimate).collect())
+}
