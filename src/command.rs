@@ -20,7 +20,7 @@ use crate::output::ResultFolder;
 use crate::problem::ClampedPlate;
 use crate::results::{Check, Computed};
 use crate::studies::Kind;
-use crate::studies::plate::{self, run};
+use crate::studies::plate::{self, results::run};
 use crate::studies::plate::{DEFAULT, Study};
 use crate::studies::sections;
 use crate::validation;

@@ -27,4 +27,6 @@ pub use reactions::GroupState;
 pub use solution::Solution;
 
 #[cfg(test)]
+mod samples;
+#[cfg(test)]
 mod tests;

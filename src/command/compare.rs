@@ -14,7 +14,7 @@ use crate::mesh::{CellShape, Mesh};
 use crate::output::{self, ResultFolder};
 use crate::results::{Array, Block, Grid, GridSeries, Sheet};
 use crate::studies::plate::Study;
-use crate::studies::plate::run;
+use crate::studies::plate::results::run;
 use crate::studies::sections;
 use crate::studies::{Kind, specimen};
 use crate::units::{self, Dimension};

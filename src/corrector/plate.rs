@@ -48,6 +48,8 @@ pub struct CorrectedState {
     pub state: State,
     /// What is measured of it.
     pub measures: Measures,
+    /// What is left of all forces and moments together over the largest of them.
+    pub balance: f64,
     /// The start and the field after each step of the direct method; none where the field climbed.
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
@@ -249,6 +251,11 @@ impl<'a> PlateCorrector<'a> {
         };
         CorrectedState {
             measures: Measures::of(self.mesh, &state),
+            balance: self
+                .problem
+                .on(self.mesh, &self.energy)
+                .balance(&state)
+                .relative(),
             state,
             steps: Vec::new(),
             multipliers: Vec::new(),

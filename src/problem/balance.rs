@@ -61,12 +61,6 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// The balance of a mesh with displacements under the forces of its supports, one for each unknown in N, alone.
-    pub fn of_supports(mesh: &Mesh, displacement: &[f64], supports: &[f64]) -> Self {
-        let body = Body::new(mesh, displacement);
-        body.balance(body.resultant(supports), Resultant::default(), 0.0)
-    }
-
     /// The largest unbalanced force or moment over the largest of all.
     pub fn relative(&self) -> f64 {
         let ratio = |rest: f64, largest: f64| if rest == 0.0 { 0.0 } else { rest / largest };
@@ -136,7 +130,9 @@ mod tests {
     fn a_couple_has_a_moment_and_no_force() {
         let places = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]];
         let mesh = Mesh::new(places, [(CellShape::Triangle3, vec![0, 1, 2])]);
-        let of = |forces: [f64; 6]| Balance::of_supports(&mesh, &[0.0; 6], &forces);
+        let body = Body::new(&mesh, &[0.0; 6]);
+        let of =
+            |forces: [f64; 6]| body.balance(body.resultant(&forces), Resultant::default(), 0.0);
         let balance = of([0.0, -2.0, 0.0, 2.0, 0.0, 0.0]);
         assert_eq!(balance.force, [0.0; 2]);
         assert_eq!(balance.moment, 8.0);

@@ -157,24 +157,14 @@ fn describe(support: &Support) -> String {
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
-    use std::sync::Arc;
 
+    use super::super::boundary_conditions::Drive;
+    use super::super::samples::{CLAMP, problem, strip};
     use super::*;
-    use crate::material::NeoHooke;
-    use crate::mesh::{CellShape, Shape};
-    use crate::problem::{BoundaryProblem, Drive};
+    use crate::mesh::CellShape;
 
     fn told(supports: &[(&str, Support)]) -> Vec<String> {
-        let mesh = Shape::Strip { size: [30.0, 10.0] }.mesh(4, CellShape::Quad4);
-        let owned = supports
-            .iter()
-            .map(|(group, support)| ((*group).to_owned(), *support));
-        let problem = BoundaryProblem {
-            thickness: 1.0,
-            law: Arc::new(NeoHooke { c10: 0.05 }),
-            supports: owned.collect(),
-            loads: Vec::new(),
-        };
+        let (mesh, problem) = (strip(CellShape::Quad4), problem(supports, &[]));
         let found = contradictions(&problem.supports, &mesh).unwrap();
         let refused = problem.held_by(&mesh).err().map(|fault| fault.message);
         assert_eq!(refused, found.first().map(|first| first.message.clone()));
@@ -187,15 +177,14 @@ mod tests {
 
     #[test]
     fn different_motions_of_one_unknown_are_told_with_both_supports_and_the_place() {
-        let clamp = moved(Some(0.0), Some(0.0));
-        let found = told(&[("left", clamp), ("left", moved(Some(5.0), None))]);
+        let found = told(&[("left", CLAMP), ("left", moved(Some(5.0), None))]);
         assert_eq!(
             found,
             [
-                "support 1 on the group `left` (a clamp) and support 2 on the group `left` (x = 5 mm) contradict each other at node 0 (0.0, -5.0) mm along x and at 4 more nodes"
+                "support 1 on the group `left` (a CLAMP) and support 2 on the group `left` (x = 5 mm) contradict each other at node 0 (0.0, -5.0) mm along x and at 4 more nodes"
             ]
         );
-        let corner = told(&[("top", moved(None, Some(1.0))), ("left", clamp)]);
+        let corner = told(&[("top", moved(None, Some(1.0))), ("left", CLAMP)]);
         assert_eq!(corner.len(), 1);
         assert!(corner[0].ends_with("(0.0, 5.0) mm along y"), "{corner:?}");
         let turn = Support::Rotation {
@@ -203,7 +192,7 @@ mod tests {
             angle: 2.0 * PI,
         };
         // A full turn ends where it began, but moves on the way.
-        assert_eq!(told(&[("left", clamp), ("left", turn)]).len(), 1);
+        assert_eq!(told(&[("left", CLAMP), ("left", turn)]).len(), 1);
         let grip = Support::Grip([Drive::Force(1.0), Drive::Displacement(0.0)]);
         for (supports, words) in [
             (
@@ -216,7 +205,7 @@ mod tests {
             assert!(found.iter().any(|text| text.contains(words)), "{found:?}");
         }
         let three = [
-            ("left", clamp),
+            ("left", CLAMP),
             ("top", moved(None, Some(1.0))),
             ("right", moved(Some(2.0), Some(0.0))),
         ];
@@ -225,21 +214,20 @@ mod tests {
 
     #[test]
     fn supports_that_agree_may_share_nodes() {
-        let clamp = moved(Some(0.0), Some(0.0));
         let linear = |at_origin: f64, slope: [f64; 2]| Some(Linear { at_origin, slope });
         let stretch = Support::LinearDisplacement([linear(0.0, [0.1, 0.0]), None]);
         let right = Support::LinearDisplacement([linear(3.0, [0.0, 0.0]), linear(0.0, [0.0, 0.0])]);
         for supports in [
             vec![
-                ("left", clamp),
+                ("left", CLAMP),
                 ("bottom", Support::Roller),
-                ("left", clamp),
+                ("left", CLAMP),
             ],
             vec![
                 ("bottom", moved(None, Some(0.0))),
                 ("left", moved(Some(0.0), None)),
             ],
-            vec![("left", clamp), ("top", stretch), ("right", right)],
+            vec![("left", CLAMP), ("top", stretch), ("right", right)],
         ] {
             assert_eq!(told(&supports), Vec::<String>::new());
         }

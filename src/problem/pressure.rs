@@ -251,3 +251,6 @@ fn pairs(nodes: usize) -> &'static [(usize, usize, f64)] {
         [(0, 2, 2.0 / 3.0), (2, 1, 2.0 / 3.0), (0, 1, -1.0 / 6.0)];
     if nodes == 2 { &LINEAR } else { &QUADRATIC }
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,7 +9,6 @@ mod problem;
 mod read;
 mod report;
 pub mod results;
-pub mod run;
 mod vtk;
 mod warnings;
 

@@ -1,6 +1,6 @@
 //! The pictures of a plate.
 
-use super::Study;
+use super::problem::Study;
 use super::results::{MODELS, Results};
 use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
@@ -100,7 +100,7 @@ fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
 fn estimated_error(results: &Results) -> Option<FieldFigure> {
     let finest = results.finest();
     let (last, estimate) = results.estimates.iter().enumerate().next_back()?;
-    let solution = &finest.solutions[last];
+    let solution = &finest.solution.states[last];
     let at = ClampedPlate::describe_step(solution.factor);
     let energy = &estimate.as_ref()?.energy;
     let mesh = &finest.model.mesh;

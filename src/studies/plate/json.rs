@@ -6,7 +6,7 @@ use crate::compare::{Deviation, SelfConvergence, StepComparison};
 use crate::problem::Measures;
 use crate::results::{Check, Wanted};
 use crate::solve::State;
-use crate::studies::plate::Study;
+use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{Results, verdict};
 
 /// The figures of a run. Numbers and models that do not exist are `null`.
@@ -18,7 +18,7 @@ pub fn json(study: &Study, results: &Results) -> Value {
         .iter()
         .map(|(what, seconds)| ((*what).to_owned(), json!(seconds)));
     let mut warnings: Vec<String> = study.warnings.iter().map(ToString::to_string).collect();
-    warnings.extend(super::warnings(study, results));
+    warnings.extend(super::warnings::warnings(study, results));
     json!({
         "gelbench": env!("CARGO_PKG_VERSION"),
         "study": { "name": study.name, "title": study.title, "text": study.text },

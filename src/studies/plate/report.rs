@@ -3,7 +3,7 @@
 use crate::compare::{Deviation, StepComparison};
 use crate::error::Error;
 use crate::problem::ClampedPlate;
-use crate::studies::plate::Study;
+use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results, verdict};
 
 use super::warnings::warnings;

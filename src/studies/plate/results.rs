@@ -7,10 +7,11 @@ use crate::finite_element::FiniteElements;
 use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
-use crate::problem::{Balance, Measures};
+use crate::problem::{Measures, Solution};
 use crate::solve::State;
 
 mod requirement;
+pub mod run;
 
 pub use requirement::verdict;
 
@@ -22,8 +23,8 @@ pub const MODELS: [&str; 3] = ["mass-spring", "corrected", "finite elements"];
 pub struct ReferenceMesh {
     /// The model.
     pub model: FiniteElements,
-    /// One solution a stretch, as far as the path goes.
-    pub solutions: Vec<State>,
+    /// One state a stretch, as far as the path goes.
+    pub solution: Solution,
 }
 
 /// All fields and figures of a study. A model that has ended early has fewer states than the study has stretches; the
@@ -32,8 +33,8 @@ pub struct ReferenceMesh {
 pub struct Results {
     /// The lattice; its mesh is that of the corrected fields too.
     pub springs: MassSpring,
-    /// The lattice in equilibrium, one solution a stretch, as far as the path goes.
-    pub uncorrected: Vec<State>,
+    /// The lattice in equilibrium, one state a stretch, as far as the path goes.
+    pub uncorrected: Solution,
     /// The corrected field at every stretch; nothing where none was found.
     pub corrected: Vec<Option<CorrectedState>>,
     /// The finite elements on three meshes, coarse to fine; the last is the reference.
@@ -60,9 +61,9 @@ impl Results {
     pub fn models(&self, step: usize) -> [Option<&State>; 3] {
         let corrected = self.corrected[step].as_ref();
         [
-            self.uncorrected.get(step),
+            self.uncorrected.states.get(step),
             corrected.map(|corrected| &corrected.state),
-            self.finest().solutions.get(step),
+            self.finest().solution.states.get(step),
         ]
     }
 
@@ -104,13 +105,15 @@ impl Results {
     /// The worst balance of the grips' reactions of a model of [`MODELS`], and the stretch of it; nothing where the model
     /// has no solution.
     pub fn worst_balance(&self, model: usize) -> Option<(f64, f64)> {
-        let mesh = self.meshes()[model];
-        let steps = 0..self.comparison.len();
         let of_step = |step: usize| {
-            let solution = self.models(step)[model]?;
-            Some((balance(mesh, solution).relative(), solution.factor))
+            let balance = match model {
+                0 => self.uncorrected.balances.get(step).copied(),
+                1 => self.corrected[step].as_ref().map(|own| own.balance),
+                _ => self.finest().solution.balances.get(step).copied(),
+            };
+            Some((balance?, self.comparison[step].stretch))
         };
-        let all = steps.filter_map(of_step);
+        let all = (0..self.comparison.len()).filter_map(of_step);
         all.max_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
@@ -152,15 +155,4 @@ impl Results {
             own.error_percent.max(recovered)
         }))
     }
-}
-
-/// The balance of the reactions of both grips.
-fn balance(mesh: &Mesh, state: &State) -> Balance {
-    let mut reactions = state.residual.clone();
-    for (unknown, reaction) in reactions.iter_mut().enumerate() {
-        if !mesh.on_grip(unknown / 2) {
-            *reaction = 0.0;
-        }
-    }
-    Balance::of_supports(mesh, &state.displacement, &reactions)
 }

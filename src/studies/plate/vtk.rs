@@ -1,6 +1,6 @@
 //! The fields of a plate for other programs.
 
-use super::Study;
+use super::problem::Study;
 use super::results::Results;
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{CorrectedState, EQUILIBRIUM, FREE_EDGES, GRIPS};
@@ -21,7 +21,7 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
         let difference = reference.map(|reference| Array::to_finite_elements(u, reference));
         Grid::sheet(sheet, lattice, u).with(difference)
     };
-    let springs = |step: usize| Some((step, results.uncorrected.get(step)?));
+    let springs = |step: usize| Some((step, results.uncorrected.states.get(step)?));
     let steps = || 0..study.problem.stretches.len();
     let mass_spring = steps().filter_map(springs);
     let mass_spring = mass_spring.map(|(step, solution)| (step, on_lattice(step, solution)));
@@ -32,12 +32,17 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
         let grid = on_lattice(step, &state.state);
         (step, grid.with(multipliers(state)))
     });
-    let elements = finest.solutions.iter().enumerate().map(|(step, solution)| {
-        let error = results.estimates[step].as_ref();
-        let error = error.map(|estimate| Array::estimated_error(&estimate.energy));
-        let grid = Grid::sheet(sheet, &finest.model.mesh, &solution.displacement);
-        (step, grid.with_in_cells(error))
-    });
+    let elements = finest
+        .solution
+        .states
+        .iter()
+        .enumerate()
+        .map(|(step, solution)| {
+            let error = results.estimates[step].as_ref();
+            let error = error.map(|estimate| Array::estimated_error(&estimate.energy));
+            let grid = Grid::sheet(sheet, &finest.model.mesh, &solution.displacement);
+            (step, grid.with_in_cells(error))
+        });
     let series = |name, grids: Vec<(usize, Grid)>| {
         let stretches = &study.problem.stretches;
         let grids = grids.into_iter();

@@ -1,7 +1,7 @@
 //! What a reader of a plate's figures has to know about them.
 
 use crate::problem::ClampedPlate;
-use crate::studies::plate::Study;
+use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
 use crate::results::wrinkling;
@@ -21,7 +21,7 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
 /// Compression in the finite elements, or in the corrected field where there are none.
 fn compression(study: &Study, results: &Results) -> Option<String> {
     let finest = results.finest();
-    let model = match finest.solutions.is_empty() {
+    let model = match finest.solution.states.is_empty() {
         true => 1,
         false => 2,
     };

@@ -8,7 +8,7 @@ use crate::finite_element::convergence::Richardson;
 use crate::problem::ClampedPlate;
 use crate::results::Block;
 use crate::solve::State;
-use crate::studies::plate::Study;
+use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
 pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {

@@ -5,7 +5,7 @@ use crate::compare::judgement::{Judgement, ROUNDING_PERCENT, judge, judge_correc
 use crate::compare::{Deviation, StepComparison};
 use crate::problem::ClampedPlate;
 use crate::results::{Check, Wanted};
-use crate::studies::plate::Study;
+use crate::studies::plate::problem::Study;
 
 /// How the reference becomes a better one.
 const REMEDY: &str = "take finer `finite_element.cells`, or a `finite_element.grading` near 2";

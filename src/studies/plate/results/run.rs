@@ -1,0 +1,179 @@
+//! The flow of a study: problem, models, corrector, comparison.
+
+use std::time::Instant;
+
+use super::{ReferenceMesh, Results};
+use crate::compare::imported::ModelField;
+use crate::compare::{Reference, StepComparison};
+use crate::corrector::PlateCorrector;
+use crate::corrector::climb::Climb;
+use crate::corrector::plate::{CorrectedState, KnownConditions};
+use crate::error::Error;
+use crate::finite_element::recovery::Recovery;
+use crate::mass_spring::MassSpring;
+use crate::mesh::{Mesh, Side};
+use crate::problem::{Measures, Model, Solution};
+use crate::solve::{NewtonSettings, State};
+use crate::studies::plate::problem::Study;
+
+/// Is told each model and stretch that is done.
+type Progress<'a> = &'a dyn Fn(&str, f64);
+
+/// How many times [`run`] reports progress for a study.
+pub fn progress_steps(study: &Study) -> usize {
+    5 * study.problem.stretches.len()
+}
+
+/// Computes a study. `progress` is told each model and stretch that is done. A model that ends early leaves the others
+/// their way: the results hold what there is, and why there is no more.
+///
+/// # Errors
+/// [`Error::Solve`] of the first model where no model has any solution.
+pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
+    let mut run = Run {
+        study,
+        progress,
+        times: Vec::new(),
+        ends: Vec::new(),
+    };
+    let plate = &study.problem;
+    let springs = MassSpring::new(plate, study.cells, study.lattice);
+    let uncorrected = run.solve("mass-spring", &springs.model(plate), study.mass_spring);
+    let corrected = run.timed("corrector", |run| run.correct(&uncorrected));
+    let names = [
+        "finite elements, coarse",
+        "finite elements, middle",
+        "finite elements, fine",
+    ];
+    let mut names = names.into_iter();
+    let reference = study.finite_elements().map(|model| {
+        let name = names.next().expect("three meshes");
+        let solution = run.solve(name, &model.model(plate), study.reference.newton);
+        ReferenceMesh { model, solution }
+    });
+    let [.., finest] = &reference;
+    let estimates = run.timed("finite elements' error", |_| {
+        let recovery = Recovery::new(&finest.model.mesh);
+        let estimate = |state| finest.model.estimate(plate, state, &recovery).ok();
+        finest.solution.states.iter().map(estimate).collect()
+    });
+    let reached = [&uncorrected, &finest.solution].map(Solution::reached);
+    if reached == [0, 0] && corrected.iter().all(Option::is_none) {
+        return Err(run.ends.swap_remove(0));
+    }
+    let meshes = reference.each_ref();
+    let meshes = meshes.map(|mesh| (&mesh.model, &mesh.solution.states[..]));
+    let reference_field = Reference::new(plate, meshes);
+    let lattice = &springs.mesh;
+    let compare = |(step, stretch): (usize, &f64)| {
+        let deviation = |state, measures| reference_field.deviation(lattice, state, measures, step);
+        let springs = uncorrected.states.get(step);
+        StepComparison {
+            stretch: *stretch,
+            mass_spring: springs.and_then(|state| deviation(state, Measures::of(lattice, state))),
+            corrected: corrected[step]
+                .as_ref()
+                .and_then(|own| deviation(&own.state, own.measures)),
+            reference: reference_field.self_convergence(step),
+        }
+    };
+    Ok(Results {
+        reference_on_lattice: reference_field.displacements_on(lattice),
+        comparison: plate.stretches.iter().enumerate().map(compare).collect(),
+        springs,
+        uncorrected,
+        corrected,
+        reference,
+        estimates,
+        ends: run.ends,
+        times: run.times,
+    })
+}
+
+/// A study under way.
+struct Run<'a> {
+    study: &'a Study,
+    progress: Progress<'a>,
+    /// What was done, and how long it took in s.
+    times: Vec<(&'static str, f64)>,
+    /// Why models have no solution at stretches of the study.
+    ends: Vec<Error>,
+}
+
+impl Run<'_> {
+    /// Solves a model at the study's stretches, as far as there are solutions.
+    fn solve(&mut self, name: &'static str, model: &Model, settings: NewtonSettings) -> Solution {
+        let states = self.timed(name, |run| {
+            let told = |stretch: f64| (run.progress)(name, stretch);
+            let states = model.solve(&run.study.problem.stretches, settings, &told);
+            states.unwrap_or_else(|end| {
+                run.ends.push(model.error(&end));
+                end.states
+            })
+        });
+        Solution::new(model, &[Side::Left, Side::Right].map(Side::name), states)
+    }
+
+    /// The corrected field at every stretch. Where the springs have no field the affine stretch takes its place: it has a
+    /// say in the multipliers, and in where the direct method begins.
+    fn correct(&mut self, springs: &Solution) -> Vec<Option<CorrectedState>> {
+        let (study, plate, lattice) = (self.study, &self.study.problem, &springs.mesh);
+        let settings = &study.corrector;
+        let corrector = PlateCorrector::new(plate, lattice, settings.scheme, settings.direct);
+        let even = |climb| Climb::even(plate, study.cells, settings.scheme, climb);
+        let mut climb = settings.climb.map(even);
+        let mut correct = |(step, stretch): (usize, &f64)| {
+            let affine = || plate.affine(lattice, *stretch);
+            let data = springs
+                .displacement(step)
+                .map_or_else(affine, <[f64]>::to_vec);
+            let corrected = match &mut climb {
+                Some(climb) => corrector.climb(climb, &data, *stretch),
+                None => corrector.correct(&data, *stretch, KnownConditions::ALL),
+            };
+            (self.progress)("corrector", *stretch);
+            corrected.map_err(|end| self.ends.push(end)).ok()
+        };
+        let stretches = plate.stretches.iter().enumerate();
+        stretches.map(&mut correct).collect()
+    }
+
+    fn timed<T>(&mut self, what: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let start = Instant::now();
+        let result = work(self);
+        self.times.push((what, start.elapsed().as_secs_f64()));
+        result
+    }
+}
+
+/// The fields of all models of a plate at a stretch: finite elements on the finest mesh, springs, corrected springs.
+/// The study's stretches before it are steps on the way.
+///
+/// # Errors
+/// [`Error::Solve`] with the model and the stretch at which no solution was found.
+pub fn fields(
+    mut study: Study,
+    stretch: f64,
+    progress: Progress,
+) -> Result<[ModelField; 3], Error> {
+    let stretches = &mut study.problem.stretches;
+    stretches.retain(|before| *before * stretch > 0.0 && before.abs() < stretch.abs());
+    stretches.push(stretch);
+    let last = stretches.len() - 1;
+    let mut results = run(&study, progress)?;
+    if let Some(end) = results.ends.pop() {
+        return Err(end);
+    }
+    let field = |model, mesh: &Mesh, state: Option<&State>| ModelField {
+        model,
+        mesh: mesh.clone(),
+        displacement: state.expect("no model ended").displacement.clone(),
+    };
+    let [springs, corrected, elements] = results.models(last);
+    let lattice = &results.springs.mesh;
+    Ok([
+        field("finite elements", &results.finest().model.mesh, elements),
+        field("mass-spring", lattice, springs),
+        field("corrected", lattice, corrected),
+    ])
+}
