@@ -27,9 +27,9 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
         return vec![mesh];
     };
     let at = format!("load factor {}", specimen.factors[step]);
-    let fields = || {
-        let models = models.named().into_iter();
-        models.filter_map(|model| {
+    let named = models.named();
+    let fields = |models: usize| {
+        named[..models].iter().filter_map(|model| {
             let u = model.solution.displacement(step)?;
             Some((model.name, &model.solution.mesh, u))
         })
@@ -39,11 +39,12 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
     };
     let title = format!("Displacement at {at}");
     let caption = format!("{title}, on one colour scale.");
-    let displacement = FieldFigure::new(title, "displacement [mm]", fields().map(size));
+    let displacement = FieldFigure::new(title, "displacement [mm]", fields(3).map(size));
     let mut figures = vec![figure("displacement", caption, displacement.into())];
-    if let Some(v) = expected.get(step) {
-        let on_lattice = fields().filter(|(_, mesh, _)| std::ptr::eq(*mesh, lattice));
-        let distances = on_lattice.map(|(name, mesh, u)| Panel::distance(name, mesh, u, v));
+    let compared = expected.get(step).filter(|_| fields(2).next().is_some());
+    if let Some(v) = compared {
+        // Springs and corrected springs.
+        let distances = fields(2).map(|(name, mesh, u)| Panel::distance(name, mesh, u, v));
         let title = format!("Distance to the finite elements at {at}");
         let caption = format!("{title}.");
         let distance = FieldFigure::new(title, "distance [mm]", distances).logarithmic();
