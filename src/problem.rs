@@ -27,6 +27,4 @@ pub use reactions::GroupState;
 pub use solution::Solution;
 
 #[cfg(test)]
-mod samples;
-#[cfg(test)]
 mod tests;

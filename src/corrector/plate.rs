@@ -54,7 +54,7 @@ pub struct CorrectedState {
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
     pub multipliers: Vec<Multipliers>,
-    /// How the climb came to the field; nothing where the method was direct.
+    /// How the climb came to the field; `None` where the method was direct.
     pub way: Option<Way>,
 }
 

@@ -159,7 +159,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::super::boundary_conditions::Drive;
-    use super::super::samples::{CLAMP, problem, strip};
+    use super::super::tests::samples::{CLAMP, problem, strip};
     use super::*;
     use crate::mesh::CellShape;
 

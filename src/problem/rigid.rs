@@ -182,7 +182,7 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// What motions, given as columns a, b, ω L of one body, are in words; nothing where there are none.
+    /// What motions, given as columns a, b, ω L of one body, are in words; `None` where there are none.
     fn describe(&self, motions: &DMatrix<f64>) -> Option<String> {
         const SMALL: f64 = 1e-6;
         if motions.ncols() == 0 {

@@ -1,17 +1,21 @@
 use super::boundary_conditions::{Drive, Load, Support};
-use super::samples::{CLAMP, moved, problem, solved, strip, turned};
 use crate::error::SolveFault;
 use crate::mesh::{CellShape, Shape};
 use crate::solve::{Convergence, State};
 use crate::units::parse_linear_length;
+use samples::{CLAMP, moved, problem, solved, strip, turned};
 
-#[test]
-fn supports_and_loads_balance_in_every_kind_of_problem() {
+pub mod samples;
+
+/// Supports and loads by group.
+type Conditions = (Vec<(&'static str, Support)>, Vec<(&'static str, Load)>);
+
+fn kinds_of_problems() -> Vec<Conditions> {
     let right = |x, y| ("right", Support::Displacement([x, y]));
     let grip = |x, y| ("right", Support::Grip([x, y]));
     let pressure = ("top", Load::Pressure(0.01));
     let symmetric = [("left", Support::Roller), ("bottom", Support::Roller)];
-    let cases: Vec<(Vec<_>, Vec<_>)> = vec![
+    vec![
         (vec![("left", CLAMP), right(Some(6.0), Some(3.0))], vec![]),
         (
             vec![("left", CLAMP), right(Some(6.0), Some(0.0))],
@@ -61,7 +65,12 @@ fn supports_and_loads_balance_in_every_kind_of_problem() {
             ],
             vec![pressure],
         ),
-    ];
+    ]
+}
+
+#[test]
+fn supports_and_loads_balance_in_every_kind_of_problem() {
+    let cases = kinds_of_problems();
     for (number, (supports, loads)) in cases.iter().enumerate() {
         for (_, shape) in CellShape::NAMES {
             let by = [[0.0, 0.0], [700.0, -1000.0]][number % 2];

@@ -36,7 +36,7 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
     })
 }
 
-/// The card under `card` of a section, looked for relative to `folder`; nothing when it is no card to work
+/// The card under `card` of a section, looked for relative to `folder`; `None` where it is no card to work
 /// with, which is recorded as a fault.
 pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
     const KEY: &str = "card";

@@ -1,5 +1,5 @@
 use super::super::boundary_conditions::Load;
-use super::super::samples::{CLAMP, problem, solved, strip, turned};
+use super::super::tests::samples::{CLAMP, problem, solved, strip, turned};
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::solve::assembly::derivative_errors;
 use crate::solve::vector::{largest, norm};

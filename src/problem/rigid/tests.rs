@@ -1,5 +1,5 @@
 use super::super::boundary_conditions::{Drive, Support};
-use super::super::samples::{CLAMP, problem};
+use super::super::tests::samples::{CLAMP, problem};
 use crate::error::Diagnostic;
 use crate::mesh::{CellShape, Mesh, Shape};
 

@@ -35,11 +35,11 @@ pub struct Results {
     pub springs: MassSpring,
     /// The lattice in equilibrium, one state a stretch, as far as the path goes.
     pub uncorrected: Solution,
-    /// The corrected field at every stretch; nothing where none was found.
+    /// The corrected field at every stretch; `None` where none was found.
     pub corrected: Vec<Option<CorrectedState>>,
     /// The finite elements on three meshes, coarse to fine; the last is the reference.
     pub reference: [ReferenceMesh; 3],
-    /// The estimated errors of the finest of them; nothing where its tangent cannot be factorised.
+    /// The estimated errors of the finest of them; `None` where its tangent cannot be factorised.
     pub estimates: Vec<Option<ErrorEstimate>>,
     /// The reference field at the nodes of the lattice in mm, as far as the path goes.
     pub reference_on_lattice: Vec<Vec<f64>>,
@@ -102,7 +102,7 @@ impl Results {
         steps.filter_map(stretch).collect()
     }
 
-    /// The worst balance of the grips' reactions of a model of [`MODELS`], and the stretch of it; nothing where the model
+    /// The worst balance of the grips' reactions of a model of [`MODELS`], and the stretch of it; `None` where the model
     /// has no solution.
     pub fn worst_balance(&self, model: usize) -> Option<(f64, f64)> {
         let of_step = |step: usize| {
@@ -118,7 +118,7 @@ impl Results {
     }
 
     /// The largest residual force at a node that no grip holds over the force on a grip, the worst of all stretches, of a
-    /// model of [`MODELS`]; nothing where it has no solution.
+    /// model of [`MODELS`]; `None` where it has no solution.
     pub fn worst_residual(&self, model: usize) -> Option<f64> {
         let mesh = self.meshes()[model];
         let of_step = |step: usize| {

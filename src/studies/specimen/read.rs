@@ -15,7 +15,7 @@ mod outline;
 mod supports;
 
 use outline::{SHAPES, read_outline};
-use supports::Given;
+use supports::SupportsAndLoads;
 
 /// What a study must say of the specimen; cells and lattice have defaults.
 const MEASURES: &[&str] = &[
@@ -44,33 +44,19 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let element = element.unwrap_or(CellShape::Quad9);
     let outline = name.and_then(|name| read_outline(&section, name, folder, element));
     section.unknown_keys();
-    let given = Given::read(root);
+    let given = SupportsAndLoads::read(root);
 
-    let section = root
+    let path = root
         .section("path")
         .requiring(&["factors", "measured_group"]);
-    let factors = section.quantities("factors", Dimension::Ratio, Bound::Positive);
-    if section.has("factors")
-        && (factors.is_empty() || factors.windows(2).any(|pair| pair[1] <= pair[0]))
-    {
-        section.fault(
-            "factors",
-            "must be one or more ascending load factors",
-            "such as [0.5, 1.0]",
-        );
-    }
-    let group = section.text("measured_group");
-    section.unknown_keys();
+    let factors = read_factors(&path);
+    let group = path.text("measured_group");
+    path.unknown_keys();
     let tolerances = Tolerances::read(&root.section("tolerances"), false);
     let (card, name, outline) = (card?, name?, outline?);
     let mesh = coarse(root, &outline)?;
     given.check_groups(&mesh);
-    if section.has("measured_group") && !mesh.groups().contains_key(&group) {
-        let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
-        let message = format!("the specimen has no group `{group}`");
-        let hint = suggestion(&group, &known, "its groups are");
-        section.fault("measured_group", &message, &hint);
-    }
+    check_measured(&path, &group, &mesh);
     let specimen = Specimen {
         name: name.replace('-', "_"),
         problem: BoundaryProblem {
@@ -89,6 +75,29 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     given.check(root, &specimen.problem, &mesh);
     check_refinement(root, &specimen);
     Some(specimen)
+}
+
+fn read_factors(path: &Section) -> Vec<f64> {
+    let factors = path.quantities("factors", Dimension::Ratio, Bound::Positive);
+    let falls = factors.windows(2).any(|pair| pair[1] <= pair[0]);
+    if path.has("factors") && (factors.is_empty() || falls) {
+        let message = "must be one or more ascending load factors";
+        path.fault("factors", message, "such as [0.5, 1.0]");
+    }
+    factors
+}
+
+/// Records a measured group that the specimen does not have.
+fn check_measured(path: &Section, group: &str, mesh: &Mesh) {
+    if path.has("measured_group") && !mesh.groups().contains_key(group) {
+        let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
+        let message = format!("the specimen has no group `{group}`");
+        path.fault(
+            "measured_group",
+            &message,
+            &suggestion(group, &known, "its groups are"),
+        );
+    }
 }
 
 /// A coarse mesh with the groups of the specimen; `None` where its measures do not fit, which is recorded.

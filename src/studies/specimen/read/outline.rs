@@ -18,7 +18,7 @@ pub const SHAPES: [&str; 6] = [
     "ring-sector",
 ];
 
-/// The outline under a shape's name; nothing where it has faults, which are recorded.
+/// The outline under a shape's name; `None` where it has faults, which are recorded.
 pub fn read_outline(
     section: &Section,
     name: &str,
@@ -52,7 +52,7 @@ pub fn read_outline(
     })
 }
 
-/// The mesh of a file; nothing where it cannot be used, with the faults recorded.
+/// The mesh of a file; `None` where it cannot be used, with the faults recorded.
 fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
     let file = section.text("file");
     let unit = section.unit("file_unit", Dimension::Length);

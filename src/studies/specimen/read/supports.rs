@@ -6,20 +6,20 @@ use crate::mesh::Mesh;
 use crate::problem::{BoundaryProblem, Drive, Load, Support};
 use crate::units::Dimension;
 
-/// An entry of a study's list with its group and what it says.
+/// An entry of a study's list with its group and the support or load.
 struct Entry<'a, T> {
     section: Section<'a>,
     group: String,
-    says: T,
+    condition: T,
 }
 
-/// The supports and loads that a study says, with their places in it.
-pub struct Given<'a> {
+/// The supports and loads of a study, with their places in it.
+pub struct SupportsAndLoads<'a> {
     supports: Vec<Entry<'a, Support>>,
     loads: Vec<Entry<'a, Load>>,
 }
 
-impl<'a> Given<'a> {
+impl<'a> SupportsAndLoads<'a> {
     /// Reads `[[support]]` and `[[load]]`; the study must say what holds the specimen.
     pub fn read(root: &Section<'a>) -> Self {
         if !root.has("support") {
@@ -115,11 +115,11 @@ fn entries<'a, T>(
     let sections = root.tables(key).into_iter();
     sections
         .filter_map(|section| {
-            let (group, says) = read(&section)?;
+            let (group, condition) = read(&section)?;
             Some(Entry {
                 section,
                 group,
-                says,
+                condition,
             })
         })
         .collect()
@@ -128,7 +128,7 @@ fn entries<'a, T>(
 fn pairs<T: Copy>(entries: &[Entry<T>]) -> Vec<(String, T)> {
     let entries = entries.iter();
     entries
-        .map(|entry| (entry.group.clone(), entry.says))
+        .map(|entry| (entry.group.clone(), entry.condition))
         .collect()
 }
 

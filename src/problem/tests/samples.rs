@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::balance::Balance;
-use super::boundary::BoundaryProblem;
-use super::boundary_conditions::{Load, Support};
+use super::super::balance::Balance;
+use super::super::boundary::BoundaryProblem;
+use super::super::boundary_conditions::{Load, Support};
 use crate::material::NeoHooke;
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::solve::{NewtonSettings, State};
