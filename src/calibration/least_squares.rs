@@ -65,7 +65,7 @@ pub enum Precision {
     Full,
 }
 
-/// Improves `start` within `bounds`; nothing where the method finds no way from there.
+/// Improves `start` within `bounds`; `None` where the method finds no way from there.
 pub fn minimise(
     model: &dyn Residuals,
     start: &[f64],
@@ -128,7 +128,7 @@ pub fn jacobian(model: &dyn Residuals, at: &[f64], fixed: &[bool]) -> DMatrix<f6
     jacobian
 }
 
-/// The coefficients of columns that come nearest to a target; nothing where a column is not finite.
+/// The coefficients of columns that come nearest to a target; `None` where a column is not finite.
 pub fn linear(columns: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f64>> {
     if !columns.iter().all(|entry| entry.is_finite()) {
         return None;

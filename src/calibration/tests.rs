@@ -387,24 +387,3 @@ fn stability_is_asked_for_as_far_as_each_test_goes() {
     let gent = fitted("gent", &all).quality;
     assert!(gent.stable[2].stretches[1] < 7.6 && gent.is_stable());
 }
-
-#[test]
-fn stress_measures_are_not_mixed() {
-    let read = |name: &str, measure: &str| {
-        let text = format!(
-            "# test: uniaxial\nstretch [-],{measure}_stress [MPa]\n1.1,0.1\n1.2,0.2\n1.3,0.3\n"
-        );
-        TestData::parse(name, &text, &Statements::new()).unwrap()
-    };
-    let tests = [read("a.csv", "nominal"), read("b.csv", "cauchy")];
-    let refused = fit(
-        Law::named("neo-hooke").unwrap(),
-        &tests,
-        &FitSettings::default(),
-    );
-    let refused = refused.unwrap_err().to_string();
-    assert!(
-        refused.contains("a.csv gives nominal stress and b.csv gives cauchy"),
-        "{refused}"
-    );
-}

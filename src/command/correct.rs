@@ -66,7 +66,7 @@ pub struct Options {
     /// of a table whose columns all name one other unit
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     pub unit: Option<f64>,
-    /// Columns of a table that are to be passed over; those that are not known are refused else
+    /// Columns of a table that are passed over; other columns that are not known are refused
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     pub ignore_columns: Vec<String>,
     /// The distance of the points of Ncorr's matrices, such as "0.5 mm"

@@ -114,7 +114,7 @@ impl Basis {
         values
     }
 
-    /// The roughness of a spline, Σ (Δ³θ)², as a quadratic form; nothing for the other forms.
+    /// The roughness of a spline, Σ (Δ³θ)², as a quadratic form; `None` for the other forms.
     pub fn roughness(&self) -> Option<DMatrix<f64>> {
         matches!(self.form, Form::Spline(_)).then(|| {
             let third = differences(self.count(), &[-1.0, 3.0, -3.0, 1.0]);

@@ -74,7 +74,7 @@ impl NormalEquations {
         self.sum += left * left;
     }
 
-    /// The minimum near `from` with given penalties; nothing where the data do not determine it.
+    /// The minimum near `from` with given penalties; `None` where the data do not determine it.
     pub fn minimum(
         &self,
         from: &DVector<f64>,

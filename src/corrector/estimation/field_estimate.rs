@@ -22,9 +22,9 @@ pub struct FieldEstimate {
     /// The total force on each edge that is not free.
     pub forces: Vec<EdgeForce>,
     /// ζ of the equilibrium of node after node in mm²/N: less the derivative of ½ ‖H u − d‖²_W by a force there, the weights
-    /// relative to their mean; nothing where the edges are not free.
+    /// relative to their mean; zero where the edges are not free.
     pub multipliers: Vec<f64>,
-    /// What is left of each marker; nothing for markers that do not lie on the mesh.
+    /// What is left of each marker; `None` for markers that do not lie on the mesh.
     pub markers: Vec<Option<MarkerEstimate>>,
     /// Standard deviation of each component of a marker of mean weight in mm.
     pub noise: f64,
@@ -39,7 +39,7 @@ pub struct FieldEstimate {
     pub degrees_of_freedom: f64,
     /// Half the width of a 95 % interval over the standard error.
     pub reach: f64,
-    /// Forces on the interior in N on node after node that stand for what the physics lacks; nothing where it is exact.
+    /// Forces on the interior in N on node after node that stand for what the physics lacks; zero where it is exact.
     pub interior_forces: Vec<f64>,
     /// The rule by which data, smoothness and physics were traded.
     pub rule: &'static str,
@@ -151,7 +151,7 @@ pub struct Smoothing {
 pub struct Contradiction {
     /// How probable so large a fall of the misfit is if all that is said of the edges holds.
     pub probability: f64,
-    /// The edges that contradict on their own, with the same probability of each; nothing where they do so together only.
+    /// The edges that contradict on their own, with the same probability of each; empty where they do so together only.
     pub edges: Vec<(String, f64)>,
 }
 

@@ -28,7 +28,7 @@ pub struct Knowledge {
     pub unnamed: Unnamed,
     /// Forces that were measured.
     pub forces: Vec<MeasuredForce>,
-    /// Standard deviation of each component of the displacement of markers without one of their own, in mm; nothing where it
+    /// Standard deviation of each component of the displacement of markers without one of their own, in mm; `None` where it
     /// is to be estimated.
     pub noise: Option<f64>,
     /// How markers that are far off are weighted.

@@ -51,7 +51,7 @@ struct Fine {
 }
 
 impl NearestField<'_> {
-    /// The mesh's own error; nothing where the mesh is too large to be refined, or the refined one has no equilibrium.
+    /// The mesh's own error; `None` where the mesh is too large to be refined, or the refined one has no equilibrium.
     pub fn mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
         let mesh = self.equations.task.specimen.mesh;
         if mesh.cell_count() > MOST_CELLS {

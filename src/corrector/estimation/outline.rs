@@ -16,7 +16,7 @@ const REACH: f64 = 0.02;
 pub struct Segment {
     /// Its group, or where it lies.
     pub name: String,
-    /// Number of its condition; nothing where no group names it.
+    /// Number of its condition; `None` where no group names it.
     pub condition: Option<usize>,
     /// Whether it is a part of the outer boundary, and not of a hole.
     pub outer: bool,

@@ -61,7 +61,7 @@ pub struct Regression<'a> {
 /// What goes on from one linearisation to the next.
 #[derive(Clone, Debug)]
 pub struct Trade {
-    /// λ of each prior; nothing before the first fit.
+    /// λ of each prior; empty before the first fit.
     pub smoothing: Vec<f64>,
     /// Factor in 0…1 of each marker's weight.
     pub trust: Vec<f64>,

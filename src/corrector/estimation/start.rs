@@ -28,14 +28,14 @@ pub struct Points<'a> {
 }
 
 impl Polynomial {
-    /// The polynomial nearest to all markers; nothing where they do not determine it.
+    /// The polynomial nearest to all markers; `None` where they do not determine it.
     pub fn nearest(points: &Points, degree: usize) -> Option<Self> {
         let all: Vec<usize> = (0..points.places.len()).collect();
         Self::through(points, degree, &all)
     }
 
     /// The polynomial whose nearest half of all markers is nearest: least trimmed squares, from small samples of the markers
-    /// by concentration. Nothing where they do not determine it.
+    /// by concentration. `None` where they do not determine it.
     ///
     /// # References
     /// P. J. Rousseeuw, K. Van Driessen, Data Min. Knowl. Disc. 12, 29 (2006), doi:10.1007/s10618-005-0024-4

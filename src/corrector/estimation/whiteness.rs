@@ -29,7 +29,7 @@ const NEIGHBOURS: usize = 4;
 type Pairs = Vec<[usize; 2]>;
 
 impl NearestField<'_> {
-    /// The correlation of what is left of neighbours; nothing where few markers are left, or what is left is no more than the
+    /// The correlation of what is left of neighbours; `None` where few markers are left, or what is left is no more than the
     /// mesh's own error and the rounding of numbers.
     pub fn whiteness(
         &self,

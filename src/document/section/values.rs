@@ -39,7 +39,7 @@ impl<'a> Section<'a> {
         .unwrap_or_default()
     }
 
-    /// One of several names; nothing when it is missing or unknown, which is recorded as a fault.
+    /// One of several names; `None` when it is missing or unknown, which is recorded as a fault.
     pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<T> {
         let name = self.read(key, "text in quotes", text)?;
         if let Some((_, choice)) = choices.iter().find(|(known, _)| *known == name) {
@@ -66,14 +66,14 @@ impl<'a> Section<'a> {
         .unwrap_or(low)
     }
 
-    /// A list of exactly two whole numbers from `low` to `high`; nothing when it is wrong, which is recorded
+    /// A list of exactly two whole numbers from `low` to `high`; `None` when it is wrong, which is recorded
     /// as a fault.
     pub fn count_pair(&self, key: &'static str, low: usize, high: usize) -> Option<[usize; 2]> {
         let wanted = format!("two whole numbers from {low} to {high}, such as [60, 20]");
         self.read(key, &wanted, |value| count_pair(value, low, high))
     }
 
-    /// The same, or a word that leaves the choice to the program: nothing within the result.
+    /// The same, or a word that leaves the choice to the program: `Some(None)`.
     pub fn count_pair_or(
         &self,
         word: &str,
