@@ -15,6 +15,7 @@ mod warnings;
 pub use problem::{OutputSettings, Study};
 pub use read::DEFAULT;
 use results::Results;
+pub use results::run;
 pub use warnings::warnings;
 
 /// Writes everything a study asks for into its folder.
