@@ -29,6 +29,6 @@ pub use import::{
     ImportedField, ImportedSeries, ImportedStep, MeshReading, import, import_field, import_series,
 };
 pub use nodal_field::NodalField;
-pub use outline::{Outline, OutlineOfPoints};
+pub use outline::{Outline, OutlineFault, OutlineOfPoints};
 pub use rounding::Polygon;
 pub use shapes::Shape;

@@ -23,9 +23,11 @@ use super::triangulate::fill;
 use crate::statistics::median;
 
 mod alpha_shape;
+mod fault;
 mod lattice;
 mod polygon;
 
+pub use fault::OutlineFault;
 use polygon::Polygon;
 
 /// Lines are moved by less than so many spacings when they are straightened.
@@ -66,13 +68,13 @@ impl Outline {
     /// The lines around points.
     ///
     /// # Errors
-    /// Says why the points have no outline, or that they lie in several parts.
-    pub fn of_points(points: &[[f64; 2]]) -> Result<OutlineOfPoints, String> {
+    /// An [`OutlineFault`].
+    pub fn of_points(points: &[[f64; 2]]) -> Result<OutlineOfPoints, OutlineFault> {
         let mut points = points.to_vec();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         points.dedup();
         if points.len() < 6 {
-            return Err(format!("{} points have no outline", points.len()));
+            return Err(OutlineFault::TooFew(points.len()));
         }
         let (lines, spacing) = alpha_shape::lines(&points, 1.0)?;
         let mut outline = Self::straightened(&lines, spacing)?;
@@ -111,7 +113,7 @@ impl Outline {
     }
 
     /// The lines without the steps of a grid.
-    fn straightened(lines: &[Vec<[f64; 2]>], spacing: f64) -> Result<Self, String> {
+    fn straightened(lines: &[Vec<[f64; 2]>], spacing: f64) -> Result<Self, OutlineFault> {
         let straightened = lines
             .iter()
             .map(|line| polygon::straightened(line, STRAIGHT * spacing));
@@ -128,7 +130,7 @@ impl Outline {
             }
         }
         if outline.outer.is_empty() {
-            return Err("the points are too far apart to have an outline".into());
+            return Err(OutlineFault::TooFarApart);
         }
         Ok(outline)
     }
@@ -136,8 +138,8 @@ impl Outline {
     /// The lines a distance farther out: the outer one wider, holes narrower.
     ///
     /// # Errors
-    /// Says that the lines cross then.
-    pub fn widened(&self, gap: f64) -> Result<Self, String> {
+    /// An [`OutlineFault`].
+    pub fn widened(&self, gap: f64) -> Result<Self, OutlineFault> {
         let outline = Self {
             outer: polygon::shifted(&self.outer, gap),
             holes: self
@@ -154,15 +156,15 @@ impl Outline {
     /// Lines in any direction and order: the one around the largest area is the outer one.
     ///
     /// # Errors
-    /// Says what is wrong with the lines.
-    pub fn of_lines(mut lines: Vec<Vec<[f64; 2]>>) -> Result<Self, String> {
+    /// An [`OutlineFault`].
+    pub fn of_lines(mut lines: Vec<Vec<[f64; 2]>>) -> Result<Self, OutlineFault> {
         for line in &mut lines {
             line.dedup();
             if line.len() > 1 && line.first() == line.last() {
                 line.pop();
             }
             if line.len() < 3 || polygon::is_straight(line) {
-                return Err("a line of the outline encloses no area".into());
+                return Err(OutlineFault::NoArea);
             }
         }
         lines.sort_by(|a, b| polygon_area(b).abs().total_cmp(&polygon_area(a).abs()));
@@ -172,7 +174,7 @@ impl Outline {
             }
         }
         let mut lines = lines.into_iter();
-        let outer = lines.next().ok_or("the outline has no line")?;
+        let outer = lines.next().ok_or(OutlineFault::NoLine)?;
         let outline = Self {
             outer,
             holes: lines.collect(),
@@ -186,18 +188,13 @@ impl Outline {
     }
 
     /// Whether no line crosses itself or another one, and all holes lie inside.
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), OutlineFault> {
         let lines: Vec<Polygon> = self.lines().map(|line| Polygon(line)).collect();
-        if let Some([x, y]) = polygon::crossing(&lines) {
-            return Err(format!(
-                "the outline crosses itself near ({x:.4}, {y:.4}) mm"
-            ));
+        if let Some(place) = polygon::crossing(&lines) {
+            return Err(OutlineFault::Crossing(place));
         }
         match self.holes.iter().find(|hole| !lines[0].contains(hole[0])) {
-            Some(hole) => Err(format!(
-                "the outline has two separated parts, one of them near ({:.4}, {:.4}) mm",
-                hole[0][0], hole[0][1]
-            )),
+            Some(hole) => Err(OutlineFault::SeparatedLines(hole[0])),
             None => Ok(()),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
+use super::fault::OutlineFault;
 use crate::mesh::geometry::{distance, polygon_area};
 use crate::mesh::triangulate::delaunay;
 use crate::statistics::median;
@@ -19,11 +20,11 @@ type Line = Vec<[f64; 2]>;
 /// usual by the factor `wider`.
 ///
 /// # Errors
-/// Says why there is no such line, or that there are several parts.
-pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), String> {
+/// An [`OutlineFault`].
+pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), OutlineFault> {
     let triangles = delaunay(points);
     if triangles.is_empty() {
-        return Err("the points lie on one line".into());
+        return Err(OutlineFault::OneLine);
     }
     let spacing = median_edge(points, &triangles);
     let small = |triangle: &[usize; 3]| radius(points, triangle) < wider * RADIUS * spacing;
@@ -87,7 +88,7 @@ fn largest_part(
     points: &[[f64; 2]],
     triangles: &[[usize; 3]],
     inside: &mut [bool],
-) -> Result<(), String> {
+) -> Result<(), OutlineFault> {
     let mut by_edge: HashMap<[usize; 2], usize> = HashMap::new();
     for (index, [a, b, c]) in triangles.iter().enumerate() {
         by_edge.extend([[*a, *b], [*b, *c], [*c, *a]].map(|edge| (edge, index)));
@@ -117,7 +118,7 @@ fn largest_part(
     }
     let largest = (0..areas.len()).max_by(|a, b| areas[*a].total_cmp(&areas[*b]));
     let Some(largest) = largest else {
-        return Err("the points are too far apart to have an outline".into());
+        return Err(OutlineFault::TooFarApart);
     };
     let whole: f64 = areas.iter().sum();
     let second = (0..areas.len()).find(|part| *part != largest && areas[*part] > STRAY * whole);
@@ -126,10 +127,8 @@ fn largest_part(
             .iter()
             .position(|part| *part == second)
             .unwrap_or_default();
-        let [x, y] = points[triangles[triangle][0]];
-        return Err(format!(
-            "the points lie in two separated parts, one of them near ({x:.4}, {y:.4}) mm"
-        ));
+        let place = points[triangles[triangle][0]];
+        return Err(OutlineFault::SeparatedPoints(place));
     }
     for (inside, part) in inside.iter_mut().zip(&part) {
         *inside = *part == largest;

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::request::{MeshSource, Request};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, read_lines};
-use crate::mesh::{Allowed, Mesh, Outline, import};
+use crate::mesh::{Allowed, Mesh, Outline, OutlineFault, import};
 
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
@@ -95,7 +95,8 @@ fn of_field(mesh: &Mesh) -> SpecimenMesh {
 /// A mesh inside the outline of the markers.
 fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
     const HINT: &str = "give the specimen's edge with --outline, or its mesh with --mesh";
-    let refuse = |reason: String| Error::input(format!("a mesh cannot be made: {reason}"), HINT);
+    let refuse =
+        |reason: OutlineFault| Error::input(format!("a mesh cannot be made: {reason}"), HINT);
     let found = Outline::of_points(&field.series.places()).map_err(refuse)?;
     let mut outline = found.outline;
     let mut warnings = Vec::new();
