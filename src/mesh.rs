@@ -23,10 +23,11 @@ mod triangulate;
 pub use blocks::{Block, mesh_of_blocks};
 pub use cell_shape::{CellShape, GAUSS_3, GAUSS_5, QuadraturePoint};
 pub use cells::{Group, Mesh};
-pub use faults::Allowed;
+pub use faults::{Allowed, UnknownName};
 pub use grid::{Grid, Side};
 pub use import::{
-    ImportedField, ImportedSeries, ImportedStep, MeshReading, import, import_field, import_series,
+    ImportFault, ImportedField, ImportedSeries, ImportedStep, MeshReading, import, import_field,
+    import_series,
 };
 pub use nodal_field::NodalField;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};

@@ -7,7 +7,9 @@ use clap::Args;
 
 use super::export::not_for_other_codes;
 use super::terminal::{Outcome, print, progress_bar, warn};
-use crate::compare::imported::{Difference, ExternalField, ImportSettings, ModelField, Sites};
+use crate::compare::imported::{
+    Difference, ExternalField, ImportSettings, Mismatch, ModelField, Sites,
+};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
@@ -64,7 +66,7 @@ pub fn run(options: Options) -> Outcome {
     let compared = compute(&options)?;
     let fields = compared.fields.iter();
     let differences = fields.map(|field| compared.sites.difference(field));
-    let differences: Result<Vec<Difference>, String> = differences.collect();
+    let differences: Result<Vec<Difference>, Mismatch> = differences.collect();
     let differences = differences.map_err(|reason| {
         let message = format!("the field of {} {reason}", options.field.display());
         Error::input(

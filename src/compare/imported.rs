@@ -76,6 +76,45 @@ const NEAR_CELLS: f64 = 0.25;
 /// Boxes around meshes of the same specimen may differ by so much of their size.
 const NEAR_SIZE: f64 = 0.02;
 
+/// Why a field cannot be compared with those of a specimen.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Mismatch {
+    /// Meshes of different sizes in mm.
+    #[error(
+        "the field's mesh measures {:.4} × {:.4} mm, the specimen {:.4} × {:.4} mm",
+        .found[0], .found[1], .expected[0], .expected[1]
+    )]
+    Size {
+        /// Length and width of the field's mesh.
+        found: [f64; 2],
+        /// Length and width of the specimen.
+        expected: [f64; 2],
+    },
+    /// Points and specimen as in two units of length.
+    #[error(
+        "the points span {found:.4} mm and the specimen {expected:.4} mm: about a factor of {ratio}, as between two units of length"
+    )]
+    Unit {
+        /// The size of the points in mm.
+        found: f64,
+        /// The size of the specimen in mm.
+        expected: f64,
+        /// The factor between two units that is nearest.
+        ratio: f64,
+    },
+    /// A place that one of them has and the other has not.
+    #[error("{what} at ({:.4}, {:.4}) mm", .place[0], .place[1])]
+    Outside {
+        /// What does not reach what.
+        what: &'static str,
+        /// The place in mm.
+        place: [f64; 2],
+    },
+    /// A field that rests, so that no deviation can be related to it.
+    #[error("is zero everywhere")]
+    Zero,
+}
+
 impl ExternalField {
     /// Reads `.vtu`, `.vtk`, `.pvd`, `.msh`, `.frd` or `.csv`.
     ///
@@ -112,7 +151,7 @@ impl ExternalField {
     ///
     /// # Errors
     /// Says where the field does not belong to the specimen.
-    pub fn sites(&self, lattice: &Mesh) -> Result<Sites, String> {
+    pub fn sites(&self, lattice: &Mesh) -> Result<Sites, Mismatch> {
         match self {
             Self::OnMesh(field) => {
                 same_size(&field.mesh, lattice)?;
@@ -161,11 +200,11 @@ impl Sites {
     ///
     /// # Errors
     /// Says that the imported field rests, so that nothing can be related to it.
-    pub fn difference(&self, field: &ModelField) -> Result<Difference, String> {
+    pub fn difference(&self, field: &ModelField) -> Result<Difference, Mismatch> {
         let found = self.at(field);
         let size = self.expected.weighted_norm(&self.weights);
         if size == 0.0 {
-            return Err("is zero everywhere".into());
+            return Err(Mismatch::Zero);
         }
         let (largest, place) = found.largest_distance(&self.expected);
         let product = |a: &[f64], b: &[f64]| -> f64 {
@@ -184,7 +223,7 @@ impl Sites {
 }
 
 /// Whether two meshes have boxes of one size.
-fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), String> {
+fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), Mismatch> {
     let size = |mesh: &Mesh| {
         let [low, high] = mesh.bounding_box();
         [0, 1].map(|axis| high[axis] - low[axis])
@@ -193,36 +232,37 @@ fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), String> {
     if (0..2).all(|axis| (found[axis] / expected[axis] - 1.0).abs() <= NEAR_SIZE) {
         return Ok(());
     }
-    Err(format!(
-        "the field's mesh measures {:.4} × {:.4} mm, the specimen {:.4} × {:.4} mm",
-        found[0], found[1], expected[0], expected[1]
-    ))
+    Err(Mismatch::Size { found, expected })
 }
 
 /// Whether points and specimen are in one unit of length: no factor of a hundred or more lies between their sizes. A field of a
 /// small window is no fault.
-fn near_in_size(places: &[[f64; 2]], specimen: &Mesh) -> Result<(), String> {
+fn near_in_size(places: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch> {
     let size = |places: &[[f64; 2]]| {
         let [low, high] = bounding_box(places.iter().copied());
         (high[0] - low[0]).hypot(high[1] - low[1])
     };
     let (found, expected) = (size(places), size(&specimen.nodes));
     match unit_ratio(expected / found).filter(|ratio| *ratio >= 100.0) {
-        Some(ratio) => Err(format!(
-            "the points span {found:.4} mm and the specimen {expected:.4} mm: about a factor of {ratio}, as between two \
-             units of length"
-        )),
+        Some(ratio) => Err(Mismatch::Unit {
+            found,
+            expected,
+            ratio,
+        }),
         None => Ok(()),
     }
 }
 
 /// Whether all places lie in a mesh.
-fn covers(mesh: &Mesh, places: &[[f64; 2]], what: &str) -> Result<(), String> {
+fn covers(mesh: &Mesh, places: &[[f64; 2]], what: &'static str) -> Result<(), Mismatch> {
     match places
         .iter()
         .find(|place| mesh.outside(**place) > NEAR_CELLS)
     {
-        Some([x, y]) => Err(format!("{what} at ({x:.4}, {y:.4}) mm")),
+        Some(place) => Err(Mismatch::Outside {
+            what,
+            place: *place,
+        }),
         None => Ok(()),
     }
 }

@@ -25,7 +25,7 @@ mod parts;
 mod sides;
 mod touching;
 
-pub use finding::Allowed;
+pub use finding::{Allowed, UnknownName};
 use sides::Sides;
 
 impl Mesh {

@@ -21,7 +21,9 @@ mod vtu;
 
 use raw::{Raw, read_text};
 
-pub use field::{ImportedField, ImportedSeries, ImportedStep, import_field, import_series};
+pub use field::{
+    ImportFault, ImportedField, ImportedSeries, ImportedStep, import_field, import_series,
+};
 
 /// How a mesh is read from a file.
 #[derive(Clone, Copy, Debug, PartialEq)]

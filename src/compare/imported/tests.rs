@@ -34,7 +34,7 @@ fn written(name: &str, text: &str) -> tempfile::TempPath {
 fn refusal(name: &str, text: &str) -> String {
     match ExternalField::read(&written(name, text), &SETTINGS) {
         Err(told) => told.to_string(),
-        Ok(imported) => imported.sites(&model([6, 2]).mesh).unwrap_err(),
+        Ok(imported) => imported.sites(&model([6, 2]).mesh).unwrap_err().to_string(),
     }
 }
 

@@ -15,15 +15,20 @@ pub struct Allowed {
     pub polygons: bool,
 }
 
+/// A name that is none of [`Allowed::NAMES`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("\"{0}\" is not known here")]
+pub struct UnknownName(String);
+
 impl Allowed {
     /// The names that studies and options use.
     pub const NAMES: [&'static str; 4] = ["seams", "parts", "hinges", "polygons"];
 
-    /// Those of some names; the first name that is not known otherwise.
+    /// Those of some names.
     ///
     /// # Errors
-    /// The unknown name.
-    pub fn of_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
+    /// The first [`UnknownName`].
+    pub fn of_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, UnknownName> {
         let mut allowed = Self::default();
         for name in names {
             match name {
@@ -31,7 +36,7 @@ impl Allowed {
                 "parts" => allowed.parts = true,
                 "hinges" => allowed.hinges = true,
                 "polygons" => allowed.polygons = true,
-                other => return Err(other.to_owned()),
+                other => return Err(UnknownName(other.to_owned())),
             }
         }
         Ok(allowed)

@@ -8,6 +8,17 @@ use super::{frd, gmsh, pvd, vtk};
 use crate::mesh::cells::Mesh;
 use crate::units::{self, Dimension};
 
+/// What a file holds that cannot be read as a displacement field, in words that follow the file's name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct ImportFault(String);
+
+impl From<String> for ImportFault {
+    fn from(reason: String) -> Self {
+        Self(reason)
+    }
+}
+
 /// A displacement field and its mesh.
 #[derive(Clone, Debug)]
 pub struct ImportedField {
@@ -50,13 +61,13 @@ const NEAR: f64 = 1e-4;
 /// steps the one with the time `time` is taken.
 ///
 /// # Errors
-/// Says what the file holds that cannot be read, or what is wrong with it.
+/// An [`ImportFault`].
 pub fn import_field(
     path: &Path,
     unit: f64,
     array: Option<&str>,
     time: f64,
-) -> Result<ImportedField, String> {
+) -> Result<ImportedField, ImportFault> {
     let ImportedSeries {
         mesh,
         mut steps,
@@ -77,11 +88,12 @@ pub fn import_field(
         let known = known.join(", ");
         return Err(format!(
             "has no step at the time {time}; it has {known}: choose one with --time"
-        ));
+        )
+        .into());
     };
     let step = steps.swap_remove(chosen);
     if let Some(reason) = step.hole {
-        return Err(reason);
+        return Err(reason.into());
     }
     Ok(ImportedField {
         mesh,
@@ -96,12 +108,16 @@ pub fn import_field(
 /// Reads all steps of a file, see [`import_field`].
 ///
 /// # Errors
-/// Says what the file holds that cannot be read, or what is wrong with it.
+/// An [`ImportFault`].
 pub fn import_series(
     path: &Path,
     unit: f64,
     array: Option<&str>,
-) -> Result<ImportedSeries, String> {
+) -> Result<ImportedSeries, ImportFault> {
+    Ok(read_series(path, unit, array)?)
+}
+
+fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, String> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
@@ -143,7 +159,7 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
         {
             return Err(format!("names the collection {name} as one of its files"));
         }
-        let mut part = import_series(&file, unit, array)
+        let mut part = read_series(&file, unit, array)
             .map_err(|reason| format!("names {name}, which {reason}"))?;
         for step in &mut part.steps {
             step.time = Some(time);

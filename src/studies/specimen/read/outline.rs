@@ -66,11 +66,7 @@ fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
     let allowed = Allowed::of_names(names.iter().map(String::as_str));
     if let Err(unknown) = &allowed {
         let hint = format!("one of {}", Allowed::NAMES.join(", "));
-        section.fault(
-            "allowed",
-            &format!("\"{unknown}\" is not known here"),
-            &hint,
-        );
+        section.fault("allowed", &unknown.to_string(), &hint);
     }
     if file.is_empty() {
         section.fault("file", "must name a mesh", "such as \"specimen.msh\"");
