@@ -68,7 +68,7 @@ pub struct StepComparison {
     pub mass_spring: Option<Deviation>,
     /// After it.
     pub corrected: Option<Deviation>,
-    /// The reference's own error; nothing where one of its meshes has no solution.
+    /// The reference's own error; `None` where one of its meshes has no solution.
     pub reference: Option<SelfConvergence>,
 }
 
@@ -100,7 +100,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Compares a field on `mesh` with the finest mesh at stretch number `step`; nothing where that has no solution.
+    /// Compares a field on `mesh` with the finest mesh at stretch number `step`; `None` where that has no solution.
     pub fn deviation(
         &self,
         mesh: &Mesh,
@@ -134,7 +134,7 @@ impl<'a> Reference<'a> {
             .collect()
     }
 
-    /// The reference's own error at stretch number `step`; nothing where one of its meshes has no solution.
+    /// The reference's own error at stretch number `step`; `None` where one of its meshes has no solution.
     pub fn self_convergence(&self, step: usize) -> Option<SelfConvergence> {
         let of_mesh =
             |(mesh, solutions): (&'a Mesh, &'a [State])| Some((mesh, solutions.get(step)?));

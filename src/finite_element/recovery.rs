@@ -222,7 +222,7 @@ impl<'a> Patches<'a> {
         cells.extend(around);
     }
 
-    /// Least squares on the nodes of some cells; nothing where they do not determine the polynomial.
+    /// Least squares on the nodes of some cells; `None` where they do not determine the polynomial.
     fn fit_on(&self, corner: usize, cells: &BTreeSet<usize>, degree: usize) -> Option<Fit> {
         let mesh = self.mesh;
         let of_cells = |cells: &mut dyn Iterator<Item = &usize>| -> BTreeSet<usize> {
@@ -260,7 +260,7 @@ impl<'a> Patches<'a> {
     }
 }
 
-/// A⁺ diag(w), which makes arg min |A x − diag(w) b| of b; nothing where A is nearly deficient.
+/// A⁺ diag(w), which makes arg min |A x − diag(w) b| of b; `None` where A is nearly deficient.
 fn least_squares(matrix: DMatrix<f64>, weights: &DVector<f64>) -> Option<DMatrix<f64>> {
     let decomposition = matrix.qr();
     let (mut values, upper) = (decomposition.q().transpose(), decomposition.unpack_r());

@@ -384,6 +384,16 @@ mod tests {
     }
 
     #[test]
+    fn a_law_outside_the_registry_makes_a_card() {
+        let law = Arc::new(NeoHooke { c10: 0.05 });
+        let card = Card::of_law("mine", law, [0.8, 1.5]);
+        assert_eq!((&*card.name, &*card.law_name), ("mine", "mine"));
+        assert!((card.law.youngs_modulus() - 0.3).abs() < 1e-15);
+        assert!(card.covers(1.5) && !card.covers(1.6));
+        assert!(card.density.is_none() && card.viscosity.is_none());
+    }
+
+    #[test]
     fn an_unknown_card_is_answered_with_the_nearest_name() {
         let fault = Card::load("pva10", Path::new(".")).unwrap_err();
         assert!(

@@ -61,7 +61,7 @@ pub fn simple_shear(law: &dyn HyperelasticLaw, amount: f64) -> f64 {
 /// Points of the curves of a law: five values of λ, and of 1 + γ in simple shear, with nominal stresses in MPa.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// The test; nothing for simple shear.
+    /// The test; `None` for simple shear.
     pub mode: Option<Mode>,
     /// λ or 1 + γ, and nominal stress.
     pub points: [[f64; 2]; 5],

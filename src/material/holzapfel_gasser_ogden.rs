@@ -82,7 +82,7 @@ impl HolzapfelGasserOgden {
         }
     }
 
-    /// Eₐ, ∂Eₐ/∂F, and Ψ, Ψ′, Ψ″ of one family; nothing for fibres that are pressed.
+    /// Eₐ, ∂Eₐ/∂F, and Ψ, Ψ′, Ψ″ of one family; `None` for fibres that are pressed.
     fn family(&self, kinematics: &Kinematics, [x, y]: [f64; 2]) -> Option<Family> {
         let [e11, e12, e22] = kinematics.stretch_change;
         let stretched = x * x * e11 + 2.0 * x * y * e12 + y * y * e22; // I₄ − 1

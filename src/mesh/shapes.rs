@@ -86,7 +86,7 @@ impl Shape {
         }
     }
 
-    /// The place on a curved side that a place beside it belongs to; nothing for a straight side.
+    /// The place on a curved side that a place beside it belongs to; `None` for a straight side.
     fn on_outline(self, side: &str, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let on_circle = |[a, b]: [f64; 2], radius: f64| {
             let (dx, dy) = (x - a, y - b);

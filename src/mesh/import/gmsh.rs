@@ -57,7 +57,7 @@ pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, String> {
     Ok(views)
 }
 
-/// One step of a view after its names; nothing where its values are no vectors.
+/// One step of a view after its names; `None` where its values are no vectors.
 fn view_step(words: &mut Words) -> Result<Option<Step>, String> {
     let reals: Vec<f64> = (0..words.next::<usize>()?)
         .map(|_| words.next())

@@ -45,6 +45,14 @@ pub struct Specimen {
 }
 
 impl Specimen {
+    /// The specimen of another material, such as one made by [`Card::of_law`].
+    #[must_use]
+    pub fn with_card(mut self, card: Card) -> Self {
+        self.problem.law = std::sync::Arc::clone(&card.law);
+        self.card = card;
+        self
+    }
+
     /// A specimen on a mesh, as if it had been read from a file, with all loads at once.
     pub fn of_mesh(
         card: Card,

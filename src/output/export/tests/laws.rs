@@ -241,7 +241,7 @@ fn deviation(card: &Card, energy: &dyn Fn(&Sheet) -> f64) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// The words of Abaqus, CalculiX and FEBio for every law of the registry; nothing where the code lacks it.
+/// The words of Abaqus, CalculiX and FEBio for every law of the registry; `None` where the code lacks it.
 const WORDS: [(&str, [Option<&str>; 3]); 16] = [
     (
         "neo-hooke",
