@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(
             found,
             [
-                "support 1 on the group `left` (a CLAMP) and support 2 on the group `left` (x = 5 mm) contradict each other at node 0 (0.0, -5.0) mm along x and at 4 more nodes"
+                "support 1 on the group `left` (a clamp) and support 2 on the group `left` (x = 5 mm) contradict each other at node 0 (0.0, -5.0) mm along x and at 4 more nodes"
             ]
         );
         let corner = told(&[("top", moved(None, Some(1.0))), ("left", CLAMP)]);
