@@ -7,12 +7,12 @@
 //! ```
 //!
 //! The conditions are linearised about the current field and the [projection](factor) of ū onto the
-//! linearised conditions is repeated until they hold. ζ and η are the derivatives of the smallest ½ ‖u − ū‖²_W by
-//! the right-hand sides, with the sign reversed where a condition reads c(u) = b: ∂(minimum)/∂b = −ψ.
+//! linearised conditions is repeated until they hold. ζ and η are the derivatives of the smallest ½ ‖u − ū‖²_W with
+//! respect to the right-hand sides, with the sign reversed where a condition reads c(u) = b: ∂(minimum)/∂b = −ψ.
 //!
 //! Where F and T together give as many conditions as there are unknowns, ū has no say in the result: each
-//! step is then a Newton step that starts at ū, whatever W is, and the multipliers tell how far ū was
-//! from equilibrium. With fewer conditions it is a least-squares problem in earnest.
+//! step is then a Newton step that starts at ū, whatever W is, and the multipliers show how far ū was
+//! from equilibrium. With fewer conditions it is a genuine least-squares problem.
 //!
 //! The corrector does not know how ū was made.
 //!

@@ -1,4 +1,4 @@
-//! What a user runs: plates, specimens, motions, fields of markers. Each kind is a room of its own.
+//! What a user runs: plates, specimens, motions, fields of markers. Each kind has a module of its own.
 
 use std::path::Path;
 use std::time::Instant;

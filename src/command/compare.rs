@@ -1,4 +1,4 @@
-//! `gelbench compare`: the models of a study beside a displacement field of another program.
+//! `gelbench compare`: the models of a study compared with a displacement field of another program.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The fields of all models beside a displacement field of another program.
+//! The fields of all models compared with a displacement field of another program.
 //!
 //! ```text
 //! displacement            100 √(Σ A |u − v|² / Σ A |v|²)                            [%]

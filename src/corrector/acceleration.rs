@@ -1,6 +1,6 @@
 //! Corrections with a retained factor: Anderson's acceleration.
 //!
-//! A factor of another field gives the step δ(u) only roughly; repeating u ← u + δ(u) converges slowly or
+//! A factor taken at another field gives the step δ(u) only roughly; repeating u ← u + δ(u) converges slowly or
 //! not at all, since the tangent of a hydrogel grows ninefold on the way to 100 % stretch. The steps and
 //! the changes of the last iterates are therefore combined:
 //!

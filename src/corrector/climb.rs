@@ -1,4 +1,4 @@
-//! The corrector's fast path: few springs first, then climb.
+//! The corrector's fast path: solve a few springs, then climb from grid to grid.
 //!
 //! The springs are solved on a very coarse lattice and corrected there. The field then climbs from grid to grid,
 //! each with about twice as many cells along both axes: it is interpolated by cubics, the governing equation is
@@ -9,7 +9,7 @@
 //! grid, so that the next one is about q d: the iteration begins with it.
 //!
 //! **When to stop.** What the grids that follow would add is d q/(1 − q): the discretisation error. The iteration
-//! ends when what it leaves, by the fall of its corrections, is below a stated share of that.
+//! ends when what it leaves, judged by the fall of its corrections, is below a stated share of that.
 
 use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};

@@ -1,7 +1,7 @@
 //! How well the corrected field and its parameters are known.
 //!
 //! With data of equal but unknown precision, ū = u + noise of variance s²/w, the corrected field is the
-//! estimate of largest likelihood and
+//! maximum-likelihood estimate, and
 //!
 //! ```text
 //! s² = ‖u − ū‖²_W / (m − q)                   m conditions, q unknowns without data

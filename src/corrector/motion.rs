@@ -6,7 +6,7 @@
 //! F₀ = M (u₁ − u₀ − h u̇₀)/h² + (½ − β) g₀ + β g₁ + ½ c₀₁ = 0                        at the start, with u₀ and u̇₀
 //! ```
 //!
-//! c₀₁ are the viscous forces in the middle of a step: at ½ (u₀ + u₁) with the rate (u₁ − u₀)/h. β = ¼ is Newmark's average
+//! c₀₁ are the viscous forces at the middle of a step: at ½ (u₀ + u₁) with the rate (u₁ − u₀)/h. β = ¼ is Newmark's average
 //! acceleration, β = 0 the central differences of Eq. 5; both are of second order in h.
 //!
 //! **Known start.** With u₀ and u̇₀ (or the first two instants), the supports and all loads, there is one equation for
@@ -15,8 +15,8 @@
 //! goes through windows of time with one factor of the block on the diagonal, retained as long as it serves.
 //!
 //! **Unknown start.** A recorded motion has no known start: there are two equations fewer than instants at each unknown,
-//! and [`EquationOfMotion::smooth`] solves the least-squares problem of Eq. 6–12 in earnest. Noise that no motion of the
-//! body makes is removed: of white noise over n instants about √(2/n) is left.
+//! and [`EquationOfMotion::smooth`] solves the least-squares problem of Eq. 6–12. Noise that no motion of the
+//! body can produce is removed: of white noise over n instants about √(2/n) is left.
 //!
 //! # References
 //! H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems, Eq. 5–19;

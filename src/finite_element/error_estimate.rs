@@ -11,8 +11,8 @@
 //! eigenvalues set to zero. Where the sheet is compressed small turns have negative energy, and a cell could have a
 //! negative error; where it is in tension 𝔸⁺ = 𝔸.
 //!
-//! **Force.** R is the reaction of a group along an axis and z the field that follows a unit motion of that group by the
-//! tangent at the solution, so that no test field at rest there does work on it: z is the influence of the field's error
+//! **Force.** R is the reaction of a group along an axis and z the field that follows from a unit motion of that group with the
+//! tangent at the solution, so that no test field that vanishes there does work on it: z is the influence of the field's error
 //! on R. Where R is the displacement of a grip with a given force, z is the field of a unit force on the grip, and the sign
 //! is the opposite one. With E = G* − ∇u_h and Z = z's recovered gradient less its own,
 //!

@@ -1,4 +1,4 @@
-//! A better gradient of a finite-element field: polynomial-preserving recovery.
+//! A better gradient of a finite-element field, by polynomial-preserving recovery.
 //!
 //! Around every corner a polynomial one degree above the elements' is fitted to the nodal displacements by least
 //! squares; its gradient is exact for every field of that degree, on any mesh, whatever the cells. Within a cell the

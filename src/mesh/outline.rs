@@ -1,11 +1,11 @@
-//! Closed lines around a specimen, from the places of its markers, and meshes inside them.
+//! Closed lines around a specimen, found from the positions of its markers, and meshes inside them.
 //!
 //! The outline of scattered points is the boundary of those Delaunay triangles whose circumscribed circle has a
-//! radius below 1.9 s, where the spacing s is the median length of all Delaunay edges (an α-shape). Gaps of up to
-//! two by two points of a grid are closed so; a wider one inside is a hole. The lines are then straightened where
+//! radius below 1.9 s, where the spacing s is the median length of all Delaunay edges (an α-shape). This closes gaps of up to
+//! two by two points of a grid; a wider one inside is a hole. The lines are then straightened where
 //! this moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge. Where points
 //! are scattered, as where many of a grid are lost, gaps at the edge are wider: the outer line is that of circles 1.6 times as
-//! large. Scattered points, and steps of the outer line shorter than 2.5 spacings, are told as doubts.
+//! large. Scattered points, and steps of the outer line shorter than 2.5 spacings, are reported as doubts.
 //!
 //! Meshes have nodes in a triangular lattice inside and evenly along the lines; where an angle would be below 25°,
 //! nodes are added (Ruppert's refinement).

@@ -1,4 +1,4 @@
-//! Flat specimens by their measures, meshed with curved blocks.
+//! Flat specimens given by their measures, meshed with curved blocks.
 
 use std::f64::consts::TAU;
 

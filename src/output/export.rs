@@ -1,12 +1,12 @@
 //! A boundary-value problem exported to Abaqus, CalculiX or FEBio, so that it can be solved by a code that is
-//! trusted already.
+//! already trusted.
 //!
 //! What the codes share is worked out here once: node sets of the named groups, what holds which nodes, nodal
 //! forces, loaded edges, the law. A writer puts it into words.
 //!
 //! | gelbench | goes out as |
 //! |---|---|
-//! | load factor s | one step for each, as long as s grows: the total time is the load factor |
+//! | load factor s | one step for each, as s grows: the total time is the load factor |
 //! | clamp, displacement, roller, symmetry | prescribed on a node set |
 //! | grip with a given force | nodes that follow one of them (`*EQUATION`), which takes the force; not for FEBio |
 //! | rotation | prescribed node by node |

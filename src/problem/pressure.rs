@@ -1,4 +1,4 @@
-//! Pressure that follows the edges on which it acts.
+//! Pressure that follows the edges it acts on.
 //!
 //! ```text
 //! fₐ = −s p t ∫ Nₐ n ds = −s p t ∫ Nₐ (dy, −dx)     over the deformed edges                  [N]

@@ -1,9 +1,9 @@
 //! Motions without strain that no support prevents.
 //!
-//! Cells that share an edge are one rigid body; bodies that share single nodes hang together by hinges. With a body's
+//! Cells that share an edge are one rigid body; bodies that share a single node are hinged together. With a body's
 //! motion q = (a, b, ω L) about the centre of the mesh, L its size, the displacement of a node at (x, y) is
 //! (a − ω y, b + ω x). Every held unknown, every tie and every hinge is a linear condition on the motions; those that satisfy all
-//! of them strain nothing. Forces, and what they stiffen, do not count: a body that only its tension would keep in place has such
+//! of them strain nothing. Forces, and what they stiffen, do not count: a body that only its tension would hold in place has such
 //! a motion at rest.
 
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! The corrector in time: a released plate, and a noisy recorded motion.
 //!
-//! The reference are quadratic finite elements on nodes half as far apart, integrated by generalised-α, with half the
+//! The reference is quadratic finite elements on nodes half as far apart, integrated by generalised-α, with half the
 //! step too. It never shares its mesh with the corrector.
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Cells that are no cells, cells given twice, and cells of a bad shape.
+//! Cells without area or turned inside out, cells given twice, and cells of a bad shape.
 
 use std::collections::HashMap;
 

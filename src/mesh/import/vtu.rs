@@ -5,7 +5,7 @@
 //! compressed    [blocks] [size of a block] [size of the last, 0: full] [compressed sizes …] blocks
 //! ```
 //!
-//! The numbers in brackets are of the file's `header_type`. How many values an array has follows from the numbers of
+//! The numbers in brackets have the file's `header_type`. How many values an array has follows from the numbers of
 //! points and cells, so that the size of everything is known, and bounded, before it is decoded.
 //!
 //! # References

@@ -1,10 +1,10 @@
 //! The `.inp` files of Abaqus and of CalculiX, which has taken over most of Abaqus' keywords.
 //!
 //! Both codes write Ogden's law as Σ 2 μ/α² (…) and a neo-Hookean volume energy as (J − 1)²/D₁, so that the bulk
-//! modulus is K = 2/D₁. Abaqus' plane-stress elements are incompressible with D = 0. CalculiX makes solids of them
+//! modulus is K = 2/D₁. Abaqus' plane-stress elements are incompressible with D = 0. CalculiX turns them into solids
 //! and needs a finite K; its eight-node elements go out with reduced integration (`CPS8R`). On a strip with a hole
 //! under traction, Q2 serendipity at load factors 0.5 and 1, they were 0.22 and 0.14 % from the sheet, fully integrated
-//! ones 0.48 and 0.30 %; under the other loads tried both were about equally far.
+//! ones 0.48 and 0.30 %; under the other loads tried both were about equally far off.
 //!
 //! # References
 //! Abaqus 2016 Analysis User's Guide, 22.5.1 and 22.5.3; G. Dhondt, CalculiX `CrunchiX` User's Manual 2.20, `*HYPERELASTIC`

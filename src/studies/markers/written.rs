@@ -1,14 +1,14 @@
-//! What a correction of measured displacements writes.
+//! What the correction of measured displacements writes.
 //!
 //! ```text
 //! report.html, report.md, report.json
 //! displacement.png …                    pictures of the last frame
 //! vtk/corrected.pvd, corrected_001.vtu  field, stress, thickness, reactions, multipliers, standard errors
-//! vtk/markers.pvd, markers_001.vtu      markers with what is left of them and outliers
+//! vtk/markers.pvd, markers_001.vtu      markers with their residuals and outliers
 //! nodes_001.csv, cells_001.csv, markers_001.csv, forces.csv
 //! ```
 //!
-//! Files of frames have the frame's number.
+//! Files of a frame carry its number.
 
 use crate::corrector::estimation::{FieldEstimate, StressEstimate};
 use crate::error::Error;

@@ -1,4 +1,4 @@
-//! What is told about a motion: energies, frequencies, deviations in time.
+//! What the report says about a motion: energies, frequencies, deviations in time.
 
 use super::corrected::CorrectedMotion;
 use super::files::{animation, figures, grids, tables};

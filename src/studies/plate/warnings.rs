@@ -1,4 +1,4 @@
-//! What a reader of a plate's figures has to know about them.
+//! What a reader of a plate's figures must know about them.
 
 use crate::problem::ClampedPlate;
 use crate::studies::plate::problem::Study;

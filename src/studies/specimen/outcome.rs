@@ -1,4 +1,4 @@
-//! What is told about a specimen: what the study says, deviations, own errors, forces, warnings.
+//! What the report says about a specimen: what the study states, deviations, own errors, forces, warnings.
 
 use super::files::{figures, grids};
 use super::problem::Specimen;

@@ -1,5 +1,5 @@
 //! A manufactured solution: body forces for which a chosen field is the exact one, and the order at which
-//! every element comes near to it.
+//! every element converges to it.
 //!
 //! ```text
 //! f = −Div P(∂u/∂X),   u = L (a sin πX/L cos πY/L, b cos πX/L sin πY/L)                [MPa/mm]

@@ -1,4 +1,4 @@
-//! The error estimate beside true errors, the order of the force with graded cells, and local refinement beside
+//! The error estimate compared with true errors, the order of the force with graded cells, and local refinement beside
 //! uniform refinement.
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What a study wants of its corrected field, and what comes of it.
+//! What a study requires of its corrected field, and whether it is met.
 
 use super::Results;
 use crate::compare::judgement::{Judgement, ROUNDING_PERCENT, judge, judge_correction};
