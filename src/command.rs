@@ -17,14 +17,11 @@ use clap::{Parser, Subcommand};
 use crate::error::{Diagnostic, Error};
 use crate::output;
 use crate::output::ResultFolder;
-use crate::problem::ClampedPlate;
-use crate::results::{Check, Computed};
-use crate::studies::Kind;
-use crate::studies::plate::{self, results::run};
-use crate::studies::plate::{DEFAULT, Study};
-use crate::studies::sections;
+use crate::results::{Check, End, Results};
+use crate::studies::name;
+use crate::studies::plate::DEFAULT;
 use crate::validation;
-use terminal::{Outcome, complain, print, progress_bar, warn};
+use terminal::{Outcome, complain, complain_of_end, print, progress_bar, warn};
 
 mod compare;
 mod containment;
@@ -161,67 +158,31 @@ fn perform(command: Command) -> u8 {
     })
 }
 
+/// Computes a study of any kind and writes what it finds.
 fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
-    let text = sections::read_text(path)?;
-    if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
-        return run_case(case, path, &text, folder);
-    }
-    let study = Study::of_file(path, text)?;
-    warn(&study.warnings);
-    let folder = folder.unwrap_or_else(|| study.output.folder.clone());
-    let mut results_folder = ResultFolder::open(&folder, "run", &[path])?;
-
-    let bar = progress_bar(run::progress_steps(&study) as u64);
-    let progress = |model: &str, stretch: f64| {
-        bar.set_message(format!("{model}, {}", ClampedPlate::describe_step(stretch)));
-        bar.inc(1);
-    };
-    let results = run::run(&study, &progress);
-    bar.finish_and_clear();
-    let results = results?;
-
-    plate::write(&study, &results, &mut results_folder)?;
-    let files = results_folder.finish()?;
-    let requirements = results.requirements(&study);
-    let warnings = plate::warnings(&study, &results).into_iter();
-    let warnings: String = warnings.map(|warning| warning + "\n").collect();
-    print(&format!(
-        "{}{warnings}\n{} files in {}\n",
-        message::summary(&results, &requirements),
-        files.len(),
-        folder.display()
-    ))?;
-    results.ends.iter().for_each(complain);
-    let passed = requirements.iter().all(Check::passed);
-    let ended = results.ends.first().map(Error::exit_code);
-    Ok(ended.unwrap_or(u8::from(!passed)))
-}
-
-/// Computes a study of one of the validation cases.
-fn run_case(case: &Kind, path: &Path, text: &str, folder: Option<PathBuf>) -> Outcome {
-    let ready = case.read(path, text)?;
+    let ready = validation::read(path)?;
     warn(&ready.warnings);
-    let stem = path.file_stem().map_or_else(PathBuf::new, PathBuf::from);
-    let folder = folder.unwrap_or_else(|| Path::new("output").join(stem));
-    let mut results = ResultFolder::open(&folder, "run", &[path])?;
-    let bar = progress_bar(0);
-    let computed = ready.compute(&|what| {
+    let usual = || Path::new("output").join(name(path));
+    let folder = folder.or_else(|| ready.folder.clone());
+    let folder = folder.unwrap_or_else(usual);
+    let mut results_folder = ResultFolder::open(&folder, "run", &[path])?;
+    let bar = progress_bar(ready.progress_steps as u64);
+    let with_report = ready.report;
+    let results = ready.compute(&|what| {
         bar.set_message(what.to_owned());
-        bar.tick();
+        match bar.length() {
+            Some(0) | None => bar.tick(),
+            Some(_) => bar.inc(1),
+        }
     });
     bar.finish_and_clear();
-    let computed = computed?;
-    let (title, json) = (computed.title.clone(), computed.json());
-    for series in &computed.outcome.grids {
-        output::write_grids(&mut results, series)?;
-    }
-    output::write_files(&mut results, &computed.outcome.files)?;
-    results.add("report.json", format!("{json:#}\n").as_bytes())?;
-    let cases = [computed];
-    let (blocks, figures) = validation::report::report(&title, &cases);
-    output::write_document(&mut results, "report", &blocks, &figures)?;
-    results.finish()?;
-    conclude(&cases, &folder.join("report.html"))
+    let results = results?;
+    output::write(&results, with_report, &mut results_folder)?;
+    let files = results_folder.finish()?;
+    conclude(
+        &[results],
+        &format!("{} files in {}", files.len(), folder.display()),
+    )
 }
 
 fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
@@ -250,37 +211,34 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
     output::write_document(&mut results, "REPORT", &blocks, &figures)?;
     results.finish()?;
-    conclude(&cases, &folder.join("REPORT.md"))
+    let report = folder.join("REPORT.md");
+    conclude(&cases, &format!("report: {}", report.display()))
 }
 
-/// Prints the checks and decides on the exit code.
-fn conclude(cases: &[Computed], report: &Path) -> Outcome {
-    for warning in cases.iter().flat_map(|case| &case.outcome.warnings) {
+/// Prints warnings, headline figures, checks and where the results are, and decides on the exit code.
+fn conclude(results: &[Results], written: &str) -> Outcome {
+    let outcomes = || results.iter().map(|results| &results.outcome);
+    for warning in outcomes().flat_map(|outcome| &outcome.warnings) {
         let warning = warning.strip_prefix("Warning: ").unwrap_or(warning);
         warn(&[Diagnostic::warning("", warning)]);
     }
-    print(&format!(
-        "{}\nreport: {}\n",
-        message::checks(cases),
-        report.display()
-    ))?;
-    Ok(u8::from(!cases.iter().all(Computed::passed)))
+    let summaries: String = outcomes().map(|outcome| &*outcome.summary).collect();
+    let told = match summaries.is_empty() {
+        true => message::checks(results),
+        false => summaries,
+    };
+    print(&format!("{told}\n{written}\n"))?;
+    let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
+    let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
+    ends.iter().for_each(|end| complain_of_end(end));
+    let passed = results.iter().all(Results::passed);
+    Ok(ends.first().map_or(u8::from(!passed), |end| end.exit_code))
 }
 
 fn check(path: &Path) -> Outcome {
-    let text = sections::read_text(path)?;
-    if let Some(case) = validation::case_of(&path.display().to_string(), &text)? {
-        warn(&case.read(path, &text)?.warnings);
-        print(&format!(
-            "{}: no faults; a study of the kind {}\n",
-            path.display(),
-            case.kind
-        ))?;
-        return Ok(0);
-    }
-    let study = Study::of_file(path, text)?;
-    warn(&study.warnings);
-    print(&format!("{}\n", message::study(path, &study)))?;
+    let ready = validation::read(path)?;
+    warn(&ready.warnings);
+    print(&format!("{}: no faults; {}\n", path.display(), ready.about))?;
     Ok(0)
 }
 

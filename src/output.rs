@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::results::{Block, Content, Figure, GridSeries};
+use crate::results::{Block, Content, Figure, GridSeries, Results};
 
 pub mod export;
 mod folder;
@@ -16,14 +16,36 @@ pub mod vtk;
 pub use folder::{ResultFolder, refuse_inputs};
 pub use picture::png;
 
+/// The JSON Schema that `report.json` follows, whatever the kind of the study:
+///
+/// ```json
+#[doc = include_str!("output/report.schema.json")]
+/// ```
+pub const REPORT_SCHEMA: &str = include_str!("output/report.schema.json");
+
+/// Writes everything that a study has found into a folder: grids, tables and pictures and, where it is wanted, the
+/// report for people and for machines.
+///
+/// # Errors
+/// [`Error::Write`] with the file that could not be written.
+pub fn write(results: &Results, with_report: bool, folder: &mut ResultFolder) -> Result<(), Error> {
+    let outcome = &results.outcome;
+    let mut grids = outcome.grids.iter();
+    grids.try_for_each(|series| write_grids(folder, series))?;
+    write_files(folder, &outcome.files)?;
+    if !with_report {
+        return write_pictures(folder, &outcome.figures).map(|_| ());
+    }
+    let json = format!("{:#}\n", results.json());
+    folder.add("report.json", json.as_bytes())?;
+    write_document(folder, "report", &results.report(), &outcome.figures)
+}
+
 /// Draws pictures and writes them into a folder.
 ///
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
-pub fn write_pictures(
-    folder: &mut ResultFolder,
-    figures: &[Figure],
-) -> Result<Vec<Vec<u8>>, Error> {
+fn write_pictures(folder: &mut ResultFolder, figures: &[Figure]) -> Result<Vec<Vec<u8>>, Error> {
     let mut written = Vec::new();
     for figure in figures {
         let picture = png(&figure.drawing);
@@ -37,7 +59,7 @@ pub fn write_pictures(
 ///
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
-pub fn write_files(folder: &mut ResultFolder, files: &[(String, Content)]) -> Result<(), Error> {
+fn write_files(folder: &mut ResultFolder, files: &[(String, Content)]) -> Result<(), Error> {
     files.iter().try_for_each(|(name, content)| match content {
         Content::Text(text) => folder.add(name, text.as_bytes()),
         Content::Picture(drawing) => folder.add(name, &png(drawing)),

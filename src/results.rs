@@ -1,136 +1,37 @@
-//! What a study or a case finds: checks, explanations, tables, pictures.
+//! What a study or a case finds, as data: requirements, quantities, tables, pictures, grids.
+//!
+//! Every kind of study gives the same [`Results`]. [`Results::report`] and [`Results::json`] say the same of all of
+//! them, in the same order; `output` draws and encodes what they hold.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
-use crate::compare::judgement::Judgement;
+use crate::error::Error;
 
 mod block;
 mod chart;
+mod check;
 mod curves;
 mod fields;
 mod fit;
 mod grid;
 mod identification;
+mod json;
 mod material;
+mod report;
 mod series;
 pub mod wrinkling;
 
 pub use block::{Block, Content, Drawing, Figure};
 pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke};
+pub use check::{Check, Wanted, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};
 pub use fields::{Animation, Colours, FieldCell, FieldFigure, Frame, Panel, mesh_outlines};
 pub use fit::{fit_json, fit_picture};
 pub use grid::{Array, Grid, GridCell, GridSeries, NamedGrid, Sheet};
 pub use identification::{identification_json, identification_picture};
-pub use material::{material_json, material_statement};
+pub use material::Material;
+pub use report::{claims, pictures};
 pub use series::{Series, csv};
-
-/// What a computed value has to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wanted {
-    /// A value, within a tolerance in percent of it.
-    Equal(f64, f64),
-    /// At most so much.
-    AtMost(f64),
-    /// At least so much.
-    AtLeast(f64),
-}
-
-/// One checked figure.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Check {
-    /// What is checked.
-    pub quantity: String,
-    /// Its unit.
-    pub unit: &'static str,
-    /// What it has to be.
-    pub wanted: Wanted,
-    /// Where that comes from.
-    pub source: &'static str,
-    /// What gelbench computed.
-    pub computed: f64,
-    /// The own error of what it was compared with, in the check's unit, where that is known.
-    pub own_error: Option<f64>,
-    judgement: Option<Judgement>,
-}
-
-impl Check {
-    /// A check of a computed value.
-    pub fn new(
-        quantity: impl Into<String>,
-        unit: &'static str,
-        wanted: Wanted,
-        source: &'static str,
-        computed: f64,
-    ) -> Self {
-        Self {
-            quantity: quantity.into(),
-            unit,
-            wanted,
-            source,
-            computed,
-            own_error: None,
-            judgement: None,
-        }
-    }
-
-    /// A fault that leaves nothing to be checked.
-    pub fn fault(quantity: impl Into<String>, source: &'static str) -> Self {
-        Self::new(quantity, "–", Wanted::AtMost(0.0), source, f64::NAN)
-    }
-
-    /// With what the comparison with something that has an error of its own comes to.
-    #[must_use]
-    pub fn judged(self, judgement: Judgement, own_error: f64) -> Self {
-        Self {
-            judgement: Some(judgement),
-            own_error: own_error.is_finite().then_some(own_error),
-            ..self
-        }
-    }
-
-    /// Deviation from the wanted value in %, where there is one.
-    pub fn error_percent(&self) -> Option<f64> {
-        match self.wanted {
-            Wanted::Equal(expected, _) => Some(100.0 * (self.computed / expected - 1.0).abs()),
-            _ => None,
-        }
-    }
-
-    /// What the check comes to.
-    pub fn judgement(&self) -> Judgement {
-        match &self.judgement {
-            Some(judgement) => judgement.clone(),
-            None if self.is_met() => Judgement::Pass,
-            None => Judgement::Fail,
-        }
-    }
-
-    /// Whether the check passed; one that cannot be judged did not.
-    pub fn passed(&self) -> bool {
-        self.judgement().passed()
-    }
-
-    /// `pass`, `FAIL` or `cannot be judged`, with the reason where there is one.
-    pub fn result(&self) -> String {
-        let judgement = self.judgement();
-        match judgement.remark() {
-            Some(remark) => format!("{}: {remark}", judgement.word()),
-            None => judgement.word().to_owned(),
-        }
-    }
-
-    /// Whether the value is what it has to be; one that is not a number is not.
-    fn is_met(&self) -> bool {
-        match self.wanted {
-            Wanted::Equal(_, tolerance) => {
-                self.error_percent().is_some_and(|error| error <= tolerance)
-            }
-            Wanted::AtMost(limit) => self.computed <= limit,
-            Wanted::AtLeast(limit) => self.computed >= limit,
-        }
-    }
-}
 
 /// What the publication claims, and what came out here.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,14 +42,52 @@ pub struct Claim {
     pub reproduced: String,
 }
 
-/// The result of a case.
+/// A model that has no solution at some of its load factors.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct End {
+    /// Which model, where, and why.
+    pub message: String,
+    /// What to try.
+    pub advice: Option<&'static str>,
+    /// The exit code of a command that ends with it.
+    pub exit_code: u8,
+}
+
+impl From<&Error> for End {
+    fn from(error: &Error) -> Self {
+        Self {
+            message: error.to_string(),
+            advice: error.advice(),
+            exit_code: error.exit_code(),
+        }
+    }
+}
+
+/// What is known at one stretch, load factor, instant or frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The stretch, load factor, time in s or number of the frame.
+    pub at: f64,
+    /// The quantities of every model by names with units; `null` where a model has no solution.
+    pub models: Map<String, Value>,
+}
+
+/// What a study or a case has found.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// The checks.
+    /// What is required, and what comes of it.
     pub checks: Vec<Check>,
     /// Claims of the publication.
     pub claims: Vec<Claim>,
-    /// Explanations and tables.
+    /// What was solved, for machines.
+    pub problem: Map<String, Value>,
+    /// The material.
+    pub material: Option<Material>,
+    /// What the steps run along: `stretch`, `load factor`, `time` or `frame`.
+    pub along: &'static str,
+    /// The quantities of all models.
+    pub steps: Vec<Step>,
+    /// Explanations and tables. Pictures stand where the blocks place them, else after the last one.
     pub blocks: Vec<Block>,
     /// Pictures.
     pub figures: Vec<Figure>,
@@ -160,78 +99,50 @@ pub struct Outcome {
     pub times: Vec<(String, f64)>,
     /// What deserves attention in the results, each in a sentence.
     pub warnings: Vec<String>,
+    /// What makes the figures doubtful: with a doubt, a study has not passed.
+    pub doubts: Vec<String>,
+    /// Models that ended early.
+    pub ends: Vec<End>,
     /// The worst balance of forces and moments of all boundary value problems that were solved, relative to the largest
     /// force or moment; `None` where none was solved.
     pub balance: Option<f64>,
-    /// More for machines than checks and times: key and value.
-    pub json: Map<String, Value>,
+    /// The balance of every model, by its name.
+    pub balances: Map<String, Value>,
+    /// The headline figures for a terminal.
+    pub summary: String,
 }
 
-/// A case that was computed.
+/// The results of a study.
 #[derive(Clone, Debug)]
-pub struct Computed {
+pub struct Results {
+    /// The study's name: that of its file.
+    pub name: String,
     /// The study's title.
     pub title: String,
-    /// The case's kind.
+    /// The study's kind.
     pub kind: &'static str,
     /// The study's text; empty where there is none.
     pub text: String,
     /// The keys that it does not hold, with the defaults that they took.
     pub defaults: Vec<String>,
-    /// Its result.
+    /// What deserved attention when it was read.
+    pub read_warnings: Vec<String>,
+    /// What was found.
     pub outcome: Outcome,
     /// Computing time in s.
     pub seconds: f64,
 }
 
-impl Computed {
-    /// Whether all checks passed.
+impl Results {
+    /// Whether all requirements are met, by models that did not end early, and without a doubt.
     pub fn passed(&self) -> bool {
-        self.outcome.checks.iter().all(Check::passed)
-    }
-
-    /// The figures for machines.
-    pub fn json(&self) -> Value {
-        let check = |check: &Check| {
-            let (expected, tolerance) = match check.wanted {
-                Wanted::Equal(value, tolerance) => (json!(value), json!(tolerance)),
-                Wanted::AtMost(limit) => (json!({ "at_most": limit }), Value::Null),
-                Wanted::AtLeast(limit) => (json!({ "at_least": limit }), Value::Null),
-            };
-            json!({
-                "quantity": check.quantity,
-                "unit": check.unit,
-                "expected": expected,
-                "source": check.source,
-                "computed": check.computed,
-                "error_percent": check.error_percent(),
-                "tolerance_percent": tolerance,
-                "own_error": check.own_error,
-                "result": check.judgement().word(),
-                "remark": check.judgement().remark(),
-                "passed": check.passed(),
-            })
-        };
-        let times = self
-            .outcome
-            .times
-            .iter()
-            .map(|(what, seconds)| (what.clone(), json!(seconds)));
-        let mut all = json!({
-            "gelbench": env!("CARGO_PKG_VERSION"),
-            "case": self.kind,
-            "title": self.title,
-            "study": { "text": self.text, "defaults": self.defaults },
-            "warnings": self.outcome.warnings,
-            "checks": self.outcome.checks.iter().map(check).collect::<Vec<_>>(),
-            "passed": self.passed(),
-            "balance": self.outcome.balance,
-            "times_s": times.collect::<Map<_, _>>(),
-        });
-        for (key, value) in &self.outcome.json {
-            all[key] = value.clone();
-        }
-        all
+        let Outcome {
+            checks,
+            doubts,
+            ends,
+            ..
+        } = &self.outcome;
+        checks.iter().all(Check::passed) && doubts.is_empty() && ends.is_empty()
     }
 }
 

@@ -1,11 +1,11 @@
 //! What a user runs: plates, specimens, motions, fields of markers. Each kind has a module of its own.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::document::{Document, Faults, Section};
 use crate::error::{Diagnostic, Error};
-use crate::results::{Computed, Outcome};
+use crate::results::{Outcome, Results};
 
 pub mod markers;
 pub mod motion;
@@ -16,8 +16,9 @@ pub mod specimen;
 /// Reports what is being done.
 pub type Progress<'a> = &'a dyn Fn(&str);
 
-/// A study of a case that has been read, ready to be computed.
+/// A study that has been read, ready to be computed.
 pub struct Ready {
+    name: String,
     title: String,
     kind: &'static str,
     text: String,
@@ -25,9 +26,17 @@ pub struct Ready {
     prepared: Prepared,
     /// What deserves attention but does not stop the work.
     pub warnings: Vec<Diagnostic>,
+    /// The folder that it names for its results.
+    pub folder: Option<PathBuf>,
+    /// Whether it wants a report.
+    pub report: bool,
+    /// What it will compute, in words.
+    pub about: String,
+    /// How often its computation reports progress; zero where that is not known.
+    pub progress_steps: usize,
 }
 
-/// The computation of a case.
+/// The computation of a study.
 pub type Prepared = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
 
 /// A kind of study.
@@ -52,12 +61,17 @@ impl Kind {
     pub fn read(&self, file: &Path, text: &str) -> Result<Ready, Error> {
         let read = self.read_with(file, text, self.prepare)?;
         Ok(Ready {
+            name: name(file),
             title: read.title,
             kind: self.kind,
             text: text.to_owned(),
             defaults: read.defaults,
             prepared: read.made,
             warnings: read.warnings,
+            folder: None,
+            report: true,
+            about: format!("a study of the kind {}", self.kind),
+            progress_steps: 0,
         })
     }
 
@@ -92,6 +106,12 @@ impl Kind {
     }
 }
 
+/// The name of a study: that of its file, without the ending.
+pub fn name(file: &Path) -> String {
+    let stem = file.file_stem();
+    stem.map_or_else(String::new, |stem| stem.to_string_lossy().into())
+}
+
 /// What was read of a study.
 struct Read<T> {
     title: String,
@@ -106,14 +126,16 @@ impl Ready {
     ///
     /// # Errors
     /// [`Error::Solve`] when a model has no solution.
-    pub fn compute(self, progress: Progress) -> Result<Computed, Error> {
+    pub fn compute(self, progress: Progress) -> Result<Results, Error> {
         let start = Instant::now();
         let outcome = (self.prepared)(progress)?;
-        Ok(Computed {
+        Ok(Results {
+            name: self.name,
             title: self.title,
             kind: self.kind,
             text: self.text,
             defaults: self.defaults,
+            read_warnings: self.warnings.iter().map(ToString::to_string).collect(),
             outcome,
             seconds: start.elapsed().as_secs_f64(),
         })

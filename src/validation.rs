@@ -6,8 +6,10 @@ use std::path::Path;
 
 use crate::document::{Document, Faults};
 use crate::error::{Diagnostic, Error, suggestion};
-use crate::results::{Check, Computed, Outcome};
-use crate::studies::{Kind, Progress, motion, specimen};
+use crate::results::{Check, Outcome, Results};
+use crate::studies::plate as plate_study;
+use crate::studies::sections::read_text;
+use crate::studies::{Kind, Progress, Ready, motion, specimen};
 
 mod case;
 mod correction_matrix;
@@ -118,20 +120,34 @@ pub fn case_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
     }
 }
 
+/// Reads a study of any kind.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn read(path: &Path) -> Result<Ready, Error> {
+    let text = read_text(path)?;
+    match case_of(&path.display().to_string(), &text)? {
+        Some(case) => case.read(path, &text),
+        None => plate_study::prepare(path, text),
+    }
+}
+
 /// Computes the study that comes along; a model without a solution is a check that failed.
 ///
 /// # Errors
 /// [`Error::Input`] or [`Error::Write`].
-pub fn compute_or_fail(case: &Kind, progress: Progress) -> Result<Computed, Error> {
+pub fn compute_or_fail(case: &Kind, progress: Progress) -> Result<Results, Error> {
     let ready = case.read(Path::new(case.file), case.study)?;
     match ready.compute(progress) {
         Err(fault @ Error::Solve { .. }) => {
             let check = Check::fault(fault.to_string(), "no fault");
-            Ok(Computed {
+            Ok(Results {
+                name: case.kind.to_owned(),
                 title: case.kind.to_owned(),
                 kind: case.kind,
                 text: case.study.to_owned(),
                 defaults: Vec::new(),
+                read_warnings: Vec::new(),
                 outcome: Outcome {
                     checks: vec![check],
                     ..Outcome::default()

@@ -15,8 +15,8 @@ const LAYERS: &[&[&str]] = &[
     &["corrector"],
     &["compare", "identification"],
     &["results"],
-    &["output"],
     &["studies"],
+    &["output"],
     &["validation"],
     &["command"],
 ];

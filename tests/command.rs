@@ -30,10 +30,7 @@ fn the_pva_plate_study_reaches_its_accuracy() {
     let text = fs::read_to_string(folder.path().join("report.json")).unwrap();
     let report: Value = serde_json::from_str(&text).unwrap();
     let steps = report["steps"].as_array().unwrap();
-    let stretches: Vec<f64> = steps
-        .iter()
-        .map(|step| number(step, &["stretch"]))
-        .collect();
+    let stretches: Vec<f64> = steps.iter().map(|step| number(step, &["at"])).collect();
     assert_eq!(stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
     // Converged forces and widths of dolfinx, scikit-fem and FElupe.
     let published = [
@@ -185,7 +182,7 @@ fn report_of(folder: &TempDir) -> Value {
 fn judgements(report: &Value) -> Vec<&str> {
     let requirements = report["requirements"].as_array().unwrap().iter();
     requirements
-        .map(|requirement| requirement["judgement"].as_str().unwrap())
+        .map(|requirement| requirement["result"].as_str().unwrap())
         .collect()
 }
 
@@ -325,9 +322,9 @@ fn the_grips_forces_are_in_balance_and_the_report_says_so() {
     gelbench(folder.path(), &["run", "small.toml"]).code(0);
     let report = report_of(&folder);
     for model in ["mass_spring", "corrected", "finite_element"] {
-        let grips = number(&report, &["balance", model, "grips"]);
+        let grips = number(&report, &["balance", "models", model, "unbalanced"]);
         assert!(grips < 1e-9, "{model}: {grips}");
-        let left = number(&report, &["balance", model, "free_nodes"]);
+        let left = number(&report, &["balance", "models", model, "free_nodes"]);
         assert!(
             left < if model == "corrected" { 1e-3 } else { 1e-9 },
             "{model}: {left}"

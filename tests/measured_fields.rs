@@ -161,7 +161,7 @@ fn a_homogeneous_field_keeps_its_stress_and_force() {
         "{printed}"
     );
     let found = report(folder.path());
-    let frame = &found["frames"][0];
+    let frame = &found["steps"][0]["corrected"];
     assert!(number(frame, &["left_mm"]) < 1e-3, "{frame:#}");
     // P = 2 C₁₀ (λ − 1/λ²) on the width of 20 mm and the thickness of 2 mm.
     let card = Card::load("neo-hooke", root()).unwrap();
@@ -473,7 +473,9 @@ fn corrected(text: &str, more: &[&str], code: i32) -> (String, Value) {
 
 /// The force on the right edge along x with its interval.
 fn right_force(report: &Value) -> [f64; 3] {
-    let forces = report["frames"][0]["forces"].as_array().unwrap();
+    let forces = report["steps"][0]["corrected"]["forces"]
+        .as_array()
+        .unwrap();
     let force = forces
         .iter()
         .find(|force| force["edge"] == "right")

@@ -133,7 +133,7 @@ fn the_report_of_a_motion_says_plate_material_and_grips() {
         assert!(report.contains(said), "{said}: {report}");
     }
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let material = &json["statement"]["material"];
+    let material = &json["material"];
     assert_eq!(material["parameters"]["amplitude"]["value"], 0.0611);
-    assert_eq!(json["statement"]["thickness_mm"], 1.0);
+    assert_eq!(json["problem"]["thickness_mm"], 1.0);
 }

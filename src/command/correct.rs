@@ -1,6 +1,7 @@
 //! `gelbench correct`: a measured displacement field made to satisfy the physics.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
@@ -9,9 +10,11 @@ use crate::corrector::estimation::{EdgeCondition, MeasuredForce, Physics, Robust
 use crate::error::{Diagnostic, Error};
 use crate::markers::ReadSettings;
 use crate::mesh::{Allowed, CellShape, MeshReading};
-use crate::output::ResultFolder;
+use crate::output::{self, ResultFolder};
 use crate::studies::markers::written;
 use crate::studies::markers::{Conditions, MarkerStudy, MeshSource, Request, measured_force};
+use crate::studies::name;
+use crate::studies::sections::read_text;
 use crate::units::{self, Dimension};
 
 /// What the command line says about a correction.
@@ -145,28 +148,33 @@ pub enum Holds {
 pub fn run(options: Options) -> Outcome {
     let folder = options.output.clone();
     let inputs = inputs(&options);
+    let study = options.study.as_deref();
+    let text = study.map_or(Ok(String::new()), read_text)?;
+    let name = name(study.unwrap_or(&options.fields[0]));
     let field = MarkerStudy::prepare(request(options)?)?;
     warn(&field.warnings);
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-    let mut results = ResultFolder::open(&folder, "correct", &inputs)?;
+    let mut results_folder = ResultFolder::open(&folder, "correct", &inputs)?;
     let bar = progress_bar(field.series.frames.len() as u64);
+    let start = Instant::now();
     let estimates = field.estimate(&|frame| {
         bar.set_message(format!("frame {}", frame.number));
         bar.inc(1);
     });
     bar.finish_and_clear();
     let estimates = estimates?;
-    let doubts = field.all_doubts(&estimates);
-    written::write(&field, &estimates, &mut results)?;
-    let files = results.finish()?;
+    let seconds = start.elapsed().as_secs_f64();
+    let results = written::results(&field, &estimates, (name, text), seconds);
+    output::write(&results, true, &mut results_folder)?;
+    let files = results_folder.finish()?;
     print(&format!(
         "{}{} files in {}\n",
-        written::summary(&field, &estimates),
+        results.outcome.summary,
         files.len(),
         folder.display()
     ))?;
-    warn(&doubts);
-    Ok(u8::from(!doubts.is_empty()))
+    warn(&field.all_doubts(&estimates));
+    Ok(u8::from(!results.passed()))
 }
 
 /// The files that the results follow from.

@@ -1,22 +1,15 @@
 //! The texts that the command prints.
 
-use std::path::Path;
-
 use miette::{
     GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report,
 };
 
 use super::fit_message;
-use crate::compare::Deviation;
-use crate::compare::judgement::Judgement;
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::problem::ClampedPlate;
-use crate::results::{Check, Computed, Wanted, limit, number};
-use crate::studies::plate::Study;
-use crate::studies::plate::results::Results;
+use crate::results::{Results, Wanted, limit, number};
 
 /// A finding with the lines of the file that it is about.
 pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
@@ -58,75 +51,8 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool) -> String {
     }
 }
 
-/// What a checked study will compute.
-pub fn study(path: &Path, study: &Study) -> String {
-    let [nx, ny] = study.cells;
-    let [fx, fy] = study.reference.cells;
-    let graded = match study.reference.grading > 1.0 {
-        true => format!(" graded by {}", study.reference.grading),
-        false => String::new(),
-    };
-    format!(
-        "{}: no faults; {} stretches, {nx} × {ny} cells, card {}, finite elements {} with {fx} × {fy} cells{graded}, output in {}",
-        path.display(),
-        study.problem.stretches.len(),
-        study.card.name,
-        study.reference.element.name(),
-        study.output.folder.display()
-    )
-}
-
-/// The headline figures of a run.
-pub fn summary(results: &Results, requirements: &[Check]) -> String {
-    let mut text = String::from(
-        "deviation from the finite elements [%]\n\
-         \x20            mass-spring                       corrected\n\
-         stretch  displacement  departure  force   displacement  departure  force\n",
-    );
-    for step in &results.comparison {
-        let row = |deviation: Option<&Deviation>, decimals: [usize; 3]| {
-            let figure = |value: fn(&Deviation) -> f64, index: usize| match deviation {
-                Some(deviation) => format!("{:.*}", decimals[index], value(deviation)),
-                None => "–".to_owned(),
-            };
-            [
-                figure(|deviation| deviation.displacement_percent, 0),
-                figure(|deviation| deviation.departure_percent, 1),
-                figure(|deviation| deviation.force_percent.abs(), 2),
-            ]
-        };
-        let [u, departure, force] = row(step.mass_spring.as_ref(), [3, 2, 2]);
-        text += &format!(
-            "{:>5} %  {u:>12}  {departure:>9}  {force:>5}   ",
-            ClampedPlate::percent(step.stretch)
-        );
-        let [u, departure, force] = row(step.corrected.as_ref(), [4, 3, 3]);
-        text += &format!("{u:>12}  {departure:>9}  {force:>5}\n");
-    }
-    for requirement in requirements {
-        text += &self::requirement(requirement);
-    }
-    text
-}
-
-fn requirement(check: &Check) -> String {
-    let judgement = check.judgement();
-    let mut text = format!("{} {}", judgement.word(), check.quantity);
-    if !check.computed.is_nan() || judgement == Judgement::Fail {
-        let bound = match check.wanted {
-            Wanted::AtLeast(limit) => format!("at least {limit} %"),
-            Wanted::AtMost(limit) | Wanted::Equal(limit, _) => format!("at most {limit} %"),
-        };
-        text += &format!(": {:.3} % ({bound})", check.computed);
-    }
-    if let Some(remark) = judgement.remark() {
-        text += &format!(": {remark}");
-    }
-    text + "\n"
-}
-
 /// One line for each check of some cases, and their number.
-pub fn checks(cases: &[Computed]) -> String {
+pub fn checks(cases: &[Results]) -> String {
     let mut text = String::new();
     let mut passed = [0, 0];
     for (case, check) in cases

@@ -6,6 +6,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::message;
 use crate::error::{Diagnostic, Error};
+use crate::results::End;
 
 /// What a command comes to: its exit code, or the fault that decides on it.
 pub type Outcome = Result<u8, Error>;
@@ -40,6 +41,13 @@ pub fn complain(error: &Error) {
         Error::Solve { fault, .. } => format!("error: {error}\n  try: {}\n", fault.advice()),
         Error::Write { .. } => format!("error: {error}\n"),
     };
+    let _ = write!(io::stderr(), "{text}");
+}
+
+/// Says which model ended early, and what to try.
+pub fn complain_of_end(end: &End) {
+    let advice = end.advice.map(|advice| format!("  try: {advice}\n"));
+    let text = format!("error: {}\n{}", end.message, advice.unwrap_or_default());
     let _ = write!(io::stderr(), "{text}");
 }
 

@@ -8,8 +8,26 @@ use crate::material::curve::Mode;
 use crate::material::law::HyperelasticLaw;
 use crate::material::stability::{SEARCHED, stable_range};
 
+/// What is told of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// For people.
+    pub blocks: Vec<Block>,
+    /// For machines.
+    pub json: Value,
+}
+
+impl From<&Card> for Material {
+    fn from(card: &Card) -> Self {
+        Self {
+            blocks: statement(card),
+            json: json(card),
+        }
+    }
+}
+
 /// A card: its law, every parameter with value and unit, its range and its text.
-pub fn material_json(card: &Card) -> Value {
+fn json(card: &Card) -> Value {
     let parameters = card.parameters.iter().map(|parameter| {
         let value = json!({ "value": parameter.value, "unit": parameter.unit() });
         (parameter.key.to_owned(), value)
@@ -23,12 +41,13 @@ pub fn material_json(card: &Card) -> Value {
         "parameters": parameters.chain(choices).collect::<Map<_, _>>(),
         "youngs_modulus_MPa": card.law.youngs_modulus(),
         "stretch_range": card.stretch_range,
+        "fit_error_percent": card.fit_error_percent(),
         "text": card.text,
     })
 }
 
 /// The card of a study: law, parameters, measures, ranges, source.
-pub fn material_statement(card: &Card) -> Vec<Block> {
+fn statement(card: &Card) -> Vec<Block> {
     let law: &dyn HyperelasticLaw = &*card.law;
     let [low, high] = card.stretch_range;
     let row = |key: &str, value: String| vec![key.to_owned(), value];

@@ -1,7 +1,11 @@
 //! Plates between two grips: springs, corrected springs and finite elements at every stretch.
 
+use std::path::Path;
+
 use crate::error::Error;
-use crate::output::{ResultFolder, write_document, write_grids, write_pictures};
+use crate::problem::ClampedPlate;
+use crate::results::{Material, Outcome};
+use crate::studies::{Progress, Ready};
 
 mod figures;
 mod json;
@@ -9,37 +13,79 @@ mod problem;
 mod read;
 mod report;
 pub mod results;
+mod summary;
 mod vtk;
 mod warnings;
 
 pub use problem::{OutputSettings, Study};
 pub use read::DEFAULT;
-use results::Results;
-pub use results::run;
-pub use warnings::warnings;
+use results::{Results, run};
 
-/// Writes everything a study asks for into its folder.
+/// The `kind` of these studies.
+pub const KIND: &str = "plate";
+
+/// Reads a study of the file `path`.
 ///
 /// # Errors
-/// [`Error::Write`] with the file that could not be written.
-pub fn write(study: &Study, results: &Results, folder: &mut ResultFolder) -> Result<(), Error> {
-    if study.output.vtk {
-        for series in vtk::grids(study, results) {
-            write_grids(folder, &series)?;
-        }
-    }
-    if study.output.report {
-        let json = json::json(study, results);
-        folder.add("report.json", format!("{json:#}\n").as_bytes())?;
-    }
-    let figures = if study.output.plots {
-        figures::figures(study, results)
-    } else {
-        Vec::new()
+/// [`Error::Input`] with every fault of the study and of its card.
+pub fn prepare(path: &Path, text: String) -> Result<Ready, Error> {
+    let study = Study::of_file(path, text)?;
+    Ok(Ready {
+        name: study.name.clone(),
+        title: study.title.clone(),
+        kind: KIND,
+        text: study.text.clone(),
+        defaults: study.defaults.clone(),
+        warnings: study.warnings.clone(),
+        folder: Some(study.output.folder.clone()),
+        report: study.output.report,
+        progress_steps: run::progress_steps(&study),
+        about: study.describe(),
+        prepared: Box::new(move |progress: Progress| {
+            let told = |model: &str, stretch: f64| {
+                progress(&format!(
+                    "{model}, {}",
+                    ClampedPlate::describe_step(stretch)
+                ));
+            };
+            let results = run::run(&study, &told)?;
+            Ok(outcome(&study, &results))
+        }),
+    })
+}
+
+/// What is told of a plate; pictures and grids where the study wants them.
+fn outcome(study: &Study, results: &Results) -> Outcome {
+    let requirements = results.requirements(study);
+    let warnings = warnings::warnings(study, results);
+    let figures = match study.output.plots {
+        true => figures::figures(study, results),
+        false => Vec::new(),
     };
-    if study.output.report {
-        let blocks = report::report(study, results, &figures);
-        return write_document(folder, "report", &blocks, &figures);
-    }
-    write_pictures(folder, &figures).map(|_| ())
+    let grids = match study.output.vtk {
+        true => vtk::grids(study, results),
+        false => Vec::new(),
+    };
+    let times = results.times.iter();
+    let summary = summary::summary(results, &requirements);
+    let mut outcome = Outcome {
+        checks: requirements,
+        problem: json::problem(study),
+        material: Some(Material::from(&study.card)),
+        along: "stretch",
+        steps: json::steps(results),
+        summary,
+        warnings,
+        ends: results.ends.iter().map(Into::into).collect(),
+        balance: results.worst_balances().reduce(f64::max),
+        balances: json::balances(results),
+        times: times
+            .map(|(what, seconds)| ((*what).to_owned(), *seconds))
+            .collect(),
+        figures,
+        grids,
+        ..Outcome::default()
+    };
+    outcome.blocks = report::blocks(study, results, &outcome);
+    outcome
 }

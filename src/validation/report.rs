@@ -1,9 +1,9 @@
 //! The validation report: all checks in one table, the publication's claims, the cases.
 
-use crate::results::{Block, Check, Computed, Figure, Wanted, limit, number};
+use crate::results::{Block, Check, Figure, Results, Wanted, claims, limit, number};
 
 /// The report of one or several cases, and its pictures.
-pub fn report(title: &str, cases: &[Computed]) -> (Vec<Block>, Vec<Figure>) {
+pub fn report(title: &str, cases: &[Results]) -> (Vec<Block>, Vec<Figure>) {
     let (mut blocks, mut figures) = (vec![Block::Heading(1, title.to_owned())], Vec::new());
     let checks = cases.iter().flat_map(|case| &case.outcome.checks);
     let (all, passed) = (
@@ -36,56 +36,31 @@ pub fn report(title: &str, cases: &[Computed]) -> (Vec<Block>, Vec<Figure>) {
         head.map(String::from).to_vec(),
         rows.collect(),
     ));
-    let claims: Vec<_> = cases.iter().flat_map(|case| &case.outcome.claims).collect();
-    if !claims.is_empty() {
-        blocks.push(Block::Heading(2, "The publication's claims".into()));
-        blocks.push(Block::Paragraph(
-            "H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems."
-                .into(),
-        ));
-        let rows = claims
-            .iter()
-            .map(|claim| vec![claim.claim.to_owned(), claim.reproduced.clone()]);
-        blocks.push(Block::Table(
-            vec!["claim".into(), "reproduced here".into()],
-            rows.collect(),
-        ));
-    }
+    blocks.extend(claims(cases.iter().flat_map(|case| &case.outcome.claims)));
     for case in cases {
         let outcome = &case.outcome;
         if outcome.blocks.is_empty() && outcome.figures.is_empty() {
             continue;
         }
         blocks.push(Block::Heading(2, case.title.clone()));
+        blocks.extend(outcome.warnings.iter().map(Block::paragraph));
         blocks.extend(outcome.blocks.iter().cloned());
+        let material = outcome.material.iter();
+        blocks.extend(material.flat_map(|material| material.blocks.clone()));
         for figure in &outcome.figures {
             blocks.push(Block::Figure(figures.len(), figure.caption.clone()));
             figures.push(figure.clone());
         }
     }
     if let [case] = cases {
-        blocks.extend(study(case));
+        blocks.extend(case.study());
     }
     blocks.extend(times(cases));
     (blocks, figures)
 }
 
-/// The text of a study, and what it left out.
-fn study(case: &Computed) -> Vec<Block> {
-    let mut blocks = vec![
-        Block::Heading(2, "Study".into()),
-        Block::Code(case.text.clone()),
-    ];
-    if !case.defaults.is_empty() {
-        let text = "Settings that the study does not hold, with the defaults that they took:";
-        blocks.push(Block::Paragraph(text.into()));
-        blocks.push(Block::Code(case.defaults.join("\n")));
-    }
-    blocks
-}
-
 /// The worst balance of forces and moments over all cases.
-fn balance(cases: &[Computed]) -> Option<String> {
+fn balance(cases: &[Results]) -> Option<String> {
     let known = cases.iter();
     let known = known.filter_map(|case| Some((case.kind, case.outcome.balance?)));
     let (kind, worst) = known.max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -115,7 +90,7 @@ fn row(case: &str, check: &Check) -> Vec<String> {
     ]
 }
 
-fn times(cases: &[Computed]) -> Vec<Block> {
+fn times(cases: &[Results]) -> Vec<Block> {
     let mut rows = Vec::new();
     for case in cases {
         rows.push(vec![

@@ -1,21 +1,18 @@
-//! The report of a correction for programs.
+//! The figures of a correction for machines.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::report::{largest_correction, largest_error, left, outliers, used};
-use super::written::title;
 use crate::corrector::estimation::{EdgeCondition, FieldEstimate};
 use crate::markers::Frame;
+use crate::results::Step;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
 
-/// The report for programs.
-pub fn json(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Value {
-    let frames = field.series.frames.iter().zip(estimates);
-    json!({
-        "title": title(field),
+/// What was corrected.
+pub fn problem(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Map<String, Value> {
+    let all = json!({
         "layout": field.layout,
-        "material": field.card.name,
         "thickness_mm": field.thickness,
         "mesh": {
             "origin": field.mesh_origin,
@@ -24,12 +21,18 @@ pub fn json(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Value {
         },
         "trade": estimates.first().map(|estimate| estimate.rule),
         "brought_onto_another_mesh": field.coarse.is_some(),
-        "frames": frames.map(|(frame, estimate)| of_frame(frame, estimate)).collect::<Vec<_>>(),
         "edge_may_lie_farther_out_by_mm": field.unknown_gap,
-        "doubts": field.all_doubts(estimates).iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "warnings": field.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "gelbench": env!("CARGO_PKG_VERSION"),
-    })
+    });
+    all.as_object().cloned().unwrap_or_default()
+}
+
+/// The figures of one frame.
+pub fn step(frame: &Frame, estimate: &FieldEstimate) -> Step {
+    let models = [("corrected".to_owned(), of_frame(frame, estimate))];
+    Step {
+        at: frame.number as f64,
+        models: models.into_iter().collect(),
+    }
 }
 
 fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
@@ -57,7 +60,6 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
         .iter()
         .filter(|edge| edge.condition == EdgeCondition::Free);
     json!({
-        "frame": frame.number,
         "time": frame.time,
         "markers": used(estimate),
         "outliers": outliers(estimate),

@@ -1,8 +1,7 @@
 //! The report of a correction.
 
-use super::written::title;
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
-use crate::results::{Block, Figure};
+use crate::results::Block;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
 
@@ -125,11 +124,14 @@ fn condition(condition: &EdgeCondition) -> String {
     }
 }
 
-/// The report with `figures`.
-pub fn report(field: &MarkerStudy, estimates: &[FieldEstimate], figures: &[Figure]) -> Vec<Block> {
+/// The tables of a correction.
+pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
+    let (frames, explanation) = match field.coarse {
+        None => (frames(field, estimates), EXPLANATION),
+        Some(_) => (transferred_frames(field, estimates), TRANSFERRED),
+    };
     let mut blocks = vec![
-        Block::Heading(1, title(field)),
-        Block::Paragraph(format!(
+        Block::paragraph(format!(
             "{} frames, read as {}. Material {} ({}), {} mm thick. Mesh {}: {}.",
             estimates.len(),
             field.layout,
@@ -139,53 +141,26 @@ pub fn report(field: &MarkerStudy, estimates: &[FieldEstimate], figures: &[Figur
             field.mesh_origin,
             field.mesh.describe()
         )),
-        Block::Heading(2, "Frames".into()),
-        match field.coarse {
-            None => frames(field, estimates),
-            Some(_) => transferred_frames(field, estimates),
-        },
-        Block::Paragraph(match field.coarse {
-            None => EXPLANATION.into(),
-            Some(_) => TRANSFERRED.into(),
-        }),
-        Block::Heading(2, "Forces on the edges".into()),
+        Block::heading("Frames"),
+        frames,
+        Block::paragraph(explanation),
+        Block::heading("Forces on the edges"),
         forces(field, estimates),
     ];
-    if let Some(gap) = field.unknown_gap {
-        blocks.push(Block::Paragraph(format!(
+    blocks.extend(field.unknown_gap.map(|gap| {
+        Block::paragraph(format!(
             "The specimen's edge is not known but for the markers: intervals of forces and moduli hold that it may lie up to a \
              marker's spacing, {gap:.4} mm, farther out."
-        )));
-    }
-    let doubts = field.all_doubts(estimates);
-    if !doubts.is_empty() {
-        let heading = Block::Heading(2, "Doubts".into());
-        let doubts = doubts
-            .iter()
-            .map(|doubt| Block::Paragraph(doubt.to_string()));
-        let place = 2;
-        blocks.splice(place..place, std::iter::once(heading).chain(doubts));
-    }
+        ))
+    }));
     if field.regressed.is_some() {
-        blocks.push(Block::Heading(2, "Parameters of the law".into()));
+        blocks.push(Block::heading("Parameters of the law"));
         blocks.push(parameters(field, estimates));
     }
     if let Some(last) = estimates.last() {
-        blocks.push(Block::Heading(2, "Edges of the last frame".into()));
+        blocks.push(Block::heading("Edges of the last frame"));
         blocks.extend(edges(field, last));
     }
-    blocks.push(Block::Heading(2, "Pictures of the last frame".into()));
-    let pictures = figures.iter().enumerate();
-    blocks.extend(pictures.map(|(index, figure)| Block::Figure(index, figure.caption.clone())));
-    if !field.warnings.is_empty() {
-        blocks.push(Block::Heading(2, "Warnings".into()));
-        let warnings = field.warnings.iter();
-        blocks.extend(warnings.map(|warning| Block::Paragraph(warning.to_string())));
-    }
-    blocks.push(Block::Paragraph(format!(
-        "gelbench {}",
-        env!("CARGO_PKG_VERSION")
-    )));
     blocks
 }
 

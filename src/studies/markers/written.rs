@@ -11,56 +11,82 @@
 //! Files of a frame carry its number.
 
 use crate::corrector::estimation::{FieldEstimate, StressEstimate};
-use crate::error::Error;
 use crate::markers::Frame;
-use crate::output::{ResultFolder, write_document, write_grids};
-use crate::results::{Array, Grid, GridSeries, Sheet};
+use crate::results::{Array, Content, Grid, GridSeries, Material, Outcome, Results, Sheet};
 use crate::studies::markers::MarkerStudy;
 
-pub use super::report::summary;
 use super::{figures, json, report, tables};
 
-/// Writes all files of a correction.
-///
-/// # Errors
-/// [`Error::Write`] with the file that could not be written.
-pub fn write(
+/// The `kind` of these results.
+pub const KIND: &str = "markers";
+
+/// What is told of a correction: of the study's `text`, empty where there is none, and after `seconds`.
+pub fn results(
     field: &MarkerStudy,
     estimates: &[FieldEstimate],
-    folder: &mut ResultFolder,
-) -> Result<(), Error> {
+    study: (String, String),
+    seconds: f64,
+) -> Results {
+    let (name, text) = study;
+    let doubts = field.all_doubts(estimates);
     let frames = || field.series.frames.iter().zip(estimates);
-    for series in [
-        series("corrected", field, estimates, corrected),
-        series("markers", field, estimates, markers),
-    ] {
-        write_grids(folder, &series)?;
+    let figures = frames().next_back();
+    let figures = figures.map(|(frame, last)| figures::figures(field, frame, last));
+    let outcome = Outcome {
+        problem: json::problem(field, estimates),
+        material: Some(Material::from(&field.card)),
+        along: "frame",
+        steps: frames()
+            .map(|(frame, own)| json::step(frame, own))
+            .collect(),
+        blocks: report::blocks(field, estimates),
+        figures: figures.unwrap_or_default(),
+        grids: vec![
+            series("corrected", field, estimates, corrected),
+            series("markers", field, estimates, markers),
+        ],
+        files: files(field, estimates),
+        doubts: doubts.iter().map(ToString::to_string).collect(),
+        summary: report::summary(field, estimates),
+        ..Outcome::default()
+    };
+    Results {
+        name,
+        title: title(field),
+        kind: KIND,
+        text,
+        defaults: Vec::new(),
+        read_warnings: field.warnings.iter().map(ToString::to_string).collect(),
+        outcome,
+        seconds,
     }
-    let mut put = |name: String, text: String| folder.add(&name, text.as_bytes());
-    for (frame, estimate) in frames() {
+}
+
+/// The tables of all frames.
+fn files(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<(String, Content)> {
+    let frames = field.series.frames.iter().zip(estimates);
+    let tables = frames.flat_map(|(frame, estimate)| {
         let number = frame.number;
-        put(
-            format!("nodes_{number:03}.csv"),
-            tables::nodes(field, estimate),
-        )?;
-        put(
-            format!("cells_{number:03}.csv"),
-            tables::cells(field, estimate),
-        )?;
-        put(
-            format!("markers_{number:03}.csv"),
-            tables::markers(frame, estimate),
-        )?;
-    }
-    put("forces.csv".into(), tables::forces(field, estimates))?;
-    let json = json::json(field, estimates);
-    put("report.json".into(), format!("{json:#}\n"))?;
-    let figures = frames()
-        .next_back()
-        .map(|(frame, estimate)| figures::figures(field, frame, estimate));
-    let figures = figures.unwrap_or_default();
-    let blocks = report::report(field, estimates, &figures);
-    write_document(folder, "report", &blocks, &figures)
+        [
+            (
+                format!("nodes_{number:03}.csv"),
+                tables::nodes(field, estimate),
+            ),
+            (
+                format!("cells_{number:03}.csv"),
+                tables::cells(field, estimate),
+            ),
+            (
+                format!("markers_{number:03}.csv"),
+                tables::markers(frame, estimate),
+            ),
+        ]
+    });
+    let forces = ("forces.csv".to_owned(), tables::forces(field, estimates));
+    let tables = tables.chain([forces]);
+    tables
+        .map(|(name, text)| (name, Content::Text(text)))
+        .collect()
 }
 
 type OfFrame = fn(&MarkerStudy, &Frame, &FieldEstimate) -> Grid;

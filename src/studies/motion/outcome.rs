@@ -1,13 +1,15 @@
 //! What the report says about a motion: energies, frequencies, deviations in time.
 
+use serde_json::json;
+
 use super::corrected::CorrectedMotion;
 use super::files::{animation, figures, grids, tables};
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use super::statement;
-use crate::dynamics::lumped_mass;
+use crate::dynamics::{Instant, lumped_mass};
 use crate::mesh::Mesh;
-use crate::results::{Block, Check, Content, Drawing, Outcome, Wanted, number};
+use crate::results::{Block, Check, Content, Drawing, Material, Outcome, Step, Wanted, number};
 
 /// Instants in the table of deviations.
 const ROWS: usize = 12;
@@ -91,15 +93,59 @@ pub fn outcome(
     Outcome {
         checks: checks(plate, models, &deviations),
         blocks,
-        json: [("statement".to_owned(), statement::json(plate))]
-            .into_iter()
-            .collect(),
+        problem: statement::json(plate),
+        material: Some(Material::from(&plate.card)),
+        along: "time",
+        steps: steps(models, &deviations),
         figures: figures(plate, models, corrected),
         grids: grids(plate, models, corrected, &expected),
         files,
         times: times.collect(),
         ..Outcome::default()
     }
+}
+
+/// The figures of every instant for machines.
+fn steps([springs, elements]: &[ModelMotion; 2], deviations: &[Deviations; 2]) -> Vec<Step> {
+    let quantities = |now: &Instant, deviations: Option<&Deviations>, instant: usize| {
+        let deviation = deviations.map(|own| own.displacement.get(instant));
+        json!({
+            "displacement_percent": deviation,
+            "grip_force_N": now.support_forces[1],
+            "kinetic_energy_mJ": now.energy.kinetic,
+            "stored_energy_mJ": now.energy.stored,
+            "dissipated_energy_mJ": now.energy.dissipated,
+            "external_work_mJ": now.energy.external_work,
+        })
+    };
+    let [of_springs, of_corrected] = deviations;
+    let instants = springs
+        .history
+        .instants
+        .iter()
+        .zip(&elements.history.instants);
+    let step = |(instant, (springs, elements)): (usize, (&Instant, &Instant))| {
+        let corrected = of_corrected.displacement.get(instant);
+        let models = [
+            (
+                "mass_spring",
+                quantities(springs, Some(of_springs), instant),
+            ),
+            (
+                "corrected",
+                json!(corrected.map(|own| json!({ "displacement_percent": own }))),
+            ),
+            ("finite_element", quantities(elements, None, instant)),
+        ];
+        Step {
+            at: springs.time,
+            models: models
+                .map(|(name, own)| (name.to_owned(), own))
+                .into_iter()
+                .collect(),
+        }
+    };
+    instants.enumerate().map(step).collect()
 }
 
 fn introduction(plate: &MovingPlate) -> String {

@@ -1,39 +1,37 @@
 //! What a study says, in the report's words and for machines: plate, grips, loads, material.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::problem::{MovingPlate, PointForce};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
-use crate::results::{Block, material_json, material_statement, number};
+use crate::results::{Block, number};
 
-/// The plate, what moves and loads it, what springs and dashpots follow, its material.
+/// The plate, what moves and loads it, what springs and dashpots follow.
 pub fn blocks(plate: &MovingPlate) -> Vec<Block> {
     let row = |(what, says): (&'static str, String)| vec![what.to_owned(), says];
-    let mut blocks = vec![
+    vec![
         Block::Heading(2, "Plate, supports and loads".into()),
         Block::table(
             &["what", "as the study says"],
             sentences(plate).into_iter().map(row),
         ),
-    ];
-    blocks.extend(material_statement(&plate.card));
-    blocks
+    ]
 }
 
 /// The same for machines.
-pub fn json(plate: &MovingPlate) -> Value {
+pub fn json(plate: &MovingPlate) -> Map<String, Value> {
     let sentences = sentences(plate).into_iter();
-    let says: serde_json::Map<_, _> = sentences
+    let says: Map<_, _> = sentences
         .map(|(what, says)| (what.to_owned(), json!(says)))
         .collect();
-    json!({
+    let all = json!({
         "size_mm": plate.problem.size,
         "thickness_mm": plate.problem.thickness,
         "density_kg_per_m3": 1e12 * plate.density,
-        "material": material_json(&plate.card),
         "says": says,
-    })
+    });
+    all.as_object().cloned().unwrap_or_default()
 }
 
 fn sentences(plate: &MovingPlate) -> Vec<(&'static str, String)> {

@@ -1,82 +1,51 @@
-//! A report for machines.
+//! The figures of a plate for machines. Numbers and models that do not exist are `null`.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::compare::{Deviation, SelfConvergence, StepComparison};
 use crate::problem::Measures;
-use crate::results::{Check, Wanted};
+use crate::results::Step;
 use crate::solve::State;
 use crate::studies::plate::problem::Study;
-use crate::studies::plate::results::{Results, verdict};
+use crate::studies::plate::results::Results;
 
-/// The figures of a run. Numbers and models that do not exist are `null`.
-pub fn json(study: &Study, results: &Results) -> Value {
-    let requirements = results.requirements(study);
-    let steps = results.comparison.iter().enumerate();
-    let times = results
-        .times
-        .iter()
-        .map(|(what, seconds)| ((*what).to_owned(), json!(seconds)));
-    let mut warnings: Vec<String> = study.warnings.iter().map(ToString::to_string).collect();
-    warnings.extend(super::warnings::warnings(study, results));
-    json!({
-        "gelbench": env!("CARGO_PKG_VERSION"),
-        "study": { "name": study.name, "title": study.title, "text": study.text },
-        "warnings": warnings,
-        "material": {
-            "card": study.card.name,
-            "law": study.card.law_name,
-            "text": study.card.text,
-            "fit_error_percent": study.card.fit_error_percent(),
-        },
-        "plate": {
-            "length_mm": study.problem.size[0],
-            "width_mm": study.problem.size[1],
-            "thickness_mm": study.problem.thickness,
-            "cells": study.cells,
-        },
+/// What is solved.
+pub fn problem(study: &Study) -> Map<String, Value> {
+    let all = json!({
+        "length_mm": study.problem.size[0],
+        "width_mm": study.problem.size[1],
+        "thickness_mm": study.problem.thickness,
+        "cells": study.cells,
         "reference": { "element": study.reference.element.name(), "cells": study.reference.meshes(), "grading": study.reference.grading },
-        "ends": results.ends.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "balance": balance(results),
-        "steps": steps.map(|(index, step)| self::step(results, index, step)).collect::<Vec<_>>(),
-        "requirements": requirements.iter().map(self::requirement).collect::<Vec<_>>(),
-        "passed": results.ends.is_empty() && requirements.iter().all(Check::passed),
-        "verdict": verdict(&requirements),
-        "times_s": times.collect::<serde_json::Map<_, _>>(),
-    })
+    });
+    all.as_object().cloned().unwrap_or_default()
 }
 
-fn requirement(check: &Check) -> Value {
-    let (limit, limit_is) = match check.wanted {
-        Wanted::AtLeast(limit) => (limit, "smallest"),
-        Wanted::AtMost(limit) | Wanted::Equal(limit, _) => (limit, "largest"),
-    };
-    let judgement = check.judgement();
-    json!({
-        "name": check.quantity,
-        "worst_percent": check.computed,
-        "own_error_percent": check.own_error,
-        "limit_percent": limit,
-        "limit_is": limit_is,
-        "judgement": judgement.word(),
-        "remark": judgement.remark(),
-        "passed": judgement.passed(),
-    })
-}
+/// The names of the models, in the order of [`super::results::MODELS`].
+const KEYS: [&str; 3] = ["mass_spring", "corrected", "finite_element"];
 
 /// The largest unbalanced force or moment of every model, over the largest one, and the largest force left at a free node
 /// over that on a grip.
-fn balance(results: &Results) -> Value {
-    let of = |model| {
-        json!({
-            "grips": results.worst_balance(model).map(|(relative, _)| relative),
+pub fn balances(results: &Results) -> Map<String, Value> {
+    let of = |(model, key): (usize, &str)| {
+        let value = json!({
+            "unbalanced": results.worst_balance(model).map(|(relative, _)| relative),
             "free_nodes": results.worst_residual(model),
-        })
+        });
+        (key.to_owned(), value)
     };
-    json!({ "mass_spring": of(0), "corrected": of(1), "finite_element": of(2) })
+    KEYS.into_iter().enumerate().map(of).collect()
 }
 
-fn step(results: &Results, index: usize, step: &StepComparison) -> Value {
+/// The quantities of all models at every stretch.
+pub fn steps(results: &Results) -> Vec<Step> {
+    let steps = results.comparison.iter().enumerate();
+    steps
+        .map(|(index, step)| self::step(results, index, step))
+        .collect()
+}
+
+fn step(results: &Results, index: usize, step: &StepComparison) -> Step {
     let [springs, corrected, finest] = results.models(index);
     let measures = results.measures(index);
     let mut corrected = model(step.corrected.as_ref(), corrected.zip(measures[1]));
@@ -85,12 +54,14 @@ fn step(results: &Results, index: usize, step: &StepComparison) -> Value {
         corrected["displacement_correction_percent"] =
             json!(step.correction_percent(|d| d.displacement_percent));
     }
-    json!({
-        "stretch": step.stretch,
-        "mass_spring": model(step.mass_spring.as_ref(), springs.zip(measures[0])),
-        "corrected": corrected,
-        "finite_element": finest.zip(measures[2]).map(|finest| finite_element(results, index, step, finest)),
-    })
+    let springs = model(step.mass_spring.as_ref(), springs.zip(measures[0]));
+    let finest = finest.zip(measures[2]);
+    let finest = finest.map(|finest| finite_element(results, index, step, finest));
+    let models = [springs, corrected, json!(finest)];
+    Step {
+        at: step.stretch,
+        models: KEYS.map(str::to_owned).into_iter().zip(models).collect(),
+    }
 }
 
 fn finite_element(

@@ -40,6 +40,8 @@ pub struct Study {
     pub output: OutputSettings,
     /// The file's text.
     pub text: String,
+    /// The keys that it does not hold, with the defaults that they took.
+    pub defaults: Vec<String>,
     /// What deserves attention but does not stop the work.
     pub warnings: Vec<Diagnostic>,
 }
@@ -88,6 +90,23 @@ impl Study {
         self.problem.law = Arc::clone(&card.law);
         self.card = card;
         self
+    }
+
+    /// What it will compute, in words.
+    pub fn describe(&self) -> String {
+        let [nx, ny] = self.cells;
+        let [fx, fy] = self.reference.cells;
+        let graded = match self.reference.grading > 1.0 {
+            true => format!(" graded by {}", self.reference.grading),
+            false => String::new(),
+        };
+        format!(
+            "{} stretches, {nx} × {ny} cells, card {}, finite elements {} with {fx} × {fy} cells{graded}, output in {}",
+            self.problem.stretches.len(),
+            self.card.name,
+            self.reference.element.name(),
+            self.output.folder.display()
+        )
     }
 
     /// Whether the reference is the corrected field once more: the same equations on the same nodes.

@@ -13,6 +13,7 @@ use crate::finite_element::Element;
 use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
 use crate::problem::ClampedPlate;
+use crate::studies::name;
 use crate::studies::sections::{
     MOST_CELLS, Tolerances, check_cells, check_range, read_card, read_newton, read_plate,
 };
@@ -31,11 +32,8 @@ impl Study {
     /// # Errors
     /// [`Error::Input`] with every fault of the study and of its card.
     pub fn of_file(path: &Path, text: String) -> Result<Self, Error> {
-        let name = path
-            .file_stem()
-            .map_or_else(String::new, |stem| stem.to_string_lossy().into());
         let folder = path.parent().unwrap_or(Path::new("."));
-        Self::parse(&name, &path.display().to_string(), folder, text)
+        Self::parse(&name(path), &path.display().to_string(), folder, text)
     }
 
     /// Reads a study's text; a card given by a path is looked for relative to `folder`.
@@ -50,10 +48,12 @@ impl Study {
             let root = document.root(Some(&defaults), &faults);
             read_sections(name, folder, root)
         };
+        let defaults = faults.defaults();
         let warnings = faults.finish()?;
         let study = study.expect("a study without a card has a fault");
         Ok(Self {
             text,
+            defaults,
             warnings,
             ..study
         })
@@ -99,6 +99,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
         tolerances,
         output,
         text: String::new(),
+        defaults: Vec::new(),
         warnings: Vec::new(),
     };
     if study.is_its_own_reference() {

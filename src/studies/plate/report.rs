@@ -1,49 +1,25 @@
-//! The report of a run: what is said, in which order. How it looks is left to [`crate::output`].
+//! The tables of a plate's report.
 
 use crate::compare::{Deviation, StepComparison};
-use crate::error::Error;
 use crate::problem::ClampedPlate;
+use crate::results::{Block, Outcome, pictures};
 use crate::studies::plate::problem::Study;
-use crate::studies::plate::results::{MODELS, Results, verdict};
-
-use super::warnings::warnings;
-use crate::results::{Block, Check, Figure, Wanted, material_statement};
+use crate::studies::plate::results::{MODELS, Results};
 
 mod accuracy;
 
-/// The report of a run with `figures`.
-pub fn report(study: &Study, results: &Results, figures: &[Figure]) -> Vec<Block> {
-    let mut blocks = vec![Block::Heading(1, study.title.clone())];
-    blocks.extend(judged(study, results));
-    blocks.extend(ends(results));
-    let warnings = warnings(study, results).into_iter();
-    blocks.extend(warnings.map(Block::Paragraph));
+/// The tables of a plate, with the pictures of `outcome` among them.
+pub fn blocks(study: &Study, results: &Results, outcome: &Outcome) -> Vec<Block> {
+    let mut blocks = vec![Block::Paragraph(introduction(study, results))];
+    blocks.extend(reached(results));
     blocks.extend(deviations(study, results));
-    if !figures.is_empty() {
-        blocks.push(heading("Pictures"));
-    }
-    let pictures = figures.iter().enumerate();
-    blocks.extend(pictures.map(|(index, figure)| Block::Figure(index, figure.caption.clone())));
+    blocks.extend(pictures("Pictures", outcome));
     blocks.extend(forces(results));
     blocks.extend(accuracy::error_budget(study, results));
     blocks.extend(accuracy::reference(study, results));
     blocks.extend(accuracy::balance(study, results));
     blocks.extend(accuracy::convergence(study, results));
     blocks.extend(problem(study));
-    blocks.extend(material_statement(&study.card));
-    blocks.push(heading("Study"));
-    blocks.extend(
-        study
-            .warnings
-            .iter()
-            .map(|warning| Block::Paragraph(format!("Warning: {warning}"))),
-    );
-    blocks.push(Block::Code(study.text.clone()));
-    blocks.push(Block::Paragraph(format!(
-        "gelbench {}",
-        env!("CARGO_PKG_VERSION")
-    )));
-    blocks.extend(times(results));
     blocks
 }
 
@@ -72,58 +48,20 @@ fn at_stretches(stretches: Vec<f64>) -> String {
     format!("{} stretch", all.join(", "))
 }
 
-fn judged(study: &Study, results: &Results) -> Vec<Block> {
+fn introduction(study: &Study, results: &Results) -> String {
     let [length, width] = study.problem.size;
     let [nx, ny] = study.cells;
-    let requirements = results.requirements(study);
-    let what = format!(
+    format!(
         "A clamped plate of {length} × {width} × {} mm, {}. The mass-spring model on {nx} × {ny} cells, \
          the corrected field on the same nodes, and the finite elements that both are compared with: {}.",
         study.problem.thickness,
         study.card.title,
         results.finest().model.describe()
-    );
-    let row = |check: &Check| {
-        vec![
-            check.quantity.clone(),
-            figure(Some(check.computed), 3),
-            power(check.own_error.unwrap_or(f64::NAN)),
-            match check.wanted {
-                Wanted::AtLeast(limit) => format!("≥ {limit}"),
-                Wanted::AtMost(limit) | Wanted::Equal(limit, _) => format!("≤ {limit}"),
-            },
-            check.judgement().word().to_owned(),
-        ]
-    };
-    let head = [
-        "requirement",
-        "value at the worst stretch [%]",
-        "own error of the finite elements in it [%]",
-        "wanted [%]",
-        "result",
-    ];
-    let remark = |check: &Check| {
-        let remark = check.judgement().remark()?;
-        let (name, word) = (&check.quantity, check.judgement().word());
-        Some(Block::Paragraph(format!("{name}, {word}: {remark}.")))
-    };
-    let mut blocks = vec![
-        Block::Paragraph(what),
-        Block::Paragraph(format!(
-            "The corrected field has {}:",
-            verdict(&requirements)
-        )),
-        Block::table(&head, requirements.iter().map(row)),
-    ];
-    blocks.extend(requirements.iter().filter_map(remark));
-    blocks
+    )
 }
 
-/// Which model ended where, and why.
-fn ends(results: &Results) -> Vec<Block> {
-    if results.ends.is_empty() {
-        return Vec::new();
-    }
+/// Which model has a solution where; nothing where all have one everywhere.
+fn reached(results: &Results) -> Option<Block> {
     let row = |(name, model): (&str, usize)| {
         let reached = results.reached(model);
         let stretches = match reached.is_empty() {
@@ -132,19 +70,9 @@ fn ends(results: &Results) -> Vec<Block> {
         };
         vec![name.to_owned(), stretches]
     };
-    let mut blocks = vec![
-        heading("Models that ended early"),
-        Block::table(
-            &["model", "has a solution at"],
-            MODELS.into_iter().zip(0..).map(row),
-        ),
-    ];
-    let told = |end: &Error| match end.advice() {
-        Some(advice) => Block::Paragraph(format!("{end}. Try: {advice}.")),
-        None => Block::Paragraph(format!("{end}.")),
-    };
-    blocks.extend(results.ends.iter().map(told));
-    blocks
+    let rows = MODELS.into_iter().zip(0..).map(row);
+    let table = || Block::table(&["model", "has a solution at"], rows);
+    (!results.ends.is_empty()).then(table)
 }
 
 /// What is solved: the plate, its supports and its loads.
@@ -248,17 +176,5 @@ fn forces(results: &Results) -> Vec<Block> {
     vec![
         heading("Force, width at mid length and strain energy"),
         Block::table(&head, results.comparison.iter().enumerate().map(row)),
-    ]
-}
-
-fn times(results: &Results) -> Vec<Block> {
-    let rows = results.times.iter();
-    let rows = rows.map(|(what, seconds)| vec![(*what).to_owned(), format!("{seconds:.3}")]);
-    vec![
-        heading("Times"),
-        Block::Paragraph(
-            "All stretches one after the other, on one core. Times differ from run to run.".into(),
-        ),
-        Block::table(&["model", "time [s]"], rows),
     ]
 }

@@ -13,8 +13,6 @@ use crate::solve::State;
 mod requirement;
 pub mod run;
 
-pub use requirement::verdict;
-
 /// The names of the models, in the order of [`Results::models`].
 pub const MODELS: [&str; 3] = ["mass-spring", "corrected", "finite elements"];
 
@@ -115,6 +113,12 @@ impl Results {
         };
         let all = (0..self.comparison.len()).filter_map(of_step);
         all.max_by(|(a, _), (b, _)| a.total_cmp(b))
+    }
+
+    /// The worst balance of every model that has a solution.
+    pub fn worst_balances(&self) -> impl Iterator<Item = f64> {
+        let balances = (0..MODELS.len()).filter_map(|model| self.worst_balance(model));
+        balances.map(|(relative, _)| relative)
     }
 
     /// The largest residual force at a node that no grip holds over the force on a grip, the worst of all stretches, of a

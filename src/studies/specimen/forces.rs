@@ -1,6 +1,6 @@
 //! Forces, moments and displacements of all groups, for reports and for machines.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::problem::Specimen;
 use super::results::models::Models;
@@ -86,28 +86,27 @@ fn cells(state: &GroupState) -> Vec<String> {
     all.map(number).to_vec()
 }
 
-/// The same for machines: the models by their names, each with its load factors.
-pub fn json(specimen: &Specimen, models: &Models) -> Value {
-    let groups = specimen.groups();
-    let group = |(name, state): (&&str, &GroupState)| {
+/// What happens at all groups in a model at a load factor, for machines; `None` where it has no solution.
+pub fn groups(specimen: &Specimen, solution: &Solution, step: usize) -> Option<Value> {
+    let states = solution.groups(step)?;
+    let group = |(name, state): (&str, &GroupState)| {
         let value = json!({
             "force_N": state.force,
             "moment_Nmm": state.moment,
             "displacement_mm": state.displacement,
         });
-        ((*name).to_owned(), value)
+        (name.to_owned(), value)
     };
-    let step = |solution: &Solution, step: usize| {
-        let states = solution.groups(step)?;
-        let all: serde_json::Map<_, _> = groups.iter().zip(states).map(group).collect();
-        Some(json!({ "load_factor": specimen.factors[step], "groups": all }))
-    };
-    let model = |solution: &Solution| {
-        let steps = 0..specimen.factors.len();
-        let steps: Vec<_> = steps.filter_map(|own| step(solution, own)).collect();
-        json!({ "steps": steps, "balance": solution.worst_balance() })
-    };
+    let groups = specimen.groups().into_iter().zip(states);
+    Some(Value::Object(groups.map(group).collect()))
+}
+
+/// The worst balance of every model, for machines.
+pub fn balances(models: &Models) -> Map<String, Value> {
     let named = models.named().into_iter();
-    let named = named.map(|own| (own.file.to_owned(), model(own.solution)));
-    Value::Object(named.collect())
+    let balances = named.map(|own| {
+        let unbalanced = own.solution.worst_balance();
+        (own.file.to_owned(), json!({ "unbalanced": unbalanced }))
+    });
+    balances.collect()
 }

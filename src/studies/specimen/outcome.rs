@@ -1,17 +1,18 @@
 //! What the report says about a specimen: what the study states, deviations, own errors, forces, warnings.
 
+use serde_json::{Map, Value, json};
+
 use super::files::{figures, grids};
 use super::problem::Specimen;
 use super::results::lattice::Start;
-use super::results::models::Models;
+use super::results::models::{Models, NamedSolution};
 use super::results::verdict::{Deviation, checks};
 use super::warnings::warnings;
 use super::{forces, statement};
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::Judgement;
 use crate::problem::Solution;
-use crate::results::Block;
-use crate::results::{Check, Outcome};
+use crate::results::{Block, Check, Material, Outcome, Step};
 
 /// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
@@ -22,27 +23,73 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let table = Block::Table(head(models), rows.collect());
     let mut warnings = warnings(specimen, models);
     warnings.extend(forces::unbalanced(models));
-    let mut blocks: Vec<_> = warnings.iter().cloned().map(Block::Paragraph).collect();
-    blocks.extend([Block::Paragraph(introduction(models)), table]);
+    let mut blocks = vec![Block::Paragraph(introduction(models)), table];
     blocks.extend(starts(specimen, models).map(Block::Paragraph));
     blocks.extend(models.reference.history());
     blocks.extend(forces::table(specimen, models));
     blocks.extend(statement::blocks(specimen));
-    let judged: Vec<_> = deviations.into_iter().flatten().collect();
-    let json = [
-        ("statement".to_owned(), statement::json(specimen)),
-        ("models".to_owned(), forces::json(specimen, models)),
-    ];
+    let quantities = |step: usize| Step {
+        at: specimen.factors[step],
+        models: quantities(specimen, models, step, deviations[step].as_ref()),
+    };
+    let steps = (0..specimen.factors.len()).map(quantities).collect();
+    let judged: Vec<_> = deviations.iter().flatten().copied().collect();
     Outcome {
         checks: checks(specimen, models, &judged),
+        problem: statement::json(specimen),
+        material: Some(Material::from(&specimen.card)),
+        along: "load factor",
+        steps,
         blocks,
         figures: figures(specimen, models, &expected),
         grids: grids(specimen, models, &expected),
         warnings,
         balance: forces::worst_balance(models),
-        json: json.into_iter().collect(),
+        balances: forces::balances(models),
         ..Outcome::default()
     }
+}
+
+/// The figures of one load factor for machines.
+fn quantities(
+    specimen: &Specimen,
+    models: &Models,
+    step: usize,
+    deviation: Option<&Deviation>,
+) -> Map<String, Value> {
+    let reference = &models.reference;
+    let measured = &reference.measured;
+    let deviations = |pair: Option<[f64; 2]>| {
+        json!({
+            "displacement_percent": pair.map(|[displacement, _]| displacement),
+            "measured_percent": pair.map(|[_, measured]| measured),
+        })
+    };
+    let mut springs = deviations(deviation.and_then(|own| own.springs));
+    let mut corrected = deviations(deviation.map(|own| own.corrected));
+    corrected["displacement_correction_percent"] =
+        json!(deviation.and_then(Deviation::correction_percent));
+    let own = |which: usize| deviation.map(|own| own.own[which]);
+    let mut elements = json!({
+        "displacement_discretisation_percent": own(0),
+        "measured_discretisation_percent": own(1),
+        "three_meshes_percent": reference.three_meshes_percent(step),
+        "recovery_percent": reference.recovered_percent(step),
+        "estimated_energy_norm_percent": reference.energy_percent(step),
+    });
+    let all = [&mut springs, &mut corrected, &mut elements];
+    let named = models.named().into_iter().zip(all);
+    let model = |(own, quantities): (NamedSolution, &mut Value)| {
+        let key = own.file.to_owned();
+        let Some(groups) = forces::groups(specimen, own.solution, step) else {
+            return (key, Value::Null);
+        };
+        quantities["groups"] = groups;
+        let value = measured.at(own.solution, step);
+        quantities[format!("measured_{}", measured.unit())] = json!(value);
+        (key, quantities.take())
+    };
+    named.map(model).collect()
 }
 
 /// Whether the finite elements are too coarse for something that they have to judge.

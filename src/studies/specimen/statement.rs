@@ -1,13 +1,13 @@
 //! What a study says, in the report's words and for machines: specimen, supports, loads.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::problem::Specimen;
 use crate::problem::{Drive, Load, Support};
-use crate::results::{Block, material_json, material_statement};
+use crate::results::Block;
 use crate::units::Linear;
 
-/// The specimen, its supports and loads, its material.
+/// The specimen, its supports and loads.
 pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let problem = &specimen.problem;
     let row = |group: &String, text: String| vec![format!("`{group}`"), text];
@@ -34,25 +34,24 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
         true => Block::Paragraph("There are no loads: supports alone move the specimen.".into()),
         false => Block::table(&["loaded group", "what acts on it"], loads),
     });
-    blocks.extend(material_statement(&specimen.card));
     blocks
 }
 
 /// The same for machines.
-pub fn json(specimen: &Specimen) -> Value {
+pub fn json(specimen: &Specimen) -> Map<String, Value> {
     let problem = &specimen.problem;
     let supports = problem.supports.iter();
     let supports = supports.map(|(group, own)| json!({ "group": group, "says": support(own) }));
     let loads = problem.loads.iter();
     let loads = loads.map(|(group, own)| json!({ "group": group, "says": load(own) }));
-    json!({
+    let all = json!({
         "specimen": specimen.outline.describe(),
         "thickness_mm": problem.thickness,
-        "material": material_json(&specimen.card),
         "supports": supports.collect::<Vec<_>>(),
         "loads": loads.collect::<Vec<_>>(),
         "load_factors": specimen.factors,
-    })
+    });
+    all.as_object().cloned().unwrap_or_default()
 }
 
 /// A support in words.

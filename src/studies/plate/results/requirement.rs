@@ -13,20 +13,6 @@ const REMEDY: &str = "take finer `finite_element.cells`, or a `finite_element.gr
 /// Where the limits come from.
 const SOURCE: &str = "the study's tolerance";
 
-/// What all requirements together come to: failed where one fails, passed where all do.
-pub fn verdict(requirements: &[Check]) -> &'static str {
-    if requirements.iter().all(Check::passed) {
-        "passed"
-    } else if requirements
-        .iter()
-        .any(|check| check.judgement() == Judgement::Fail)
-    {
-        "failed"
-    } else {
-        "not been judged in all"
-    }
-}
-
 /// A deviation of the corrected field, and the reference's own error of the same quantity.
 struct Measure {
     name: &'static str,

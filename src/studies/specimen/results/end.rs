@@ -80,10 +80,10 @@ pub fn last_groups(ends: &[End]) -> Option<(&Mesh, &[GroupState])> {
 pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &mut Outcome) {
     let mut rows = Vec::new();
     for end in ends {
-        let quantity = format!("{} ({})", end.error(), end.fault.advice());
-        outcome
-            .checks
-            .push(Check::fault(quantity, "the whole path"));
+        let error = end.error();
+        let quantity = format!("{error} ({})", end.fault.advice());
+        outcome.checks.push(Check::end(quantity));
+        outcome.ends.push((&error).into());
         let Some(last) = end.last else { continue };
         let file = match last.between {
             true => format!("{}.vtu", last.file),

@@ -1,0 +1,203 @@
+//! What is required of figures, and what comes of it.
+
+use serde_json::{Value, json};
+
+use super::{Block, limit, number};
+use crate::compare::judgement::Judgement;
+
+/// What a computed value has to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// A value, within a tolerance in percent of it.
+    Equal(f64, f64),
+    /// At most so much.
+    AtMost(f64),
+    /// At least so much.
+    AtLeast(f64),
+}
+
+/// One checked figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// What is checked.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it has to be.
+    pub wanted: Wanted,
+    /// Where that comes from.
+    pub source: &'static str,
+    /// What gelbench computed.
+    pub computed: f64,
+    /// The own error of what it was compared with, in the check's unit, where that is known.
+    pub own_error: Option<f64>,
+    judgement: Option<Judgement>,
+    is_end: bool,
+}
+
+impl Check {
+    /// A check of a computed value.
+    pub fn new(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        wanted: Wanted,
+        source: &'static str,
+        computed: f64,
+    ) -> Self {
+        Self {
+            quantity: quantity.into(),
+            unit,
+            wanted,
+            source,
+            computed,
+            own_error: None,
+            judgement: None,
+            is_end: false,
+        }
+    }
+
+    /// A fault that leaves nothing to be checked.
+    pub fn fault(quantity: impl Into<String>, source: &'static str) -> Self {
+        Self::new(quantity, "–", Wanted::AtMost(0.0), source, f64::NAN)
+    }
+
+    /// The end of a model before its last load factor, of a study that requires all of them.
+    pub fn end(quantity: impl Into<String>) -> Self {
+        Self {
+            is_end: true,
+            ..Self::fault(quantity, "the whole path")
+        }
+    }
+
+    /// Whether it is the end of a model.
+    pub fn is_end(&self) -> bool {
+        self.is_end
+    }
+
+    /// With what the comparison with something that has an error of its own comes to.
+    #[must_use]
+    pub fn judged(self, judgement: Judgement, own_error: f64) -> Self {
+        Self {
+            judgement: Some(judgement),
+            own_error: own_error.is_finite().then_some(own_error),
+            ..self
+        }
+    }
+
+    /// Deviation from the wanted value in %, where there is one.
+    pub fn error_percent(&self) -> Option<f64> {
+        match self.wanted {
+            Wanted::Equal(expected, _) => Some(100.0 * (self.computed / expected - 1.0).abs()),
+            _ => None,
+        }
+    }
+
+    /// What the check comes to.
+    pub fn judgement(&self) -> Judgement {
+        match &self.judgement {
+            Some(judgement) => judgement.clone(),
+            None if self.is_met() => Judgement::Pass,
+            None => Judgement::Fail,
+        }
+    }
+
+    /// Whether the check passed; one that cannot be judged did not.
+    pub fn passed(&self) -> bool {
+        self.judgement().passed()
+    }
+
+    /// `pass`, `FAIL` or `cannot be judged`, with the reason where there is one.
+    pub fn result(&self) -> String {
+        let judgement = self.judgement();
+        match judgement.remark() {
+            Some(remark) => format!("{}: {remark}", judgement.word()),
+            None => judgement.word().to_owned(),
+        }
+    }
+
+    /// Whether the value is what it has to be; one that is not a number is not.
+    fn is_met(&self) -> bool {
+        match self.wanted {
+            Wanted::Equal(_, tolerance) => {
+                self.error_percent().is_some_and(|error| error <= tolerance)
+            }
+            Wanted::AtMost(limit) => self.computed <= limit,
+            Wanted::AtLeast(limit) => self.computed >= limit,
+        }
+    }
+}
+
+impl Check {
+    /// What it has to be, in words.
+    pub fn wanted(&self) -> String {
+        match self.wanted {
+            Wanted::Equal(value, tolerance) => format!("{} ± {} %", limit(value), limit(tolerance)),
+            Wanted::AtMost(most) => format!("≤ {}", limit(most)),
+            Wanted::AtLeast(least) => format!("≥ {}", limit(least)),
+        }
+    }
+
+    /// The same for machines.
+    pub fn json(&self) -> Value {
+        let wanted = match self.wanted {
+            Wanted::Equal(value, tolerance) => {
+                json!({ "equal": value, "tolerance_percent": tolerance })
+            }
+            Wanted::AtMost(limit) => json!({ "at_most": limit }),
+            Wanted::AtLeast(limit) => json!({ "at_least": limit }),
+        };
+        json!({
+            "quantity": self.quantity,
+            "unit": self.unit,
+            "wanted": wanted,
+            "source": self.source,
+            "computed": self.computed,
+            "error_percent": self.error_percent(),
+            "own_error": self.own_error,
+            "result": self.judgement().word(),
+            "remark": self.judgement().remark(),
+            "passed": self.passed(),
+        })
+    }
+}
+
+/// What all requirements together come to: failed where one fails, passed where all do.
+pub fn verdict(checks: &[Check]) -> &'static str {
+    let mut judged = checks.iter().map(Check::judgement);
+    if checks.iter().all(Check::passed) {
+        "passed"
+    } else if judged.any(|judgement| judgement == Judgement::Fail) {
+        "failed"
+    } else {
+        "not been judged in all"
+    }
+}
+
+/// A table of requirements.
+pub fn requirements(checks: &[Check]) -> Block {
+    let known = |value: f64| match value.is_nan() {
+        true => "–".to_owned(),
+        false => number(value),
+    };
+    let row = |check: &Check| {
+        vec![
+            check.quantity.clone(),
+            check.unit.to_owned(),
+            known(check.computed),
+            check.own_error.map_or("–".into(), number),
+            check.wanted(),
+            check.source.to_owned(),
+            check.result(),
+        ]
+    };
+    let head = [
+        "requirement",
+        "unit",
+        "computed",
+        "own error of what it is compared with",
+        "wanted",
+        "source",
+        "result",
+    ];
+    Block::table(&head, checks.iter().map(row))
+}

@@ -1,0 +1,43 @@
+//! Results for machines: `report.json`, the same keys for every kind of study.
+
+use serde_json::{Map, Value, json};
+
+use super::{Check, Results, Step, verdict};
+
+impl Results {
+    /// The results as `report.schema.json` says. Numbers and models that do not exist are `null`.
+    pub fn json(&self) -> Value {
+        let outcome = &self.outcome;
+        let step = |step: &Step| {
+            let mut all = step.models.clone();
+            all.insert("at".into(), json!(step.at));
+            Value::Object(all)
+        };
+        let parts = outcome
+            .times
+            .iter()
+            .map(|(what, seconds)| (&**what, *seconds));
+        let times = [("whole study", self.seconds)].into_iter().chain(parts);
+        let times: Map<_, _> = times.map(|(what, s)| (what.to_owned(), json!(s))).collect();
+        let warnings = self.read_warnings.iter().chain(&outcome.warnings);
+        json!({
+            "gelbench": env!("CARGO_PKG_VERSION"),
+            "name": self.name,
+            "kind": self.kind,
+            "title": self.title,
+            "study": { "text": self.text, "defaults": self.defaults },
+            "problem": outcome.problem,
+            "material": outcome.material.as_ref().map(|material| &material.json),
+            "along": (!outcome.along.is_empty()).then_some(outcome.along),
+            "steps": outcome.steps.iter().map(step).collect::<Vec<_>>(),
+            "requirements": outcome.checks.iter().map(Check::json).collect::<Vec<_>>(),
+            "passed": self.passed(),
+            "verdict": verdict(&outcome.checks),
+            "warnings": warnings.collect::<Vec<_>>(),
+            "doubts": outcome.doubts,
+            "ends": outcome.ends.iter().map(|end| &end.message).collect::<Vec<_>>(),
+            "balance": { "worst": outcome.balance, "models": outcome.balances },
+            "times_s": times,
+        })
+    }
+}

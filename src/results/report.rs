@@ -1,0 +1,127 @@
+//! The report of a study: what is said, in which order, for every kind the same.
+
+use super::{Block, Claim, End, Outcome, Results, requirements, verdict};
+
+impl Results {
+    /// The report; its pictures are those of the outcome.
+    pub fn report(&self) -> Vec<Block> {
+        let outcome = &self.outcome;
+        let mut blocks = vec![Block::Heading(1, self.title.clone())];
+        blocks.extend(judged(outcome));
+        blocks.extend(ends(outcome));
+        blocks.extend(paragraphs("Doubts", &outcome.doubts));
+        blocks.extend(outcome.warnings.iter().map(Block::paragraph));
+        blocks.extend(claims(outcome.claims.iter()));
+        blocks.extend(outcome.blocks.iter().cloned());
+        let placed = |block: &Block| matches!(block, Block::Figure(..));
+        if !outcome.blocks.iter().any(placed) {
+            blocks.extend(pictures(heading(outcome.along), outcome));
+        }
+        blocks.extend(
+            outcome
+                .material
+                .iter()
+                .flat_map(|material| material.blocks.clone()),
+        );
+        blocks.extend(self.study());
+        blocks.push(Block::paragraph(format!(
+            "gelbench {}",
+            env!("CARGO_PKG_VERSION")
+        )));
+        blocks.extend(self.times());
+        blocks
+    }
+
+    /// The text of the study, what it left out, and what deserved attention when it was read.
+    pub fn study(&self) -> Vec<Block> {
+        let mut blocks = Vec::new();
+        if !self.text.is_empty() {
+            blocks.extend([Block::heading("Study"), Block::Code(self.text.clone())]);
+        }
+        if !self.defaults.is_empty() {
+            blocks.push(Block::paragraph(
+                "Settings that the study does not hold, with the defaults that they took:",
+            ));
+            blocks.push(Block::Code(self.defaults.join("\n")));
+        }
+        blocks.extend(paragraphs("Warnings on reading", &self.read_warnings));
+        blocks
+    }
+
+    fn times(&self) -> [Block; 3] {
+        let parts = self
+            .outcome
+            .times
+            .iter()
+            .map(|(what, seconds)| (&**what, *seconds));
+        let all = [("whole study", self.seconds)].into_iter().chain(parts);
+        let rows = all.map(|(what, seconds)| vec![what.to_owned(), format!("{seconds:.3}")]);
+        [
+            Block::heading("Times"),
+            Block::paragraph("Wall-clock times. They differ from run to run."),
+            Block::table(&["what", "time [s]"], rows),
+        ]
+    }
+}
+
+fn paragraphs(heading: &str, texts: &[String]) -> Vec<Block> {
+    let heading = (!texts.is_empty()).then(|| Block::heading(heading));
+    heading
+        .into_iter()
+        .chain(texts.iter().map(Block::paragraph))
+        .collect()
+}
+
+/// All pictures under a heading.
+pub fn pictures(heading: &str, outcome: &Outcome) -> Vec<Block> {
+    let figures = outcome.figures.iter().enumerate();
+    let figures = figures.map(|(index, figure)| Block::Figure(index, figure.caption.clone()));
+    let heading = (!outcome.figures.is_empty()).then(|| Block::heading(heading));
+    heading.into_iter().chain(figures).collect()
+}
+
+/// Of frames, the pictures show the last one.
+fn heading(along: &str) -> &'static str {
+    match along {
+        "frame" => "Pictures of the last frame",
+        _ => "Pictures",
+    }
+}
+
+fn judged(outcome: &Outcome) -> Vec<Block> {
+    let checks = &outcome.checks;
+    if checks.is_empty() {
+        return Vec::new();
+    }
+    let verdict = format!("The requirements have {}:", verdict(checks));
+    vec![Block::Paragraph(verdict), requirements(checks)]
+}
+
+/// Which model ended where, and why; ends that are told as requirements are not told again.
+fn ends(outcome: &Outcome) -> Vec<Block> {
+    if outcome.checks.iter().any(super::Check::is_end) {
+        return Vec::new();
+    }
+    let told = |end: &End| match end.advice {
+        Some(advice) => format!("{}. Try: {advice}.", end.message),
+        None => format!("{}.", end.message),
+    };
+    let told: Vec<String> = outcome.ends.iter().map(told).collect();
+    paragraphs("Models that ended early", &told)
+}
+
+/// The publication's claims; nothing without one.
+pub fn claims<'a>(claims: impl Iterator<Item = &'a Claim>) -> Vec<Block> {
+    let rows = claims.map(|claim| vec![claim.claim.to_owned(), claim.reproduced.clone()]);
+    let rows: Vec<_> = rows.collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    vec![
+        Block::heading("The publication's claims"),
+        Block::paragraph(
+            "H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems.",
+        ),
+        Block::table(&["claim", "reproduced here"], rows),
+    ]
+}

@@ -1,0 +1,168 @@
+//! Reports for machines have one schema, whatever the kind of the study.
+
+use std::fs;
+
+use gelbench::output::REPORT_SCHEMA;
+use serde_json::Value;
+use tempfile::TempDir;
+
+mod common;
+
+use common::{SMALL, folder_with, gelbench, root};
+
+/// What of a value does not follow a schema, of the keywords that the schema of reports uses.
+fn faults(schema: &Value, value: &Value, place: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let matches = |name: &Value| match name.as_str() {
+        Some("object") => value.is_object(),
+        Some("array") => value.is_array(),
+        Some("string") => value.is_string(),
+        Some("number") => value.is_number(),
+        Some("boolean") => value.is_boolean(),
+        Some("null") => value.is_null(),
+        other => panic!("unknown type {other:?}"),
+    };
+    let of_type = match &schema["type"] {
+        Value::Null => true,
+        Value::Array(names) => names.iter().any(matches),
+        name => matches(name),
+    };
+    let listed = schema["enum"].as_array();
+    if !of_type || listed.is_some_and(|listed| !listed.contains(value)) {
+        found.push(format!("{place}: {value}"));
+    }
+    for (index, item) in value.as_array().into_iter().flatten().enumerate() {
+        found.extend(faults(&schema["items"], item, &format!("{place}[{index}]")));
+    }
+    let Some(entries) = value.as_object() else {
+        return found;
+    };
+    for key in schema["required"].as_array().into_iter().flatten() {
+        if !entries.contains_key(key.as_str().unwrap()) {
+            found.push(format!("{place}: lacks {key}"));
+        }
+    }
+    for (key, own) in entries {
+        let place = format!("{place}.{key}");
+        match (&schema["properties"][key], &schema["additionalProperties"]) {
+            (Value::Null, Value::Bool(false)) => found.push(format!("{place}: not allowed")),
+            (Value::Null, other) => found.extend(faults(other, own, &place)),
+            (known, _) => found.extend(faults(known, own, &place)),
+        }
+    }
+    found
+}
+
+fn schema() -> Value {
+    serde_json::from_str(REPORT_SCHEMA).unwrap()
+}
+
+/// The report in a folder, which follows the schema.
+fn report(folder: &TempDir, kind: &str, along: Option<&str>, steps: usize) -> Value {
+    let text = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
+    let report: Value = serde_json::from_str(&text).unwrap();
+    let found = faults(&schema(), &report, "report");
+    assert!(found.is_empty(), "{found:#?}");
+    assert_eq!(report["kind"], kind);
+    assert_eq!(report["along"].as_str(), along);
+    assert_eq!(report["steps"].as_array().unwrap().len(), steps);
+    report
+}
+
+fn run(study: &str) -> TempDir {
+    let folder = folder_with(study);
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+    folder
+}
+
+#[test]
+fn a_plate_follows_the_schema() {
+    let report = report(&run(SMALL), "plate", Some("stretch"), 1);
+    assert_eq!(report["name"], "small");
+    assert_eq!(report["requirements"].as_array().unwrap().len(), 4);
+    assert_eq!(report["study"]["text"], SMALL);
+    assert!(!report["study"]["defaults"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn a_specimen_follows_the_schema() {
+    let study = "kind = \"specimen\"\ntitle = \"small\"\n[material]\ncard = \"pva-10-yeoh\"\n\
+        [specimen]\nthickness = \"2 mm\"\nshape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 4\n\
+        [path]\nfactors = [0.5, 1.0]\nmeasured_group = \"left\"\n\
+        [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
+        [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"6 mm\"\ny = \"0 mm\"\n\
+        [tolerances]\ndisplacement = \"20 %\"\nforce = \"20 %\"\ncorrection = \"10 %\"\n";
+    let report = report(&run(study), "specimen", Some("load factor"), 2);
+    let step = &report["steps"][1];
+    assert!(step["corrected"]["displacement_percent"].is_number());
+    assert!(step["finite_element"]["measured_N"].is_number());
+    assert_eq!(report["material"]["law"], "yeoh");
+}
+
+#[test]
+fn a_motion_follows_the_schema() {
+    let study = "kind = \"motion\"\ntitle = \"small\"\n\
+        [plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\nthickness = \"1 mm\"\ncells = [6, 2]\n\
+        [finite_element]\nelement = \"Q1\"\ncells = [6, 2]\n\
+        [[probe]]\nname = \"end\"\nat = [\"30 mm\", \"5 mm\"]\n\
+        [start]\nstretch = \"10 %\"\n[grip]\nmotion = \"release\"\ntime = \"0 s\"\n\
+        [material]\ncard = \"pva-10\"\ndensity = \"1020 kg/m^3\"\n\
+        [time]\nduration = \"4 ms\"\ninterval = \"2 ms\"\nstep = \"0.05 ms\"\n";
+    let report = report(&run(study), "motion", Some("time"), 3);
+    assert_eq!(report["steps"][2]["at"], 0.004);
+    assert!(report["steps"][2]["finite_element"]["stored_energy_mJ"].is_number());
+}
+
+#[test]
+fn markers_follow_the_schema() {
+    let mut table = String::from("x [mm],y [mm],ux [mm],uy [mm]\n");
+    for i in 0..12 {
+        for j in 0..8 {
+            let (x, y) = (5.0 * f64::from(i), 5.0 * f64::from(j));
+            let noise = f64::from((7 * i + 3 * j) % 5 - 2) * 0.01;
+            let (ux, uy) = (0.1 * x + noise, -0.045 * y - noise);
+            table += &format!("{x},{y},{ux},{uy}\n");
+        }
+    }
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("field.csv"), table).unwrap();
+    let arguments = [
+        "correct",
+        "field.csv",
+        "--material",
+        "pva-10",
+        "--thickness",
+        "2 mm",
+    ];
+    let arguments = [&arguments[..], &["--edge-gap", "0 mm", "--output", "out"]].concat();
+    gelbench(folder.path(), &arguments);
+    let report = report(&folder, "markers", Some("frame"), 1);
+    assert_eq!(report["name"], "field");
+    assert!(report["steps"][0]["corrected"]["noise_mm"].is_number());
+}
+
+#[test]
+fn a_validation_case_follows_the_schema() {
+    let study = fs::read_to_string(root().join("examples/nonlinear_spring.toml")).unwrap();
+    report(&run(&study), "nonlinear-spring", None, 0);
+}
+
+#[test]
+fn the_schema_sees_what_does_not_follow_it() {
+    let report = report(&run(SMALL), "plate", Some("stretch"), 1);
+    let broken = |change: fn(&mut Value)| {
+        let mut report = report.clone();
+        change(&mut report);
+        faults(&schema(), &report, "report").len()
+    };
+    assert_eq!(broken(|report| report["passed"] = "yes".into()), 1);
+    assert_eq!(broken(|report| report["more"] = 1.into()), 1);
+    assert_eq!(broken(|report| report["steps"][0]["at"] = Value::Null), 1);
+    let without = |report: &mut Value| {
+        report["requirements"][0]
+            .as_object_mut()
+            .unwrap()
+            .remove("unit");
+    };
+    assert_eq!(broken(without), 1);
+}
