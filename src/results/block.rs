@@ -1,6 +1,6 @@
 //! Parts of a report.
 
-use super::{Animation, FieldFigure, LineChart};
+use super::Drawing;
 
 /// A part of a report.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,19 +35,6 @@ impl Block {
     }
 }
 
-/// What a picture shows.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Drawing {
-    /// Charts one below the other, with their heights in points.
-    Charts(Vec<(LineChart, u32)>),
-    /// Fields on deformed plates.
-    Field(FieldFigure),
-    /// Fields that move.
-    Animation(Animation),
-    /// A heading, and the outlines of cells, each a closed line, in mm.
-    Outlines(String, Vec<Vec<[f64; 2]>>),
-}
-
 /// What a file beside a report holds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
@@ -55,19 +42,6 @@ pub enum Content {
     Text(String),
     /// A picture.
     Picture(Drawing),
-}
-
-impl From<LineChart> for Drawing {
-    fn from(chart: LineChart) -> Self {
-        const HEIGHT: u32 = 480;
-        Self::Charts(vec![(chart, HEIGHT)])
-    }
-}
-
-impl From<FieldFigure> for Drawing {
-    fn from(figure: FieldFigure) -> Self {
-        Self::Field(figure)
-    }
 }
 
 /// A picture and its caption.

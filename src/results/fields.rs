@@ -1,6 +1,6 @@
 //! Fields on deformed meshes as data, and the meshes themselves.
 
-use super::{Drawing, Scale};
+use super::Scale;
 use crate::finite_element::error_estimate::EnergyError;
 use crate::mesh::Mesh;
 
@@ -142,33 +142,6 @@ pub struct Animation {
     pub frames: Vec<Frame>,
     /// How long each is shown, in ms.
     pub milliseconds: u16,
-}
-
-/// A mesh; curved edges are drawn through their middles.
-pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
-    let outline = |cell: usize| {
-        let nodes = mesh.cell(cell);
-        let shape = mesh.shape(cell);
-        let mut places = Vec::new();
-        for edge in shape.edges() {
-            let along = [0, 1, 2, 3].map(|i| f64::from(i) / 4.0);
-            let [from, to] = [edge[0], edge[1]].map(|node| shape.natural_nodes()[node]);
-            for share in along {
-                let local = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
-                let values = shape.values(local);
-                places.push([0, 1].map(|axis| {
-                    let shares = nodes.iter().zip(&values);
-                    shares
-                        .map(|(node, value)| value * mesh.nodes[*node][axis])
-                        .sum()
-                }));
-            }
-        }
-        places.extend(places.first().copied());
-        places
-    };
-    let cells = (0..mesh.cell_count()).map(outline).collect();
-    Drawing::Outlines(title.to_owned(), cells)
 }
 
 /// Deformed cells with the mean of their corners' values.

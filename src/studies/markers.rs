@@ -19,6 +19,7 @@ mod conditions;
 mod doubts;
 mod figures;
 mod json;
+mod quantities;
 mod report;
 mod request;
 mod specimen_mesh;

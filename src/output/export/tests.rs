@@ -6,6 +6,7 @@ use crate::mesh::{CellShape, Mesh, Shape};
 use crate::problem::{BoundaryProblem, Load, Support};
 
 mod laws;
+mod published;
 mod solids;
 
 /// A strip of 2 × 1 cells under everything that a study can say.

@@ -3,7 +3,7 @@
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Writer};
 use resvg::tiny_skia::Pixmap;
 
-use super::rasterise;
+use super::canvas::rasterise;
 use crate::results::{Animation, FieldFigure, Panel, Scale};
 
 /// A part of a picture: left, top, width, height in pixels.

@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{DrawResult, FINE, INK, bold, render, stroke, text, tick};
+use super::canvas::{DrawResult, FINE, INK, bold, render, stroke, text, tick};
 use crate::results::{Colours, FieldFigure, Scale};
 
 const WIDTH: f64 = 960.0;

@@ -4,7 +4,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{FINE, INK, PALE, bold, render, stroke, text, units};
+use super::canvas::{DrawResult, FINE, INK, PALE, bold, render, stroke, text, units};
 use crate::results::{Line, LineChart, Scale, Stroke};
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -27,10 +27,7 @@ pub fn stacked(charts: &[(LineChart, u32)]) -> Vec<u8> {
 }
 
 impl LineChart {
-    fn draw(
-        &self,
-        area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
-    ) -> super::DrawResult<()> {
+    fn draw(&self, area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> DrawResult<()> {
         let (chart_area, legend) = area.split_horizontally(FINE * (WIDTH - LEGEND_WIDTH));
         let positions = |axis: usize| {
             let scale = [self.x.scale, self.y.scale][axis];
@@ -76,7 +73,7 @@ impl LineChart {
         self.draw_legend(&legend)
     }
 
-    fn draw_line(&self, chart: &mut Chart, line: &Line) -> super::DrawResult<()> {
+    fn draw_line(&self, chart: &mut Chart, line: &Line) -> DrawResult<()> {
         let position =
             |[x, y]: &[f64; 2]| Some((self.x.scale.position(*x)?, self.y.scale.position(*y)?));
         let points: Vec<_> = line.points.iter().filter_map(position).collect();
@@ -106,7 +103,7 @@ impl LineChart {
     fn draw_legend(
         &self,
         area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
-    ) -> super::DrawResult<()> {
+    ) -> DrawResult<()> {
         let style = text(13).pos(Pos::new(HPos::Left, VPos::Center));
         let (left, right) = (units(4), units(34));
         let mut y = units(62);

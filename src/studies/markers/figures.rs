@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::results::{Drawing, FieldCell, FieldFigure, Figure, Panel, mesh_outlines};
 use crate::studies::markers::MarkerStudy;
 
-use super::written::{left, nominal_stress};
+use super::quantities::{nominal_stress, residuals};
 
 /// The pictures of one frame.
 pub fn figures(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Vec<Figure> {
@@ -96,7 +96,7 @@ impl Pictures<'_> {
             "largest component [MPa]",
             &|cell| largest(estimate.cells[cell].stress_error),
         );
-        let residuals = left(estimate).map(|left| left.standardised.min(LARGEST_RESIDUAL));
+        let residuals = residuals(estimate).map(|left| left.standardised.min(LARGEST_RESIDUAL));
         let residuals = self.at_markers(
             "Standardised residuals of the markers",
             "standardised residual [–]",
@@ -123,7 +123,7 @@ impl Pictures<'_> {
     }
 
     fn correction(&self, frame: &Frame) -> Figure {
-        let lengths = left(self.estimate).map(|left| left.residual[0].hypot(left.residual[1]));
+        let lengths = residuals(self.estimate).map(|left| left.residual[0].hypot(left.residual[1]));
         Figure::new(
             "correction.png",
             "How far the correction has moved the nodes of the given field.",

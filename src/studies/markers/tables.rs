@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::written::{left, nominal, nominal_stress};
+use super::quantities::{nominal, nominal_stress, residuals};
 use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::studies::markers::MarkerStudy;
@@ -62,7 +62,7 @@ pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
     let mut text = String::from(
         "marker,X_mm,Y_mm,ux_mm,uy_mm,residual_x_mm,residual_y_mm,standardised_residual,trust,outlier\n",
     );
-    for (marker, left) in frame.markers.iter().zip(left(estimate)) {
+    for (marker, left) in frame.markers.iter().zip(residuals(estimate)) {
         let ([x, y], [ux, uy], [rx, ry]) = (marker.place, marker.displacement, left.residual);
         let values = [
             x,

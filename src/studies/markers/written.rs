@@ -10,11 +10,12 @@
 //!
 //! Files of a frame carry its number.
 
-use crate::corrector::estimation::{FieldEstimate, StressEstimate};
+use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::results::{Array, Content, Grid, GridSeries, Material, Outcome, Results, Sheet};
 use crate::studies::markers::MarkerStudy;
 
+use super::quantities::{Residual, nominal, residuals};
 use super::{figures, json, report, tables};
 
 /// The `kind` of these results.
@@ -146,49 +147,16 @@ fn corrected(field: &MarkerStudy, _frame: &Frame, estimate: &FieldEstimate) -> G
     ])
 }
 
-/// The components xx, xy, yx, yy of the nominal stress from those of the first Piola–Kirchhoff stress, its transpose.
-pub(super) fn nominal([p11, p12, p21, p22]: [f64; 4]) -> [f64; 4] {
-    [p11, p21, p12, p22]
-}
-
-pub(super) fn nominal_stress(cell: &StressEstimate) -> [f64; 4] {
-    nominal(cell.first_piola_kirchhoff_stress)
-}
-
-/// What is left of a marker, and no numbers where it has no place on the mesh.
-pub(super) struct Left {
-    pub residual: [f64; 2],
-    pub standardised: f64,
-    pub trust: f64,
-    pub outlier: f64,
-}
-
-pub(super) fn left(estimate: &FieldEstimate) -> impl Iterator<Item = Left> {
-    estimate.markers.iter().map(|marker| match marker {
-        Some(marker) => Left {
-            residual: marker.residual,
-            standardised: marker.standardised_residual,
-            trust: marker.trust,
-            outlier: f64::from(u8::from(marker.outlier)),
-        },
-        None => Left {
-            residual: [f64::NAN; 2],
-            standardised: f64::NAN,
-            trust: f64::NAN,
-            outlier: f64::NAN,
-        },
-    })
-}
-
 fn markers(_field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let all = &frame.markers;
     let places: Vec<[f64; 2]> = all.iter().map(|marker| marker.place).collect();
     let measured: Vec<f64> = all.iter().flat_map(|marker| marker.displacement).collect();
     let numbers = all.iter().map(|marker| marker.number as f64);
-    let of = |name, value: fn(Left) -> f64| Array::scalars(name, left(estimate).map(value));
-    let residuals = left(estimate).flat_map(|left| left.residual);
+    let of =
+        |name, value: fn(Residual) -> f64| Array::scalars(name, residuals(estimate).map(value));
+    let differences = residuals(estimate).flat_map(|left| left.residual);
     Grid::scattered(&places, &measured).with([
-        Array::vectors("residual_mm", residuals),
+        Array::vectors("residual_mm", differences),
         of("standardised_residual_1", |left| left.standardised),
         of("trust_1", |left| left.trust),
         of("outlier_1", |left| left.outlier),

@@ -7,6 +7,9 @@ use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
 mod accuracy;
+mod words;
+
+use words::{at_stretches, figure};
 
 /// The tables of a plate, with the pictures of `outcome` among them.
 pub fn blocks(study: &Study, results: &Results, outcome: &Outcome) -> Vec<Block> {
@@ -21,31 +24,6 @@ pub fn blocks(study: &Study, results: &Results, outcome: &Outcome) -> Vec<Block>
     blocks.extend(accuracy::convergence(study, results));
     blocks.extend(problem(study));
     blocks
-}
-
-fn heading(text: &str) -> Block {
-    Block::Heading(2, text.to_owned())
-}
-
-/// A figure with so many decimals; a dash where there is none.
-fn figure(value: Option<f64>, decimals: usize) -> String {
-    let value = value.filter(|value| !value.is_nan());
-    value.map_or("–".into(), |value| format!("{value:.decimals$}"))
-}
-
-/// A figure as a power of ten; a dash where it is none.
-fn power(value: f64) -> String {
-    match value.is_nan() {
-        true => "–".into(),
-        false => format!("{value:.1e}"),
-    }
-}
-
-/// `15 %, 30 % stretch`, for sentences.
-fn at_stretches(stretches: Vec<f64>) -> String {
-    let percent = |stretch: f64| format!("{} %", ClampedPlate::percent(stretch));
-    let all: Vec<String> = stretches.into_iter().map(percent).collect();
-    format!("{} stretch", all.join(", "))
 }
 
 fn introduction(study: &Study, results: &Results) -> String {
@@ -97,7 +75,7 @@ fn problem(study: &Study) -> Vec<Block> {
     ];
     let rows = rows.map(|(key, value)| vec![key.to_owned(), value]);
     vec![
-        heading("Plate, supports and loads"),
+        Block::heading("Plate, supports and loads"),
         Block::table(&["property", "value"], rows),
     ]
 }
@@ -139,7 +117,7 @@ fn deviations(study: &Study, results: &Results) -> Vec<Block> {
         "correction [%]",
     ];
     vec![
-        heading("Deviation from the finite elements"),
+        Block::heading("Deviation from the finite elements"),
         Block::table(&head, results.comparison.iter().flat_map(rows).flatten()),
         Block::Paragraph(format!(
             "Displacement and departure are relative L2 norms over the plate, weighted by area; the departure \
@@ -174,7 +152,7 @@ fn forces(results: &Results) -> Vec<Block> {
         "energy, finite elements [mJ]",
     ];
     vec![
-        heading("Force, width at mid length and strain energy"),
+        Block::heading("Force, width at mid length and strain energy"),
         Block::table(&head, results.comparison.iter().enumerate().map(row)),
     ]
 }

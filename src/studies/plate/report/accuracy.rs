@@ -1,6 +1,6 @@
 //! The parts of a report on what its figures are worth: error budget, own errors, balance, convergence.
 
-use super::{at_stretches, figure, heading, power};
+use super::words::{at_stretches, figure, power};
 use crate::compare::{Deviation, StepComparison};
 use crate::corrector::DifferenceScheme;
 use crate::corrector::plate::CorrectedState;
@@ -45,7 +45,7 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
         "finite elements: force [%]",
     ];
     vec![
-        heading("Error budget"),
+        Block::heading("Error budget"),
         Block::table(&head, results.comparison.iter().enumerate().map(row)),
         Block::Paragraph(format!(
             "The departure before the correction is what the springs cannot do; the correction removes it. What \
@@ -102,7 +102,7 @@ pub fn reference(study: &Study, results: &Results) -> Vec<Block> {
         "by recovery: force [%]",
     ];
     vec![
-        heading("The finite elements' own error"),
+        Block::heading("The finite elements' own error"),
         Block::Paragraph(format!(
             "{} elements on {}, {} and {} cells{}; Richardson's extrapolation with the observed order, none above 4. The \
              clamped corners are singular, which lowers the order where cells are equal; a grading towards them \
@@ -150,7 +150,7 @@ pub fn balance(study: &Study, results: &Results) -> Vec<Block> {
         None => "",
     };
     vec![
-        heading("Balance of forces and moments"),
+        Block::heading("Balance of forces and moments"),
         Block::table(&head, rows),
         Block::Paragraph(format!(
             "The sum of the reactions of both grips along both axes, over the sum of their sizes, and the sum of their \
@@ -193,7 +193,7 @@ pub fn convergence(study: &Study, results: &Results) -> Vec<Block> {
         "tangents shifted",
     ];
     let mut blocks = vec![
-        heading("Convergence"),
+        Block::heading("Convergence"),
         Block::table(&head, rows),
         Block::Paragraph(format!(
             "Mass-spring and finite elements: largest residual force over the largest reaction. Corrector: {}",

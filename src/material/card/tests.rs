@@ -1,0 +1,94 @@
+use super::*;
+
+#[test]
+fn every_shipped_card_loads() {
+    for (name, _) in CARDS {
+        let card = Card::load(name, Path::new(".")).unwrap();
+        assert!(card.law.youngs_modulus() > 0.0, "{name}");
+        assert!(
+            !card.citation.is_empty() && !card.specimen.is_empty(),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn the_law_reproduces_the_published_curve() {
+    for name in ["pva-10", "pva-10-cauchy"] {
+        let card = Card::load(name, Path::new(".")).unwrap();
+        assert!(card.fit_error_percent().unwrap() < 1e-10, "{name}");
+        assert!((card.published_nominal_stress(1.0).unwrap() - 0.00187).abs() < 1e-12);
+    }
+    let card = Card::load("neo-hooke", Path::new(".")).unwrap();
+    assert_eq!(card.fit_error_percent(), None);
+}
+
+#[test]
+fn density_and_viscosity_are_read_and_their_faults_told() {
+    let with = |more: &str, viscosity: &str| {
+        let text = CARDS[0]
+            .1
+            .replacen("[parameters]", &format!("{more}\n[parameters]"), 1);
+        Card::parse("x", "x.toml", &format!("{text}\n[viscosity]\n{viscosity}"))
+    };
+    let plain = Card::load(CARDS[0].0, Path::new(".")).unwrap();
+    assert!(plain.density.is_none() && plain.viscosity.is_none());
+    let viscosity = "shear = \"50 Pa·s\"\nrelaxation = [{ share = 0.3, time = \"2 s\" }]";
+    let card = with("density = \"1100 kg/m³\"", viscosity).unwrap();
+    assert!((card.density.unwrap() - 1.1e-9).abs() < 1e-24);
+    assert!((card.viscosity.shear_viscosity - 5e-5).abs() < 1e-19);
+    assert_eq!(card.viscosity.relaxation[0].time, 2.0);
+    let fault = with(
+        "",
+        "relaxation = [{ share = 0.6, time = \"2 s\" }, { share = 0.5, time = \"1 s\" }]",
+    );
+    assert!(fault.unwrap_err().to_string().contains("less than 1"));
+    let fault = with("density = \"1100\"", "shere = \"1 Pa·s\"")
+        .unwrap_err()
+        .to_string();
+    assert!(
+        fault.contains("density") && fault.contains("did you mean `shear`"),
+        "{fault}"
+    );
+}
+
+#[test]
+fn all_faults_of_a_card_are_told_at_once() {
+    let text = CARDS[0]
+        .1
+        .replace("0.0611 MPa", "0.0611")
+        .replace("exponent =", "exponant =");
+    let Err(Error::Input(faults)) = Card::parse("x", "x.toml", &text) else {
+        panic!("accepted")
+    };
+    let told: Vec<_> = faults.iter().map(ToString::to_string).collect();
+    assert_eq!(told.len(), 3, "{told:#?}");
+    assert!(
+        told.iter().any(|line| line.contains("has no unit")),
+        "{told:#?}"
+    );
+    assert!(
+        told.iter()
+            .any(|line| line.contains("did you mean `exponent`")),
+        "{told:#?}"
+    );
+}
+
+#[test]
+fn a_law_outside_the_registry_makes_a_card() {
+    let law = Arc::new(NeoHooke { c10: 0.05 });
+    let card = Card::of_law("mine", law, [0.8, 1.5]);
+    assert_eq!((&*card.name, &*card.law_name), ("mine", "mine"));
+    assert!((card.law.youngs_modulus() - 0.3).abs() < 1e-15);
+    assert!(card.covers(1.5) && !card.covers(1.6));
+    assert!(card.density.is_none() && card.viscosity.is_none());
+}
+
+#[test]
+fn an_unknown_card_is_answered_with_the_nearest_name() {
+    let fault = Card::load("pva10", Path::new(".")).unwrap_err();
+    assert!(
+        fault.to_string().contains("did you mean `pva-10`"),
+        "{fault}"
+    );
+}

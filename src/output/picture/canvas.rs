@@ -1,0 +1,183 @@
+//! What all pictures are drawn with: an area, fonts, strokes, numbers on axes.
+
+use std::sync::{Arc, LazyLock};
+
+use plotters::prelude::*;
+use resvg::{tiny_skia, usvg};
+
+use crate::results::Scale;
+
+/// Units of the drawing for each point of the design. plotters rounds to whole units: they must be small.
+pub(super) const FINE: u32 = 8;
+/// Pixels of the picture for each point of the design.
+const PIXELS: f32 = 2.0;
+const REGULAR: &[u8] = include_bytes!("../fonts/dejavu-sans-regular.ttf");
+const BOLD: &[u8] = include_bytes!("../fonts/dejavu-sans-bold.ttf");
+const FAMILY: &str = "sans-serif";
+
+/// Text and axes.
+pub(super) const INK: RGBColor = RGBColor(38, 38, 38);
+/// Grid lines.
+pub(super) const PALE: RGBColor = RGBColor(225, 225, 225);
+
+/// Why a picture could not be drawn.
+pub(super) type DrawResult<T> = Result<T, Box<dyn std::error::Error>>;
+
+static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
+    for (style, bytes) in [(FontStyle::Normal, REGULAR), (FontStyle::Bold, BOLD)] {
+        plotters::style::register_font(FAMILY, style, bytes)
+            .ok()
+            .expect("the embedded font is a font");
+    }
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_data(REGULAR.to_vec());
+    fonts.load_font_data(BOLD.to_vec());
+    fonts.set_sans_serif_family("DejaVu Sans");
+    Arc::new(fonts)
+});
+
+/// Draws on a white area of `size` points and returns a PNG.
+pub(super) fn render(
+    size: (u32, u32),
+    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> DrawResult<()>,
+) -> Vec<u8> {
+    rasterise(size, PIXELS, draw)
+        .encode_png()
+        .expect("an image can be encoded to memory")
+}
+
+/// Draws on a white area of `size` points with so many pixels a point.
+pub(super) fn rasterise(
+    size: (u32, u32),
+    pixels_per_point: f32,
+    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> DrawResult<()>,
+) -> tiny_skia::Pixmap {
+    let fonts = Arc::clone(&FONTS);
+    let mut svg = String::new();
+    {
+        let area =
+            SVGBackend::with_string(&mut svg, (FINE * size.0, FINE * size.1)).into_drawing_area();
+        area.fill(&WHITE).expect("drawing to memory does not fail");
+        draw(&area).expect("drawing to memory does not fail");
+        area.present().expect("drawing to memory does not fail");
+    }
+    // Neighbouring cells share their edges: without this, a pale seam would show between them.
+    let svg = svg.replace("<polygon ", "<polygon shape-rendering=\"crispEdges\" ");
+    let options = usvg::Options {
+        fontdb: fonts,
+        ..usvg::Options::default()
+    };
+    let tree = usvg::Tree::from_str(&svg, &options).expect("plotters writes valid SVG");
+    let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
+    let mut image =
+        tiny_skia::Pixmap::new(pixels(size.0), pixels(size.1)).expect("a positive size");
+    let scale = pixels_per_point / FINE as f32;
+    let transform = tiny_skia::Transform::from_scale(scale, scale);
+    resvg::render(&tree, transform, &mut image.as_mut());
+    image
+}
+
+/// Points of the design in units of the drawing.
+pub(super) fn units(points: i32) -> i32 {
+    points * FINE as i32
+}
+
+/// A line of some width in points.
+pub(super) fn stroke(colour: RGBColor, width: u32) -> ShapeStyle {
+    colour.stroke_width(FINE * width)
+}
+
+pub(super) fn text(size: u32) -> TextStyle<'static> {
+    (FAMILY, FINE * size).into_font().color(&INK)
+}
+
+pub(super) fn bold(size: u32) -> TextStyle<'static> {
+    (FAMILY, FINE * size, FontStyle::Bold)
+        .into_font()
+        .color(&INK)
+}
+
+/// A number as an axis shows it: no trailing zeros, a true minus sign.
+pub(super) fn tick(value: f64) -> String {
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        return "0".to_owned();
+    }
+    text.replace('-', "−")
+}
+
+/// A power of ten by its exponent: 10⁻³.
+pub(super) fn power_of_ten(exponent: f64) -> String {
+    let digits = format!("{exponent:.0}");
+    let superscript = digits.chars().map(|digit| match digit {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        other => char::from_u32('⁰' as u32 + other as u32 - '0' as u32).unwrap_or(other),
+    });
+    format!("10{}", superscript.collect::<String>())
+}
+
+impl Scale {
+    /// The position of a value; values that a logarithm does not take have none.
+    pub(super) fn position(self, value: f64) -> Option<f64> {
+        let position = match self {
+            Self::Linear | Self::Interval => value,
+            Self::Logarithmic => value.log10(),
+        };
+        position.is_finite().then_some(position)
+    }
+
+    pub(super) fn label(self, position: f64) -> String {
+        match self {
+            Self::Linear | Self::Interval => tick(position),
+            Self::Logarithmic if (position - position.round()).abs() < 1e-6 => {
+                power_of_ten(position.round())
+            }
+            Self::Logarithmic => String::new(),
+        }
+    }
+
+    /// Limits that hold all positions: whole decades, or a little more than the values take.
+    pub(super) fn limits(self, positions: impl Iterator<Item = f64>) -> (f64, f64) {
+        let (low, high) = positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
+        if low > high {
+            return (0.0, 1.0);
+        }
+        match self {
+            Self::Logarithmic => (low.floor(), high.ceil().max(low.floor() + 1.0)),
+            Self::Linear | Self::Interval => {
+                let margin = if high > low {
+                    0.05 * (high - low)
+                } else {
+                    0.5 * high.abs().max(1.0)
+                };
+                // Zero is shown where it is near.
+                let from_zero = self == Self::Linear && low >= 0.0 && low < 0.4 * high;
+                (if from_zero { 0.0 } else { low - margin }, high + margin)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_labelled_as_people_write_them() {
+        assert_eq!(tick(0.1 + 0.2), "0.3");
+        assert_eq!(tick(-40.0), "−40");
+        assert_eq!(tick(-1e-9), "0");
+        assert_eq!(power_of_ten(-10.0), "10⁻¹⁰");
+        assert_eq!(Scale::Logarithmic.label(0.5), "");
+        assert_eq!(
+            Scale::Logarithmic.limits([-2.3, 0.4].into_iter()),
+            (-3.0, 1.0)
+        );
+    }
+}

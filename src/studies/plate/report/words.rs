@@ -1,0 +1,24 @@
+//! Numbers and stretches as a report writes them.
+
+use crate::problem::ClampedPlate;
+
+/// A figure with so many decimals; a dash where there is none.
+pub fn figure(value: Option<f64>, decimals: usize) -> String {
+    let value = value.filter(|value| !value.is_nan());
+    value.map_or("–".into(), |value| format!("{value:.decimals$}"))
+}
+
+/// A figure as a power of ten; a dash where it is none.
+pub fn power(value: f64) -> String {
+    match value.is_nan() {
+        true => "–".into(),
+        false => format!("{value:.1e}"),
+    }
+}
+
+/// `15 %, 30 % stretch`, for sentences.
+pub fn at_stretches(stretches: Vec<f64>) -> String {
+    let percent = |stretch: f64| format!("{} %", ClampedPlate::percent(stretch));
+    let all: Vec<String> = stretches.into_iter().map(percent).collect();
+    format!("{} stretch", all.join(", "))
+}
