@@ -59,6 +59,7 @@
 #![warn(missing_docs)]
 
 pub mod calibration;
+#[cfg(feature = "command")]
 pub mod command;
 pub mod compare;
 pub mod corrector;

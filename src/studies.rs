@@ -1,7 +1,8 @@
 //! What a user runs: plates, specimens, motions, fields of markers. Each kind has a module of its own.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+
+use web_time::Instant;
 
 use crate::document::{Document, Faults, Section};
 use crate::error::{Diagnostic, Error};

@@ -6,10 +6,11 @@
 //! can be are in `cargo bench --bench corrected_plate`.
 
 use std::path::Path;
-use std::time::Instant;
 
 use super::case::{Check, Claim, Outcome, Prepared, Progress, check, number, section, table};
 use super::plate::Plate;
+use web_time::Instant;
+
 use crate::compare::departure_percent;
 use crate::corrector::DifferenceScheme;
 use crate::corrector::climb::{Climb, ClimbSettings};

@@ -5,10 +5,11 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
 
 use super::case::{Block, Figure, Outcome, Prepared, Progress, line, section, table};
 use super::plate::{Plate, read_noise};
+use web_time::Instant;
+
 use crate::corrector::estimation::{RegressedLaw, Robust, Specimen, estimate};
 use crate::document::{Bound, Section};
 use crate::error::Error;

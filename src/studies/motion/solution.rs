@@ -1,6 +1,6 @@
 //! The motion of one model.
 
-use std::time::Instant as Clock;
+use web_time::Instant as Clock;
 
 use super::problem::MovingPlate;
 use crate::dynamics::frequency::{slowest, strongest};

@@ -1,6 +1,6 @@
 //! The flow of a study: problem, models, corrector, comparison.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use super::{ReferenceMesh, Results};
 use crate::compare::imported::ModelField;
