@@ -93,7 +93,9 @@ pub fn inverse(matrix: &DMatrix<f64>, least: f64) -> Option<DMatrix<f64>> {
     let scaled =
         |matrix: &DMatrix<f64>| matrix.map_with_location(|i, j, x| scales[i] * x * scales[j]);
     let factor = scaled(matrix).cholesky()?;
-    (factor.l_dirty().diagonal().min() >= least).then(|| scaled(&factor.inverse()))
+    let pivots = factor.l_dirty().diagonal();
+    let determined = pivots.iter().all(|pivot| *pivot >= least);
+    determined.then(|| scaled(&factor.inverse()))
 }
 
 /// s² (JᵀJ)⁻¹ of a Jacobian J by its singular values, with columns of unit length; what J does not determine at all

@@ -295,7 +295,7 @@ fn nothing_is_written_where_no_model_has_a_solution() {
 fn a_compressed_plate_is_computed_and_warned_of() {
     let folder = folder_with(&SMALL.replace("[\"20 %\"]", "[\"-5 %\", \"-10 %\"]"));
     let done = gelbench(folder.path(), &["run", "small.toml"]);
-    let printed = words(&done.get_output().stdout);
+    let printed = words(&done.get_output().stderr);
     assert!(
         printed.contains("under compression") && printed.contains("wrinkles"),
         "{printed}"

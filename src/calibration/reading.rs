@@ -26,7 +26,7 @@ impl TestData {
     /// # Errors
     /// [`Error::Input`] with file, line and reason; nothing is ever guessed.
     pub fn read(path: &Path, reading: &Statements) -> Result<Self, Error> {
-        Self::of_table(&Table::read(path)?, reading)
+        Self::of_table(&Table::read(path, Table::HINT)?, reading)
     }
 
     /// Reads a text.
@@ -39,15 +39,15 @@ impl TestData {
 
     fn of_table(table: &Table, reading: &Statements) -> Result<Self, Error> {
         let head = Head::new(table, &KEYS, reading)?;
-        let layout = Layout::new(&head).map_err(input)?;
+        let layout = Layout::new(&head).map_err(|fault| input(*fault))?;
         let hint = "every row holds finite numbers; units stand in the line of names";
         table.check_numbers(layout.columns(), hint)?;
-        layout.read(&head).map_err(input)
+        layout.read(&head).map_err(|fault| input(*fault))
     }
 }
 
-fn input(fault: Box<Diagnostic>) -> Error {
-    Error::Input(vec![*fault])
+fn input(fault: Diagnostic) -> Error {
+    Error::Input(vec![fault])
 }
 
 #[cfg(test)]

@@ -125,7 +125,7 @@ impl ExternalField {
             .extension()
             .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
         if is_table {
-            return table::read(&Table::read(path)?, settings).map(Self::AtPoints);
+            return table::read(&Table::read(path, Table::HINT)?, settings).map(Self::AtPoints);
         }
         let field = import_field(
             path,

@@ -59,21 +59,23 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a file.
+    /// What a table is, for those who gave something else.
+    pub const HINT: &str =
+        "a table is CSV in UTF-8: a line of names with units and rows of numbers";
+
+    /// Reads a file; `hint` says what it should be.
     ///
     /// # Errors
     /// [`Error::Input`] with file, line and reason.
-    pub fn read(path: &Path) -> Result<Self, Error> {
-        const HINT: &str =
-            "a table is CSV in UTF-8: a line of names with units and rows of numbers";
+    pub fn read(path: &Path, hint: &str) -> Result<Self, Error> {
         let name = path.display().to_string();
         let bytes = std::fs::read(path);
         let bytes =
-            bytes.map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), HINT))?;
+            bytes.map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))?;
         let text = String::from_utf8(bytes).map_err(|fault| {
             let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
             let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-            Error::input(format!("{name}: line {line} is not UTF-8 text"), HINT)
+            Error::input(format!("{name}: line {line} is not UTF-8 text"), hint)
         })?;
         Self::parse(&name, &text)
     }

@@ -52,7 +52,7 @@ impl Recording {
     /// # Errors
     /// [`Error::Input`] with all faults of the file.
     pub fn read(path: &Path, given: &Statements) -> Result<Self, Error> {
-        Self::of_table(&Table::read(path)?, given)
+        Self::of_table(&Table::read(path, Table::HINT)?, given)
     }
 
     /// Takes the columns from a table.

@@ -115,7 +115,7 @@ pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Erro
 }
 
 fn matrix(path: &Path) -> Result<Table, Error> {
-    let table = Table::read(path)?;
+    let table = Table::read(path, Table::HINT)?;
     table.check_numbers_or_holes(0..table.columns.len(), "a matrix holds numbers, or NaN")?;
     if table.columns.iter().any(|column| !column.name.is_empty()) {
         let hint = "give markers as one table, or matrices of numbers alone";

@@ -78,12 +78,15 @@ const MUDIC: Layout = Layout {
     ..COLUMNS
 };
 
+/// What a file of markers is.
+const HINT: &str = "markers are a table in UTF-8 with the columns x [mm], y [mm], ux [mm], uy [mm]";
+
 /// Reads the markers of one table.
 ///
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
 pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
-    let table = Table::read(path)?;
+    let table = Table::read(path, HINT)?;
     let layout = layout(&table);
     let (columns, warning) = Columns::find(&table, layout, reading)?;
     let rows = (0..table.rows.len()).map(|row| columns.row(&table, layout, row));
@@ -101,7 +104,7 @@ pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
 pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, Error> {
-    let table = Table::read(path)?;
+    let table = Table::read(path, Table::HINT)?;
     let units = Units {
         given: unit,
         ..Units::default()

@@ -49,7 +49,11 @@ fn every_kind<'a>(
     vec![
         Box::new(Equilibrium::new("loaded", energy, assembly, inner).with_loads(loads)),
         Box::new(Linear::prescribed("left", size, held)),
-        Box::new(Linear::together("rigid grip", size, &[right.clone()])),
+        Box::new(Linear::together(
+            "rigid grip",
+            size,
+            std::slice::from_ref(&right),
+        )),
         Box::new(TotalForce::new("force", energy, assembly, right, force)),
         Box::new(EnclosedArea::new("area", line, 1.01 * enclosed)),
         Box::new(Linear::new("none", SparseRows::new(size), Vec::new())),
