@@ -23,7 +23,7 @@ pub use boundary_conditions::{Drive, Load, Support};
 pub use deformed::{DeformedSheet, PointFault, Stress};
 pub use model::Model;
 pub use plate::{ClampedPlate, Measures};
-pub use reactions::GroupState;
+pub use reactions::{GroupState, Reactions};
 pub use solution::Solution;
 
 #[cfg(test)]

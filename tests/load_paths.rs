@@ -149,11 +149,8 @@ fn held(supports: &[(&str, Support)]) -> (Vec<State>, [f64; 2], [f64; 2]) {
     let model = problem.on(&mesh, &energy).unwrap();
     let states = model.solve(&[0.5, 1.0], NEWTON, &|_| ()).unwrap();
     let last = &states[1];
-    let (moved, force) = (
-        model.at_groups(last, &["right"])[0].displacement,
-        model.reaction(last, "right"),
-    );
-    (states, moved, force)
+    let right = model.reactions(last).at_group("right");
+    (states, right.displacement, right.force)
 }
 
 /// What the moved grip needs as force, given as force, moves it as far.

@@ -254,7 +254,8 @@ impl<'a> PlateCorrector<'a> {
             balance: self
                 .problem
                 .on(self.mesh, &self.energy)
-                .balance(&state)
+                .reactions(&state)
+                .balance()
                 .relative(),
             state,
             steps: Vec::new(),

@@ -100,12 +100,15 @@ impl Loads {
     }
 
     /// The potential of an energy with these loads at a load factor.
-    pub fn at<'a>(&'a self, energy: &'a dyn Potential, factor: f64) -> Sum<'a> {
+    pub fn on<'a>(&'a self, energy: &'a dyn Potential, factor: f64) -> Box<dyn Potential + 'a> {
+        if self.is_empty() {
+            return Box::new(energy);
+        }
         let unknowns = energy.unknowns();
         let force = |unknown: &usize| (*unknown, factor * self.force(*unknown));
         let forces = DeadForces::new(unknowns, self.pushed.iter().map(force));
         let pressures = self.pressures.at(factor, unknowns);
-        Sum::new(Sum::new(energy, pressures), forces)
+        Box::new(Sum::new(Sum::new(energy, pressures), forces))
     }
 }
 

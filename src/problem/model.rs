@@ -235,11 +235,7 @@ impl Loading for Model<'_> {
     }
 
     fn potential(&self, factor: f64) -> Box<dyn Potential + '_> {
-        let loads: Box<dyn Potential + '_> = if self.loads.is_empty() {
-            Box::new(self.energy)
-        } else {
-            Box::new(self.loads.at(self.energy, factor))
-        };
+        let loads = self.loads.on(self.energy, factor);
         if self.constraints.ties.is_empty() {
             loads
         } else {

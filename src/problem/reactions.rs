@@ -4,7 +4,6 @@ use super::balance::{Balance, Body};
 use super::constraints::Constraints;
 use super::groups::shares;
 use super::model::Model;
-use crate::mesh::Group;
 use crate::solve::{Assembly, State};
 
 /// What happens at a group in one state.
@@ -18,32 +17,57 @@ pub struct GroupState {
     pub displacement: [f64; 2],
 }
 
+/// The forces of the supports of a model in one state, and what follows from them.
+pub struct Reactions<'a> {
+    model: &'a Model<'a>,
+    state: &'a State,
+    /// N at each unknown, those of grips that are pulled too.
+    forces: Vec<f64>,
+}
+
 impl Model<'_> {
-    /// The force of the supports on a group in N, from a state: the internal forces of its nodes less the loads on them,
-    /// along the axes along which supports hold or pull them.
+    /// The forces of the supports in a state: the internal forces of its nodes less the loads on them, along the axes along
+    /// which supports hold or pull them. Not a number where the state is inverted.
+    pub fn reactions<'a>(&'a self, state: &'a State) -> Reactions<'a> {
+        let Constraints { held, ties, forces } = &self.constraints;
+        let mut internal = vec![0.0; state.displacement.len()];
+        let loads = self.loads.without_pulls();
+        let potential = loads.on(self.energy, state.factor);
+        if Assembly::residual(&*potential, &state.displacement, &mut internal).is_err() {
+            internal.fill(f64::NAN);
+        }
+        let masters = forces.iter().map(|(master, _)| master);
+        let mut supports = vec![0.0; internal.len()];
+        for unknown in held.keys().chain(ties.keys()).chain(masters) {
+            supports[*unknown] = internal[*unknown];
+        }
+        Reactions {
+            model: self,
+            state,
+            forces: supports,
+        }
+    }
+
+    /// The force of the supports on a group in N, from a state.
     ///
     /// # Panics
     /// When the mesh has no such group.
     pub fn reaction(&self, state: &State, name: &str) -> [f64; 2] {
-        self.at_groups(state, &[name])[0].force
+        self.reactions(state).at_group(name).force
     }
+}
 
-    /// What happens at some groups in a state.
+impl Reactions<'_> {
+    /// What happens at a group.
     ///
     /// # Panics
     /// When the mesh has no such group.
-    pub fn at_groups(&self, state: &State, names: &[&str]) -> Vec<GroupState> {
-        let forces = self.support_forces(state);
-        let groups = names.iter().map(|name| &self.mesh.groups()[*name]);
-        groups
-            .map(|group| self.at_group(group, state, &forces))
-            .collect()
-    }
-
-    fn at_group(&self, group: &Group, state: &State, forces: &[f64]) -> GroupState {
-        let (nodes, u) = (&group.nodes, &state.displacement);
+    pub fn at_group(&self, name: &str) -> GroupState {
+        let (mesh, forces) = (self.model.mesh, &self.forces);
+        let group = &mesh.groups()[name];
+        let (nodes, u) = (&group.nodes, &self.state.displacement);
         let sum = |axis: usize| nodes.iter().map(|node| forces[2 * node + axis]).sum();
-        let place = |node: usize, axis: usize| self.mesh.nodes[node][axis] + u[2 * node + axis];
+        let place = |node: usize, axis: usize| mesh.nodes[node][axis] + u[2 * node + axis];
         let middle = [0, 1].map(|axis| {
             let places = nodes.iter().map(|node| place(*node, axis));
             places.sum::<f64>() / nodes.len() as f64
@@ -52,7 +76,7 @@ impl Model<'_> {
             let [x, y] = [0, 1].map(|axis| place(*node, axis) - middle[axis]);
             x * forces[2 * node + 1] - y * forces[2 * node]
         };
-        let shares = shares(self.mesh, group);
+        let shares = shares(mesh, group);
         let mean = |axis: usize| {
             let parts = shares
                 .iter()
@@ -66,33 +90,23 @@ impl Model<'_> {
         }
     }
 
-    /// The forces of the supports in N at each unknown, from a state: those of grips that are pulled too. Not a number where
-    /// the state is inverted.
-    fn support_forces(&self, state: &State) -> Vec<f64> {
-        let Constraints { held, ties, forces } = &self.constraints;
-        let mut internal = vec![0.0; state.displacement.len()];
-        let loads = self.loads.without_pulls();
-        let loads = loads.at(self.energy, state.factor);
-        if Assembly::residual(&loads, &state.displacement, &mut internal).is_err() {
-            internal.fill(f64::NAN);
-        }
-        let masters = forces.iter().map(|(master, _)| master);
-        let mut supports = vec![0.0; internal.len()];
-        for unknown in held.keys().chain(ties.keys()).chain(masters) {
-            supports[*unknown] = internal[*unknown];
-        }
-        supports
+    /// What happens at some groups.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn at_groups(&self, names: &[&str]) -> Vec<GroupState> {
+        names.iter().map(|name| self.at_group(name)).collect()
     }
 
     /// The balance of all forces of supports and loads, and of their moments, on the deformed body.
-    pub fn balance(&self, state: &State) -> Balance {
+    pub fn balance(&self) -> Balance {
         /// Rounding of a body that moves without strain, relative to E t times its largest displacement.
         const NEGLIGIBLE: f64 = 1e-4;
-        let u = &state.displacement;
-        let body = Body::new(self.mesh, u);
-        let supports = body.resultant(&self.support_forces(state));
-        let loads = self.loads.resultant(state.factor, u, &body);
+        let (model, u) = (self.model, &self.state.displacement);
+        let body = Body::new(model.mesh, u);
+        let supports = body.resultant(&self.forces);
+        let loads = model.loads.resultant(self.state.factor, u, &body);
         let largest = u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-        body.balance(supports, loads, NEGLIGIBLE * self.stiffness * largest)
+        body.balance(supports, loads, NEGLIGIBLE * model.stiffness * largest)
     }
 }

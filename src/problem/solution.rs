@@ -21,14 +21,15 @@ pub struct Solution {
 impl Solution {
     /// States of a model, with what happens at groups of its mesh.
     pub fn new(model: &Model, groups: &[&str], states: Vec<State>) -> Self {
-        let balance = |state| model.balance(state).relative();
+        let follow = |state| {
+            let reactions = model.reactions(state);
+            (reactions.at_groups(groups), reactions.balance().relative())
+        };
+        let (groups, balances) = states.iter().map(follow).unzip();
         Self {
             mesh: model.mesh.clone(),
-            balances: states.iter().map(balance).collect(),
-            groups: states
-                .iter()
-                .map(|state| model.at_groups(state, groups))
-                .collect(),
+            groups,
+            balances,
             states,
         }
     }

@@ -52,10 +52,13 @@ pub fn solved(problem: &BoundaryProblem, mesh: &Mesh, groups: &[&str]) -> Found 
     let energy = problem.finite_elements(mesh);
     let model = problem.on(mesh, &energy).unwrap();
     let state = model.solve(&[0.5, 1.0], NEWTON, &|_| ()).unwrap().remove(1);
-    let reactions = groups.iter().map(|group| model.reaction(&state, group));
+    let reactions = model.reactions(&state);
     Found {
-        balance: model.balance(&state),
-        reactions: reactions.collect(),
+        balance: reactions.balance(),
+        reactions: groups
+            .iter()
+            .map(|group| reactions.at_group(group).force)
+            .collect(),
         state,
     }
 }

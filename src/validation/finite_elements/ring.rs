@@ -166,10 +166,11 @@ impl Inflated {
         let energy = problem.finite_elements(mesh);
         let model = problem.on(mesh, &energy).map_err(misfit)?;
         let state = solve(&model, "ring", steps)?;
-        let force = |group, axis: usize| model.reaction(&state, group)[axis];
+        let reactions = model.reactions(&state);
+        let force = |group, axis: usize| reactions.at_group(group).force[axis];
         Ok(Self {
             forces: [force("symmetry_x", 0), force("symmetry_y", 1)],
-            unbalanced: model.balance(&state).relative(),
+            unbalanced: reactions.balance().relative(),
             state,
         })
     }

@@ -11,7 +11,7 @@ use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
 use crate::finite_element::recovery::Recovery;
 use crate::mass_spring::MassSpring;
-use crate::mesh::{Mesh, Side};
+use crate::mesh::Mesh;
 use crate::problem::{Measures, Model, Solution};
 use crate::solve::{NewtonSettings, State};
 use crate::studies::plate::problem::Study;
@@ -111,7 +111,7 @@ impl Run<'_> {
                 end.states
             })
         });
-        Solution::new(model, &[Side::Left, Side::Right].map(Side::name), states)
+        Solution::new(model, &[], states)
     }
 
     /// The corrected field at every stretch. Where the springs have no field the affine stretch takes its place: it has a

@@ -38,7 +38,7 @@ impl End {
             last: state.map(|state| Last {
                 file: format!("{file}_end"),
                 mesh: model.mesh.clone(),
-                groups: model.at_groups(state, &specimen.groups()),
+                groups: model.reactions(state).at_groups(&specimen.groups()),
                 state: state.clone(),
                 between: end.last.is_some(),
             }),
