@@ -1,4 +1,4 @@
-//! The finite elements beside CalculiX, which solves what gelbench exports.
+//! The finite elements compared with CalculiX, which solves what gelbench exports.
 //!
 //! Needs `ccx` on the path (Debian: `calculix-ccx`). Without it every test is listed as ignored, with the reason: what was
 //! not run has not passed.

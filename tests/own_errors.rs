@@ -1,4 +1,4 @@
-//! The finite elements' own error, as the verdict of a plate's study takes it, beside the true one.
+//! The finite elements' own error, as the verdict of a plate's study takes it, compared with the true one.
 
 use std::path::Path;
 

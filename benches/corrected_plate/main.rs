@@ -1,4 +1,4 @@
-//! The corrected plate beside finite elements: time, error, memory and work, from a thousand nodes to over a million.
+//! The corrected plate compared with finite elements: time, error, memory and work, from a thousand nodes to over a million.
 //!
 //! ```text
 //! cargo bench --bench corrected_plate              all of it, some minutes and 6 GB

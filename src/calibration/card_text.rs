@@ -14,7 +14,7 @@ use crate::units::Dimension;
 pub struct Provenance {
     /// The files of test data, as the card names them.
     pub files: Vec<String>,
-    /// What was said about them beside their heads.
+    /// What was said about them next to their heads.
     pub reading: Statements,
 }
 

@@ -90,7 +90,7 @@ impl Quality {
     }
 }
 
-/// What is assessed: a law with its values beside the tests that it was fitted to.
+/// What is assessed: a law with its values and the tests that it was fitted to.
 pub(super) struct Assessment<'a> {
     pub misfit: &'a Misfit<'a>,
     pub weighting: Weighting,

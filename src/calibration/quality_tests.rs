@@ -1,4 +1,4 @@
-//! Figures of a fit beside their definitions.
+//! Figures of a fit compared with their definitions.
 
 use super::fit::{Fit, fit};
 use super::quality::StableRange;

@@ -58,7 +58,7 @@ pub type Bounds = Vec<(String, [f64; 2])>;
 pub struct FitSettings {
     /// What a residual is measured by.
     pub weighting: Weighting,
-    /// Limits beside those that the law has.
+    /// Limits in addition to those that the law has.
     pub bounds: Bounds,
     /// How many of the best starts are improved.
     pub starts: usize,

@@ -1,4 +1,4 @@
-//! Fits of the published data, beside values found elsewhere.
+//! Fits of the published data, compared with values found elsewhere.
 
 use std::path::Path;
 

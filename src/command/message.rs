@@ -116,7 +116,7 @@ fn in_time(card: &Card) -> String {
     let viscosity = &card.viscosity;
     if viscosity.shear_viscosity > 0.0 {
         let shear = 1e6 * viscosity.shear_viscosity;
-        text += &format!("  viscosity  η = {shear:.6} Pa·s beside the law\n");
+        text += &format!("  viscosity  η = {shear:.6} Pa·s in parallel to the law\n");
     }
     for term in &viscosity.relaxation {
         let (share, time) = (100.0 * term.share, term.time);

@@ -1,4 +1,4 @@
-//! The viscous forces of a mass-spring lattice: a dashpot beside each spring.
+//! The viscous forces of a mass-spring lattice: a dashpot in parallel to each spring.
 
 use super::viscosity::{ElementMotion, Viscosity, ViscousLocal};
 use crate::mass_spring::{DashpotLaw, MassSpring, SpringPose};
@@ -13,7 +13,7 @@ pub struct Dashpots<'a> {
 }
 
 impl<'a> Dashpots<'a> {
-    /// A dashpot beside each spring.
+    /// A dashpot in parallel to each spring.
     pub fn new(springs: &'a MassSpring, law: &'a DashpotLaw) -> Self {
         Self { springs, law }
     }

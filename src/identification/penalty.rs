@@ -29,7 +29,7 @@ const STEP: f64 = 0.5;
 /// Y.-J. Kim, C. Gu, J. R. Stat. Soc. B 66, 337 (2004), doi:10.1046/j.1369-7412.2003.05316.x
 const DEARNESS: f64 = 1.4;
 
-/// Added to the exponent of least cross-validation: a tenth of that weight keeps the bias of the penalty small beside
+/// Added to the exponent of least cross-validation: a tenth of that weight keeps the bias of the penalty small compared with
 /// the standard errors, so that intervals hold.
 ///
 /// # References

@@ -219,7 +219,7 @@ pub fn check_flat(
         };
         if off > FLAT {
             let message = format!(
-                "the points leave their plane: `{name}` reaches {most:.4} beside {what:.4} in the plane"
+                "the points leave their plane: `{name}` reaches {most:.4} compared with {what:.4} in the plane"
             );
             let hint = format!(
                 "a sheet is in plane stress and stays flat; --ignore-columns {name} takes the field as if it did"

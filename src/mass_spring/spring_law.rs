@@ -22,7 +22,7 @@ pub enum SpringLaw {
     SecantModulus(ScalarFunction),
 }
 
-/// The damping of dashpots, one beside each spring.
+/// The damping of dashpots, one in parallel to each spring.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DashpotLaw {
     /// The viscous part of the sheet's material along the spring: η(·) = 3 η/λ², and its Prony series.

@@ -4,7 +4,7 @@ use super::buckets::Buckets;
 use super::cells::Mesh;
 use super::geometry::{bounding_box, determinant};
 
-/// The distance that counts as none beside the size of a cell.
+/// The distance that counts as none compared with the size of a cell.
 const ROUNDING: f64 = 2e-15;
 
 impl Mesh {

@@ -19,7 +19,7 @@ figure { margin: 1.5rem 0; } img { max-width: 100%; border: 1px solid #eee; } fi
 pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; }
 ";
 
-/// A page that needs nothing beside it.
+/// A self-contained page.
 pub fn html(title: &str, blocks: &[Block], pictures: &[Vec<u8>]) -> String {
     let page = html! {
         (DOCTYPE)

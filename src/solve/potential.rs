@@ -50,7 +50,7 @@ pub trait Potential: Sync {
         local: Local<'_>,
     ) -> Result<f64, Inadmissible>;
 
-    /// What the derivatives of the residual have beside the symmetric stiffness of the elements: forces without a
+    /// What the derivatives of the residual have in addition to the symmetric stiffness of the elements: forces without a
     /// potential, such as a pressure that follows an edge up to its free end. None for a true potential.
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
         Vec::new()

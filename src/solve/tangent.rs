@@ -226,7 +226,7 @@ impl Tangent {
         Ok(spread(self.free(), &step, residual.len()))
     }
 
-    /// −K⁻¹ r by the symmetric factor; a skew part, small beside it, is added by iteration: K_s dᵢ₊₁ = −r − S dᵢ.
+    /// −K⁻¹ r by the symmetric factor; a skew part, small compared with it, is added by iteration: K_s dᵢ₊₁ = −r − S dᵢ.
     pub(super) fn step(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
         const ITERATIONS: usize = 60;
         let mut negative = gather(self.assembly.free(), residual);

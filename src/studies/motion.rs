@@ -1,4 +1,4 @@
-//! A plate in motion: springs with dashpots, corrected in time, beside finite elements, from one study.
+//! A plate in motion: springs with dashpots, corrected in time, compared with finite elements, from one study.
 
 use std::path::Path;
 

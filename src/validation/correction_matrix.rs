@@ -80,7 +80,7 @@ fn compute(settings: Settings) -> Result<Outcome, NotPositiveDefinite> {
     };
     checks.extend(system.forms()?);
     checks.push(at_most(
-        "Y beside I − W⁻¹ Bᵀ (B W⁻¹ Bᵀ)⁻¹ B for unequal weights",
+        "Y compared with I − W⁻¹ Bᵀ (B W⁻¹ Bᵀ)⁻¹ B for unequal weights",
         1e-12,
         "Eq. 18-19",
         weighted(&system.rows, &mut random)?,
@@ -92,7 +92,7 @@ fn compute(settings: Settings) -> Result<Outcome, NotPositiveDefinite> {
         system.retained()?,
     ));
     checks.push(at_most(
-        "multipliers beside the derivative of the minimum",
+        "multipliers compared with the derivative of the minimum",
         1e-6,
         "central differences",
         system.derivative()?,
@@ -108,7 +108,7 @@ fn at_most(quantity: &str, limit: f64, source: &'static str, value: f64) -> Chec
 }
 
 fn same_projection(form: &str, distance: f64) -> Check {
-    let quantity = format!("{form} beside dense: field and multipliers");
+    let quantity = format!("{form} compared with dense: field and multipliers");
     at_most(&quantity, 1e-9, "the same projection", distance)
 }
 
@@ -216,7 +216,7 @@ fn far(found: &Projection, expected: &Projection) -> f64 {
     far(&found.step, &expected.step).max(far(&found.multipliers, &expected.multipliers))
 }
 
-/// Y for unequal weights beside its definition, computed with an explicit inverse: largest difference.
+/// Y for unequal weights compared with its definition, computed with an explicit inverse: largest difference.
 fn weighted(rows: &SparseRows, random: &mut ChaCha8Rng) -> Result<f64, NotPositiveDefinite> {
     let weights: Vec<f64> = (0..rows.columns())
         .map(|_| random.random_range(0.5..2.0))
@@ -231,7 +231,7 @@ fn weighted(rows: &SparseRows, random: &mut ChaCha8Rng) -> Result<f64, NotPositi
     Ok((y - expected).amax())
 }
 
-/// The symmetric form beside the dense one for a stiffness with every third unknown prescribed.
+/// The symmetric form compared with the dense one for a stiffness with every third unknown prescribed.
 fn symmetric(random: &mut ChaCha8Rng, unknowns: usize) -> Result<f64, NotPositiveDefinite> {
     let a = random_rows(random, unknowns, unknowns).to_dense();
     let stiffness = &a * a.transpose() + DMatrix::identity(unknowns, unknowns);

@@ -217,7 +217,7 @@ fn outcome(springs: Way, paths: [Beside; 2]) -> Outcome {
 mod tests {
     use super::*;
 
-    /// What is said of a direct path with these departures in % and times in s, beside a climb that takes half of its
+    /// What is said of a direct path with these departures in % and times in s, next to a climb that takes half of its
     /// elements' time.
     fn said(corrected: [f64; 2], elements: [f64; 2]) -> (String, bool) {
         let way = |name, [departure, seconds]: [f64; 2]| Way {

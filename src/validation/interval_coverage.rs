@@ -123,7 +123,7 @@ const EXPLANATION: &str = "Displacements of markers with normal noise, read from
     fifth of the width from a corner, both as root mean squares; the raw stress comes from differences of neighbouring \
     markers. Coverage is the share of all nodes and stresses, and of all seeds, that lie within their 95 % intervals.";
 
-/// What the data tell beside the field: which edges are free, and the modulus.
+/// What the data tell in addition to the field: which edges are free, and the modulus.
 fn infer(
     inference: &Inference,
     subject: &Subject,

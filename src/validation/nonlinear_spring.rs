@@ -98,7 +98,7 @@ fn checks(deviations: &[f64], wrong_multipliers: f64) -> Vec<Check> {
         )
         .at_most(1e-9, "u = √(f/k)"),
         check(
-            "multipliers beside (u − ū)/(2 k u)",
+            "multipliers compared with (u − ū)/(2 k u)",
             "mm²/N",
             wrong_multipliers,
         )

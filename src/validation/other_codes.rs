@@ -83,8 +83,9 @@ fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
         }
     }
     let checks = worst.into_iter().map(|([code, element], error)| {
-        let what =
-            format!("force, width, energy beside {code}, {element}: largest relative difference");
+        let what = format!(
+            "force, width, energy compared with {code}, {element}: largest relative difference"
+        );
         check(what, "–", error).at_most(1e-6, "validation/plate/summary.csv")
     });
     let mut checks: Vec<Check> = checks.collect();
@@ -99,7 +100,7 @@ fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
     })
 }
 
-/// Richardson's extrapolation of Q2 elements on three meshes beside the published converged values.
+/// Richardson's extrapolation of Q2 elements on three meshes compared with the published converged values.
 fn converged(material: &str, finest: usize, progress: Progress) -> Result<[Check; 2], Error> {
     progress(&format!("{material}, converged"));
     let meshes = [finest / 4, finest / 2, finest].map(|along| Solved::new(material, along, "Q2"));

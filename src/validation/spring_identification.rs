@@ -1,7 +1,7 @@
 //! Identification of spring and dashpot functions, Eq. 2–5 and the end of § 2.1 of the publication.
 //!
 //! A trial is counted as good when K(·) *and* D(·) lie within the 95 % band at *all* fixed extensions. The shares of
-//! single places within their own 95 % intervals stand beside it.
+//! single places within their own 95 % intervals stand next to it.
 
 use std::path::Path;
 

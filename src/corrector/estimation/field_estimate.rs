@@ -57,7 +57,7 @@ pub struct FieldEstimate {
     /// By how much, relative to itself, the force grows with the distance in mm that all free edges lie farther out:
     /// ∮ Ψ ds/∫ Ψ dA over free edges and sheet, the derivative of its energy by that distance, in 1/mm.
     pub growth: f64,
-    /// The measured forces beside those of the field.
+    /// The measured forces and those of the field.
     pub force_checks: Vec<ForceCheck>,
     /// What the data contradict of what is said of the edges.
     pub contradiction: Option<Contradiction>,
@@ -65,7 +65,7 @@ pub struct FieldEstimate {
     pub whiteness: Option<Whiteness>,
 }
 
-/// A measured force beside that of the field.
+/// A measured force and that of the field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForceCheck {
     /// What was measured.

@@ -60,7 +60,7 @@ impl NearestField<'_> {
         parameters.map(estimate).collect()
     }
 
-    /// The measured forces beside those of the field; those that a parameter of the law follows say nothing.
+    /// The measured forces and those of the field; those that a parameter of the law follows say nothing.
     pub(super) fn force_checks(
         &self,
         edges: &[Edge],

@@ -1,4 +1,4 @@
-//! Conditions, scales, estimates and corrected states beside closed forms and beside the finite elements.
+//! Conditions, scales, estimates and corrected states compared with closed forms and with the finite elements.
 
 use std::sync::Arc;
 

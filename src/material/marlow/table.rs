@@ -86,7 +86,7 @@ impl TableCurve {
             ));
         }
         if points.len() < 2 {
-            return Err("the curve needs a point beside rest".into());
+            return Err("the curve needs a point other than rest".into());
         }
         let slopes = slopes(&points);
         if slopes[0] <= 0.0 {
@@ -278,7 +278,7 @@ mod tests {
     fn bad_tables_are_refused_with_a_reason() {
         let reason = |points: &[[f64; 2]]| TableCurve::new(points, true).unwrap_err();
         assert!(reason(&[]).contains("no points"));
-        assert!(reason(&[[0.0, 0.0]]).contains("beside rest"));
+        assert!(reason(&[[0.0, 0.0]]).contains("other than rest"));
         assert!(reason(&[[0.2, 0.1], [0.1, 0.2]]).contains("does not increase"));
         assert!(reason(&[[0.1, -0.1], [0.2, -0.2]]).contains("rise"));
         assert!(reason(&[[0.1, f64::NAN]]).contains("finite"));

@@ -1,6 +1,6 @@
 //! What makes the figures of a correction doubtful, and what an unknown edge does to them.
 //!
-//! A doubt stands beside the figures and makes the command end with exit code 1.
+//! A doubt stands next to the figures and makes the command end with exit code 1.
 
 use super::MarkerStudy;
 use crate::corrector::estimation::FieldEstimate;
@@ -76,7 +76,7 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Vec<Diagnostic> {
 
 type Doubt = (String, &'static str);
 
-/// The noise that is left, from the median of the standardised residuals, beside the stated one.
+/// The noise that is left, from the median of the standardised residuals, compared with the stated one.
 fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
     // The standard error of ln of a deviation from the median.
     const ERROR: f64 = 0.72;

@@ -63,7 +63,7 @@ fn viscosity(plate: &MovingPlate) -> String {
         let (share, time) = (100.0 * term.share, term.time);
         format!("{share:.4} % of a sudden stress relaxes with τ = {time} s")
     });
-    let mut all = vec![format!("η = {shear:.6} Pa·s beside the law")];
+    let mut all = vec![format!("η = {shear:.6} Pa·s in parallel to the law")];
     all.extend(terms);
     all.join("; ")
 }

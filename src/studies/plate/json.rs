@@ -93,7 +93,7 @@ fn finite_element(
     })
 }
 
-/// A model beside the finite elements: what it has, and its deviation where they have a solution too.
+/// A model compared with the finite elements: what it has, and its deviation where they have a solution too.
 fn model(deviation: Option<&Deviation>, solution: Option<(&State, Measures)>) -> Value {
     let Some((solution, measures)) = solution else {
         return Value::Null;

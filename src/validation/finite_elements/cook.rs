@@ -169,7 +169,7 @@ mod tests {
             for (name, shape) in CellShape::NAMES {
                 let found = tip(shape);
                 let off = (found / reference - 1.0).abs();
-                assert!(off < tolerance, "{name}: {found} beside {reference}");
+                assert!(off < tolerance, "{name}: {found} instead of {reference}");
             }
         }
     }

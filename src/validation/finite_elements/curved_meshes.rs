@@ -115,7 +115,7 @@ fn truth(body: &Body, cells: usize) -> Result<f64, Error> {
     Ok(richardson(forces).extrapolated)
 }
 
-/// The stated error of a mesh as that of a file, beside the true one.
+/// The stated error of a mesh as that of a file, compared with the true one.
 struct Stated {
     body: &'static str,
     /// The cells of the file.

@@ -1,5 +1,5 @@
-//! The error estimate compared with true errors, the order of the force with graded cells, and local refinement beside
-//! uniform refinement.
+//! The error estimate compared with true errors, the order of the force with graded cells, and local refinement
+//! compared with uniform refinement.
 
 use std::path::Path;
 

@@ -56,8 +56,10 @@ fn element_checks(
     checks.push(turn.at_most(1e-12, "rigid turn"));
     let [residual, tangent] = derivatives(shape, cells);
     checks.extend([
-        error("residual beside differences of the energy", residual).at_most(1e-7, "differences"),
-        error("tangent beside differences of the residual", tangent).at_most(1e-7, "differences"),
+        error("residual compared with differences of the energy", residual)
+            .at_most(1e-7, "differences"),
+        error("tangent compared with differences of the residual", tangent)
+            .at_most(1e-7, "differences"),
     ]);
     Ok(checks)
 }
@@ -155,7 +157,7 @@ fn turn(shape: CellShape, cells: [usize; 2]) -> Result<f64, Error> {
     Ok(largest_error(&mesh, &state.displacement, exact))
 }
 
-/// Relative errors of residual and tangent beside differences, in a bent state.
+/// Relative errors of residual and tangent with respect to difference quotients, in a bent state.
 fn derivatives(shape: CellShape, cells: [usize; 2]) -> [f64; 2] {
     let mesh = distorted(SIZE, cells, shape);
     let energy = sheet().finite_elements(&mesh);

@@ -1,4 +1,4 @@
-//! What markers tell beside the field: which edges are free, and a parameter of the law.
+//! What markers tell in addition to the field: which edges are free, and a parameter of the law.
 
 use rayon::prelude::*;
 

@@ -104,7 +104,7 @@ impl Correction {
     }
 
     fn checks(&self) -> Vec<Check> {
-        let displacement = "corrected displacement beside converged finite elements";
+        let displacement = "corrected displacement compared with converged finite elements";
         let left = "departure left over without the traction-free edges";
         match self.ablation.known {
             KnownConditions::ALL => vec![
@@ -147,7 +147,7 @@ pub fn compare(fields: &Fields, progress: Progress, outcome: &mut Outcome) -> Re
     let head = "known conditions T | before [%] | after one step [%] | after two [%] | at the end [%] | \
                 displacement at the end [%] | steps";
     let text = "Departure from affine, relative L2 distance to the converged finite elements, for the known conditions T \
-                that are imposed beside equilibrium inside:";
+                that are imposed in addition to equilibrium inside:";
     let rows = corrections.iter().map(Correction::row);
     outcome
         .blocks

@@ -88,7 +88,7 @@ pub fn compare(
     outcome
         .blocks
         .extend([Block::paragraph(text), table(head, rows)]);
-    let what = "corrected fields of all lattices beside each other, relative L2";
+    let what = "corrected fields of all lattices compared with each other, relative L2";
     let source = "publication: independent of topology and spring constants";
     outcome
         .checks

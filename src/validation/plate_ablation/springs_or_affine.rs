@@ -65,12 +65,12 @@ pub fn compare(fields: &Fields, outcome: &mut Outcome) -> Result<(), Error> {
         .extend([Block::paragraph(text), table(head, rows)]);
     let [springs, affine] = all.displacements();
     let far = displacement_percent(&fields.lattice.mesh, affine, springs);
-    let beside = "corrected from springs and from affine beside each other";
+    let beside = "field corrected from springs compared with field corrected from affine";
     outcome.checks.extend([
         check(format!("everything known: {beside}"), "%", far)
             .at_most(1e-6, "ū has no say in the field"),
         check(
-            "everything known: their multipliers beside each other",
+            "everything known: multipliers of the two fields compared",
             "%",
             all.multipliers_percent(),
         )

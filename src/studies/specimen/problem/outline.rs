@@ -77,7 +77,7 @@ impl Outline {
 
     /// The mesh of the finite elements of a level: each has cells of half the size of those of the one before. At level 2
     /// they are half as large as the lattice's where they are quadratic, and a quarter where they are linear or the mesh is
-    /// that of a file, so that their error is small beside that of the corrected field.
+    /// that of a file, so that their error is small compared with that of the corrected field.
     pub fn reference_mesh(&self, level: usize) -> Mesh {
         match self {
             Self::Shape {

@@ -24,7 +24,7 @@ impl Deviation {
     }
 }
 
-/// A deviation and the finite elements' own error beside it, of all load factors together.
+/// A deviation and the finite elements' own error, of all load factors together.
 ///
 /// The largest true deviation lies between d − e at the load factor with the largest measured one, d, and the largest
 /// d + e of all load factors.

@@ -1,4 +1,4 @@
-//! Local refinement where the estimated error is, beside uniform refinement.
+//! Local refinement where the estimated error is, compared with uniform refinement.
 
 use super::graded::{Exact, SIZE, STRETCH};
 use super::smooth::on;

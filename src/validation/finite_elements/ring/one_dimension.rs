@@ -71,7 +71,7 @@ impl Ring<'_> {
         [radial, hoop].map(|stretch| twice * (stretch - through / stretch))
     }
 
-    /// λ_r of a radial stress beside a hoop stretch, by the secant method from a guess.
+    /// λ_r of a radial stress at a hoop stretch, by the secant method from a guess.
     fn radial_stretch(&self, stress: f64, hoop: f64, guess: f64) -> f64 {
         let miss = |radial: f64| self.stresses([radial, hoop])[0] - stress;
         let (mut before, mut now) = (guess, guess * (1.0 + 1e-4));
