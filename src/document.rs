@@ -15,11 +15,14 @@ mod decimals;
 mod head;
 mod lines;
 mod section;
+mod syntax;
 mod table;
+mod text;
 
 pub use head::{Faulty, Head, Statements};
 pub use section::Section;
 pub use table::{Column, Table, plain_name};
+pub use text::read_text;
 
 /// A parsed TOML file.
 #[derive(Debug)]
@@ -27,6 +30,9 @@ pub struct Document<'a> {
     source: Arc<Source>,
     table: DeTable<'a>,
 }
+
+/// Faults of syntax that are told of one document: the first ones usually make the others.
+const MOST_SYNTAX_TOLD: usize = 5;
 
 /// Findings that are told of one document.
 const MOST_TOLD: usize = 50;
@@ -98,10 +104,18 @@ impl<'a> Document<'a> {
             text: text.to_owned(),
         });
         let (spanned, syntax_faults) = DeTable::parse_recoverable(text);
-        for fault in syntax_faults {
-            let diagnostic =
-                Diagnostic::error("", format!("TOML syntax: {}", fault.message().trim()));
-            faults.push(diagnostic.at(&source, fault.span().unwrap_or(0..0)));
+        for fault in syntax_faults.iter().take(MOST_SYNTAX_TOLD) {
+            let (message, span) = (fault.message().trim(), fault.span().unwrap_or(0..0));
+            let diagnostic = Diagnostic {
+                hint: syntax::remedy(text, &span, message),
+                ..Diagnostic::error("", format!("TOML syntax: {message}"))
+            };
+            faults.push(diagnostic.at(&source, span));
+        }
+        let more = syntax_faults.len().saturating_sub(MOST_SYNTAX_TOLD);
+        if more > 0 {
+            let message = format!("and {more} more faults of syntax");
+            faults.push(Diagnostic::error("", message).at(&source, text.len()..text.len()));
         }
         Self {
             source,

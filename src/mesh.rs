@@ -32,4 +32,4 @@ pub use import::{
 pub use nodal_field::NodalField;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};
 pub use rounding::Polygon;
-pub use shapes::Shape;
+pub use shapes::{Misfit, Shape};

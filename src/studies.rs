@@ -10,6 +10,7 @@ use crate::results::{Outcome, Results};
 
 pub mod markers;
 pub mod motion;
+pub mod other_files;
 pub mod plate;
 pub mod sections;
 pub mod specimen;

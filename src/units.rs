@@ -6,8 +6,10 @@
 use std::fmt;
 
 mod linear;
+mod remedy;
 
 pub use linear::{Linear, LinearFault, parse_linear_length};
+pub use remedy::bare_ratio;
 
 /// The kind of a physical quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -160,6 +162,8 @@ impl Dimension {
 pub enum QuantityFault {
     /// The text does not begin with a finite decimal number.
     NotANumber,
+    /// The number has a comma.
+    DecimalComma,
     /// A number without a unit.
     MissingUnit,
     /// A unit that the table does not hold.
@@ -179,6 +183,7 @@ impl fmt::Display for QuantityFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotANumber => write!(f, "does not begin with a finite number"),
+            Self::DecimalComma => write!(f, "has a number with a comma"),
             Self::MissingUnit => write!(f, "has no unit"),
             Self::UnknownUnit(unit) => write!(f, "has the unknown unit `{unit}`"),
             Self::WrongDimension { unit, found } => {
@@ -202,6 +207,9 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
         return Err(QuantityFault::NotANumber);
     }
     let unit = text[split..].trim();
+    if unit.starts_with(',') {
+        return Err(QuantityFault::DecimalComma);
+    }
     if unit.is_empty() {
         return match dimension {
             Dimension::Ratio => Ok(number),
@@ -285,6 +293,10 @@ mod tests {
         assert_eq!(
             parse("1e999 mm", Dimension::Length),
             Err(QuantityFault::NotANumber)
+        );
+        assert_eq!(
+            parse("15,0 cm", Dimension::Length),
+            Err(QuantityFault::DecimalComma)
         );
         assert_eq!(
             parse("15 furlong", Dimension::Length),

@@ -9,7 +9,7 @@ use crate::error::{Diagnostic, Error, suggestion};
 use crate::results::{Check, Outcome, Results};
 use crate::studies::plate as plate_study;
 use crate::studies::sections::read_text;
-use crate::studies::{Kind, Progress, Ready, motion, specimen};
+use crate::studies::{Kind, Progress, Ready, motion, other_files, specimen};
 
 mod case;
 mod correction_matrix;
@@ -107,7 +107,10 @@ pub fn case_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
         let document = Document::parse(file, text, &faults);
         let root = document.root(None, &faults);
         if !root.has("kind") {
-            return Ok(None);
+            return match other_files::recognised(&root, file) {
+                Some((what, hint)) => Err(Error::input(format!("{file} {what}"), hint)),
+                None => Ok(None),
+            };
         }
         let cases = CASES.iter().map(|case| (case.kind, Some(case)));
         let kinds: Vec<_> = std::iter::once(("plate", None)).chain(cases).collect();

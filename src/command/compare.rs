@@ -10,7 +10,7 @@ use super::terminal::{Outcome, print, progress_bar, warn};
 use crate::compare::imported::{
     Difference, ExternalField, ImportSettings, Mismatch, ModelField, Sites,
 };
-use crate::error::{Diagnostic, Error, suggestion};
+use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
 use crate::mesh::{CellShape, Mesh};
 use crate::output::{self, ResultFolder};
@@ -50,6 +50,9 @@ pub struct Options {
     pub output: Option<PathBuf>,
 }
 
+/// A stretch beyond it that the study does not reach was meant in percent.
+const PERCENTAGE: f64 = 5.0;
+
 /// What is compared, before and after it is computed.
 struct Comparison {
     title: String,
@@ -75,7 +78,7 @@ pub fn run(options: Options) -> Outcome {
         )
     })?;
     print(&summary(&compared, &differences))?;
-    let doubts = doubts(&differences);
+    let doubts = doubts(&differences, compared.factor);
     warn(&doubts);
     if let Some(folder) = &options.output {
         let inputs = [&*options.study, &*options.field];
@@ -88,8 +91,9 @@ pub fn run(options: Options) -> Outcome {
     Ok(u8::from(!doubts.is_empty()))
 }
 
-/// What makes the figures doubtful: displacements that all models find larger or smaller by the ratio of two units.
-fn doubts(differences: &[Difference]) -> Vec<Diagnostic> {
+/// What makes the figures doubtful: displacements that all models find larger or smaller by one factor, be it the ratio of two
+/// units or of two load factors.
+fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
     let ratios: Option<Vec<f64>> = differences.iter().map(Difference::other_unit).collect();
     let ratio = ratios.filter(|ratios| ratios.iter().all(|ratio| *ratio == ratios[0]));
     let doubt = ratio.map(|ratios| {
@@ -102,6 +106,16 @@ fn doubts(differences: &[Difference]) -> Vec<Diagnostic> {
             ratios[0]
         );
         Diagnostic::warning("", message).hint("say the file's unit with --unit")
+    });
+    let scaled = differences.iter().all(Difference::is_scaled);
+    let doubt = doubt.or_else(|| {
+        let share = 1.0 / differences[0].factor;
+        scaled.then(|| {
+            let message = format!(
+                "the imported displacements are about {share:.3} times those of the models at the load factor {at}, as at another load factor"
+            );
+            Diagnostic::warning("", message).hint("say that of the file with --factor")
+        })
     });
     doubt.into_iter().collect()
 }
@@ -130,6 +144,11 @@ fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Compari
     let problem = &study.problem;
     let last = problem.stretches[problem.stretches.len() - 1];
     let factor = options.factor.unwrap_or(last);
+    if factor > PERCENTAGE && factor > last {
+        let message = format!("--factor {factor} is a stretch of {} %", 100.0 * factor);
+        let hint = format!("write --factor \"{factor} %\" where per cent are meant");
+        return Err(Error::input(message, hint));
+    }
     let lattice = Mesh::plate(problem.size, study.cells, CellShape::Quad4);
     let (imported, sites) = import(options, factor, &lattice)?;
     Ok(Comparison {
@@ -285,14 +304,15 @@ fn ratio(text: &str) -> Result<f64, String> {
     match units::parse(text, Dimension::Ratio) {
         Ok(factor) if factor != 0.0 => Ok(factor),
         Ok(_) => Err("it must not be zero".into()),
-        Err(fault) => Err(fault.to_string()),
+        Err(fault) => Err(format!(
+            "it {fault}; {}",
+            fault.remedy(text, Dimension::Ratio)
+        )),
     }
 }
 
 /// The length of a unit in mm.
 pub(super) fn length(unit: &str) -> Result<f64, String> {
-    units::factor(unit, Dimension::Length).map_err(|_| {
-        let known: Vec<_> = Dimension::Length.units().collect();
-        suggestion(unit, &known, "known units:")
-    })
+    units::factor(unit, Dimension::Length)
+        .map_err(|fault| format!("it {fault}; {}", fault.remedy(unit, Dimension::Length)))
 }

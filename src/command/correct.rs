@@ -278,7 +278,10 @@ fn force(text: &str) -> Result<MeasuredForce, Diagnostic> {
         _ => return Err(refuse("it is no force on an edge".into())),
     };
     let newtons = |text: &str| {
-        units::parse(text, Dimension::Force).map_err(|fault| refuse(format!("it {fault}")))
+        units::parse(text, Dimension::Force).map_err(|fault| {
+            let hint = fault.remedy(text, Dimension::Force);
+            Diagnostic::error("", format!("it {fault}")).hint(hint)
+        })
     };
     let values = values.replace("+-", "±");
     let (value, deviation) = match values.split_once('±') {
@@ -299,16 +302,25 @@ fn length(text: &str) -> Result<f64, Diagnostic> {
 }
 
 fn within(text: &str, holds: fn(f64) -> bool, wanted: &str) -> Result<f64, Diagnostic> {
-    let refuse = |reason: String| Diagnostic::error("", reason).hint("write it as in \"1.5 mm\"");
-    let length = units::parse(text, Dimension::Length);
-    let length = length.map_err(|fault| refuse(format!("it {fault}")))?;
+    let length = units::parse(text, Dimension::Length).map_err(|fault| {
+        let hint = fault.remedy(text, Dimension::Length);
+        Diagnostic::error("", format!("it {fault}")).hint(hint)
+    })?;
     match holds(length) {
         true => Ok(length),
-        false => Err(refuse(wanted.to_owned())),
+        false => Err(Diagnostic::error("", wanted).hint("write it as in \"1.5 mm\"")),
     }
 }
 
 /// The length in mm of a unit, or a length.
 fn unit(text: &str) -> Result<f64, Diagnostic> {
-    units::factor(text, Dimension::Length).or_else(|_| length(text))
+    units::factor(text, Dimension::Length).or_else(|fault| {
+        let number =
+            text.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first));
+        let hint = fault.remedy(text, Dimension::Length);
+        match number {
+            true => length(text),
+            false => Err(Diagnostic::error("", format!("it {fault}")).hint(hint)),
+        }
+    })
 }

@@ -61,6 +61,8 @@ pub struct Difference {
     pub place: [f64; 2],
     /// The factor by which the imported displacements come nearest to the model's: Σ A u·v / Σ A v².
     pub factor: f64,
+    /// What is left in relative L2 in % when they are multiplied by it.
+    pub scaled_percent: f64,
 }
 
 impl Difference {
@@ -68,6 +70,12 @@ impl Difference {
     pub fn other_unit(&self) -> Option<f64> {
         const LARGE: f64 = 50.0;
         unit_ratio(self.factor).filter(|_| self.percent > LARGE)
+    }
+
+    /// Whether a factor, as between two load factors, makes most of the difference.
+    pub fn is_scaled(&self) -> bool {
+        const LARGE: f64 = 10.0;
+        self.percent > LARGE && self.scaled_percent < self.percent / 3.0
     }
 }
 
@@ -135,6 +143,7 @@ impl ExternalField {
         );
         field.map(|field| Self::OnMesh(Box::new(field))).map_err(|reason| {
             let hint = "a field stands in .vtu, .vtk (to version 4), .pvd, Gmsh's .msh with $NodeData, CalculiX' .frd (ASCII), or .csv with X, Y, ux, uy";
+            let hint = reason.remedy.as_deref().unwrap_or(hint);
             Error::input(format!("{} {reason}", path.display()), hint)
         })
     }
@@ -207,14 +216,21 @@ impl Sites {
             return Err(Mismatch::Zero);
         }
         let (largest, place) = found.largest_distance(&self.expected);
+        let scaled = |factor: f64| -> Vec<f64> {
+            let scaled = self.expected.iter();
+            scaled.map(|expected| factor * expected).collect()
+        };
         let product = |a: &[f64], b: &[f64]| -> f64 {
             let terms = a.iter().zip(b).zip(0..);
             terms
                 .map(|((a, b), index)| self.weights[index / 2] * a * b)
                 .sum()
         };
+        let factor = product(&found, &self.expected) / product(&self.expected, &self.expected);
         Ok(Difference {
-            factor: product(&found, &self.expected) / product(&self.expected, &self.expected),
+            factor,
+            scaled_percent: 100.0 * found.weighted_distance(&scaled(factor), &self.weights)
+                / (factor.abs() * size),
             percent: 100.0 * found.weighted_distance(&self.expected, &self.weights) / size,
             largest,
             place: self.places[place],

@@ -134,12 +134,14 @@ impl<'a> Head<'a> {
         let Some(value) = self.setting(key, None)? else {
             return Ok(None);
         };
-        let reason = match units::parse(&value, dimension) {
+        let (reason, hint) = match units::parse(&value, dimension) {
             Ok(number) if number > 0.0 => return Ok(Some(number)),
-            Ok(_) => "is not positive".to_owned(),
-            Err(fault) => fault.to_string(),
+            Ok(_) => {
+                let hint = format!("write it as {}", dimension.example());
+                ("is not positive".to_owned(), hint)
+            }
+            Err(fault) => (fault.to_string(), fault.remedy(&value, dimension)),
         };
-        let hint = format!("write it as {}", dimension.example());
         Err(self.fault(
             self.place(key),
             format!("the {key} \"{value}\" {reason}"),
@@ -170,8 +172,7 @@ impl<'a> Head<'a> {
         let unit = self.setting(key, column.unit.as_deref())?;
         let unit = unit.ok_or_else(|| self.missing(key, example))?;
         units::factor(&unit, dimension).map_err(|fault| {
-            let units: Vec<_> = dimension.units().collect();
-            let hint = format!("known units: {}", units.join(", "));
+            let hint = fault.remedy(&unit, dimension);
             let place = self.table.columns_place.clone();
             self.fault(place, format!("the {key} {fault}"), &hint)
         })

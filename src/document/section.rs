@@ -150,17 +150,21 @@ impl<'a> Section<'a> {
 
     /// Reports every key of the table that was never asked for.
     pub fn unknown_keys(&self) {
+        self.unknown_keys_with(|_| None);
+    }
+
+    /// The same with what is known of an unknown key.
+    pub fn unknown_keys_with(&self, remedy: impl Fn(&str) -> Option<String>) {
         let known = self.known.borrow();
         for (name, value) in self.table.into_iter().flat_map(|table| table.iter()) {
             let key = name.get_ref().as_ref();
             if known.contains(&key) {
                 continue;
             }
-            let hint = if known.is_empty() {
-                "nothing is expected here".to_owned()
-            } else {
-                suggestion(key, &known, "known here:")
-            };
+            let hint = remedy(key).unwrap_or_else(|| match known.is_empty() {
+                true => "nothing is expected here".to_owned(),
+                false => suggestion(key, &known, "known here:"),
+            });
             let span = name.span().start..name.span().end.max(name.span().start + 1);
             let kind = if matches!(value.get_ref(), DeValue::Table(_)) {
                 "table"

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::Faults;
 use super::decimals::{Decimals, NotANumber, is_hole};
 use super::lines::{delimiter, is_name, line_at, plain_text};
+use super::text::read_text;
 use crate::error::{Diagnostic, Error, Source};
 
 /// A column's name and unit.
@@ -68,16 +69,8 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] with file, line and reason.
     pub fn read(path: &Path, hint: &str) -> Result<Self, Error> {
-        let name = path.display().to_string();
-        let bytes = std::fs::read(path);
-        let bytes =
-            bytes.map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))?;
-        let text = String::from_utf8(bytes).map_err(|fault| {
-            let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
-            let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-            Error::input(format!("{name}: line {line} is not UTF-8 text"), hint)
-        })?;
-        Self::parse(&name, &text)
+        let text = read_text(path, hint)?;
+        Self::parse(&path.display().to_string(), &text)
     }
 
     /// Reads a text.

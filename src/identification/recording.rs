@@ -164,10 +164,13 @@ impl Reader<'_> {
             }
             Err(reason) => {
                 let units: Vec<_> = dimension.units().collect();
-                let hint = format!(
-                    "write the unit in brackets behind the name; known: {}",
-                    units.join(", ")
-                );
+                let hint = match &reason {
+                    QuantityFault::UnknownUnit(unit) => reason.remedy(unit, dimension),
+                    _ => format!(
+                        "write the unit in brackets behind the name; known: {}",
+                        units.join(", ")
+                    ),
+                };
                 self.fault(place, format!("the column `{name}` {reason}"), &hint);
                 Vec::new()
             }

@@ -7,9 +7,9 @@ use super::curve::Mode;
 use super::law::HyperelasticLaw;
 use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
-use super::registry::{CARDS, LAWS};
+use super::registry::{CARDS, LAWS, Law};
 use super::viscosity::{Relaxation, ViscousMaterial};
-use crate::document::{Bound, Document, Faults, Section};
+use crate::document::{Bound, Document, Faults, Section, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
@@ -90,15 +90,8 @@ impl Card {
             return Err(Error::Input(vec![unknown_card(name)]));
         }
         let path = folder.join(name);
-        let text = std::fs::read_to_string(&path).map_err(|cause| {
-            let fault = Diagnostic::error(
-                "",
-                format!("cannot read the card {}: {cause}", path.display()),
-            );
-            Error::Input(vec![
-                fault.hint("look at the path; one in a study is relative to the study"),
-            ])
-        })?;
+        let hint = "a card is TOML in UTF-8; its path in a study is relative to the study";
+        let text = read_text(&path, hint)?;
         Self::parse(name, &path.display().to_string(), &text)
     }
 
@@ -133,7 +126,7 @@ impl Card {
         let parameters = Parameters::of_card(parameters, card.stress_measure, card.strain_measure);
         card.law = (law.read)(&parameters).into();
         (card.law_name, card.formula) = (law.name.to_owned(), law.formula);
-        let entries = parameters.finish();
+        let entries = parameters.finish_with(|key| of_other_laws(key, law.name));
         (card.parameters, card.choices) = (entries.parameters, entries.choices);
         faults.finish()?;
         Ok(card)
@@ -175,7 +168,7 @@ impl Card {
         let offset = data.choice("offset", &OffsetTreatment::NAMES);
         self.offset = offset.unwrap_or(OffsetTreatment::Subtract);
         self.test = data.text("test");
-        let range = data.quantities("stretch_range", Dimension::Ratio, Bound::Positive);
+        let range = data.multiples("stretch_range", Bound::Positive, f64::INFINITY);
         match range[..] {
             [low, high] if low < high => self.stretch_range = [low, high],
             _ => {
@@ -291,6 +284,25 @@ fn read_fit(section: &Section) -> FitRecord {
     };
     section.unknown_keys();
     record
+}
+
+/// What to do about a parameter that only other laws have.
+fn of_other_laws(key: &str, own: &str) -> Option<String> {
+    let has = |law: &&Law| {
+        let (_, entries) = law.with_values(&[], StressMeasure::Nominal, StrainMeasure::Nominal);
+        entries
+            .parameters
+            .iter()
+            .any(|parameter| parameter.key == key)
+            || entries.choices.iter().any(|(known, _)| *known == key)
+    };
+    let laws: Vec<_> = LAWS.iter().filter(has).map(|law| law.name).collect();
+    (!laws.is_empty()).then(|| {
+        let laws = laws.join(", ");
+        format!(
+            "a card has one law, and {own} has no {key}: leave it out, or take another law ({laws})"
+        )
+    })
 }
 
 fn unknown_card(name: &str) -> Diagnostic {

@@ -5,6 +5,9 @@ use std::cell::RefCell;
 use crate::document::{Bound, Section, name_of};
 use crate::units::Dimension;
 
+/// Strains up to here are what they say; a larger one may have been meant in percent.
+const LARGEST_STRAIN: f64 = 30.0;
+
 /// Which stress a curve or a card speaks of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StressMeasure {
@@ -249,7 +252,7 @@ impl<'a> Parameters<'a> {
         let Origin::Card(section) = &self.origin else {
             return Vec::new();
         };
-        let strains = section.quantities("strain", Dimension::Ratio, Bound::Any);
+        let strains = section.multiples("strain", Bound::Any, LARGEST_STRAIN);
         let stresses = section.quantities("stress", Dimension::Stress, Bound::Any);
         if strains.len() != stresses.len() {
             section.fault(
@@ -278,8 +281,13 @@ impl<'a> Parameters<'a> {
 
     /// Reports unknown keys and returns what was asked for.
     pub fn finish(self) -> CardEntries {
+        self.finish_with(|_| None)
+    }
+
+    /// The same with what is known of an unknown key.
+    pub fn finish_with(self, remedy: impl Fn(&str) -> Option<String>) -> CardEntries {
         if let Origin::Card(section) = &self.origin {
-            section.unknown_keys();
+            section.unknown_keys_with(remedy);
         }
         CardEntries {
             parameters: self.asked.into_inner(),

@@ -1,11 +1,13 @@
 //! Flat specimens given by their measures, meshed with curved blocks.
 
-use std::f64::consts::TAU;
-
 use super::blocks::{Block, mesh_of_blocks};
 use super::cell_shape::CellShape;
 use super::cells::Mesh;
 use super::strips::{count, strip, with_hole};
+
+mod measures;
+
+pub use measures::Misfit;
 
 /// A specimen by its measures in mm. All lie along X from 0, with the axis Y = 0 in their middle, except the ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,67 +158,6 @@ impl Shape {
             Self::RingSector { radii, angle } => vec![radii[0], radii[1], angle],
         }
     }
-
-    /// What is wrong with the measures.
-    ///
-    /// # Errors
-    /// Says which measures do not fit together.
-    pub fn check(self) -> Result<(), String> {
-        let fits = |condition: bool, reason: &str| match condition {
-            true => Ok(()),
-            false => Err(reason.to_owned()),
-        };
-        match self {
-            Self::Strip { .. } => Ok(()),
-            Self::StripWithHole { size, radius } => fits(
-                radius < 0.45 * size[0].min(size[1]),
-                "the hole's diameter must be below nine tenths of the length and of the width",
-            ),
-            Self::NotchedStrip {
-                size,
-                depth,
-                half_length,
-            } => {
-                fits(
-                    depth < 0.45 * size[1],
-                    "the notches must leave a tenth of the width",
-                )?;
-                fits(
-                    2.0 * half_length < 0.9 * size[0],
-                    "the notches must be shorter than the strip",
-                )?;
-                fits(
-                    depth < 0.95 * half_length,
-                    "a notch must be shallower than half its length",
-                )
-            }
-            Self::DogBone {
-                size,
-                narrow,
-                shoulder,
-            } => {
-                fits(
-                    narrow[1] < size[1],
-                    "the narrow part must be narrower than the ends",
-                )?;
-                fits(
-                    narrow[0] + 2.0 * shoulder < size[0],
-                    "the narrow part and its shoulders must be shorter than the specimen",
-                )?;
-                fits(
-                    (size[1] - narrow[1]) / 2.0 < shoulder,
-                    "a shoulder must be longer than it is high",
-                )
-            }
-            Self::RingSector { radii, angle } => {
-                fits(
-                    radii[0] < radii[1],
-                    "the inner radius must be smaller than the outer one",
-                )?;
-                fits(angle < TAU, "the sector must be less than a whole ring")
-            }
-        }
-    }
 }
 
 /// Depth of a notch at a distance from its middle: an arc of a circle.
@@ -328,12 +269,28 @@ mod tests {
             size: [30.0, 10.0],
             radius: 5.0,
         };
-        assert!(hole.check().unwrap_err().contains("hole"));
+        let told = |shape: Shape| shape.check().unwrap_err();
+        assert_eq!(told(hole).measure, "hole_diameter");
+        assert!(told(hole).remedy().contains("less than \"9 mm\""));
         let bone = Shape::DogBone {
             size: [75.0, 12.5],
             narrow: [60.0, 4.0],
             shoulder: 8.0,
         };
-        assert!(bone.check().unwrap_err().contains("shorter"));
+        assert!(told(bone).reason.contains("shorter"));
+        assert!(told(bone).remedy().contains("less than \"59 mm\""));
+        let notch = Shape::NotchedStrip {
+            size: [30.0, 10.0],
+            depth: 4.0,
+            half_length: 4.0,
+        };
+        assert_eq!(told(notch).measure, "notch_depth");
+        assert!(told(notch).remedy().contains("less than \"3.8 mm\""));
+        let shoulder = Shape::DogBone {
+            size: [75.0, 30.0],
+            narrow: [25.0, 4.0],
+            shoulder: 8.0,
+        };
+        assert!(told(shoulder).remedy().contains("more than \"13 mm\""));
     }
 }

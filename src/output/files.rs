@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::folder::ResultFolder;
+use super::folder::{ResultFolder, refuse_file};
 use super::html::html;
 use super::markdown::markdown;
 use super::picture::png;
@@ -91,6 +91,11 @@ pub fn write_document(
 pub fn save(path: &Path, bytes: &[u8]) -> Result<PathBuf, Error> {
     let fault = |cause: std::io::Error| Error::write(path, cause);
     let folder = path.parent().unwrap_or(Path::new("."));
+    refuse_file(folder)?;
+    if path.is_dir() {
+        let cause = "it is a folder; name the file in it that is to be written";
+        return Err(Error::write(path, cause));
+    }
     std::fs::create_dir_all(folder).map_err(fault)?;
     let mut file = temporary_file(folder).map_err(fault)?;
     file.write_all(bytes).map_err(fault)?;

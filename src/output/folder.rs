@@ -58,6 +58,7 @@ impl ResultFolder {
     /// into it.
     pub fn open(path: &Path, writer: &str, inputs: &[&Path]) -> Result<Self, Error> {
         let fault = |cause: std::io::Error| Error::write(path, cause);
+        refuse_file(path)?;
         fs::create_dir_all(path).map_err(fault)?;
         let file = path.join(MANIFEST);
         let mut options = File::options();
@@ -193,6 +194,23 @@ impl Drop for ResultFolder {
         }
         // It stays where it holds anything.
         let _ = fs::remove_dir(&self.path);
+    }
+}
+
+/// Refuses a folder for results that is a file, or lies in one.
+///
+/// # Errors
+/// [`Error::Write`] with the file that is in the way.
+pub fn refuse_file(folder: &Path) -> Result<(), Error> {
+    match folder.ancestors().find(|part| part.is_file()) {
+        None => Ok(()),
+        Some(file) => {
+            let cause = format!(
+                "{} is a file, and results go into a folder; name another with --output",
+                file.display()
+            );
+            Err(Error::write(folder, cause))
+        }
     }
 }
 

@@ -18,6 +18,7 @@ use crate::mesh::Mesh;
 mod conditions;
 mod doubts;
 mod figures;
+mod force_signs;
 mod json;
 mod quantities;
 mod report;
@@ -90,6 +91,11 @@ impl MarkerStudy {
             placed.series = field.series;
             placed.outside = 0;
         }
+        force_signs::check(
+            request.conditions.forces_with_frames(&placed.series),
+            &mesh,
+            &*card.law,
+        )?;
         if placed.outside > 0 {
             let message = format!("markers outside of the mesh: {}", placed.outside);
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));

@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::document::{Bound, Section};
-use crate::error::{Diagnostic, Error};
+use super::other_files;
+use crate::document::{self, Bound, Section};
+use crate::error::Error;
 use crate::mass_spring::LARGEST_ASPECT;
 use crate::material::curve::Mode;
 use crate::material::parameters::OffsetTreatment;
@@ -26,14 +27,11 @@ const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 100
 /// The text of a study file.
 ///
 /// # Errors
-/// [`Error::Input`] when the file cannot be read.
+/// [`Error::Input`] when the file cannot be read, or is a table, a mesh or a field.
 pub fn read_text(path: &Path) -> Result<String, Error> {
-    std::fs::read_to_string(path).map_err(|cause| {
-        let fault = Diagnostic::error("", format!("cannot read {}: {cause}", path.display()));
-        Error::Input(vec![
-            fault.hint("`gelbench new NAME` writes a study to start from"),
-        ])
-    })
+    let text = document::read_text(path, "`gelbench new NAME` writes a study to start from")?;
+    other_files::refuse(path, &text)?;
+    Ok(text)
 }
 
 /// The card under `card` of a section, looked for relative to `folder`; `None` where it is no card to work
@@ -116,17 +114,47 @@ pub fn check_cells(section: &Section<'_>, cells: [usize; 2]) -> bool {
 
 /// Springs cannot make a lattice of long cells isotropic.
 fn check_aspect(section: &Section<'_>, size: [f64; 2], cells: [usize; 2]) {
-    let sides = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
-    let aspect = (sides[0] / sides[1]).max(sides[1] / sides[0]);
+    let aspect = aspect(size, cells);
     if aspect > LARGEST_ASPECT {
-        let across = (size[1] * cells[0] as f64 / size[0]).round().max(2.0);
-        let along = (size[0] * across / size[1]).round().max(2.0);
+        let [along, across] = nearly_square_cells(size, cells[0]);
         section.fault(
             "cells",
             &format!("the sides of a cell have the ratio {aspect:.2}; springs need less than √3"),
             &format!("take [{along}, {across}]"),
         );
     }
+}
+
+/// The longer side of a cell over the shorter one.
+fn aspect(size: [f64; 2], cells: [usize; 2]) -> f64 {
+    let sides = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
+    (sides[0] / sides[1]).max(sides[1] / sides[0])
+}
+
+/// The even numbers of cells next to some numbers, of which springs can make a lattice.
+pub fn even_cells(size: [f64; 2], cells: [usize; 2]) -> [usize; 2] {
+    let up = cells.map(|n| n.next_multiple_of(2).min(MOST_CELLS));
+    let down = cells.map(|n| (n - n % 2).max(2));
+    let nearest = [up, [up[0], down[1]], [down[0], up[1]], down];
+    let mut usable = nearest.into_iter().filter(|cells| {
+        aspect(size, *cells) < LARGEST_ASPECT && cells[0] * cells[1] <= MOST_CELLS_IN_ALL
+    });
+    usable
+        .next()
+        .unwrap_or_else(|| nearly_square_cells(size, cells[0]))
+}
+
+/// Even numbers of nearly square cells, about as many along the plate as are wanted and no more than a study may have.
+fn nearly_square_cells(size: [f64; 2], along: usize) -> [usize; 2] {
+    let even = |number: f64| 2 * ((number / 2.0).round().max(1.0) as usize);
+    let ratio = size[0] / size[1];
+    let most = (0.98 * MOST_CELLS_IN_ALL as f64 * ratio).sqrt();
+    let most = most.min(0.98 * MOST_CELLS as f64 * ratio.min(1.0));
+    let across = even((along as f64).min(most) / ratio);
+    [
+        even(ratio * across as f64).min(MOST_CELLS),
+        across.min(MOST_CELLS),
+    ]
 }
 
 /// Warns of a stretch outside the range of the card, or beyond the stability of its law.
@@ -200,5 +228,29 @@ impl Tolerances {
         };
         section.unknown_keys();
         tolerances
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn advised_numbers_of_cells_are_accepted() {
+        for length in [1.0, 3.0, 10.0, 37.0, 150.0, 700.0] {
+            for width in [1.0, 2.5, 10.0, 50.0, 333.0] {
+                for along in [2, 3, 7, 20, 61, 500, 2000] {
+                    let cells = nearly_square_cells([length, width], along);
+                    let aspect = aspect([length, width], cells);
+                    let told = format!("{length} × {width}, {along}: {cells:?}");
+                    assert!(aspect < LARGEST_ASPECT, "{told}");
+                    assert!(
+                        cells.iter().all(|n| n % 2 == 0 && *n <= MOST_CELLS),
+                        "{told}"
+                    );
+                    assert!(cells[0] * cells[1] <= MOST_CELLS_IN_ALL, "{told}");
+                }
+            }
+        }
     }
 }

@@ -35,8 +35,8 @@ pub enum LinearFault {
     MissingTerm,
     /// A factor that is neither X nor Y.
     NotAPlace(String),
-    /// A number that cannot be read, with its text.
-    Quantity(String, QuantityFault),
+    /// A number that cannot be read, with its text and the dimension that it should have.
+    Quantity(String, Dimension, QuantityFault),
 }
 
 impl std::error::Error for LinearFault {}
@@ -51,14 +51,26 @@ impl fmt::Display for LinearFault {
                     "has the factor `{text}`, which is neither X nor Y, the place at rest"
                 )
             }
-            Self::Quantity(text, fault) => write!(f, "has the term `{text}`, which {fault}"),
+            Self::Quantity(text, _, fault) => write!(f, "has the term `{text}`, which {fault}"),
         }
     }
 }
 
 impl LinearFault {
     /// What to write instead.
-    pub const HINT: &'static str = "write a quantity, a number times X or Y, or a sum of these, such as \"2 mm + 0.1 * X - 0.05 * Y\"";
+    pub fn remedy(&self) -> String {
+        const FORM: &str = "write a quantity, a number times X or Y, or a sum of these, such as \"2 mm + 0.1 * X - 0.05 * Y\"";
+        match self {
+            Self::Quantity(
+                _,
+                _,
+                QuantityFault::NotANumber | QuantityFault::WrongDimension { .. },
+            )
+            | Self::MissingTerm
+            | Self::NotAPlace(_) => FORM.to_owned(),
+            Self::Quantity(text, dimension, fault) => fault.remedy(text, *dimension),
+        }
+    }
 }
 
 /// Reads a length that is linear in the place: a sum of lengths with their units and of ratios times `X` or `Y`, such
@@ -75,7 +87,7 @@ pub fn parse_linear_length(text: &str) -> Result<Linear, LinearFault> {
         }
         let number = |text: &str, dimension| {
             let value = parse(text, dimension);
-            value.map_err(|fault| LinearFault::Quantity(text.trim().to_owned(), fault))
+            value.map_err(|fault| LinearFault::Quantity(text.trim().to_owned(), dimension, fault))
         };
         let axis = |text: &str| ["X", "Y"].iter().position(|name| *name == text.trim());
         match (axis(term), term.split_once('*')) {

@@ -9,7 +9,6 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::viscosity::{Relaxation, ViscousMaterial};
 use crate::problem::Measures;
-use crate::units::Dimension;
 use crate::validation::case::{Check, Outcome, Prepared, Progress, check, largest, section};
 use crate::validation::plate::NEWTON;
 use motion::{METHODS, NEWMARK, Run, clamped, problem, unknowns_of};
@@ -21,7 +20,7 @@ mod spring;
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
     let cells = section(root, "mesh", |mesh| {
-        let cells = mesh.quantities("cells", Dimension::Ratio, Bound::Within(3.0, 96.0));
+        let cells = mesh.multiples("cells", Bound::Within(3.0, 96.0), f64::INFINITY);
         let whole = |cells: &f64| cells.fract() == 0.0 && (*cells as usize).is_multiple_of(3);
         let doubled = cells.windows(2).all(|pair| pair[1] == 2.0 * pair[0]);
         if cells.len() < 3 || !cells.iter().all(whole) || !doubled {

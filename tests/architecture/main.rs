@@ -9,7 +9,8 @@ use sources::{Arrows, ModulePath, Sources, expand, functions};
 
 /// The modules by floor, the lowest first; a module may name only modules of lower floors, and itself.
 const FLOORS: &[&[&str]] = &[
-    &["error", "units", "statistics"],
+    &["error", "statistics"],
+    &["units"],
     &["document"],
     &["mesh", "material", "solve", "multigrid"],
     &["calibration"],

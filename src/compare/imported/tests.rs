@@ -175,7 +175,7 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
         (
             ".frd",
             sound().replace("5.00000E-01    ", "7.50000E-01    "),
-            "no step at the time 0.5; it has 0.25, 0.75: choose one with --time",
+            "no step at the time 0.5; it has 0.25, 0.75 (choose one of these with --factor",
         ),
         (
             ".frd",
@@ -300,4 +300,20 @@ fn displacements_in_another_unit_are_told_by_their_magnitude() {
         right.percent < 1e-10 && right.other_unit().is_none(),
         "{right:?}"
     );
+}
+
+#[test]
+fn displacements_of_another_load_factor_are_told() {
+    let half = "X_mm,Y_mm,ux_mm,uy_mm\n10,5,0.55,-0.125\n20,5,1.05,-0.125\n25,2,1.27,-0.05\n";
+    let other = "X_mm,Y_mm,ux_mm,uy_mm\n10,5,0.55,0.125\n20,5,0.1,-0.9\n25,2,0.5,-0.05\n";
+    let model = model([6, 2]);
+    for (table, scaled) in [(half, true), (other, false)] {
+        let imported = ExternalField::read(&written(".csv", table), &SETTINGS).unwrap();
+        let sites = imported.sites(&model.mesh).unwrap();
+        let difference = sites.difference(&model).unwrap();
+        assert_eq!(difference.is_scaled(), scaled, "{difference:?}");
+        if scaled {
+            assert!((difference.factor - 2.0).abs() < 1e-10 && difference.scaled_percent < 1e-10);
+        }
+    }
 }

@@ -1,11 +1,15 @@
 //! The values of a section by their kinds.
 
+use toml::Spanned;
 use toml::de::DeValue;
 
 use super::{Section, Value};
 use crate::document::Bound;
-use crate::error::{nearest, suggestion};
-use crate::units::{self, Dimension, Linear, LinearFault, QuantityFault};
+use crate::error::nearest;
+use crate::units::{self, Dimension, Linear, QuantityFault, bare_ratio};
+
+/// Bare ratios up to here are what they say; a larger one may have been meant in percent.
+const MOST_BARE: f64 = 5.0;
 
 impl<'a> Section<'a> {
     /// A text.
@@ -96,12 +100,11 @@ impl<'a> Section<'a> {
         match plain_number(value.get_ref()) {
             Some(number) => self.bounded(key, value, number, bound),
             None => {
-                self.fault_at(
-                    key,
-                    value,
-                    "must be a number",
-                    "write it without quotes, such as 1e-8",
-                );
+                let hint = match value.get_ref() {
+                    DeValue::String(text) => unquoted(text),
+                    _ => "such as 1e-8".to_owned(),
+                };
+                self.fault_at(key, value, "must be a number without a unit", &hint);
                 f64::NAN
             }
         }
@@ -117,14 +120,34 @@ impl<'a> Section<'a> {
 
     /// The size of a unit by its name alone, such as `"mm"`, or as a quantity, such as `"0.05 mm"`.
     pub fn unit(&self, key: &'static str, dimension: Dimension) -> f64 {
-        let Some(value) = self.value_like(key, dimension.example()) else {
+        let unit = dimension.units().next().unwrap_or_default();
+        let Some(value) = self.value_like(key, &format!("\"{unit}\"")) else {
             return f64::NAN;
         };
-        let named = match value.get_ref() {
-            DeValue::String(name) => units::factor(name, dimension).ok(),
-            _ => None,
+        let DeValue::String(name) = value.get_ref() else {
+            let hint = format!("write its name in quotes, such as \"{unit}\"");
+            self.fault_at(
+                key,
+                value,
+                &format!("must be a unit of {}", dimension.name()),
+                &hint,
+            );
+            return f64::NAN;
         };
-        named.unwrap_or_else(|| self.quantity_of(key, value, dimension, Bound::Positive))
+        let begins_with_number = name
+            .trim_start()
+            .starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first));
+        match units::factor(name, dimension) {
+            Ok(factor) => factor,
+            Err(_) if begins_with_number => {
+                self.quantity_of(key, value, dimension, Bound::Positive)
+            }
+            Err(fault) => {
+                let hint = fault.remedy(name, dimension);
+                self.fault_at(key, value, &format!("\"{name}\" {fault}"), &hint);
+                f64::NAN
+            }
+        }
     }
 
     /// A length that may be linear in the place at rest, as text such as `"2 mm + 0.1 * X"`.
@@ -144,33 +167,44 @@ impl<'a> Section<'a> {
             return nothing;
         };
         units::parse_linear_length(text).unwrap_or_else(|fault| {
-            self.fault_at(
-                key,
-                value,
-                &format!("\"{text}\" {fault}"),
-                LinearFault::HINT,
-            );
+            self.fault_at(key, value, &format!("\"{text}\" {fault}"), &fault.remedy());
             nothing
         })
     }
 
     /// A list of quantities of one dimension.
     pub fn quantities(&self, key: &'static str, dimension: Dimension, bound: Bound) -> Vec<f64> {
+        self.list(key, dimension, bound, MOST_BARE)
+    }
+
+    /// A list of ratios that are no parts of a whole: bare numbers up to `most` are what they say.
+    pub fn multiples(&self, key: &'static str, bound: Bound, most: f64) -> Vec<f64> {
+        self.list(key, Dimension::Ratio, bound, most)
+    }
+
+    fn list(&self, key: &'static str, dimension: Dimension, bound: Bound, most: f64) -> Vec<f64> {
         let example = format!("[{}, …]", dimension.example());
         let Some(value) = self.value_like(key, &example) else {
             return Vec::new();
         };
-        match value.get_ref() {
-            DeValue::Array(items) => items
-                .iter()
-                .map(|item| self.quantity_of(key, item, dimension, bound))
-                .collect(),
-            _ => {
-                let hint = format!("write [{}, …]", dimension.example());
-                self.fault_at(key, value, "must be a list", &hint);
-                vec![f64::NAN]
-            }
-        }
+        let DeValue::Array(items) = value.get_ref() else {
+            let hint = format!("write [{}, …]", dimension.example());
+            self.fault_at(key, value, "must be a list", &hint);
+            return vec![f64::NAN];
+        };
+        let in_percent = |item: &Spanned<DeValue>| match item.get_ref() {
+            DeValue::String(text) => text.contains('%'),
+            _ => false,
+        };
+        // Among percentages a bare number is one too, or forgotten.
+        let most = match items.iter().any(in_percent) {
+            true => 0.0,
+            false => most,
+        };
+        let items = items.iter();
+        items
+            .map(|item| self.item(key, item, (dimension, bound, most)))
+            .collect()
     }
 
     fn quantity_of(
@@ -180,33 +214,31 @@ impl<'a> Section<'a> {
         dimension: Dimension,
         bound: Bound,
     ) -> f64 {
-        let example = dimension.example();
-        let quantity = match value.get_ref() {
-            DeValue::String(text) => units::parse(text, dimension).map_err(|fault| {
-                let hint = match &fault {
-                    QuantityFault::UnknownUnit(unit) => {
-                        let known: Vec<_> = dimension.units().collect();
-                        suggestion(unit, &known, "known units:")
-                    }
-                    _ => format!("write a {} such as {example}", dimension.name()),
-                };
-                (format!("\"{text}\" {fault}"), hint)
-            }),
-            other => match plain_number(other) {
-                Some(number) if dimension == Dimension::Ratio => Ok(number),
-                Some(_) => Err((
-                    format!("a {} needs a unit", dimension.name()),
-                    format!("write it as text, such as {example}"),
-                )),
-                None => Err((
-                    format!("must be a {}", dimension.name()),
-                    format!("such as {example}"),
-                )),
-            },
-        };
-        match quantity {
-            Ok(number) => self.bounded(key, value, number, bound),
-            Err((message, hint)) => {
+        self.item(key, value, (dimension, bound, MOST_BARE))
+    }
+
+    /// A quantity; a ratio above `most` must say whether it is in percent.
+    fn item(
+        &self,
+        key: &'static str,
+        value: Value<'a>,
+        (dimension, bound, most): (Dimension, Bound, f64),
+    ) -> f64 {
+        let quantity = quantity(value.get_ref(), dimension);
+        let bare =
+            bare(value.get_ref()).filter(|bare| dimension == Dimension::Ratio && bare.abs() > most);
+        match (quantity, bare) {
+            (Ok(_), Some(bare)) => {
+                let message = format!("{bare} means {} %", rounded(100.0 * bare));
+                let hint = format!(
+                    "write \"{bare} %\", or \"{} %\" if that is meant",
+                    rounded(100.0 * bare)
+                );
+                self.fault_at(key, value, &message, &hint);
+                f64::NAN
+            }
+            (Ok(number), None) => self.bounded(key, value, number, bound),
+            (Err((message, hint)), _) => {
                 self.fault_at(key, value, &message, &hint);
                 f64::NAN
             }
@@ -272,6 +304,48 @@ fn text(value: &DeValue<'_>) -> Option<String> {
         DeValue::String(text) => Some(text.to_string()),
         _ => None,
     }
+}
+
+/// A value's quantity in the internal unit, or what is wrong and what to do.
+fn quantity(value: &DeValue<'_>, dimension: Dimension) -> Result<f64, (String, String)> {
+    let (name, example) = (dimension.name(), dimension.example());
+    match value {
+        DeValue::String(text) => units::parse(text, dimension).map_err(|fault| {
+            let hint = fault.remedy(text, dimension);
+            (format!("\"{text}\" {fault}"), hint)
+        }),
+        other => match plain_number(other) {
+            Some(number) if dimension == Dimension::Ratio => Ok(number),
+            Some(number) => {
+                let text = number.to_string();
+                let hint = QuantityFault::MissingUnit.remedy(&text, dimension);
+                Err((format!("a {name} needs a unit"), hint))
+            }
+            None => Err((format!("must be a {name}"), format!("such as {example}"))),
+        },
+    }
+}
+
+/// A bare number, in quotes or not.
+fn bare(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::String(text) => bare_ratio(text),
+        other => plain_number(other),
+    }
+}
+
+/// How to write a number that stands in quotes.
+fn unquoted(text: &str) -> String {
+    let point = text.trim().replacen(',', ".", 1);
+    match point.parse::<f64>() {
+        Ok(_) => format!("write {point}, without quotes"),
+        Err(_) => "write it without quotes and without a unit, such as 1e-8".to_owned(),
+    }
+}
+
+/// A number without the noise of its last binary digits.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.9e}").parse().unwrap_or(number)
 }
 
 fn plain_number(value: &DeValue<'_>) -> Option<f64> {

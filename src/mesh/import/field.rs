@@ -10,12 +10,19 @@ use crate::units::{self, Dimension};
 
 /// What a file holds that cannot be read as a displacement field, in words that follow the file's name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct ImportFault(String);
+#[error("{reason}")]
+pub struct ImportFault {
+    reason: String,
+    /// What to do, where it is not to give another file.
+    pub remedy: Option<String>,
+}
 
 impl From<String> for ImportFault {
     fn from(reason: String) -> Self {
-        Self(reason)
+        Self {
+            reason,
+            remedy: None,
+        }
     }
 }
 
@@ -86,10 +93,12 @@ pub fn import_field(
         let known = steps.iter().filter_map(|step| step.time);
         let known: Vec<_> = known.map(|time| time.to_string()).collect();
         let known = known.join(", ");
-        return Err(format!(
-            "has no step at the time {time}; it has {known}: choose one with --time"
-        )
-        .into());
+        let remedy =
+            "choose one of these with --factor, or with --time where they are no load factors";
+        return Err(ImportFault {
+            reason: format!("has no step at the time {time}; it has {known}"),
+            remedy: Some(remedy.to_owned()),
+        });
     };
     let step = steps.swap_remove(chosen);
     if let Some(reason) = step.hole {

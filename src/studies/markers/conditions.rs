@@ -34,7 +34,7 @@ use crate::corrector::estimation::{
 };
 use crate::document::{Bound, Document, Faults, Section};
 use crate::error::{Diagnostic, Error, suggestion};
-use crate::markers::MarkerSeries;
+use crate::markers::{Frame, MarkerSeries};
 use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::studies::sections;
@@ -152,12 +152,37 @@ impl Conditions {
             };
             if !known {
                 let all: Vec<_> = numbers().map(|number| number.to_string()).collect();
-                let fault = format!("the force on `{}` belongs to no frame", force.edge);
-                let hint = format!("give it one: {}", all.join(", "));
+                let (edge, last) = (&force.edge, all.last().cloned().unwrap_or_default());
+                let fault = match frame {
+                    None => format!(
+                        "there are {} frames, and the force on `{edge}` does not say in which it was measured",
+                        all.len()
+                    ),
+                    Some(number) => format!(
+                        "there is no frame {number}, in which the force on `{edge}` was measured"
+                    ),
+                };
+                let hint = format!(
+                    "say it in the file of --study, with `frame = {last}` under [[force]], or correct one frame alone; frames: {}",
+                    all.join(", ")
+                );
                 return Err(Error::input(fault, hint));
             }
         }
         Ok(())
+    }
+
+    /// Every measured force with its frame.
+    pub fn forces_with_frames<'a>(
+        &'a self,
+        series: &'a MarkerSeries,
+    ) -> impl Iterator<Item = (&'a MeasuredForce, &'a Frame)> {
+        let forces = self.forces.iter();
+        forces.filter_map(|(number, force)| {
+            let mut frames = series.frames.iter();
+            let frame = frames.find(|frame| number.is_none_or(|number| number == frame.number))?;
+            Some((force, frame))
+        })
     }
 
     /// The law with parameters to be found, if there are any.

@@ -145,7 +145,7 @@ fn read_function(section: &Section, dimension: Dimension) -> Option<ScalarFuncti
             ScalarFunction::Polynomial(coefficients)
         }
         Kind::Table => {
-            let at = section.quantities("at", Dimension::Ratio, Bound::Any);
+            let at = section.multiples("at", Bound::Any, f64::INFINITY);
             let values = section.quantities("values", dimension, Bound::NonNegative);
             let points = ascending(section, "at", at, values)?;
             match ScalarFunction::table(points) {

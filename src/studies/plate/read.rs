@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::problem::{Correction, OutputSettings, Reference, Study};
 use crate::corrector::climb::ClimbSettings;
 use crate::corrector::{CorrectorSettings, DifferenceScheme};
-use crate::document::{Bound, Document, Faults, Section};
+use crate::document::{Bound, Document, Faults, Section, name_of};
 use crate::error::Error;
 use crate::finite_element::Element;
 use crate::mass_spring::LatticeSettings;
@@ -15,7 +15,8 @@ use crate::material::Card;
 use crate::problem::ClampedPlate;
 use crate::studies::name;
 use crate::studies::sections::{
-    MOST_CELLS, Tolerances, check_cells, check_range, read_card, read_newton, read_plate,
+    MOST_CELLS, Tolerances, check_cells, check_range, even_cells, read_card, read_newton,
+    read_plate,
 };
 use crate::units::Dimension;
 
@@ -81,7 +82,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     };
     let mass_spring = read_newton(&section);
     section.unknown_keys();
-    let corrector = read_corrector(&root.section("corrector"), cells);
+    let corrector = read_corrector(&root.section("corrector"), &plate, (problem.size, cells));
     let reference = read_reference(&root.section("finite_element"), problem.size, cells);
     let tolerances = Tolerances::read(&root.section("tolerances"), true);
     let output = read_output(&root.section("output"), name);
@@ -112,10 +113,14 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     Some(study)
 }
 
-fn read_corrector(section: &Section<'_>, cells: [usize; 2]) -> Option<Correction> {
+fn read_corrector(
+    section: &Section<'_>,
+    plate: &Section<'_>,
+    lattice: ([f64; 2], [usize; 2]),
+) -> Option<Correction> {
     let scheme = section.choice("scheme", &DifferenceScheme::NAMES);
     if let Some(scheme) = scheme {
-        check_pairs(section, scheme, cells);
+        check_pairs(plate, scheme, lattice);
     }
     let climb = section.choice("method", &[("climb", true), ("direct", false)]);
     let bound = Bound::Within(1e-6, 1.0);
@@ -221,15 +226,15 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
 }
 
 /// A scheme that takes cells two by two needs even numbers of them.
-fn check_pairs(section: &Section, scheme: DifferenceScheme, cells: [usize; 2]) {
-    if let Some(odd) = cells
-        .iter()
-        .find(|cells| !cells.is_multiple_of(scheme.side()))
-    {
-        section.fault(
-            "scheme",
-            &format!("takes the cells of the plate two by two, and {odd} is odd"),
-            "give an even number of cells along both axes, or take scheme = \"gauss\"",
+fn check_pairs(plate: &Section, scheme: DifferenceScheme, (size, cells): ([f64; 2], [usize; 2])) {
+    let side = scheme.side();
+    if let Some(odd) = cells.iter().find(|cells| !cells.is_multiple_of(side)) {
+        let name = name_of(&DifferenceScheme::NAMES, scheme);
+        let [x, y] = even_cells(size, cells);
+        plate.fault(
+            "cells",
+            &format!("the scheme \"{name}\" takes cells two by two, and {odd} is odd"),
+            &format!("take [{x}, {y}], or scheme = \"gauss\" under [corrector]"),
         );
     }
 }

@@ -38,11 +38,12 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let element = section.choice("element", &CellShape::NAMES);
     let refinement = read_refinement(&section, element);
     section.unknown_keys();
-    let section = root.section("specimen").requiring(MEASURES);
+    let specimen = root.section("specimen").requiring(MEASURES);
+    let section = &specimen;
     let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
     let thickness = section.quantity("thickness", Dimension::Length, Bound::Positive);
     let element = element.unwrap_or(CellShape::Quad9);
-    let outline = name.and_then(|name| read_outline(&section, name, folder, element));
+    let outline = name.and_then(|name| read_outline(section, name, folder, element));
     section.unknown_keys();
     let given = SupportsAndLoads::read(root);
 
@@ -54,7 +55,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     path.unknown_keys();
     let tolerances = Tolerances::read(&root.section("tolerances"), false);
     let (card, name, outline) = (card?, name?, outline?);
-    let mesh = coarse(root, &outline)?;
+    let mesh = coarse(&specimen, &outline)?;
     given.check_groups(&mesh);
     check_measured(&path, &group, &mesh);
     let specimen = Specimen {
@@ -78,7 +79,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
 }
 
 fn read_factors(path: &Section) -> Vec<f64> {
-    let factors = path.quantities("factors", Dimension::Ratio, Bound::Positive);
+    let factors = path.multiples("factors", Bound::Positive, f64::INFINITY);
     let falls = factors.windows(2).any(|pair| pair[1] <= pair[0]);
     if path.has("factors") && (factors.is_empty() || falls) {
         let message = "must be one or more ascending load factors";
@@ -101,13 +102,13 @@ fn check_measured(path: &Section, group: &str, mesh: &Mesh) {
 }
 
 /// A coarse mesh with the groups of the specimen; `None` where its measures do not fit, which is recorded.
-fn coarse(root: &Section, outline: &Outline) -> Option<Mesh> {
+fn coarse(section: &Section, outline: &Outline) -> Option<Mesh> {
     if !outline.is_complete() {
         return None; // told already
     }
     let mesh = outline.coarse();
-    if let Err(reason) = &mesh {
-        root.fault("specimen", reason, "change its measures");
+    if let Err(misfit) = &mesh {
+        section.fault(misfit.measure, misfit.reason, &misfit.remedy());
     }
     mesh.ok()
 }

@@ -83,7 +83,7 @@ impl Subject {
         };
         shape
             .check()
-            .map_err(|message| Error::input(message, "look at the section `hole`"))?;
+            .map_err(|misfit| Error::input(misfit.reason, "look at the section `hole`"))?;
         let mesh = |across| shape.mesh(across, CellShape::Quad9);
         let across = data.plate.cells[1];
         Self::new(

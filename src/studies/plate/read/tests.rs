@@ -50,7 +50,7 @@ fn all_faults_are_told_at_once_with_line_key_and_hint() {
         ),
         (
             "plate.toml:3: plate.width: a length needs a unit",
-            "\"2 mm\"",
+            "\"50 mm\"",
         ),
         (
             "plate.toml:4: plate.thickness: must be greater than zero",

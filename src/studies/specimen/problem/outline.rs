@@ -1,6 +1,6 @@
 //! What of a specimen is meshed, and how.
 
-use crate::mesh::{CellShape, Mesh, Shape};
+use crate::mesh::{CellShape, Mesh, Misfit, Shape};
 use crate::results::number;
 
 /// What is meshed, and how.
@@ -25,7 +25,7 @@ impl Outline {
     ///
     /// # Errors
     /// Says which measures do not fit together.
-    pub fn coarse(&self) -> Result<Mesh, String> {
+    pub fn coarse(&self) -> Result<Mesh, Misfit> {
         match self {
             Self::Shape { shape, .. } => {
                 shape.check()?;

@@ -1,0 +1,84 @@
+//! Texts of files, whatever editor has saved them.
+
+use std::path::Path;
+
+use crate::error::Error;
+
+/// The text of a file; `hint` says what it should be.
+///
+/// # Errors
+/// [`Error::Input`] when it cannot be read or is not UTF-8.
+pub fn read_text(path: &Path, hint: &str) -> Result<String, Error> {
+    let name = path.display();
+    let bytes = std::fs::read(path)
+        .map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))?;
+    if is_utf16(&bytes) {
+        let hint = "save it as UTF-8: in Notepad by Save as, Encoding; in PowerShell by `Out-File -Encoding utf8`";
+        return Err(Error::input(format!("{name} is written in UTF-16"), hint));
+    }
+    let is_text = !bytes.contains(&0);
+    String::from_utf8(bytes).map_err(|fault| {
+        let before = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
+        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        let hint = match is_text {
+            true => format!(
+                "save it as UTF-8: an editor may have chosen Latin-1 or Windows-1252; {hint}"
+            ),
+            false => hint.to_owned(),
+        };
+        Error::input(format!("{name}: line {line} is not UTF-8 text"), hint)
+    })
+}
+
+/// Whether a file begins with the mark of UTF-16, or every other byte of its begin is zero.
+fn is_utf16(bytes: &[u8]) -> bool {
+    let zeros = |from: usize| {
+        let every_other = bytes.iter().skip(from).step_by(2).take(20);
+        bytes.len() >= 4 && every_other.clone().all(|byte| *byte == 0)
+    };
+    let letters = |from: usize| {
+        bytes
+            .iter()
+            .skip(from)
+            .step_by(2)
+            .take(20)
+            .all(|byte| *byte != 0)
+    };
+    bytes.starts_with(b"\xff\xfe")
+        || bytes.starts_with(b"\xfe\xff")
+        || zeros(1) && letters(0)
+        || zeros(0) && letters(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(bytes: &[u8]) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.toml");
+        std::fs::write(&path, bytes).unwrap();
+        read_text(&path, "a study").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn other_encodings_are_told_with_how_to_save_the_file() {
+        let text = "title = \"plate\"\nkind = \"plate\"\n";
+        let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        let marked = [b"\xff\xfe", &*little].concat();
+        for bytes in [&little, &big, &marked] {
+            let told = told(bytes);
+            assert!(
+                told.contains("UTF-16") && told.contains("save it as UTF-8"),
+                "{told}"
+            );
+        }
+        let latin = told(b"kind = \"plate\"\ntitle = \"Gr\xfc\xdfe\"\n");
+        assert!(
+            latin.contains("line 2 is not UTF-8") && latin.contains("Latin-1"),
+            "{latin}"
+        );
+        assert!(!told(b"\x7fELF\0\0\0\xff\xfe\xf0").contains("Latin-1"));
+    }
+}

@@ -1,0 +1,111 @@
+//! Files that are no studies, told by what they are and by the command that takes them.
+
+use std::path::Path;
+
+use crate::document::{Section, Table};
+use crate::error::Error;
+
+/// Refuses the text of a table, a mesh or a field.
+///
+/// # Errors
+/// [`Error::Input`] with what the file is and what takes it.
+pub fn refuse(path: &Path, text: &str) -> Result<(), Error> {
+    let name = path.display();
+    let start = text.trim_start_matches('\u{feff}').trim_start();
+    let meshes = [
+        "$MeshFormat",
+        "# vtk DataFile",
+        "<?xml",
+        "<VTKFile",
+        "1C",
+        "*HEADING",
+        "*NODE",
+    ];
+    if meshes.iter().any(|begin| start.starts_with(begin)) {
+        let hint = format!(
+            "`gelbench correct {name} --material CARD --thickness \"2 mm\"` corrects a field; a study names a mesh with shape = \"mesh\" and file = \"{name}\""
+        );
+        return Err(Error::input(
+            format!("{name} is a mesh or a field on one, and no study"),
+            hint,
+        ));
+    }
+    let statements = || {
+        text.lines()
+            .any(|line| !line.starts_with('#') && line.contains('='))
+    };
+    if statements() {
+        return Ok(());
+    }
+    match Table::parse(&name.to_string(), text) {
+        Ok(table) => {
+            let hint = taker(&table, &name.to_string());
+            Err(Error::input(
+                format!("{name} is a table of numbers, and no study"),
+                hint,
+            ))
+        }
+        Err(_) => Ok(()),
+    }
+}
+
+/// The command that takes a table with these columns.
+fn taker(table: &Table, name: &str) -> String {
+    let has = |words: &[&str]| {
+        let mut columns = table.columns.iter();
+        columns.any(|column| words.iter().any(|word| column.name.starts_with(word)))
+    };
+    let correct = format!("gelbench correct {name} --material CARD --thickness \"2 mm\"");
+    let fit = format!("gelbench materials fit {name} --all");
+    let identify = format!("gelbench identify {name}");
+    if has(&["ux", "u_x", "u", "displacement_x", "disp_x"]) {
+        format!("measured displacements are corrected by `{correct}`")
+    } else if has(&[
+        "stretch",
+        "strain",
+        "nominal_strain",
+        "nominal_stress",
+        "stress",
+        "cauchy",
+    ]) {
+        format!("a law is fitted to test data by `{fit}`")
+    } else if has(&["time"]) && has(&["force"]) {
+        format!("springs and dashpots are found in a recording by `{identify}`")
+    } else {
+        format!(
+            "`{correct}` takes displacements, `{fit}` test data, `{identify}` recordings of force and motion"
+        )
+    }
+}
+
+/// What a TOML file without a `kind` is, if it is no study, and what takes it.
+pub fn recognised(root: &Section<'_>, file: &str) -> Option<(&'static str, String)> {
+    let any = |keys: &[&'static str]| keys.iter().any(|key| root.has(key));
+    if any(&["law", "parameters"]) && !any(&["plate", "load", "specimen"]) {
+        let hint = format!(
+            "`gelbench materials show {file}` shows it; a study names it with card = \"{file}\" under [material]"
+        );
+        return Some(("is a material card, and no study", hint));
+    }
+    if any(&["edges", "unnamed", "edge_gap", "robust", "physics"]) && !any(&["plate", "material"]) {
+        let hint = format!(
+            "`gelbench correct FIELD --material CARD --thickness \"2 mm\" --study {file}` takes it"
+        );
+        return Some((
+            "says what is known of measured markers, and is no study by itself",
+            hint,
+        ));
+    }
+    if any(&["specimen", "support", "path"]) {
+        return Some((
+            "is a study of a specimen without its kind",
+            "add `kind = \"specimen\"` as its first line".to_owned(),
+        ));
+    }
+    any(&["start", "grip", "time", "probe"]).then(|| {
+        (
+            "is a study of a motion without its kind",
+            "add `kind = \"motion\"` as its first line".to_owned(),
+        )
+    })
+}
