@@ -4,102 +4,80 @@ use std::f64::consts::TAU;
 
 use super::Shape;
 
+/// What a measure must be below, in mm or degrees, and why.
+type Demand = (&'static str, f64, f64, &'static str);
+
 impl Shape {
     /// What is wrong with the measures.
     ///
     /// # Errors
     /// Says which measure does not fit, and what would.
     pub fn check(self) -> Result<(), Misfit> {
-        let below =
-            |measure: f64, (name, factor): (&'static str, f64), most: f64, reason: &'static str| {
-                let limit = factor * most;
-                match factor * measure < limit {
-                    true => Ok(()),
-                    false => Err(Misfit {
-                        measure: name,
-                        reason,
-                        limit,
-                    }),
-                }
-            };
+        let mut demands = self.demands().into_iter();
+        match demands.find(|(_, value, limit, _)| *value >= *limit) {
+            None => Ok(()),
+            Some((measure, _, limit, reason)) => Err(Misfit {
+                measure,
+                reason,
+                limit,
+            }),
+        }
+    }
+
+    /// What its measures must be below; negative where they must be above.
+    fn demands(self) -> Vec<Demand> {
         match self {
-            Self::Strip { .. } => Ok(()),
-            Self::StripWithHole { size, radius } => below(
-                radius,
-                ("hole_diameter", 2.0),
-                0.45 * size[0].min(size[1]),
-                "the hole's diameter must be below nine tenths of the length and of the width",
-            ),
+            Self::Strip { .. } => Vec::new(),
+            Self::StripWithHole { size, radius } => {
+                let reason =
+                    "the hole's diameter must be below nine tenths of the length and of the width";
+                let limit = 0.9 * size[0].min(size[1]);
+                vec![("hole_diameter", 2.0 * radius, limit, reason)]
+            }
             Self::NotchedStrip {
                 size,
                 depth,
                 half_length,
-            } => {
-                const DEPTH: (&str, f64) = ("notch_depth", 1.0);
-                let length = ("notch_length", 2.0);
-                below(
-                    depth,
-                    DEPTH,
-                    0.45 * size[1],
-                    "the notches must leave a tenth of the width",
-                )?;
-                below(
-                    half_length,
-                    length,
-                    0.45 * size[0],
-                    "the notches must be shorter than nine tenths of the strip",
-                )?;
-                below(
-                    depth,
-                    DEPTH,
-                    0.95 * half_length,
-                    "a notch must be shallower than half its length",
-                )
-            }
+            } => notches(size, depth, half_length),
             Self::DogBone {
                 size,
                 narrow,
                 shoulder,
-            } => {
-                let ends = "the narrow part and its shoulders must be shorter than the specimen";
-                below(
-                    narrow[1],
-                    ("narrow_width", 1.0),
-                    size[1],
-                    "the narrow part must be narrower than the ends",
-                )?;
-                below(
-                    narrow[0],
-                    ("narrow_length", 1.0),
-                    size[0] - 2.0 * shoulder,
-                    ends,
-                )?;
-                match (size[1] - narrow[1]) / 2.0 < shoulder {
-                    true => Ok(()),
-                    false => Err(Misfit {
-                        measure: "shoulder_length",
-                        reason: "a shoulder must be longer than it is high",
-                        limit: -(size[1] - narrow[1]) / 2.0,
-                    }),
-                }
-            }
+            } => dog_bone(size, narrow, shoulder),
             Self::RingSector { radii, angle } => {
-                let radius = ("inner_radius", 1.0);
-                below(
-                    radii[0],
-                    radius,
-                    radii[1],
-                    "the inner radius must be smaller than the outer one",
-                )?;
-                below(
-                    angle,
-                    ("angle", 360.0 / TAU),
-                    TAU,
-                    "the sector must be less than a whole ring",
-                )
+                let smaller = "the inner radius must be smaller than the outer one";
+                let part = "the sector must be less than a whole ring";
+                vec![
+                    ("inner_radius", radii[0], radii[1], smaller),
+                    ("angle", angle * 360.0 / TAU, 360.0, part),
+                ]
             }
         }
     }
+}
+
+fn notches(size: [f64; 2], depth: f64, half_length: f64) -> Vec<Demand> {
+    const KEY: &str = "notch_depth";
+    let rest = "the notches must leave a tenth of the width";
+    let short = "the notches must be shorter than nine tenths of the strip";
+    let shallow = "a notch must be shallower than half its length";
+    vec![
+        (KEY, depth, 0.45 * size[1], rest),
+        ("notch_length", 2.0 * half_length, 0.9 * size[0], short),
+        (KEY, depth, 0.95 * half_length, shallow),
+    ]
+}
+
+fn dog_bone(size: [f64; 2], narrow: [f64; 2], shoulder: f64) -> Vec<Demand> {
+    let narrower = "the narrow part must be narrower than the ends";
+    let short = "the narrow part and its shoulders must be shorter than the specimen";
+    let long = "a shoulder must be longer than it is high";
+    let high = (size[1] - narrow[1]) / 2.0;
+    vec![
+        ("narrow_width", narrow[1], size[1], narrower),
+        ("narrow_length", narrow[0], size[0] - 2.0 * shoulder, short),
+        ("shoulder_length", -shoulder, -high, long),
+    ]
 }
 
 /// A measure of a shape that does not fit the others.
