@@ -8,12 +8,14 @@
 //! | 3 | a model has no solution that could be found; what the others have is written |
 //! | 4 | a file could not be written |
 //! | 70 | a fault of the program itself |
+//! | 130 | interrupted |
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::document::inputs;
 use crate::error::{Diagnostic, Error};
 use crate::output;
 use crate::output::ResultFolder;
@@ -21,7 +23,8 @@ use crate::results::{Check, End, Results};
 use crate::studies::name;
 use crate::studies::plate::DEFAULT;
 use crate::validation;
-use terminal::{Outcome, complain, complain_of_end, print, progress_bar, warn};
+use progress::Progress;
+use terminal::{Outcome, complain, complain_of_end, print, warn};
 
 mod compare;
 mod containment;
@@ -30,8 +33,10 @@ mod export;
 mod fit;
 mod fit_message;
 mod identify;
+mod interrupt;
 mod materials;
 mod message;
+mod progress;
 mod terminal;
 
 const SAMPLES: &str = "\
@@ -48,11 +53,14 @@ Samples:
   gelbench materials show pva-10             one card with its moduli and its source
   gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the best as a card
 
-Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write,\n70 a fault of gelbench itself.";
+Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write,\n70 a fault of gelbench itself, 130 interrupted.";
 
 #[derive(Parser)]
 #[command(version, about, after_help = SAMPLES)]
 struct Arguments {
+    /// Show no progress
+    #[arg(long, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -132,6 +140,11 @@ pub fn main() -> ExitCode {
             return ExitCode::from(code);
         }
     };
+    if arguments.quiet {
+        progress::be_quiet();
+    }
+    inputs::remember();
+    interrupt::attend();
     ExitCode::from(containment::contained(|| perform(arguments.command)))
 }
 
@@ -166,18 +179,20 @@ fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
     let folder = folder.or_else(|| ready.folder.clone());
     let folder = folder.unwrap_or_else(usual);
     let mut results_folder = ResultFolder::open(&folder, "run", &[path])?;
-    let bar = progress_bar(ready.progress_steps as u64);
+    interrupt::guard(&results_folder);
+    let progress = Progress::of(ready.progress_steps as u64);
+    let counted = ready.progress_steps > 0;
     let with_report = ready.report;
     let results = ready.compute(&|what| {
-        bar.set_message(what.to_owned());
-        match bar.length() {
-            Some(0) | None => bar.tick(),
-            Some(_) => bar.inc(1),
+        progress.tell(what);
+        if counted {
+            progress.advance();
         }
-    });
-    bar.finish_and_clear();
-    let results = results?;
-    output::write(&results, with_report, &mut results_folder)?;
+    })?;
+    progress.tell("files");
+    let warnings = output::write(&results, with_report, &mut results_folder)?;
+    drop(progress);
+    warn(&warnings);
     let files = results_folder.finish()?;
     conclude(
         &[results],
@@ -196,20 +211,19 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     };
     let folder = &folder.unwrap_or_else(|| PathBuf::from(usual));
     let mut results = ResultFolder::open(folder, "validate", &[])?;
-    let bar = progress_bar(chosen.len() as u64);
+    interrupt::guard(&results);
+    let progress = Progress::of(chosen.len() as u64);
     let mut cases = Vec::new();
     for case in chosen {
-        let told = |what: &str| {
-            bar.set_message(format!("{}: {what}", case.kind));
-            bar.tick();
-        };
+        let told = |what: &str| progress.tell(&format!("{}: {what}", case.kind));
         told("begins");
         cases.push(validation::compute_or_fail(case, &told)?);
-        bar.inc(1);
+        progress.advance();
     }
-    bar.finish_and_clear();
     let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
-    output::write_document(&mut results, "REPORT", &blocks, &figures)?;
+    let warnings = output::write_document(&mut results, "REPORT", &blocks, &figures)?;
+    drop(progress);
+    warn(&warnings);
     results.finish()?;
     let report = folder.join("REPORT.md");
     conclude(&cases, &format!("report: {}", report.display()))

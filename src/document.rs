@@ -13,6 +13,7 @@ use crate::error::{Diagnostic, Error, Severity, Source};
 
 mod decimals;
 mod head;
+pub mod inputs;
 mod lines;
 mod section;
 mod syntax;

@@ -69,13 +69,14 @@ const FEWEST_IN_MOTION: usize = 2;
 /// Least noise, over the largest value of its signal: that of sums in floating point.
 const LEAST_NOISE: f64 = 1e-9;
 
-/// Finds K(·) and D(·).
+/// Finds K(·) and D(·); `told` hears what is being computed.
 ///
 /// # Errors
 /// [`Error::Input`] when the recording does not determine them, or when a form cannot take a shape.
 pub fn identify(
     recording: &Recording,
     settings: IdentificationSettings,
+    told: &dyn Fn(&str),
 ) -> Result<Identification, Error> {
     for (form, shape) in settings.forms.iter().zip(settings.shapes) {
         if shape != Shape::Free && !matches!(form, Form::Spline(_)) {
@@ -86,9 +87,11 @@ pub fn identify(
             ));
         }
     }
+    told("noise of force and motion");
     let signals = smooth(&recording.times, &recording.extension, 5)
         .zip(smooth(&recording.times, &recording.force, 3))
         .ok_or_else(|| undetermined("the motion"))?;
+    told("the motion");
     let (joint, start) =
         begin(recording, settings, &signals).ok_or_else(|| undetermined("the motion"))?;
     let mut fit = Fit {
@@ -96,7 +99,8 @@ pub fn identify(
         state: start,
         exponents: [0.0; 2],
     };
-    let found = fit.improve()?;
+    let found = fit.improve(told)?;
+    told("intervals");
     fit.conclude(settings, &found, &signals)
         .ok_or_else(|| undetermined("K(·) and D(·)"))
 }
@@ -183,7 +187,7 @@ impl Fit<'_> {
     }
 
     /// Gauss–Newton steps until nothing moves; the functions with the motion as it is come first.
-    fn improve(&mut self) -> Result<PenalisedFit, Error> {
+    fn improve(&mut self, told: &dyn Fn(&str)) -> Result<PenalisedFit, Error> {
         let unknown = || undetermined("K(·) and D(·)");
         let functions = &self.joint.functions;
         let fixed = self.joint.with_motion_fixed(&self.state);
@@ -193,6 +197,7 @@ impl Fit<'_> {
         self.state.functions = first.coefficients;
         let mut merit = f64::INFINITY;
         for step in 0..MOST_STEPS {
+            told(&format!("K(·) and D(·), step {}", step + 1));
             let linearised = self.joint.linearise(&self.state).map_err(|_| unknown())?;
             if step < CHOICES {
                 let counts = [self.observations(), linearised.motion_count() as f64];

@@ -13,12 +13,12 @@ mod picture;
 pub mod vtk;
 
 #[cfg(feature = "pictures")]
-pub use files::{save, write, write_document, write_grids};
+pub use files::{save, write, write_document, write_grids, write_picture};
 #[cfg(feature = "pictures")]
-pub use folder::{ResultFolder, refuse_inputs};
+pub use folder::{ResultFolder, Unfinished, refuse_inputs};
 pub use markdown::markdown;
 #[cfg(feature = "pictures")]
-pub use picture::png;
+pub use picture::{Drawn, PictureFault, png};
 
 /// The JSON Schema that `report.json` follows, whatever the kind of the study:
 ///

@@ -133,7 +133,7 @@ fn bench(quick: bool) -> Result<usize, Error> {
     let folder = Path::new(FOLDER);
     for (name, bytes) in [
         ("corrected_plate.csv", table::csv(&rows)),
-        ("corrected_plate.png", table::picture(&runs)),
+        ("corrected_plate.png", table::picture(&runs)?),
     ] {
         println!("{}", output::save(&folder.join(name), &bytes)?.display());
     }

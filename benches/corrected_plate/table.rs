@@ -205,7 +205,7 @@ pub fn csv(rows: &[Row]) -> Vec<u8> {
 }
 
 /// Time against nodes and against error.
-pub fn picture(runs: &[Run]) -> Vec<u8> {
+pub fn picture(runs: &[Run]) -> Result<Vec<u8>, output::PictureFault> {
     let ways = [
         Way::Climb(DifferenceScheme::Gauss),
         Way::Climb(DifferenceScheme::Biquadratic),

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::export::not_for_other_codes;
-use super::terminal::{Outcome, print, progress_bar, warn};
+use super::interrupt;
+use super::progress::Progress;
+use super::terminal::{Outcome, print, warn};
 use crate::compare::imported::{
     Difference, ExternalField, ImportSettings, Mismatch, ModelField, Sites,
 };
@@ -84,7 +86,8 @@ pub fn run(options: Options) -> Outcome {
         let inputs = [&*options.study, &*options.field];
         let mut results = ResultFolder::open(folder, "compare", &inputs)?;
         let judged = (&*differences, &*doubts);
-        write(&compared, judged, &options.field, &mut results)?;
+        interrupt::guard(&results);
+        warn(&write(&compared, judged, &options.field, &mut results)?);
         results.finish()?;
         print(&format!("report: {}\n", folder.join("report.md").display()))?;
     }
@@ -124,17 +127,13 @@ fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
 fn compute(options: &Options) -> Result<Comparison, Error> {
     let path = &options.study;
     let text = sections::read_text(path)?;
-    let bar = progress_bar(0);
-    let told = |what: &str| {
-        bar.set_message(what.to_owned());
-        bar.tick();
-    };
+    let progress = Progress::of(0);
+    let told = |what: &str| progress.tell(what);
     let compared = match validation::case_of(&path.display().to_string(), &text)? {
         None => plate(options, text, &told)?,
         Some(case) if case.kind == specimen::KIND => shape(options, case, &text, &told)?,
         Some(case) => return Err(not_for_other_codes(case)),
     };
-    bar.finish_and_clear();
     Ok(compared)
 }
 
@@ -234,7 +233,7 @@ fn write(
     (differences, doubts): (&[Difference], &[Diagnostic]),
     file: &Path,
     folder: &mut ResultFolder,
-) -> Result<(), Error> {
+) -> Result<Vec<Diagnostic>, Error> {
     let sheet = Sheet {
         law: &*compared.law,
         thickness: compared.thickness,

@@ -7,6 +7,19 @@ use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 /// The exit code of a fault of the program itself: `EX_SOFTWARE` of sysexits.
 pub const EXIT_CODE: u8 = 70;
 
+/// Sources whose panics are caught where they are called: the reader of VTK's legacy files panics on damaged ones, which is
+/// told as a fault of the file, and a picture that cannot be drawn is told as a warning.
+const CAUGHT: [&str; 8] = [
+    "vtkio",
+    "plotters",
+    "resvg",
+    "usvg",
+    "tiny-skia",
+    "roxmltree",
+    "fontdb",
+    "output/picture",
+];
+
 /// Performs work and returns its exit code, or [`EXIT_CODE`] where it panics. What it was writing is taken away by then: files
 /// are written aside first.
 pub fn contained(work: impl FnOnce() -> u8) -> u8 {
@@ -16,8 +29,7 @@ pub fn contained(work: impl FnOnce() -> u8) -> u8 {
 
 fn tell(fault: &PanicHookInfo) {
     let place = fault.location();
-    // The reader of VTK's legacy files panics on damaged ones, which is told as an error of the file.
-    if place.is_some_and(|place| place.file().contains("vtkio")) {
+    if place.is_some_and(|place| CAUGHT.iter().any(|part| place.file().contains(part))) {
         return;
     }
     let place = place.map_or_else(String::new, |place| format!(" ({place})"));

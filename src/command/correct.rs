@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
-use super::terminal::{Outcome, print, progress_bar, warn};
+use super::interrupt;
+use super::progress::Progress;
+use super::terminal::{Outcome, print, warn};
 use crate::corrector::estimation::{EdgeCondition, MeasuredForce, Physics, Robust};
 use crate::error::{Diagnostic, Error};
 use crate::markers::ReadSettings;
@@ -155,17 +157,19 @@ pub fn run(options: Options) -> Outcome {
     warn(&field.warnings);
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     let mut results_folder = ResultFolder::open(&folder, "correct", &inputs)?;
-    let bar = progress_bar(field.series.frames.len() as u64);
+    interrupt::guard(&results_folder);
+    let progress = Progress::of(field.series.frames.len() as u64);
     let start = Instant::now();
     let estimates = field.estimate(&|frame| {
-        bar.set_message(format!("frame {}", frame.number));
-        bar.inc(1);
-    });
-    bar.finish_and_clear();
-    let estimates = estimates?;
+        progress.tell(&format!("frame {}", frame.number));
+        progress.advance();
+    })?;
     let seconds = start.elapsed().as_secs_f64();
+    progress.tell("files");
     let results = written::results(&field, &estimates, (name, text), seconds);
-    output::write(&results, true, &mut results_folder)?;
+    let warnings = output::write(&results, true, &mut results_folder)?;
+    drop(progress);
+    warn(&warnings);
     let files = results_folder.finish()?;
     print(&format!(
         "{}{} files in {}\n",

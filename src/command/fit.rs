@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args};
 
 use super::fit_message;
+use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
 use crate::calibration::{
     self, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, TestData, Weighting,
 };
 use crate::document::Statements;
-use crate::error::{Error, suggestion};
+use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::Card;
 use crate::material::card::FitRecord;
 use crate::material::parameters::StressMeasure;
@@ -156,14 +157,20 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         bounds: bounds(&arguments.bounds)?,
         starts: arguments.starts.into(),
     };
+    let progress = Progress::of(0);
     let fit = match &arguments.law {
-        Some(name) => calibration::fit(law(name)?, &tests, &settings)?,
+        Some(name) => {
+            progress.tell(name);
+            calibration::fit(law(name)?, &tests, &settings)?
+        }
         None => {
+            progress.tell("all laws");
             let (fits, reasons) = calibration::rank(&tests, &settings);
             print(&fit_message::ranking(&fits, &reasons))?;
             best(fits)?
         }
     };
+    drop(progress);
     let first = arguments.data[0].file_stem().unwrap_or_default();
     let usual = || format!("{}-{}", first.to_string_lossy(), fit.law.name);
     let stem = arguments.name.unwrap_or_else(usual);
@@ -183,10 +190,13 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         reading,
     };
     let text = calibration::card_text(&fit, &tests, &provenance);
-    output::save(&card, text.as_bytes())?;
-    output::save(&target("png"), &output::png(&fit_picture(&fit, &tests)))?;
     let json = format!("{:#}\n", fit_json(&fit, &tests));
     output::save(&target("json"), json.as_bytes())?;
+    output::save(&card, text.as_bytes())?;
+    match output::png(&fit_picture(&fit, &tests)) {
+        Ok(picture) => drop(output::save(&target("png"), &picture)?),
+        Err(fault) => warn(&[Diagnostic::warning("", format!("no picture: {fault}"))]),
+    }
     let card = card.display();
     print(&format!(
         "{}\nwritten: {card} with .png and .json; use it in a study as material.card = \"{card}\"\n",

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::interrupt;
+use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
@@ -129,44 +131,44 @@ pub fn run(options: Options) -> Outcome {
             Over::Rate => Argument::Rate,
         },
     };
-    let found = identify(&recording, settings)?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let usual = || Path::new("output").join(&*stem);
+    let folder = options.output.unwrap_or_else(usual);
+    let mut results = ResultFolder::open(&folder, &format!("identify {stem}"), &[&path])?;
+    interrupt::guard(&results);
+    let progress = Progress::of(0);
+    let found = identify(&recording, settings, &|what| progress.tell(what))?;
+    progress.tell("files");
+    let warnings = write(&found, &recording, (&path, &stem), &mut results)?;
+    results.finish()?;
+    drop(progress);
+    warn(warnings.as_slice());
     for warning in &found.warnings {
         warn(&[Diagnostic::warning("", warning)]);
     }
-    let stem = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let folder = options
-        .output
-        .unwrap_or_else(|| Path::new("output").join(&stem));
-    let law = write(&found, &recording, &path, &folder, &stem)?;
     print(&format!(
         "{}written: {} with .png and .json\n",
         message(&found, &recording, &path),
-        law.display()
+        folder.join(format!("{stem}.toml")).display()
     ))?;
     Ok(0)
 }
 
+/// Writes law, figures and picture; returns a warning where the picture cannot be drawn.
 fn write(
     found: &Identification,
     recording: &Recording,
-    path: &Path,
-    folder: &Path,
-    stem: &str,
-) -> Result<PathBuf, Error> {
+    (path, stem): (&Path, &str),
+    results: &mut ResultFolder,
+) -> Result<Option<Diagnostic>, Error> {
     let file = path.file_name().unwrap_or_default().to_string_lossy();
-    let mut results = ResultFolder::open(folder, &format!("identify {stem}"), &[path])?;
     let json = identification_json(found, recording, &file);
-    let law = format!("{stem}.toml");
-    results.add(&law, law_text(found, recording, &file).as_bytes())?;
+    let law = law_text(found, recording, &file);
+    results.add(&format!("{stem}.toml"), law.as_bytes())?;
     results.add(&format!("{stem}.json"), format!("{json:#}\n").as_bytes())?;
-    let picture = output::png(&identification_picture(found, recording));
-    results.add(&format!("{stem}.png"), &picture)?;
-    results.finish()?;
-    Ok(folder.join(law))
+    let picture = identification_picture(found, recording);
+    let drawn = output::write_picture(results, &format!("{stem}.png"), &picture)?;
+    Ok(drawn.err())
 }
 
 fn message(found: &Identification, recording: &Recording, path: &Path) -> String {

@@ -7,9 +7,10 @@ use clap::Subcommand;
 use super::fit::{ConvertArguments, FitArguments, convert, fit, load, refit, together};
 use super::message;
 use super::terminal::{Outcome, print};
+use crate::error::Error;
 use crate::material::registry::{CARDS, LAWS};
 use crate::output;
-use crate::results::{comparison_chart, material_chart};
+use crate::results::{Drawing, comparison_chart, material_chart};
 
 #[derive(Subcommand)]
 pub enum Materials {
@@ -111,7 +112,7 @@ fn plot(name: &str, file: Option<PathBuf>) -> Outcome {
     let stem = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let file = file.unwrap_or_else(|| PathBuf::from(format!("{stem}_curves.png")));
     output::refuse_inputs(&file, &[Path::new(name)])?;
-    output::save(&file, &output::png(&material_chart(&card).into()))?;
+    save_picture(&file, &material_chart(&card).into())?;
     print(&format!("{} written\n", file.display()))?;
     Ok(0)
 }
@@ -120,8 +121,14 @@ fn compare(names: &[String], file: &Path) -> Outcome {
     let cards = together(names.iter().map(|name| load(name)))?;
     let inputs: Vec<&Path> = names.iter().map(Path::new).collect();
     output::refuse_inputs(file, &inputs)?;
-    output::save(file, &output::png(&comparison_chart(&cards).into()))?;
+    save_picture(file, &comparison_chart(&cards).into())?;
     let lines: String = cards.iter().map(message::moduli_line).collect();
     print(&format!("{lines}{} written\n", file.display()))?;
     Ok(0)
+}
+
+/// Draws what was asked for and nothing else: a picture that cannot be drawn is a fault here.
+fn save_picture(file: &Path, drawing: &Drawing) -> Result<(), Error> {
+    let picture = output::png(drawing).map_err(|fault| Error::write(file, fault))?;
+    output::save(file, &picture).map(drop)
 }

@@ -2,8 +2,6 @@
 
 use std::io::{self, IsTerminal, Write};
 
-use indicatif::{ProgressBar, ProgressStyle};
-
 use super::message;
 use crate::error::{Diagnostic, Error};
 use crate::results::End;
@@ -49,12 +47,4 @@ pub fn complain_of_end(end: &End) {
     let advice = end.advice.map(|advice| format!("  try: {advice}\n"));
     let text = format!("error: {}\n{}", end.message, advice.unwrap_or_default());
     let _ = write!(io::stderr(), "{text}");
-}
-
-/// A bar of so many steps, or of an unknown number where that is 0.
-pub fn progress_bar(length: u64) -> ProgressBar {
-    let bar = ProgressBar::new(length);
-    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {wide_msg}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }

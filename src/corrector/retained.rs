@@ -8,6 +8,7 @@ use std::path::Path;
 
 use super::factor::FactorParts;
 use super::{Corrector, Factor};
+use crate::document::inputs;
 
 /// What the file begins with.
 const MAGIC: &[u8] = b"gelbench factor";
@@ -84,6 +85,7 @@ pub fn from_bytes(bytes: &[u8], corrector: &Corrector) -> Result<Factor, Retaine
 /// # Errors
 /// A [`RetainedFault`].
 pub fn load(path: &Path, corrector: &Corrector) -> Result<Factor, RetainedFault> {
+    inputs::note(path);
     let bytes = std::fs::read(path)
         .map_err(|cause| RetainedFault::Unreadable(format!("{}: {cause}", path.display())))?;
     from_bytes(&bytes, corrector)

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::inputs;
 use crate::error::Error;
 
 /// The text of a file; `hint` says what it should be.
@@ -10,6 +11,7 @@ use crate::error::Error;
 /// [`Error::Input`] when it cannot be read or is not UTF-8.
 pub fn read_text(path: &Path, hint: &str) -> Result<String, Error> {
     let name = path.display();
+    inputs::note(path);
     let bytes = std::fs::read(path)
         .map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))?;
     if is_utf16(&bytes) {

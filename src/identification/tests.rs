@@ -18,7 +18,12 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
             seed: *seed,
             ..Sample::default()
         };
-        let found = identify(&sample.recording(), IdentificationSettings::default()).unwrap();
+        let found = identify(
+            &sample.recording(),
+            IdentificationSettings::default(),
+            &|_| (),
+        )
+        .unwrap();
         let within = |function: &Function, x: f64, truth: f64| {
             let [low, high] = function.band(x);
             (low..=high).contains(&truth)
@@ -35,7 +40,7 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
 #[test]
 fn without_noise_the_functions_are_found_to_the_accuracy_of_their_splines() {
     let exact = Sample::default().exact();
-    let found = identify(&exact, IdentificationSettings::default()).unwrap();
+    let found = identify(&exact, IdentificationSettings::default(), &|_| ()).unwrap();
     for x in PLACES {
         let [k, d] = [&found.stiffness, &found.damping].map(|function| function.at(x).value);
         assert!((k / Sample::stiffness(x) - 1.0).abs() < 5e-4, "{x}: {k}");
@@ -61,7 +66,12 @@ fn machine(stiffness: impl Fn(f64) -> f64, damping: impl Fn(f64) -> f64) -> Reco
 #[test]
 fn constants_and_polynomials_come_back_with_their_coefficients() {
     let recording = machine(|x| 0.2 + 0.01 * x, |_| 0.05);
-    let found = identify(&recording, settings([Form::Polynomial(1), Form::Constant])).unwrap();
+    let found = identify(
+        &recording,
+        settings([Form::Polynomial(1), Form::Constant]),
+        &|_| (),
+    )
+    .unwrap();
     let [k, d] = [&found.stiffness, &found.damping].map(Function::powers);
     for (estimate, truth) in [(k[0], 0.2), (k[1], 0.01), (d[0], 0.05)] {
         assert!((estimate.value / truth - 1.0).abs() < 1e-5, "{estimate:?}");
@@ -96,7 +106,7 @@ fn a_dashpot_may_depend_on_the_rate() {
         argument: Argument::Rate,
         ..settings([Form::Constant, Form::SPLINE])
     };
-    let found = identify(&recording, found).unwrap();
+    let found = identify(&recording, found, &|_| ()).unwrap();
     for v in [-10.0, -5.0, 3.0, 9.0] {
         let d = found.damping.at(v).value;
         assert!((d / damping(v) - 1.0).abs() < 5e-3, "{v}: {d}");
@@ -116,7 +126,7 @@ fn a_shape_is_kept_against_the_data() {
             shapes: [Shape::Free, shape],
             ..IdentificationSettings::default()
         };
-        let found = identify(&recording, wanted).unwrap();
+        let found = identify(&recording, wanted, &|_| ()).unwrap();
         let places = found.damping.places(200);
         let values: Vec<f64> = places.iter().map(|x| found.damping.at(*x).value).collect();
         let size = values.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
@@ -129,7 +139,9 @@ fn a_shape_is_kept_against_the_data() {
         shapes: [Shape::Increasing; 2],
         ..settings([Form::Constant, Form::SPLINE])
     };
-    let told = identify(&recording, wanted).unwrap_err().to_string();
+    let told = identify(&recording, wanted, &|_| ())
+        .unwrap_err()
+        .to_string();
     assert!(told.contains("only splines"), "{told}");
 }
 
@@ -140,13 +152,18 @@ fn what_does_not_fit_or_is_not_determined_is_told() {
         mass: 3e-4,
         ..sample.recording()
     };
-    let found = identify(&wrong, IdentificationSettings::default()).unwrap();
+    let found = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
     assert!(
         found.misfit > 2.0 && found.warnings[0].contains("do not fit together"),
         "{:?}",
         found.warnings
     );
-    let right = identify(&sample.recording(), IdentificationSettings::default()).unwrap();
+    let right = identify(
+        &sample.recording(),
+        IdentificationSettings::default(),
+        &|_| (),
+    )
+    .unwrap();
     assert!(right.warnings.is_empty(), "{:?}", right.warnings);
     // A ramp: every extension has one speed, and K x + D v cannot be told apart by free splines.
     let mut ramp = machine(|_| 0.2, |_| 0.05);
@@ -154,7 +171,7 @@ fn what_does_not_fit_or_is_not_determined_is_told() {
         *x = 1.0 + 0.01 * i as f64;
         ramp.force[i] = 0.2 * *x + 0.05;
     }
-    let told = identify(&ramp, IdentificationSettings::default())
+    let told = identify(&ramp, IdentificationSettings::default(), &|_| ())
         .map(|_| ())
         .unwrap_err();
     assert_eq!(told.exit_code(), 2);

@@ -6,36 +6,30 @@
 //! finish    all files are moved into place; what the run before has written and this one has not is removed
 //! ```
 //!
+//! A run that is killed while it moves its files is finished by the next one. Work in parts can be resumed: `keep` notes what
+//! is done, and `resume` opens what a run with the same identity has left.
+//!
 //! `.gelbench-manifest.json` lists what gelbench has written into a folder, and which command wrote it. Nothing else is
 //! ever removed. It is also what a run locks, and it says whether the set of files is complete: between the first file that
 //! is moved and the last one it is not.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{self, File, TryLockError};
-use std::io::{Read, Seek, Write};
+use std::fs::{self, File};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-
-use serde::{Deserialize, Serialize};
-use tempfile::TempDir;
+use std::sync::Arc;
 
 use crate::error::Error;
 
-/// The list of what was written into a folder.
-const MANIFEST: &str = ".gelbench-manifest.json";
+mod inputs;
+mod manifest;
+mod unfinished;
 
-/// Begin of the names of folders whose files are not in place yet.
-const PARTIAL: &str = ".gelbench-partial-";
-
-/// What gelbench has written into a folder.
-#[derive(Debug, Default, Deserialize, Serialize)]
-struct Manifest {
-    /// The version that wrote it.
-    gelbench: String,
-    /// Whether all files are in place.
-    complete: bool,
-    /// What wrote each file; files by their names relative to the folder, with `/` between the parts.
-    files: BTreeMap<String, String>,
-}
+pub use inputs::refuse_inputs;
+use inputs::{places, refuse_input};
+use manifest::{Locked, Manifest, Moving, PARTIAL, is_inside};
+use unfinished::PARTS;
+pub use unfinished::Unfinished;
 
 /// A folder that is being written into.
 #[derive(Debug)]
@@ -44,53 +38,85 @@ pub struct ResultFolder {
     writer: String,
     /// The files that the results follow from, which they must not replace.
     inputs: Vec<PathBuf>,
-    manifest: File,
+    manifest: Locked,
     before: Manifest,
-    partial: Option<TempDir>,
+    unfinished: Arc<Unfinished>,
     names: Vec<String>,
+    /// How many of the names belong to parts of the work that are kept.
+    kept: usize,
 }
 
 impl ResultFolder {
     /// Makes and locks a folder for results of the command `writer`, such as `run`, that follow from `inputs`.
     ///
     /// # Errors
-    /// [`Error::Write`] when the folder cannot be made or does not take files, or when another process is writing
-    /// into it.
+    /// [`Error::Write`] when the folder cannot be made or does not take files, when another process is writing
+    /// into it, or when an input is a result that the same command has written into it and would replace.
     pub fn open(path: &Path, writer: &str, inputs: &[&Path]) -> Result<Self, Error> {
+        Self::begin(path, writer, inputs, None)
+    }
+
+    /// The same, beginning with what a run of the same `identity` has kept when it was broken off. The identity
+    /// follows from everything that the results follow from, and is part of a file's name.
+    ///
+    /// # Errors
+    /// As [`ResultFolder::open`].
+    pub fn resume(
+        path: &Path,
+        writer: &str,
+        inputs: &[&Path],
+        identity: &str,
+    ) -> Result<Self, Error> {
+        Self::begin(path, writer, inputs, Some(identity))
+    }
+
+    fn begin(
+        path: &Path,
+        writer: &str,
+        inputs: &[&Path],
+        identity: Option<&str>,
+    ) -> Result<Self, Error> {
         let fault = |cause: std::io::Error| Error::write(path, cause);
         refuse_file(path)?;
         fs::create_dir_all(path).map_err(fault)?;
-        let file = path.join(MANIFEST);
-        let mut options = File::options();
-        let options = options.read(true).write(true).create(true).truncate(false);
-        let manifest = options
-            .open(&file)
-            .map_err(|cause| Error::write(&file, cause))?;
-        match manifest.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let cause = "another run is writing into this folder; wait for its end, or choose another with --output";
-                return Err(Error::write(path, cause));
-            }
-            // Some file systems know no locks; two runs at once are then the user's own care.
-            Err(TryLockError::Error(_)) => {}
+        let mut manifest = Locked::open(path)?;
+        let inputs = places(inputs);
+        let mut before = manifest.read();
+        if let Some(moving) = before.moving.take_if(|moving| moving.is_sound()) {
+            moving.settle(path, &inputs)?;
+            manifest.write(&before.files, None)?;
         }
-        let before = read_manifest(&manifest);
-        sweep(path);
+        let kept = identity.map(|identity| format!("{PARTIAL}{identity}"));
+        sweep(path, kept.as_deref());
         for folder in folders(path, &before) {
             let writable = tempfile::tempfile_in(&folder);
             writable.map_err(|cause| Error::write(&folder, cause))?;
         }
-        let mut builder = tempfile::Builder::new();
-        let partial = builder.prefix(PARTIAL).tempdir_in(path).map_err(fault)?;
+        let own = before.files.iter().filter(|(_, by)| *by == writer);
+        for (name, _) in own.filter(|(name, _)| is_inside(name)) {
+            refuse_input(&path.join(name), &inputs)?;
+        }
+        let partial = match kept {
+            Some(name) => {
+                let partial = path.join(name);
+                fs::create_dir_all(&partial).map_err(fault)?;
+                partial
+            }
+            None => {
+                let mut builder = tempfile::Builder::new();
+                let made = builder.prefix(PARTIAL).tempdir_in(path).map_err(fault)?;
+                made.keep()
+            }
+        };
         Ok(Self {
             path: path.to_owned(),
             writer: writer.to_owned(),
-            inputs: places(inputs),
+            inputs,
             manifest,
             before,
-            partial: Some(partial),
+            unfinished: Arc::new(Unfinished::new(path.to_owned(), partial)),
             names: Vec::new(),
+            kept: 0,
         })
     }
 
@@ -99,23 +125,63 @@ impl ResultFolder {
         &self.path
     }
 
+    /// What is not in place yet, for those who must break the run off.
+    pub fn unfinished(&self) -> Arc<Unfinished> {
+        Arc::clone(&self.unfinished)
+    }
+
     /// Writes a file aside; `name` is relative to the folder, with `/` between its parts.
     ///
     /// # Errors
     /// [`Error::Write`] when it would replace an input, or when it cannot be written.
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Error> {
+        refuse_input(&self.path.join(name), &self.inputs)?;
+        self.write_aside(name, bytes)?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Notes that a part of the work is done: the files that were added since the part before belong to it, and a later
+    /// start gets its `record` from [`ResultFolder::kept`].
+    ///
+    /// # Errors
+    /// [`Error::Write`] when it cannot be written.
+    pub fn keep(&mut self, part: &str, record: &[u8]) -> Result<(), Error> {
+        let files = &self.names[self.kept..];
+        let fault = |cause: postcard::Error| Error::write(&self.path, cause);
+        let note = postcard::to_allocvec(&(files, record)).map_err(fault)?;
+        let name = format!("{PARTS}/{part}");
+        let whole = self.write_aside(&format!("{name}.new"), &note)?;
+        let place = self.unfinished.partial.join(&name);
+        fs::rename(whole, &place).map_err(|cause| Error::write(place, cause))?;
+        self.kept = self.names.len();
+        Ok(())
+    }
+
+    /// The record of a part of the work that is done already; its files are among those of this run then.
+    pub fn kept(&mut self, part: &str) -> Option<Vec<u8>> {
+        let partial = &self.unfinished.partial;
+        let note = fs::read(partial.join(PARTS).join(part)).ok()?;
+        let (files, record): (Vec<String>, Vec<u8>) = postcard::from_bytes(&note).ok()?;
+        if !files.iter().all(|name| partial.join(name).is_file()) {
+            return None;
+        }
+        self.names.extend(files);
+        self.kept = self.names.len();
+        Some(record)
+    }
+
+    fn write_aside(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, Error> {
         let target = self.path.join(name);
-        refuse_input(&target, &self.inputs)?;
         let fault = |cause: std::io::Error| Error::write(&target, cause);
-        let aside = self.aside().join(name);
+        let aside = self.unfinished.partial.join(name);
         let folder = aside.parent().unwrap_or(&self.path);
         // The folder may have been taken away while the results were computed.
         fs::create_dir_all(folder).map_err(fault)?;
         let mut file = File::create(&aside).map_err(fault)?;
         file.write_all(bytes).map_err(fault)?;
         file.sync_all().map_err(fault)?;
-        self.names.push(name.to_owned());
-        Ok(())
+        Ok(aside)
     }
 
     /// Moves all files into place and removes those that the same command has written before and has not now. Returns the
@@ -131,69 +197,37 @@ impl ResultFolder {
             (*writer == self.writer && !new.contains_key(name)).then(|| name.clone())
         };
         let stale: Vec<String> = files.iter().filter_map(ours).collect();
+        let unfinished = self.unfinished();
+        let partial = &unfinished.partial;
+        if let Some(lost) = self.names.iter().find(|name| !partial.join(name).exists()) {
+            let cause = "it was written aside and taken away before it could be moved into place";
+            return Err(Error::write(self.path.join(lost), cause));
+        }
         files.extend(new);
-        self.note(false, &files)?;
-        let mut written = Vec::new();
-        for name in &self.names {
-            let target = self.path.join(name);
-            let fault = |cause: std::io::Error| Error::write(&target, cause);
-            fs::create_dir_all(target.parent().unwrap_or(&self.path)).map_err(fault)?;
-            fs::rename(self.aside().join(name), &target).map_err(fault)?;
-            written.push(target);
-        }
-        for name in stale {
-            let target = self.path.join(&name);
-            let removable = is_inside(&name) && refuse_input(&target, &self.inputs).is_ok();
-            if removable && target.exists() {
-                fs::remove_file(&target).map_err(|cause| Error::write(&target, cause))?;
-            }
-            files.remove(&name);
-        }
-        self.note(true, &files)?;
-        Ok(written)
-    }
-
-    /// Where the files are before they are in place.
-    fn aside(&self) -> &Path {
-        self.partial
-            .as_ref()
-            .map_or(&self.path, |folder| folder.path())
-    }
-
-    /// Writes the manifest.
-    fn note(&mut self, complete: bool, files: &BTreeMap<String, String>) -> Result<(), Error> {
-        let manifest = Manifest {
-            gelbench: env!("CARGO_PKG_VERSION").to_owned(),
-            complete,
-            files: files.clone(),
+        let from = partial.file_name().unwrap_or_default().to_string_lossy();
+        let moving = Moving {
+            from: from.into_owned(),
+            files: std::mem::take(&mut self.names),
+            stale,
         };
-        let file = self.path.join(MANIFEST);
-        let fault = |cause: std::io::Error| Error::write(&file, cause);
-        let mut text =
-            serde_json::to_string_pretty(&manifest).map_err(|cause| Error::write(&file, cause))?;
-        text.push('\n');
-        if !file.exists() {
-            // The folder was taken away and is made anew.
-            fs::create_dir_all(&self.path).map_err(fault)?;
-            self.manifest = File::create(&file).map_err(fault)?;
-        }
-        self.manifest.set_len(0).map_err(fault)?;
-        self.manifest.rewind().map_err(fault)?;
-        self.manifest.write_all(text.as_bytes()).map_err(fault)?;
-        self.manifest.sync_all().map_err(fault)
+        // Nobody who breaks the run off does so between the first file and the last.
+        let mut settled = unfinished.settled();
+        self.manifest.write(&files, Some(moving.clone()))?;
+        // From here on the next run could finish it.
+        *settled = true;
+        let written = moving.settle(&self.path, &self.inputs)?;
+        moving.stale.iter().for_each(|name| {
+            files.remove(name);
+        });
+        self.manifest.write(&files, None)?;
+        let _ = fs::remove_dir_all(partial);
+        Ok(written)
     }
 }
 
 impl Drop for ResultFolder {
-    /// Takes away what is not in place, and a folder into which nothing came to be written.
     fn drop(&mut self) {
-        drop(self.partial.take());
-        let empty = self.manifest.metadata().is_ok_and(|file| file.len() == 0);
-        if empty {
-            let _ = fs::remove_file(self.path.join(MANIFEST));
-        }
-        // It stays where it holds anything.
-        let _ = fs::remove_dir(&self.path);
+        self.unfinished.discard();
     }
 }
 
@@ -214,46 +248,6 @@ pub fn refuse_file(folder: &Path) -> Result<(), Error> {
     }
 }
 
-/// Refuses to write a file over an input of the same command.
-///
-/// # Errors
-/// [`Error::Write`] where the file is one of the inputs, by whatever names both are called.
-pub fn refuse_inputs(target: &Path, inputs: &[&Path]) -> Result<(), Error> {
-    refuse_input(target, &places(inputs))
-}
-
-fn places(inputs: &[&Path]) -> Vec<PathBuf> {
-    let inputs = inputs.iter();
-    inputs
-        .filter_map(|input| fs::canonicalize(input).ok())
-        .collect()
-}
-
-fn refuse_input(target: &Path, inputs: &[PathBuf]) -> Result<(), Error> {
-    let same = fs::canonicalize(target).is_ok_and(|target| inputs.contains(&target));
-    if same {
-        let cause = "it is an input of this command; choose another place with --output";
-        return Err(Error::write(target, cause));
-    }
-    Ok(())
-}
-
-/// What a manifest lists; nothing where it cannot be read, so that nothing is removed then.
-fn read_manifest(mut file: &File) -> Manifest {
-    let mut text = String::new();
-    match file.read_to_string(&mut text) {
-        Ok(_) => serde_json::from_str(&text).unwrap_or_default(),
-        Err(_) => Manifest::default(),
-    }
-}
-
-/// Whether a name leads to a file below its folder.
-fn is_inside(name: &str) -> bool {
-    use std::path::Component;
-    let mut parts = Path::new(name).components();
-    parts.all(|part| matches!(part, Component::Normal(_)))
-}
-
 /// The folder and those below it that hold files of the run before.
 fn folders(path: &Path, before: &Manifest) -> BTreeSet<PathBuf> {
     let inside = before.files.keys().filter(|name| is_inside(name));
@@ -264,11 +258,11 @@ fn folders(path: &Path, before: &Manifest) -> BTreeSet<PathBuf> {
         .collect()
 }
 
-/// Removes what runs that were killed have left.
-fn sweep(path: &Path) {
+/// Removes what runs that were killed have left, but for the folder `kept`.
+fn sweep(path: &Path, kept: Option<&str>) {
     let entries = fs::read_dir(path).into_iter().flatten().flatten();
-    let left = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(PARTIAL));
-    for entry in left {
+    let is_left = |name: &str| name.starts_with(PARTIAL) && Some(name) != kept;
+    for entry in entries.filter(|entry| is_left(&entry.file_name().to_string_lossy())) {
         // What cannot be removed does no harm.
         let _ = fs::remove_dir_all(entry.path());
     }

@@ -4,6 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::picture::Drawn;
 use crate::results::Block;
 
 const STYLE: &str = "
@@ -14,13 +15,13 @@ table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabu
 th, td { padding: .25rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid #e2e2e2; }
 th { border-bottom: 2px solid #999; font-weight: 600; vertical-align: bottom; }
 td { white-space: nowrap; } td.long { white-space: normal; } td.number { text-align: right; }
-td.pass { color: #176b2c; font-weight: 600; } td.fail { color: #b00020; font-weight: 600; }
+td.pass { color: #176b2c; font-weight: 600; } td.fail, p.fail { color: #b00020; font-weight: 600; }
 figure { margin: 1.5rem 0; } img { max-width: 100%; border: 1px solid #eee; } figcaption { color: #555; font-size: .9rem; }
 pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; }
 ";
 
 /// A self-contained page.
-pub fn html(title: &str, blocks: &[Block], pictures: &[Vec<u8>]) -> String {
+pub fn html(title: &str, blocks: &[Block], pictures: &[Drawn]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -33,25 +34,30 @@ pub fn html(title: &str, blocks: &[Block], pictures: &[Vec<u8>]) -> String {
             body { @for block in blocks { (render(block, pictures)) } }
         }
     };
-    page.into_string()
+    let mut page = page.into_string();
+    // Controls, which names of files and titles may hold, have no place in a page.
+    page.retain(|character| matches!(character, '\n' | '\t') || !character.is_control());
+    page
 }
 
-fn render(block: &Block, pictures: &[Vec<u8>]) -> Markup {
+fn render(block: &Block, pictures: &[Drawn]) -> Markup {
     match block {
         Block::Heading(1, text) => html! { h1 { (text) } },
         Block::Heading(2, text) => html! { h2 { (text) } },
         Block::Heading(_, text) => html! { h3 { (text) } },
         Block::Paragraph(text) => html! { p { (text) } },
         Block::Code(code) => html! { pre { (code) } },
-        Block::Figure(index, caption) => {
-            let data = STANDARD.encode(&pictures[*index]);
-            html! {
-                figure {
-                    img src={ "data:image/png;base64," (data) } alt=(caption);
-                    figcaption { (caption) }
+        Block::Figure(index, caption) => html! {
+            figure {
+                @match &pictures[*index] {
+                    Ok(picture) => {
+                        img src={ "data:image/png;base64," (STANDARD.encode(picture)) } alt=(caption);
+                    }
+                    Err(fault) => p.fail { (fault) },
                 }
+                figcaption { (caption) }
             }
-        }
+        },
         Block::Table(head, rows) => html! {
             div.wide {
                 table {

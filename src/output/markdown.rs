@@ -2,8 +2,12 @@
 
 use crate::results::{Block, Figure};
 
-/// Markdown with pictures beside it.
-pub fn markdown(blocks: &[Block], figures: &[Figure]) -> String {
+/// Markdown with pictures beside it; `missing` says why a picture is not there.
+pub fn markdown(
+    blocks: &[Block],
+    figures: &[Figure],
+    missing: &dyn Fn(usize) -> Option<String>,
+) -> String {
     let mut text = String::new();
     for block in blocks {
         text += &match block {
@@ -12,9 +16,10 @@ pub fn markdown(blocks: &[Block], figures: &[Figure]) -> String {
             }
             Block::Paragraph(paragraph) => format!("{}\n", escaped(paragraph)),
             Block::Table(head, rows) => table(head, rows),
-            Block::Figure(index, caption) => {
-                format!("![{caption}]({})\n\n*{caption}*\n", figures[*index].name)
-            }
+            Block::Figure(index, caption) => match missing(*index) {
+                None => format!("![{caption}]({})\n\n*{caption}*\n", figures[*index].name),
+                Some(fault) => format!("{}\n\n*{caption}*\n", escaped(&fault)),
+            },
             Block::Code(code) => fenced(code),
         };
         text.push('\n');

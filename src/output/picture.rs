@@ -3,19 +3,41 @@
 //! Figures are drawn as SVG and rendered with an embedded font, so that they look the same on every
 //! machine, whatever fonts it has.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::error::Diagnostic;
 use crate::results::Drawing;
 
 mod animation;
 mod canvas;
 mod fields;
 mod lines;
+mod thin;
+
+/// Why a picture could not be drawn.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct PictureFault(String);
+
+/// A picture of a report, or the warning in its place.
+pub type Drawn = Result<Vec<u8>, Diagnostic>;
 
 /// A drawing as a PNG.
-pub fn png(drawing: &Drawing) -> Vec<u8> {
-    match drawing {
+///
+/// # Errors
+/// [`PictureFault`] where it cannot be drawn, whatever the reason: no picture is worth the numbers beside it.
+pub fn png(drawing: &Drawing) -> Result<Vec<u8>, PictureFault> {
+    let drawn = catch_unwind(AssertUnwindSafe(|| match drawing {
         Drawing::Charts(charts) => lines::stacked(charts),
         Drawing::Field(figure) => figure.png(),
         Drawing::Animation(animation) => animation.png(),
         Drawing::Outlines(title, cells) => fields::outlines(title, cells),
+    }));
+    match drawn {
+        Ok(drawn) => drawn.map_err(|fault| PictureFault(fault.to_string())),
+        Err(_) => Err(PictureFault("the drawing libraries gave up on it".into())),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -67,12 +67,16 @@ fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
             seed: settings.sample.seed + seed,
             ..settings.sample
         };
-        let found = identify(&sample.recording(), IdentificationSettings::default())?;
+        let found = identify(
+            &sample.recording(),
+            IdentificationSettings::default(),
+            &|_| (),
+        )?;
         Ok(compare(&found, &places))
     };
     let trials: Vec<Trial> = seeds.par_iter().map(one).collect::<Result<_, _>>()?;
     let recording = settings.sample.recording();
-    let drawn = identify(&recording, IdentificationSettings::default())?;
+    let drawn = identify(&recording, IdentificationSettings::default(), &|_| ())?;
     let within = |trial: &&Trial| trial.iter().flatten().all(|place| place.within_band);
     let good = trials.iter().filter(within).count();
     Ok(Outcome {

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
+use crate::document::inputs;
 use crate::mesh::cell_shape::CellShape;
 use crate::mesh::cells::Mesh;
 use crate::mesh::geometry::polygon_area;
@@ -42,6 +43,7 @@ pub fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
             MOST_BYTES >> 30
         ));
     }
+    inputs::note(path);
     std::fs::read(path).map_err(unreadable)
 }
 

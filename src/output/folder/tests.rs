@@ -1,3 +1,6 @@
+use tempfile::TempDir;
+
+use super::manifest::MANIFEST;
 use super::*;
 
 fn run(folder: &Path, inputs: &[&Path], files: &[(&str, &str)]) -> Result<Vec<PathBuf>, Error> {
@@ -75,10 +78,14 @@ fn an_input_is_neither_replaced_nor_removed() {
     assert!(refused.unwrap_err().to_string().contains("is an input"));
     assert_eq!(fs::read_to_string(&input).unwrap(), "study");
     assert_eq!(names(folder.path()), ["a.toml"]);
-    // A table that one run has written may be what the next one reads.
-    run(folder.path(), &[], &[("nodes.csv", "1")]).unwrap();
+    // A table that another command has written may be what this one reads; one of its own it would replace.
     let table = folder.path().join("nodes.csv");
-    run(folder.path(), &[&table], &[("report.md", "2")]).unwrap();
+    run(folder.path(), &[], &[("nodes.csv", "1")]).unwrap();
+    let refused = run(folder.path(), &[&table], &[("report.md", "2")]).unwrap_err();
+    assert!(refused.to_string().contains("is an input"), "{refused}");
+    let mut other = ResultFolder::open(folder.path(), "compare", &[&table]).unwrap();
+    other.add("differences.md", b"3").unwrap();
+    other.finish().unwrap();
     assert_eq!(fs::read_to_string(&table).unwrap(), "1");
 }
 
@@ -93,7 +100,8 @@ fn a_run_that_does_not_end_leaves_the_results_before_it_as_they_were() {
     second.add("report.md", b"2").unwrap();
     assert_eq!(fs::read_to_string(path.join("report.md")).unwrap(), "1");
     // As a kill leaves it: the partial folder stays until the next run.
-    let partial = second.partial.take().unwrap().keep();
+    let partial = path.join(format!("{PARTIAL}left"));
+    fs::rename(&second.unfinished.partial, &partial).unwrap();
     drop(second);
     assert!(partial.exists());
     run(&path, &[], &[("report.md", "3")]).unwrap();
@@ -137,4 +145,57 @@ fn a_manifest_that_leads_out_of_its_folder_removes_nothing() {
     fs::write(path.join(MANIFEST), "{ half").unwrap();
     run(&path, &[], &[("other.md", "1")]).unwrap();
     assert!(path.join("report.md").exists());
+}
+
+#[test]
+fn a_set_that_was_killed_while_it_moved_is_finished_by_the_next_run() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    run(path, &[], &[("a.md", "1"), ("b.md", "1"), ("old.md", "1")]).unwrap();
+    let partial = format!("{PARTIAL}killed");
+    fs::create_dir(path.join(&partial)).unwrap();
+    fs::write(path.join("a.md"), "2").unwrap();
+    fs::write(path.join(&partial).join("b.md"), "2").unwrap();
+    let files = ["a.md", "b.md", "old.md"].map(|name| (name.to_owned(), "run".to_owned()));
+    let moving = Moving {
+        from: partial,
+        files: vec!["a.md".into(), "b.md".into()],
+        stale: vec!["old.md".into()],
+    };
+    let mut manifest = Locked::open(path).unwrap();
+    manifest.write(&files.into(), Some(moving)).unwrap();
+    drop(manifest);
+    // Whatever becomes of the next run itself.
+    drop(ResultFolder::open(path, "compare", &[]).unwrap());
+    assert_eq!(names(path), [MANIFEST, "a.md", "b.md"]);
+    assert_eq!(fs::read_to_string(path.join("b.md")).unwrap(), "2");
+    assert!(Locked::open(path).unwrap().read().complete);
+}
+
+#[test]
+fn work_that_was_broken_off_goes_on_where_it_was_with_the_same_identity_only() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let begin = |identity| ResultFolder::resume(path, "correct", &[], identity).unwrap();
+    let mut first = begin("1");
+    first.add("a.csv", b"1").unwrap();
+    first.keep("1", b"one").unwrap();
+    first.add("b.csv", b"half").unwrap();
+    assert!(first.unfinished().break_off());
+    // As a kill leaves it.
+    *first.unfinished().settled() = true;
+    drop(first);
+    let mut second = begin("1");
+    assert_eq!(second.kept("1").as_deref(), Some(&b"one"[..]));
+    assert_eq!(second.kept("2"), None);
+    second.add("b.csv", b"2").unwrap();
+    second.finish().unwrap();
+    assert_eq!(names(path), [MANIFEST, "a.csv", "b.csv"]);
+    let mut third = begin("1");
+    third.keep("1", b"one").unwrap();
+    assert!(third.unfinished().break_off());
+    *third.unfinished().settled() = true;
+    drop(third);
+    assert_eq!(begin("2").kept("1"), None);
+    assert_eq!(names(path), [MANIFEST, "a.csv", "b.csv"]);
 }

@@ -3,7 +3,7 @@
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Writer};
 use resvg::tiny_skia::Pixmap;
 
-use super::canvas::rasterise;
+use super::canvas::{DrawResult, Painter, rasterise};
 use crate::results::{Animation, FieldFigure, Panel, Scale};
 
 /// A part of a picture: left, top, width, height in pixels.
@@ -11,21 +11,18 @@ type Part = [u32; 4];
 
 impl Animation {
     /// The animation as an APNG that plays again and again; of every picture only the part that moves is stored.
-    ///
-    /// # Panics
-    /// Without frames.
-    pub fn png(&self) -> Vec<u8> {
+    pub(super) fn png(&self) -> DrawResult<Vec<u8>> {
         let all = self.frames.iter().flat_map(|frame| &frame.panels);
         let together = self.figure(String::new(), all.cloned().collect());
         let (layout, range) = (together.layout(), together.range());
         let pictures = self.frames.iter().map(|frame| {
             let title = format!("{}, t = {:.3} s", self.title, frame.time);
             let figure = self.figure(title, frame.panels.clone());
+            let paint = |painter: &mut Painter| figure.paint(painter, &layout, range);
             let size = figure.size(&layout);
-            rasterise(size, 1.0, |area| figure.draw(area, &layout, range))
+            rasterise(size, 1.0, |area| figure.draw(area, &layout, range), paint)
         });
         self.encode(pictures)
-            .expect("an animation can be encoded to memory")
     }
 
     fn figure(&self, title: String, panels: Vec<Panel>) -> FieldFigure {
@@ -40,10 +37,10 @@ impl Animation {
 
     fn encode(
         &self,
-        mut pictures: impl Iterator<Item = Pixmap>,
-    ) -> Result<Vec<u8>, png::EncodingError> {
+        mut pictures: impl Iterator<Item = DrawResult<Pixmap>>,
+    ) -> DrawResult<Vec<u8>> {
         let mut bytes = Vec::new();
-        let mut shown = pictures.next().expect("an animation has frames");
+        let mut shown = pictures.next().ok_or("it has no frames")??;
         let count = u32::try_from(self.frames.len()).unwrap_or(u32::MAX);
         let mut encoder = Encoder::new(&mut bytes, shown.width(), shown.height());
         encoder.set_color(ColorType::Rgb);
@@ -57,6 +54,7 @@ impl Animation {
         let whole = [0, 0, shown.width(), shown.height()];
         writer.write_image_data(&colours(&shown, whole))?;
         for picture in pictures {
+            let picture = picture?;
             put(&mut writer, &picture, changed(&shown, &picture))?;
             shown = picture;
         }
@@ -140,8 +138,8 @@ mod tests {
 
     #[test]
     fn an_animation_holds_its_frames_and_is_the_same_each_time() {
-        let bytes = animation().png();
-        assert_eq!(bytes, animation().png());
+        let bytes = animation().png().unwrap();
+        assert_eq!(bytes, animation().png().unwrap());
         let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
             .read_info()
             .unwrap();

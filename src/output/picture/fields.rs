@@ -4,8 +4,8 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::canvas::{DrawResult, FINE, INK, bold, render, stroke, text, tick};
-use crate::results::{Colours, FieldFigure, Scale};
+use super::canvas::{DrawResult, FINE, INK, Painter, bold, render, stroke, text, tick};
+use crate::results::{Colours, FieldCell, FieldFigure, Scale};
 
 const WIDTH: f64 = 960.0;
 const LEFT: f64 = 56.0;
@@ -16,6 +16,9 @@ const AXIS_HEIGHT: f64 = 46.0;
 
 /// A plate that is wider than long is drawn no higher than this.
 const HIGHEST_PLATE: f64 = 420.0;
+
+/// More cells than this are painted instead of drawn.
+const MOST_DRAWN: usize = 20_000;
 
 /// Positions of the lowest and the highest colour on the colour bar.
 pub(super) type Range = (f64, f64);
@@ -64,26 +67,40 @@ impl Layout {
 }
 
 /// The outlines of cells, each a closed line, in true proportions as a PNG.
-pub fn outlines(title: &str, cells: &[Vec<[f64; 2]>]) -> Vec<u8> {
+pub fn outlines(title: &str, cells: &[Vec<[f64; 2]>]) -> DrawResult<Vec<u8>> {
     let layout = Layout::of(cells.iter().flatten().copied());
     let bottom = layout.panel_top(1);
-    render((WIDTH as u32, (bottom + AXIS_HEIGHT) as u32), |area| {
+    let places = cells.iter().map(|cell| {
+        let places = cell.iter().map(|place| layout.place(0, *place));
+        places.collect::<Vec<_>>()
+    });
+    let (drawn, painted) = match cells.len() > MOST_DRAWN {
+        false => (Some(places), None),
+        true => (None, Some(places)),
+    };
+    let draw = |area: &DrawingArea<SVGBackend<'_>, Shift>| {
         let pen = Pen(area);
         pen.write(title, [LEFT, 24.0], bold(17), HPos::Left)?;
-        for cell in cells {
-            let places: Vec<_> = cell.iter().map(|place| layout.place(0, *place)).collect();
+        for places in drawn.into_iter().flatten() {
             pen.line(&places)?;
         }
         draw_width_axis(&pen, &layout, 0)?;
         draw_length_axis(&pen, &layout, 0)
-    })
+    };
+    let paint = |painter: &mut Painter| {
+        let lines = painted.into_iter().flatten();
+        lines.for_each(|places| painter.line(&places));
+    };
+    render((WIDTH as u32, (bottom + AXIS_HEIGHT) as u32), draw, paint)
 }
 
 impl FieldFigure {
     /// The figure as a PNG.
-    pub fn png(&self) -> Vec<u8> {
+    pub fn png(&self) -> DrawResult<Vec<u8>> {
         let (layout, range) = (self.layout(), self.range());
-        render(self.size(&layout), |area| self.draw(area, &layout, range))
+        let draw = |area: &DrawingArea<SVGBackend<'_>, Shift>| self.draw(area, &layout, range);
+        let paint = |painter: &mut Painter| self.paint(painter, &layout, range);
+        render(self.size(&layout), draw, paint)
     }
 
     /// Width and height in points.
@@ -105,16 +122,46 @@ impl FieldFigure {
         for (index, panel) in self.panels.iter().enumerate() {
             let label = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
             pen.write(&panel.label, label, text(14), HPos::Left)?;
-            for (corners, value) in &panel.cells {
-                let position = self.scale.position(*value).unwrap_or(range.0);
-                let corners = corners.map(|corner| layout.place(index, corner));
-                pen.fill(&corners, self.colour(share(position, range)))?;
+            if !self.is_painted() {
+                for cell in &panel.cells {
+                    let (corners, colour) = self.shown(cell, index, layout, range);
+                    pen.fill(&corners, colour)?;
+                }
             }
             draw_width_axis(&pen, layout, index)?;
         }
-        draw_length_axis(&pen, layout, self.panels.len() - 1)?;
+        let last = self.panels.len().checked_sub(1).ok_or("it has no panels")?;
+        draw_length_axis(&pen, layout, last)?;
         let bottom = layout.panel_top(self.panels.len());
         self.draw_bar(&pen, range, [TITLE_HEIGHT + LABEL_HEIGHT, bottom])
+    }
+
+    /// Paints the cells of a figure that has too many of them to be drawn.
+    pub(super) fn paint(&self, painter: &mut Painter, layout: &Layout, range: Range) {
+        for (index, panel) in self.panels.iter().enumerate().filter(|_| self.is_painted()) {
+            for cell in &panel.cells {
+                let (corners, colour) = self.shown(cell, index, layout, range);
+                painter.fill(&corners, colour);
+            }
+        }
+    }
+
+    fn is_painted(&self) -> bool {
+        let cells = self.panels.iter().map(|panel| panel.cells.len());
+        cells.sum::<usize>() > MOST_DRAWN
+    }
+
+    /// Where a cell of a panel is shown, and its colour.
+    fn shown(
+        &self,
+        (corners, value): &FieldCell,
+        panel: usize,
+        layout: &Layout,
+        range: Range,
+    ) -> ([[f64; 2]; 4], RGBColor) {
+        let position = self.scale.position(*value).unwrap_or(range.0);
+        let corners = corners.map(|corner| layout.place(panel, corner));
+        (corners, self.colour(share(position, range)))
     }
 
     pub(super) fn layout(&self) -> Layout {

@@ -5,6 +5,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::canvas::{DrawResult, FINE, INK, PALE, bold, render, stroke, text, units};
+use super::thin;
 use crate::results::{Line, LineChart, Scale, Stroke};
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -13,9 +14,9 @@ const WIDTH: u32 = 860;
 const LEGEND_WIDTH: u32 = 250;
 
 /// Charts one below the other as one PNG, with their heights in points.
-pub fn stacked(charts: &[(LineChart, u32)]) -> Vec<u8> {
+pub fn stacked(charts: &[(LineChart, u32)]) -> DrawResult<Vec<u8>> {
     let height = charts.iter().map(|(_, height)| height).sum();
-    render((WIDTH, height), |area| {
+    let draw = |area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>| {
         let mut rest = area.clone();
         for (chart, height) in charts {
             let (own, below) = rest.split_vertically(FINE * height);
@@ -23,7 +24,8 @@ pub fn stacked(charts: &[(LineChart, u32)]) -> Vec<u8> {
             rest = below;
         }
         Ok(())
-    })
+    };
+    render((WIDTH, height), draw, |_| ())
 }
 
 impl LineChart {
@@ -77,6 +79,10 @@ impl LineChart {
         let position =
             |[x, y]: &[f64; 2]| Some((self.x.scale.position(*x)?, self.y.scale.position(*y)?));
         let points: Vec<_> = line.points.iter().filter_map(position).collect();
+        let points = match line.stroke {
+            Stroke::Points | Stroke::Marked => thin::scattered(points),
+            Stroke::Solid | Stroke::Dashed | Stroke::Filled => thin::connected(points),
+        };
         let colour = line.rgb();
         let pen = stroke(colour, 2);
         if matches!(line.stroke, Stroke::Marked | Stroke::Points) {

@@ -1,0 +1,35 @@
+//! What happens when the user breaks a command off.
+
+use std::io::Write;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::output::{ResultFolder, Unfinished};
+
+/// The exit code of a command that was interrupted: 128 and the number of the signal.
+const EXIT_CODE: i32 = 130;
+
+static UNFINISHED: Mutex<Option<Arc<Unfinished>>> = Mutex::new(None);
+
+/// From here on an interrupted command takes away what is not in place, says so and ends.
+pub fn attend() {
+    // Without a handler the system ends the command, and the next one sweeps what it has left.
+    let _ = ctrlc::set_handler(|| {
+        let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+        let resumable = unfinished.as_ref().is_some_and(|own| own.break_off());
+        let left = match resumable {
+            true => "the same command goes on from here",
+            false => "nothing of this run is left",
+        };
+        let _ = writeln!(
+            std::io::stderr(),
+            "interrupted: {left}; results of earlier runs are as they were"
+        );
+        std::process::exit(EXIT_CODE);
+    });
+}
+
+/// Names the folder whose unfinished results an interrupt takes away.
+pub fn guard(folder: &ResultFolder) {
+    let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+    *unfinished = Some(folder.unfinished());
+}

@@ -1,0 +1,34 @@
+//! Files that the results follow from: nothing may replace or remove them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::document::inputs;
+use crate::error::Error;
+
+/// Refuses to write a file over an input of the same command, or over any file that it has read.
+///
+/// # Errors
+/// [`Error::Write`] where the file is one of them, by whatever names both are called.
+pub fn refuse_inputs(target: &Path, inputs: &[&Path]) -> Result<(), Error> {
+    refuse_input(target, &places(inputs))
+}
+
+/// The whole paths of files, as far as there are any.
+pub fn places(files: &[&Path]) -> Vec<PathBuf> {
+    let files = files.iter();
+    files
+        .filter_map(|file| fs::canonicalize(file).ok())
+        .collect()
+}
+
+pub fn refuse_input(target: &Path, given: &[PathBuf]) -> Result<(), Error> {
+    let Ok(place) = fs::canonicalize(target) else {
+        return Ok(());
+    };
+    if given.contains(&place) || inputs::read().contains(&place) {
+        let cause = "it is an input of this command; choose another place with --output";
+        return Err(Error::write(target, cause));
+    }
+    Ok(())
+}
