@@ -131,9 +131,11 @@ fn bench(quick: bool) -> Result<usize, Error> {
     verdicts.frames(&pools[0].install(|| states::frames(&problem, [180, 60], 100))?);
     let missed = verdicts.print();
     let folder = Path::new(FOLDER);
+    let picture = table::picture(&runs);
+    let picture = picture.map_err(|fault| Error::write("corrected_plate.png", fault))?;
     for (name, bytes) in [
         ("corrected_plate.csv", table::csv(&rows)),
-        ("corrected_plate.png", table::picture(&runs)?),
+        ("corrected_plate.png", picture),
     ] {
         println!("{}", output::save(&folder.join(name), &bytes)?.display());
     }
