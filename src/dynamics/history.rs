@@ -7,21 +7,21 @@ pub struct EnergyBalance {
     pub kinetic: f64,
     /// Π, the energy of the springs or of the elastic material.
     pub stored: f64,
-    /// Work done against the viscous forces since the start. What relaxing stresses keep for a while is part of it.
-    pub dissipated: f64,
+    /// Work done against the viscous forces since the start: what is dissipated, and what relaxing stresses keep for a while.
+    pub viscous_work: f64,
     /// Work of loads and supports since the start.
     pub external_work: f64,
 }
 
 impl EnergyBalance {
-    /// Kinetic, stored and dissipated energy less the external work: constant in an exact motion.
+    /// Kinetic and stored energy and viscous work less the external work: constant in an exact motion.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.stored + self.dissipated - self.external_work
+        self.kinetic + self.stored + self.viscous_work - self.external_work
     }
 
     /// The largest of the energies, which their errors are measured by.
     pub fn largest(&self) -> f64 {
-        let parts = [self.stored, self.dissipated, self.external_work];
+        let parts = [self.stored, self.viscous_work, self.external_work];
         parts
             .into_iter()
             .fold(self.kinetic, |most, part| most.max(part.abs()))

@@ -229,14 +229,14 @@ impl Motion<'_> {
     /// Brings the energy balance from the state `before` a step to the one after it, by the trapezoidal rule; the
     /// work that moves the mass of held unknowns is the change of its kinetic energy.
     pub(super) fn account(&self, before: &BodyState, after: &mut BodyState, held: &[bool]) {
-        let (mut work, mut dissipated) = (0.0, 0.0);
+        let (mut work, mut viscous_work) = (0.0, 0.0);
         for (i, held) in held.iter().enumerate() {
             let change = after.displacement[i] - before.displacement[i];
             let mean = |force: fn(&Forces) -> &[f64]| {
                 0.5 * (force(&before.forces)[i] + force(&after.forces)[i])
             };
             let viscous = mean(|forces| &forces.viscous);
-            dissipated += viscous * change;
+            viscous_work += viscous * change;
             work += if *held {
                 let speeds = after.velocity[i].powi(2) - before.velocity[i].powi(2);
                 (viscous + mean(|forces| &forces.elastic)) * change + 0.5 * self.mass[i] * speeds
@@ -245,7 +245,7 @@ impl Motion<'_> {
             };
         }
         let energy = &mut after.energy;
-        energy.dissipated = before.energy.dissipated + dissipated;
+        energy.viscous_work = before.energy.viscous_work + viscous_work;
         energy.external_work = before.energy.external_work + work;
         energy.kinetic = self.kinetic(&after.velocity);
     }

@@ -244,7 +244,7 @@ fn loss(
             integrator: alpha(0.8),
         },
     );
-    let spent = |instant: usize| history.instants[instant].energy.dissipated;
+    let spent = |instant: usize| history.instants[instant].energy.viscous_work;
     let volume = problem.size[0] * problem.size[1] * problem.thickness;
     (spent(3) - spent(2), PI * amplitude * amplitude * volume)
 }

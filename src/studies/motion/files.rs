@@ -124,7 +124,7 @@ fn energy(model: &ModelMotion) -> LineChart {
     let parts: [(_, Part); 5] = [
         ("kinetic", |energy| energy.kinetic),
         ("stored", |energy| energy.stored),
-        ("dissipated", |energy| energy.dissipated),
+        ("viscous work", |energy| energy.viscous_work),
         ("work of grips and loads", |energy| energy.external_work),
         ("balance", EnergyBalance::total),
     ];
@@ -264,7 +264,7 @@ pub fn tables(
         let columns: [(_, _, Column); 6] = [
             ("kinetic energy", "mJ", |now| now.energy.kinetic),
             ("stored energy", "mJ", |now| now.energy.stored),
-            ("dissipated energy", "mJ", |now| now.energy.dissipated),
+            ("viscous work", "mJ", |now| now.energy.viscous_work),
             ("external work", "mJ", |now| now.energy.external_work),
             ("grip force x", "N", |now| now.support_forces[1][0]),
             ("grip force y", "N", |now| now.support_forces[1][1]),

@@ -114,7 +114,7 @@ fn steps([springs, elements]: &[ModelMotion; 2], deviations: &[Deviations; 2]) -
             "grip_force_N": now.support_forces[1],
             "kinetic_energy_mJ": now.energy.kinetic,
             "stored_energy_mJ": now.energy.stored,
-            "dissipated_energy_mJ": now.energy.dissipated,
+            "viscous_work_mJ": now.energy.viscous_work,
             "external_work_mJ": now.energy.external_work,
         })
     };
@@ -173,7 +173,7 @@ fn summary(models: &[ModelMotion; 2]) -> Block {
         "first longitudinal frequency at rest [Hz]",
         "energy balance, largest error [%]",
         "largest stored energy [mJ]",
-        "dissipated [mJ]",
+        "viscous work [mJ]",
         "work of grips and loads [mJ]",
     ];
     let row = |model: &ModelMotion| {
@@ -190,7 +190,7 @@ fn summary(models: &[ModelMotion; 2]) -> Block {
             number(model.frequency),
             number(100.0 * history.energy_error()),
             number(stored),
-            number(last.dissipated),
+            number(last.viscous_work),
             number(last.external_work),
         ]
     };
