@@ -15,6 +15,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::budget::Budget;
 use crate::document::inputs;
 use crate::error::{Diagnostic, Error};
 use crate::output;
@@ -23,6 +24,7 @@ use crate::results::{Check, End, Results};
 use crate::studies::name;
 use crate::studies::plate::DEFAULT;
 use crate::validation;
+use large::Large;
 use progress::Progress;
 use terminal::{Outcome, complain, complain_of_end, print, warn};
 
@@ -34,6 +36,7 @@ mod fit;
 mod fit_message;
 mod identify;
 mod interrupt;
+mod large;
 mod materials;
 mod message;
 mod progress;
@@ -75,12 +78,16 @@ enum Command {
         /// Write into this folder instead of the one that the study names
         #[arg(long, value_name = "FOLDER")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        large: Large,
     },
     /// Read a study and its card and tell every fault, without computing
     #[command(after_help = "Sample: gelbench check examples/pva_plate.toml")]
     Check {
         /// The study file
         study: PathBuf,
+        #[command(flatten)]
+        large: Large,
     },
     /// Compare the models of a study with a displacement field of another program
     #[command(
@@ -151,8 +158,12 @@ pub fn main() -> ExitCode {
 /// Performs a command and returns the exit code.
 fn perform(command: Command) -> u8 {
     let outcome = match command {
-        Command::Run { study, output } => run_study(&study, output),
-        Command::Check { study } => check(&study),
+        Command::Run {
+            study,
+            output,
+            large,
+        } => run_study(&study, output, large.budget()),
+        Command::Check { study, large } => check(&study, large.budget()),
         Command::Compare(options) => compare::run(options),
         Command::Correct(options) => correct::run(*options),
         Command::Export(options) => export::run(&options),
@@ -172,8 +183,8 @@ fn perform(command: Command) -> u8 {
 }
 
 /// Computes a study of any kind and writes what it finds.
-fn run_study(path: &Path, folder: Option<PathBuf>) -> Outcome {
-    let ready = validation::read(path)?;
+fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
+    let ready = validation::read(path, budget)?;
     warn(&ready.warnings);
     let usual = || Path::new("output").join(name(path));
     let folder = folder.or_else(|| ready.folder.clone());
@@ -249,8 +260,8 @@ fn conclude(results: &[Results], written: &str) -> Outcome {
     Ok(ends.first().map_or(u8::from(!passed), |end| end.exit_code))
 }
 
-fn check(path: &Path) -> Outcome {
-    let ready = validation::read(path)?;
+fn check(path: &Path, budget: Budget) -> Outcome {
+    let ready = validation::read(path, budget)?;
     warn(&ready.warnings);
     print(&format!("{}: no faults; {}\n", path.display(), ready.about))?;
     Ok(0)

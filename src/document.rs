@@ -9,9 +9,12 @@ use std::sync::Arc;
 
 use toml::de::DeTable;
 
+use crate::budget::Budget;
 use crate::error::{Diagnostic, Error, Severity, Source};
+use crate::units::SIZES;
 
 mod decimals;
+pub mod file;
 mod head;
 pub mod inputs;
 mod lines;
@@ -41,11 +44,20 @@ const MOST_TOLD: usize = 50;
 /// Collects what is found while a document is read.
 #[derive(Debug, Default)]
 pub struct Faults {
+    budget: Budget,
     found: RefCell<Vec<Diagnostic>>,
     defaulted: RefCell<Vec<String>>,
 }
 
 impl Faults {
+    /// None yet, of a document that may ask for so much.
+    pub fn within(budget: Budget) -> Self {
+        Self {
+            budget,
+            ..Self::default()
+        }
+    }
+
     /// Adds a finding.
     pub fn push(&self, diagnostic: Diagnostic) {
         self.found.borrow_mut().push(diagnostic);
@@ -162,6 +174,9 @@ pub enum Bound {
 }
 
 impl Bound {
+    /// The size of a thing, in mm.
+    pub const SIZE: Self = Self::Range(SIZES[0], SIZES[1], "greater than zero, from 1 nm to 1 km");
+
     fn violation(self, value: f64) -> Option<String> {
         let (holds, wanted) = match self {
             Self::Any => (value.is_finite(), "a finite number".to_owned()),

@@ -146,6 +146,9 @@ pub enum SolveFault {
     /// A motion without strain that no support prevents.
     #[error("{0}")]
     FreeMotion(String),
+    /// The machine has not enough memory for a factor.
+    #[error("the memory is not enough for the factor of the system of equations")]
+    OutOfMemory,
     /// The tangent cannot be factorised at all.
     #[error(
         "the system of equations is singular: the supports leave a free motion, or conditions depend on each other"
@@ -212,6 +215,7 @@ impl SolveFault {
             }
             Self::Dependent { .. } => "leave out one of the conditions named",
             Self::FreeMotion(_) => "add a support",
+            Self::OutOfMemory => "take fewer cells, or a machine with more memory",
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
                 "add smaller stretches or load factors before this one, or raise the iteration limit"

@@ -42,6 +42,7 @@
 //! | to … | use |
 //! |---|---|
 //! | convert quantities with units; understand an error; estimate with intervals | [`units`], [`error`], [`statistics`] |
+//! | bound what a study may ask for | [`budget`] |
 //! | read TOML and tables with all faults at once | [`document`] |
 //! | mesh a shape, an outline or a file; ask a field at a point | [`mesh`] |
 //! | load a material card, write a law of your own, plot its curves | [`material`] |
@@ -57,7 +58,9 @@
 //! | recompute what proves gelbench right | [`validation`] |
 //! | call the command itself | [`command`] |
 #![warn(missing_docs)]
+#![forbid(unsafe_code)]
 
+pub mod budget;
 pub mod calibration;
 #[cfg(feature = "command")]
 pub mod command;

@@ -1,4 +1,5 @@
 //! The command `gelbench`.
+#![forbid(unsafe_code)]
 
 use std::process::ExitCode;
 

@@ -25,5 +25,5 @@ pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
 pub use potential::{DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum};
 pub use rows::SparseRows;
-pub use sparse::{Cholesky, NotPositiveDefinite, SparseLu};
+pub use sparse::{Cholesky, FactorFault, SparseLu};
 pub use tangent::Tangent;

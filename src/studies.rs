@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use web_time::Instant;
 
+use crate::budget::Budget;
 use crate::document::{Document, Faults, Section};
 use crate::error::{Diagnostic, Error};
 use crate::results::{Outcome, Results};
@@ -56,12 +57,12 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// Reads a study of this case.
+    /// Reads a study of this case, which may ask for so much.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault.
-    pub fn read(&self, file: &Path, text: &str) -> Result<Ready, Error> {
-        let read = self.read_with(file, text, self.prepare)?;
+    pub fn read(&self, file: &Path, text: &str, budget: Budget) -> Result<Ready, Error> {
+        let read = self.read_with(file, text, budget, self.prepare)?;
         Ok(Ready {
             name: name(file),
             title: read.title,
@@ -82,11 +83,12 @@ impl Kind {
         &self,
         file: &Path,
         text: &str,
+        budget: Budget,
         read: impl FnOnce(&Section, &Path) -> T,
     ) -> Result<Read<T>, Error> {
         let folder = file.parent().unwrap_or(Path::new("."));
         let file = file.display().to_string();
-        let faults = Faults::default();
+        let faults = Faults::within(budget);
         let (title, made) = {
             let defaults = Document::parse(self.file, self.study, &faults);
             let document = Document::parse(&file, text, &faults);

@@ -6,9 +6,11 @@
 use std::fmt;
 
 mod linear;
+mod ranges;
 mod remedy;
 
 pub use linear::{Linear, LinearFault, parse_linear_length};
+pub use ranges::SIZES;
 pub use remedy::bare_ratio;
 
 /// The kind of a physical quantity.
@@ -46,6 +48,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("mm", Dimension::Length, 1.0),
     ("cm", Dimension::Length, 10.0),
     ("m", Dimension::Length, 1e3),
+    ("nm", Dimension::Length, 1e-6),
     ("um", Dimension::Length, 1e-3),
     ("µm", Dimension::Length, 1e-3),
     ("in", Dimension::Length, 25.4),
@@ -168,6 +171,8 @@ pub enum QuantityFault {
     MissingUnit,
     /// A unit that the table does not hold.
     UnknownUnit(String),
+    /// A magnitude that nothing of this dimension has.
+    OutOfRange(Dimension),
     /// A unit of another dimension.
     WrongDimension {
         /// The unit as written.
@@ -186,6 +191,14 @@ impl fmt::Display for QuantityFault {
             Self::DecimalComma => write!(f, "has a number with a comma"),
             Self::MissingUnit => write!(f, "has no unit"),
             Self::UnknownUnit(unit) => write!(f, "has the unknown unit `{unit}`"),
+            Self::OutOfRange(dimension) => {
+                let ([least, most], unit) = (dimension.range(), dimension.internal_unit());
+                let (name, space) = (dimension.name(), if unit.is_empty() { "" } else { " " });
+                write!(
+                    f,
+                    "is no possible {name}: other than zero it lies between {least:e} and {most:e}{space}{unit}"
+                )
+            }
             Self::WrongDimension { unit, found } => {
                 write!(f, "has the unit `{unit}`, which measures {}", found.name())
             }
@@ -196,7 +209,8 @@ impl fmt::Display for QuantityFault {
 /// Reads text such as `"15 cm"` and returns its value in the internal unit of `dimension`.
 ///
 /// # Errors
-/// A [`QuantityFault`] when the number or the unit is missing, unknown or of another dimension.
+/// A [`QuantityFault`] when the number or the unit is missing, unknown or of another dimension, or the quantity one that
+/// nothing has.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     let text = text.trim();
     let split = number_length(text);
@@ -212,7 +226,7 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     }
     if unit.is_empty() {
         return match dimension {
-            Dimension::Ratio => Ok(number),
+            Dimension::Ratio => admitted(number, dimension),
             _ => Err(QuantityFault::MissingUnit),
         };
     }
@@ -222,12 +236,19 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
         .replace('μ', "µ")
         .replace('*', "·");
     match UNITS.iter().find(|(symbol, ..)| *symbol == normalised) {
-        Some((_, found, factor)) if *found == dimension => Ok(number * factor),
+        Some((_, found, factor)) if *found == dimension => admitted(number * factor, dimension),
         Some((_, found, _)) => Err(QuantityFault::WrongDimension {
             unit: unit.to_owned(),
             found: *found,
         }),
         None => Err(QuantityFault::UnknownUnit(unit.to_owned())),
+    }
+}
+
+fn admitted(value: f64, dimension: Dimension) -> Result<f64, QuantityFault> {
+    match dimension.admits(value) {
+        true => Ok(value),
+        false => Err(QuantityFault::OutOfRange(dimension)),
     }
 }
 
@@ -297,6 +318,10 @@ mod tests {
         assert_eq!(
             parse("15,0 cm", Dimension::Length),
             Err(QuantityFault::DecimalComma)
+        );
+        assert_eq!(
+            parse("1e150 mm", Dimension::Length),
+            Err(QuantityFault::OutOfRange(Dimension::Length))
         );
         assert_eq!(
             parse("15 furlong", Dimension::Length),

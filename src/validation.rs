@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use crate::budget::Budget;
 use crate::document::{Document, Faults};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::results::{Check, Outcome, Results};
@@ -123,15 +124,15 @@ pub fn case_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
     }
 }
 
-/// Reads a study of any kind.
+/// Reads a study of any kind, which may ask for so much.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault.
-pub fn read(path: &Path) -> Result<Ready, Error> {
+pub fn read(path: &Path, budget: Budget) -> Result<Ready, Error> {
     let text = read_text(path)?;
     match case_of(&path.display().to_string(), &text)? {
-        Some(case) => case.read(path, &text),
-        None => plate_study::prepare(path, text),
+        Some(case) => case.read(path, &text, budget),
+        None => plate_study::prepare(path, text, budget),
     }
 }
 
@@ -140,7 +141,7 @@ pub fn read(path: &Path) -> Result<Ready, Error> {
 /// # Errors
 /// [`Error::Input`] or [`Error::Write`].
 pub fn compute_or_fail(case: &Kind, progress: Progress) -> Result<Results, Error> {
-    let ready = case.read(Path::new(case.file), case.study)?;
+    let ready = case.read(Path::new(case.file), case.study, Budget::USUAL)?;
     match ready.compute(progress) {
         Err(fault @ Error::Solve { .. }) => {
             let check = Check::fault(fault.to_string(), "no fault");
@@ -196,14 +197,17 @@ mod tests {
     #[test]
     fn every_case_reads_its_own_study_and_tells_faults() {
         for case in CASES {
-            assert!(case.read(Path::new(case.file), case.study).is_ok());
+            assert!(
+                case.read(Path::new(case.file), case.study, Budget::USUAL)
+                    .is_ok()
+            );
             let found = case_of(case.file, case.study).unwrap().unwrap();
             assert_eq!(found.kind, case.kind);
             let text = "kind = \"x\"
 misspelt = 1
 ";
             let told = case
-                .read(Path::new("x.toml"), text)
+                .read(Path::new("x.toml"), text, Budget::USUAL)
                 .map(|_| ())
                 .unwrap_err();
             assert!(told.to_string().contains("misspelt: unknown key"), "{told}");

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use gelbench::budget::Budget;
 use gelbench::calibration::{FitSettings, TestData, fit};
 use gelbench::document::Statements;
 use gelbench::material::Card;
@@ -35,7 +36,7 @@ proptest! {
     #[test]
     fn cases(case in 0..CASES.len(), at in 0_usize..10_000, length in 0_usize..30, piece in "[ -~\\n]{0,12}") {
         let text = damaged(CASES[case].study, at, length, &piece);
-        let _ = CASES[case].read(Path::new("name.toml"), &text);
+        let _ = CASES[case].read(Path::new("name.toml"), &text, Budget::USUAL);
         let _ = case_of("name.toml", &text);
     }
 

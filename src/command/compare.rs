@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::export::not_for_other_codes;
 use super::interrupt;
+use super::large::Large;
 use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
 use crate::compare::imported::{
@@ -50,6 +51,8 @@ pub struct Options {
     /// Write a report and VTU files with the differences into this folder
     #[arg(long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub large: Large,
 }
 
 /// A stretch beyond it that the study does not reach was meant in percent.
@@ -138,7 +141,7 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
 }
 
 fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Comparison, Error> {
-    let study = Study::of_file(&options.study, text)?;
+    let study = Study::of_file(&options.study, text, options.large.budget())?;
     warn(&study.warnings);
     let problem = &study.problem;
     let last = problem.stretches[problem.stretches.len() - 1];
@@ -167,7 +170,8 @@ fn shape(
     text: &str,
     told: &dyn Fn(&str),
 ) -> Result<Comparison, Error> {
-    let (title, specimen, warnings) = specimen::load(case, &options.study, text)?;
+    let (title, specimen, warnings) =
+        specimen::load(case, &options.study, text, options.large.budget())?;
     warn(&warnings);
     let last = specimen.factors[specimen.factors.len() - 1];
     let factor = options.factor.unwrap_or(last);

@@ -6,6 +6,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 
 use super::interrupt;
+use super::large::Large;
 use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
 use crate::corrector::estimation::{EdgeCondition, MeasuredForce, Physics, Robust};
@@ -30,7 +31,7 @@ pub struct Options {
     #[arg(long, value_name = "CARD")]
     pub material: String,
     /// Thickness at rest, such as "2 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = size)]
     pub thickness: f64,
     /// What is known besides: a file with edges and noise
     #[arg(long, value_name = "FILE")]
@@ -82,7 +83,7 @@ pub struct Options {
     pub array: Option<String>,
     /// Size of the cells of a mesh that is made [default: the markers' spacing, at least 12 cells across and at most
     /// about 20,000]
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = size)]
     pub cell_size: Option<f64>,
     /// Kind of the cells of a mesh that is made
     #[arg(long, value_enum, default_value = "triangle6")]
@@ -102,6 +103,8 @@ pub struct Options {
     /// Write into this folder
     #[arg(long, value_name = "FOLDER", default_value = "output/correct")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub large: Large,
 }
 
 /// Kinds of cells.
@@ -216,6 +219,7 @@ fn request(options: Options) -> Result<Request, Error> {
             Cells::Quadrilateral9 => CellShape::Quad9,
         },
         holes: options.holes == Holes::Found,
+        budget: options.large.budget(),
     })
 }
 
@@ -300,12 +304,19 @@ fn gap(text: &str) -> Result<f64, Diagnostic> {
     within(text, |length| length >= 0.0, "it must not be negative")
 }
 
+/// The size of a thing in mm.
+fn size(text: &str) -> Result<f64, Diagnostic> {
+    let [least, most] = units::SIZES;
+    let wanted = "it must be greater than zero, from 1 nm to 1 km";
+    within(text, |size| (least..=most).contains(&size), wanted)
+}
+
 /// A length greater than zero in mm.
 fn length(text: &str) -> Result<f64, Diagnostic> {
     within(text, |length| length > 0.0, "it must be greater than zero")
 }
 
-fn within(text: &str, holds: fn(f64) -> bool, wanted: &str) -> Result<f64, Diagnostic> {
+fn within(text: &str, holds: impl Fn(f64) -> bool, wanted: &str) -> Result<f64, Diagnostic> {
     let length = units::parse(text, Dimension::Length).map_err(|fault| {
         let hint = fault.remedy(text, Dimension::Length);
         Diagnostic::error("", format!("it {fault}")).hint(hint)

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::large::Large;
 use super::terminal::{Outcome, print, warn};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::material::Code;
@@ -43,6 +44,8 @@ pub struct Options {
     /// Bulk modulus over the initial shear modulus, for CalculiX and FEBio
     #[arg(long, value_name = "RATIO", default_value_t = 1000.0)]
     pub bulk_ratio: f64,
+    #[command(flatten)]
+    pub large: Large,
 }
 
 /// Writes the file.
@@ -59,7 +62,8 @@ pub fn run(options: &Options) -> Outcome {
     let written = match validation::case_of(&path.display().to_string(), &text)? {
         None => plate(path, text, options)?,
         Some(case) if case.kind == specimen::KIND => {
-            let (title, specimen, warnings) = specimen::load(case, path, &text)?;
+            let (title, specimen, warnings) =
+                specimen::load(case, path, &text, options.large.budget())?;
             warn(&warnings);
             shape(&title, &specimen, options)?
         }
@@ -112,7 +116,7 @@ fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<InputFil
 }
 
 fn plate(path: &Path, text: String, options: &Options) -> Result<InputFile, Error> {
-    let study = Study::of_file(path, text)?;
+    let study = Study::of_file(path, text, options.large.budget())?;
     warn(&study.warnings);
     let plate = &study.problem;
     let [coarse, middle, fine] = study.finite_elements();

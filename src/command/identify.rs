@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::interrupt;
+use super::large::Large;
 use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
+use crate::budget::Need;
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
     Argument, Form, Function, Identification, IdentificationSettings, Recording, Sample, Shape,
@@ -15,6 +17,9 @@ use crate::identification::{
 };
 use crate::output::{self, ResultFolder};
 use crate::results::{identification_json, identification_picture, number};
+
+/// Memory of an instant of a recording, as measured.
+const BYTES_OF_AN_INSTANT: f64 = 3000.0;
 
 pub const HELP: &str = "\
 The file is a table of instants with units in the heads; what it does not say can be given by options:
@@ -72,6 +77,8 @@ pub struct Options {
     /// Seed of the computed recording's noise
     #[arg(long, default_value_t = 1, requires = "sample")]
     seed: u64,
+    #[command(flatten)]
+    large: Large,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -123,6 +130,18 @@ pub fn run(options: Options) -> Outcome {
         .into_iter()
         .filter_map(|(key, value)| Some((key.to_owned(), value?)));
     let recording = Recording::read(&path, &given.collect())?;
+    let need = Need {
+        bytes: BYTES_OF_AN_INSTANT * recording.times.len() as f64,
+        ..Need::default()
+    };
+    let afforded = options.large.budget().afford(need);
+    afforded.map_err(|excess| {
+        let what = format!("{}: {} instants", path.display(), recording.times.len());
+        Error::input(
+            format!("{what}: this {excess}"),
+            excess.remedy("take every other instant"),
+        )
+    })?;
     let settings = IdentificationSettings {
         forms: [options.stiffness, options.damping],
         shapes: [options.stiffness_shape.into(), options.damping_shape.into()],

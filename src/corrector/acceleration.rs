@@ -19,7 +19,6 @@ use super::correction::Step;
 use super::factor::{Factor, row_scales};
 use super::system::{Corrector, SHORTEST_STEP};
 use crate::error::SolveFault;
-use crate::solve::NotPositiveDefinite;
 use crate::solve::vector::{difference, largest, moved, norm};
 
 /// Iterates that are combined.
@@ -61,9 +60,7 @@ pub fn accelerate(
             best = (now, field.clone());
         }
         let step = factor.project(&current, &difference(data, &field));
-        let step = step
-            .map_err(|NotPositiveDefinite| SolveFault::Singular)?
-            .step;
+        let step = step.map_err(SolveFault::from)?.step;
         let moved = largest(&step) / largest(&field).max(f64::MIN_POSITIVE);
         let settings = corrector.settings;
         if now <= settings.tolerance && moved <= settings.movement {

@@ -4,7 +4,7 @@
 //! combinations y are found by inverse iteration on B Bᵀ + ε I; the rows with large entries take part.
 
 use crate::solve::vector::{largest, norm};
-use crate::solve::{Cholesky, NotPositiveDefinite, SparseRows};
+use crate::solve::{Cholesky, FactorFault, SparseRows};
 
 /// Rows whose combination vanishes.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +60,7 @@ pub fn find(jacobian: &SparseRows, values: &[f64], field_size: f64) -> Option<De
     })
 }
 
-fn vanishing_combination(scaled: &SparseRows) -> Result<Vec<f64>, NotPositiveDefinite> {
+fn vanishing_combination(scaled: &SparseRows) -> Result<Vec<f64>, FactorFault> {
     let (pattern, mut values) = scaled.normal_matrix(&vec![1.0; scaled.columns()]);
     for place in pattern.diagonal() {
         values[*place] += SHIFT;

@@ -27,7 +27,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::solve::{Cholesky, NotPositiveDefinite, SparseLu, SparseRows};
+use crate::solve::{Cholesky, FactorFault, SparseLu, SparseRows};
 
 mod forms;
 
@@ -79,20 +79,20 @@ impl Factor {
     /// `unknowns` gives the unknown of each row where the rows name every unknown once.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when rows depend on each other, or a form was asked for that does not apply.
+    /// [`FactorFault`] when rows depend on each other, or a form was asked for that does not apply.
     pub fn new(
         jacobian: SparseRows,
         weights: Vec<f64>,
         unknowns: Option<Vec<usize>>,
         solver: Solver,
-    ) -> Result<Self, NotPositiveDefinite> {
+    ) -> Result<Self, FactorFault> {
         let form = match solver {
             Solver::Automatic => return Self::automatic(jacobian, weights, unknowns),
             Solver::Dense => dense(&jacobian, &weights)?,
             Solver::Cholesky => cholesky(&jacobian, &weights)?,
             Solver::Kkt => Form::Kkt(SparseLu::new(kkt(&jacobian, &weights, None))?),
             Solver::Symmetric => {
-                let unknowns = unknowns.ok_or(NotPositiveDefinite)?;
+                let unknowns = unknowns.ok_or(FactorFault::NotPositiveDefinite)?;
                 Form::Symmetric(Symmetric::new(&jacobian, unknowns)?)
             }
         };
@@ -107,7 +107,7 @@ impl Factor {
         jacobian: SparseRows,
         weights: Vec<f64>,
         unknowns: Option<Vec<usize>>,
-    ) -> Result<Self, NotPositiveDefinite> {
+    ) -> Result<Self, FactorFault> {
         let with =
             |solver, unknowns| Self::new(jacobian.clone(), weights.clone(), unknowns, solver);
         if weights.contains(&0.0) {
@@ -153,12 +153,8 @@ impl Factor {
     /// δ and ψ for c = `values` and ū − u = `pull`.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the system turns out to be singular to working precision.
-    pub fn project(
-        &mut self,
-        values: &[f64],
-        pull: &[f64],
-    ) -> Result<Projection, NotPositiveDefinite> {
+    /// [`FactorFault`] when the system turns out to be singular to working precision.
+    pub fn project(&mut self, values: &[f64], pull: &[f64]) -> Result<Projection, FactorFault> {
         let (b, w) = (&self.jacobian, &self.weights);
         match &mut self.form {
             Form::Dense { q, r } => Ok(project_dense(q, r, w, values, pull)),
@@ -193,8 +189,8 @@ impl Factor {
     /// Z (Zᵀ W Z)⁻¹ Zᵀ e, where the columns of Z span what the conditions allow.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the system is singular to working precision.
-    pub fn covariance_column(&self, unknown: usize) -> Result<Vec<f64>, NotPositiveDefinite> {
+    /// [`FactorFault`] when the system is singular to working precision.
+    pub fn covariance_column(&self, unknown: usize) -> Result<Vec<f64>, FactorFault> {
         let lu = SparseLu::new(kkt(&self.jacobian, &self.weights, None))?;
         let mut right = vec![0.0; self.weights.len() + self.jacobian.len()];
         right[unknown] = 1.0;
@@ -225,7 +221,7 @@ impl Factor {
     }
 
     /// Puts a factor together again, without factorising where its values were kept.
-    pub(super) fn from_parts(parts: FactorParts) -> Result<Self, NotPositiveDefinite> {
+    pub(super) fn from_parts(parts: FactorParts) -> Result<Self, FactorFault> {
         let FactorParts {
             jacobian,
             weights,
@@ -235,8 +231,11 @@ impl Factor {
         } = parts;
         let form = match (solver, cholesky) {
             (Solver::Symmetric, Some((values, factor))) => {
-                let mut symmetric =
-                    Symmetric::analyse(&jacobian, unknowns.ok_or(NotPositiveDefinite)?)?.0;
+                let mut symmetric = Symmetric::analyse(
+                    &jacobian,
+                    unknowns.ok_or(FactorFault::NotPositiveDefinite)?,
+                )?
+                .0;
                 symmetric.cholesky.restore(values, factor)?;
                 Form::Symmetric(symmetric)
             }

@@ -5,7 +5,6 @@ use super::correction::{Correction, CorrectorSettings, Step};
 use super::factor::Factor;
 use super::system::Corrector;
 use crate::error::SolveFault;
-use crate::solve::NotPositiveDefinite;
 use crate::solve::vector::{difference, largest};
 
 impl Corrector<'_> {
@@ -54,7 +53,7 @@ impl Corrector<'_> {
             let mut factor = self.factorise(&system)?;
             let projection = factor
                 .project(&system.values, &difference(data, &field))
-                .map_err(|NotPositiveDefinite| self.dependent(&system))?;
+                .map_err(|fault| fault.or(self.dependent(&system)))?;
             let residual = largest(&system.scaled(&system.values)) / system.size;
             let moved = largest(&projection.step) / system.size;
             if !(residual.is_finite() && moved.is_finite()) {
@@ -85,7 +84,7 @@ impl Corrector<'_> {
             let (target, projection) = if moved <= movement {
                 let still = vec![0.0; before.len()];
                 let back = factor.project(&system.values, &still);
-                let back = back.map_err(|NotPositiveDefinite| self.dependent(&system))?;
+                let back = back.map_err(|fault| fault.or(self.dependent(&system)))?;
                 (&before[..], back)
             } else {
                 (data, projection)

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::factor::weighted_qr;
-use crate::solve::{NotPositiveDefinite, SparseRows};
+use crate::solve::{FactorFault, SparseRows};
 
 /// ψ, S and Y of linear conditions B u = b with i unknowns, dense.
 ///
@@ -27,8 +27,8 @@ impl CorrectionMatrix {
     /// The correction matrix of the conditions `rows` with the diagonal of W.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when rows depend on each other.
-    pub fn new(rows: &SparseRows, weights: Vec<f64>) -> Result<Self, NotPositiveDefinite> {
+    /// [`FactorFault`] when rows depend on each other.
+    pub fn new(rows: &SparseRows, weights: Vec<f64>) -> Result<Self, FactorFault> {
         let (q, r) = weighted_qr(rows, &weights)?;
         Ok(Self {
             jacobian: rows.to_dense(),

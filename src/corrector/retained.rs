@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::factor::FactorParts;
 use super::{Corrector, Factor};
-use crate::document::inputs;
+use crate::document::file;
 
 /// What the file begins with.
 const MAGIC: &[u8] = b"gelbench factor";
@@ -85,9 +85,8 @@ pub fn from_bytes(bytes: &[u8], corrector: &Corrector) -> Result<Factor, Retaine
 /// # Errors
 /// A [`RetainedFault`].
 pub fn load(path: &Path, corrector: &Corrector) -> Result<Factor, RetainedFault> {
-    inputs::note(path);
-    let bytes = std::fs::read(path)
-        .map_err(|cause| RetainedFault::Unreadable(format!("{}: {cause}", path.display())))?;
+    let bytes = file::read_bytes(path, file::MOST_OF_DATA)
+        .map_err(|fault| RetainedFault::Unreadable(format!("{}: {fault}", path.display())))?;
     from_bytes(&bytes, corrector)
 }
 

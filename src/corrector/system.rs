@@ -6,7 +6,7 @@ use super::dependence;
 use super::factor::{Factor, Solver, row_scales};
 use crate::error::SolveFault;
 use crate::solve::vector::largest;
-use crate::solve::{Inadmissible, NotPositiveDefinite, SparseRows};
+use crate::solve::{FactorFault, Inadmissible, SparseRows};
 
 /// The shortest share of a step that is tried.
 pub(super) const SHORTEST_STEP: f64 = 1e-4;
@@ -111,7 +111,8 @@ impl<'a> Corrector<'a> {
                 }
             }
             Ok(factor) => Ok(factor),
-            Err(NotPositiveDefinite) => Err(self.dependent(system)),
+            Err(FactorFault::NotPositiveDefinite) => Err(self.dependent(system)),
+            Err(fault) => Err(fault.into()),
         }
     }
 

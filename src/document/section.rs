@@ -8,6 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Faults;
+use crate::budget::Need;
 use crate::error::{Diagnostic, Source, suggestion};
 
 mod values;
@@ -138,6 +139,16 @@ impl<'a> Section<'a> {
             self.place(key),
             Diagnostic::error(self.full(key), message).hint(hint),
         );
+    }
+
+    /// Records a fault at the place of `key` where what it asks for is too much; `smaller` says what to change. Whether it is
+    /// not.
+    pub fn affords(&self, key: &'static str, need: Need, smaller: &str) -> bool {
+        let excess = self.faults.budget.afford(need).err();
+        if let Some(excess) = &excess {
+            self.fault(key, &excess.to_string(), &excess.remedy(smaller));
+        }
+        excess.is_none()
     }
 
     /// Records a warning at the place of `key`.

@@ -5,10 +5,9 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::Faults;
 use super::decimals::{Decimals, NotANumber, is_hole};
 use super::lines::{delimiter, is_name, line_at, plain_text};
-use super::text::read_text;
+use super::{Faults, file, text::read_text};
 use crate::error::{Diagnostic, Error, Source};
 
 /// A column's name and unit.
@@ -69,7 +68,7 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] with file, line and reason.
     pub fn read(path: &Path, hint: &str) -> Result<Self, Error> {
-        let text = read_text(path, hint)?;
+        let text = read_text(path, file::MOST_OF_DATA, hint)?;
         Self::parse(&path.display().to_string(), &text)
     }
 

@@ -2,17 +2,16 @@
 
 use std::path::Path;
 
-use super::inputs;
+use super::file;
 use crate::error::Error;
 
-/// The text of a file; `hint` says what it should be.
+/// The text of a file of so many bytes at most; `hint` says what it should be.
 ///
 /// # Errors
 /// [`Error::Input`] when it cannot be read or is not UTF-8.
-pub fn read_text(path: &Path, hint: &str) -> Result<String, Error> {
+pub fn read_text(path: &Path, most: u64, hint: &str) -> Result<String, Error> {
     let name = path.display();
-    inputs::note(path);
-    let bytes = std::fs::read(path)
+    let bytes = file::read_bytes(path, most)
         .map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))?;
     if is_utf16(&bytes) {
         let hint = "save it as UTF-8: in Notepad by Save as, Encoding; in PowerShell by `Out-File -Encoding utf8`";
@@ -60,7 +59,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.toml");
         std::fs::write(&path, bytes).unwrap();
-        read_text(&path, "a study").unwrap_err().to_string()
+        read_text(&path, 999, "a study").unwrap_err().to_string()
     }
 
     #[test]

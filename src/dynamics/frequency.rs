@@ -107,9 +107,9 @@ fn factorised(
         .linearise(motion.energy, displacement, &mut residual, &mut stiffness)
         .map_err(|fault| motion.inverted(fault))?;
     let cholesky = assembly.analyse(motion.energy);
-    let mut cholesky = cholesky.map_err(|_| SolveFault::Singular)?;
+    let mut cholesky = cholesky?;
     let factor = cholesky.factorise(&stiffness);
-    factor.map_err(|_| SolveFault::NotPositiveDefinite)?;
+    factor.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
     Ok(cholesky)
 }
 

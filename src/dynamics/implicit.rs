@@ -100,7 +100,7 @@ impl Implicit {
         self.factorised = None;
         cholesky
             .factorise(&values)
-            .map_err(|_| SolveFault::NotPositiveDefinite)?;
+            .map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
         self.factorised = Some(step);
         self.factorisations += 1;
         Ok(())
@@ -252,7 +252,7 @@ impl Stepper for Implicit {
     fn prepare(&mut self, motion: &Motion, held: &[bool]) -> Result<(), SolveFault> {
         let assembly = Assembly::new(motion.energy, held);
         let cholesky = assembly.analyse(motion.energy);
-        let cholesky = cholesky.map_err(|_| SolveFault::Singular)?;
+        let cholesky = cholesky?;
         self.system = Some((assembly, cholesky));
         self.factorised = None;
         self.longest = None;

@@ -6,7 +6,7 @@ use super::basis::Basis;
 use super::penalty::NormalEquations;
 use super::recording::Recording;
 use super::smoothing::{BandMatrix, SplineValues};
-use crate::solve::{Cholesky, NotPositiveDefinite};
+use crate::solve::{Cholesky, FactorFault};
 use crate::statistics::LocalValues;
 
 /// What D(·) is a function of.
@@ -142,8 +142,8 @@ impl Joint<'_> {
     /// ```
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the instants do not determine the motion.
-    pub fn linearise(&self, state: &State) -> Result<JointEquations, NotPositiveDefinite> {
+    /// [`FactorFault`] when the instants do not determine the motion.
+    pub fn linearise(&self, state: &State) -> Result<JointEquations, FactorFault> {
         let (motions, count) = (state.motion.len(), state.functions.len());
         let mut reduced = NormalEquations::new(count);
         let mut matrix = BandMatrix::new(motions)?;

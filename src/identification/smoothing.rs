@@ -1,6 +1,6 @@
 //! Least-squares splines of a signal over time, with as many parts as its noise allows.
 
-use crate::solve::{Cholesky, NotPositiveDefinite, SymmetricPattern};
+use crate::solve::{Cholesky, FactorFault, SymmetricPattern};
 use crate::statistics::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
 /// Instants for each part of a spline at least.
@@ -50,8 +50,8 @@ impl BandMatrix {
     /// The zero matrix for so many functions.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when there is no memory for it.
-    pub fn new(count: usize) -> Result<Self, NotPositiveDefinite> {
+    /// [`FactorFault`] when there is no memory for it.
+    pub fn new(count: usize) -> Result<Self, FactorFault> {
         let columns = (0..count).map(|column| {
             (column..column + MOST_FUNCTIONS)
                 .filter(|row| *row < count)
@@ -84,8 +84,8 @@ impl BandMatrix {
     /// Factorises the matrix.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the rows leave a function undetermined.
-    pub fn factorise(mut self) -> Result<Cholesky, NotPositiveDefinite> {
+    /// [`FactorFault`] when the rows leave a function undetermined.
+    pub fn factorise(mut self) -> Result<Cholesky, FactorFault> {
         self.cholesky.factorise(&self.values)?;
         Ok(self.cholesky)
     }
@@ -94,12 +94,8 @@ impl BandMatrix {
 /// The coefficients of the spline nearest to `signal`.
 ///
 /// # Errors
-/// [`NotPositiveDefinite`] when the instants leave gaps of several parts.
-pub fn nearest(
-    spline: &BSpline,
-    times: &[f64],
-    signal: &[f64],
-) -> Result<Vec<f64>, NotPositiveDefinite> {
+/// [`FactorFault`] when the instants leave gaps of several parts.
+pub fn nearest(spline: &BSpline, times: &[f64], signal: &[f64]) -> Result<Vec<f64>, FactorFault> {
     let sampled = SplineValues::new(spline, times, 0);
     let mut matrix = BandMatrix::new(spline.count())?;
     let mut right = vec![0.0; spline.count()];

@@ -3,6 +3,7 @@
 use super::frames::{Frame, Marker, MarkerSeries};
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
+use crate::mesh::geometry::check_size;
 
 /// Displacements of more than so many sizes of the specimen are in another unit.
 const LARGEST: f64 = 20.0;
@@ -58,6 +59,14 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
             "the displacement is zero everywhere",
             "give a field of a specimen that is deformed",
         ));
+    }
+    let places = markers().map(|marker| marker.place);
+    if let Err(measures) = check_size(places)
+        && size > 0.0
+    {
+        let hint =
+            "write the unit of every column in its head, as in x [mm], or correct it with --unit";
+        return Err(Error::input(format!("the points {measures}"), hint));
     }
     // One point alone has no size.
     if size > 0.0 && largest > LARGEST * size {

@@ -9,7 +9,7 @@ use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS, Law};
 use super::viscosity::{Relaxation, ViscousMaterial};
-use crate::document::{Bound, Document, Faults, Section, read_text};
+use crate::document::{Bound, Document, Faults, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
@@ -91,7 +91,7 @@ impl Card {
         }
         let path = folder.join(name);
         let hint = "a card is TOML in UTF-8; its path in a study is relative to the study";
-        let text = read_text(&path, hint)?;
+        let text = read_text(&path, file::MOST_OF_A_STUDY, hint)?;
         Self::parse(name, &path.display().to_string(), &text)
     }
 

@@ -1,5 +1,7 @@
 //! Points of the plane: boxes, areas, distances.
 
+use crate::units::SIZES;
+
 /// Lower left and upper right corner of the box around points.
 pub fn bounding_box(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
     let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
@@ -9,6 +11,37 @@ pub fn bounding_box(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2]
             [high[0].max(x), high[1].max(y)],
         ]
     })
+}
+
+/// How points measure where no specimen does: length and width of the box around them in mm, and the largest coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "span {:.1e} × {:.1e} mm and reach to {reach:.1e} mm from the origin, where specimens measure from 1 nm to 1 km and are no farther from it: look at the unit",
+    .span[0],
+    .span[1]
+)]
+pub struct OutOfSize {
+    /// Length and width of the box around the points in mm.
+    pub span: [f64; 2],
+    /// The largest coordinate in mm.
+    pub reach: f64,
+}
+
+/// Whether points measure as specimens do.
+///
+/// # Errors
+/// [`OutOfSize`] where they do not.
+pub fn check_size(points: impl IntoIterator<Item = [f64; 2]>) -> Result<(), OutOfSize> {
+    let [low, high] = bounding_box(points);
+    let span = [high[0] - low[0], high[1] - low[1]];
+    let reach = [low, high]
+        .as_flattened()
+        .iter()
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
+    let [least, most] = SIZES;
+    // What is no number is out of size too.
+    let sized = span[0].max(span[1]) >= least && reach <= most;
+    sized.then_some(()).ok_or(OutOfSize { span, reach })
 }
 
 /// The area inside a closed line of straight edges, positive where it runs counter-clockwise.

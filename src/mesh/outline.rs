@@ -18,9 +18,10 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::cell_shape::CellShape;
 use super::cells::Mesh;
-use super::geometry::{distance, polygon_area};
+use super::geometry::{check_size, distance, polygon_area};
 use super::triangulate::fill;
 use crate::statistics::median;
+use crate::units::SIZES;
 
 mod alpha_shape;
 mod fault;
@@ -70,7 +71,8 @@ impl Outline {
     /// # Errors
     /// An [`OutlineFault`].
     pub fn of_points(points: &[[f64; 2]]) -> Result<OutlineOfPoints, OutlineFault> {
-        let mut points = points.to_vec();
+        let mut points: Vec<[f64; 2]> = points.iter().map(|point| rounded(*point)).collect();
+        check_size(points.iter().copied())?;
         points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         points.dedup();
         if points.len() < 6 {
@@ -158,6 +160,16 @@ impl Outline {
     /// # Errors
     /// An [`OutlineFault`].
     pub fn of_lines(mut lines: Vec<Vec<[f64; 2]>>) -> Result<Self, OutlineFault> {
+        let count = lines.iter().map(Vec::len).sum();
+        if count > OutlineFault::MOST_POINTS {
+            return Err(OutlineFault::TooMany(count));
+        }
+        for point in lines.iter_mut().flatten() {
+            *point = rounded(*point);
+        }
+        if count > 0 {
+            check_size(lines.iter().flatten().copied())?;
+        }
         for line in &mut lines {
             line.dedup();
             if line.len() > 1 && line.first() == line.last() {
@@ -269,6 +281,11 @@ impl Outline {
         }
         mesh.name_boundary("boundary", |_| true);
     }
+}
+
+/// A point whose coordinates far below any size are zero: triangulations cannot tell them from it.
+fn rounded(point: [f64; 2]) -> [f64; 2] {
+    point.map(|x| if x.abs() < 1e-6 * SIZES[0] { 0.0 } else { x })
 }
 
 /// The median distance of points to their nearest neighbour over √(area/points).

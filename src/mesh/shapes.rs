@@ -3,7 +3,7 @@
 use super::blocks::{Block, mesh_of_blocks};
 use super::cell_shape::CellShape;
 use super::cells::Mesh;
-use super::strips::{count, strip, with_hole};
+use super::strips::{count, lengths, strip, with_hole};
 
 mod measures;
 
@@ -51,6 +51,9 @@ pub enum Shape {
     },
 }
 
+/// The largest distance of a shape over its least: meshes tell nodes apart that are 1e-8 of the largest from each other.
+const MOST_RATIO: f64 = 1e5;
+
 impl Shape {
     /// A mesh with so many cells across the specimen, and along it as many as make cells about square.
     pub fn mesh(self, across: usize, kind: CellShape) -> Mesh {
@@ -74,6 +77,23 @@ impl Shape {
                 mesh_of_blocks(&[block], kind)
             }
         }
+    }
+
+    /// About how many quadrilaterals [`Self::mesh`] makes with so many cells across; twice as many triangles.
+    pub fn cell_count(self, across: f64) -> f64 {
+        let along = match self {
+            Self::RingSector { radii, angle } => {
+                angle * (radii[0] + radii[1]) / (2.0 * (radii[1] - radii[0]))
+            }
+            // Around the hole there are about twice as many as in the strip.
+            Self::StripWithHole { size, .. } => {
+                2.0 + size[0].max(size[1]) / size[0].min(size[1]).min(size[1])
+            }
+            Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
+                lengths(size[0], &|x| self.half_width(x))
+            }
+        };
+        across * (along * across).max(1.0)
     }
 
     /// Moves the nodes of the mesh's named sides onto the outline, where refinement has put them on chords.
@@ -157,6 +177,18 @@ impl Shape {
             } => vec![size[0], size[1], narrow[0], narrow[1], shoulder],
             Self::RingSector { radii, angle } => vec![radii[0], radii[1], angle],
         }
+    }
+
+    /// The least and the largest distance that a mesh must tell from nothing.
+    fn extremes(self) -> [f64; 2] {
+        let distances = match self {
+            Self::RingSector { radii, angle } => {
+                vec![radii[1], radii[1] - radii[0], angle * radii[1]]
+            }
+            other => other.measures(),
+        };
+        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        [least, distances.into_iter().fold(0.0, f64::max)]
     }
 }
 

@@ -11,6 +11,11 @@ pub fn count(cells: f64) -> usize {
     (cells.round() as usize).max(1)
 }
 
+/// The length over the width of a strip whose half width varies along it, in the mean along it.
+pub fn lengths(length: f64, half_width: &impl Fn(f64) -> f64) -> f64 {
+    Lengths::new(length, half_width).total()
+}
+
 /// A strip whose half width varies along it.
 pub fn strip(
     size: [f64; 2],

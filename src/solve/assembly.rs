@@ -3,7 +3,7 @@
 use super::dissection::dissection;
 use super::pattern::SymmetricPattern;
 use super::potential::{Inadmissible, Local, Potential};
-use super::sparse::{Cholesky, NotPositiveDefinite};
+use super::sparse::{Cholesky, FactorFault};
 use super::vector::{dot, moved, norm};
 
 /// The sum of element contributions into a sparse matrix over the free unknowns.
@@ -85,8 +85,8 @@ impl Assembly {
     /// Analyses the pattern of the stiffness, in an order by places where the system is large and they are known.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the pattern cannot be analysed, which means out of memory.
-    pub fn analyse(&self, potential: &dyn Potential) -> Result<Cholesky, NotPositiveDefinite> {
+    /// [`FactorFault`] when the pattern cannot be analysed, which means out of memory.
+    pub fn analyse(&self, potential: &dyn Potential) -> Result<Cholesky, FactorFault> {
         let connectivity = potential.connectivity();
         let places = self.free.iter().map(|unknown| connectivity.place(*unknown));
         match places.collect::<Option<Vec<_>>>() {

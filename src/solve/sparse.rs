@@ -4,22 +4,70 @@ use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::linalg::solvers::SolveCore;
 use faer::perm::PermRef;
+use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
 use faer::sparse::linalg::solvers::Lu;
-use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMatRef, Triplet};
+use faer::sparse::{
+    CreationError, SparseColMat, SparseColMatRef, SymbolicSparseColMatRef, Triplet,
+};
 use faer::{Conj, MatMut, Par, Side};
 
 use super::pattern::SymmetricPattern;
 use super::rows::SparseRows;
 use super::vector::{add_scaled, difference, norm};
+use crate::error::SolveFault;
 
-/// A matrix that is not positive definite, or not finite.
+/// Why a matrix has no factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the matrix is not positive definite, or not finite")]
-pub struct NotPositiveDefinite;
+pub enum FactorFault {
+    /// It is not positive definite, singular, or not finite.
+    #[error("the matrix is not positive definite, or not finite")]
+    NotPositiveDefinite,
+    /// The factor is larger than the memory.
+    #[error("the memory is not enough for the factor")]
+    OutOfMemory,
+}
+
+impl FactorFault {
+    /// The fault of a solver: `singular` where it is not the memory's.
+    pub fn or(self, singular: SolveFault) -> SolveFault {
+        match self {
+            Self::NotPositiveDefinite => singular,
+            Self::OutOfMemory => SolveFault::OutOfMemory,
+        }
+    }
+}
+
+impl From<FactorFault> for SolveFault {
+    fn from(fault: FactorFault) -> Self {
+        fault.or(Self::Singular)
+    }
+}
+
+impl From<LuError> for FactorFault {
+    fn from(fault: LuError) -> Self {
+        match fault {
+            LuError::SymbolicSingular { .. } => Self::NotPositiveDefinite,
+            LuError::Generic(_) => Self::OutOfMemory,
+        }
+    }
+}
+
+/// So many zeros.
+fn zeros(count: usize) -> Result<Vec<f64>, FactorFault> {
+    let mut zeros = Vec::new();
+    let reserved = zeros.try_reserve_exact(count);
+    reserved.map_err(|_| FactorFault::OutOfMemory)?;
+    zeros.resize(count, 0.0);
+    Ok(zeros)
+}
+
+fn workspace(size: StackReq) -> Result<MemBuffer, FactorFault> {
+    MemBuffer::try_new(size).map_err(|_| FactorFault::OutOfMemory)
+}
 
 /// A sparse Cholesky factor A = L Lᵀ. The symbolic analysis is done once for a pattern; every new set
 /// of values is factorised into the same memory.
@@ -37,22 +85,22 @@ impl Cholesky {
     /// Analyses a pattern, to be eliminated in an order of approximately least degree.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the pattern cannot be analysed, which means out of memory.
-    pub fn analyse(pattern: SymmetricPattern) -> Result<Self, NotPositiveDefinite> {
+    /// [`FactorFault::OutOfMemory`] when the factor does not fit.
+    pub fn analyse(pattern: SymmetricPattern) -> Result<Self, FactorFault> {
         Self::analyse_by(pattern, SymmetricOrdering::Amd)
     }
 
     /// Analyses a pattern, to be eliminated in a given order of all unknowns.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the pattern cannot be analysed, which means out of memory.
+    /// [`FactorFault::OutOfMemory`] when the factor does not fit.
     ///
     /// # Panics
     /// When an unknown is missing in the order.
     pub fn analyse_in_order(
         pattern: SymmetricPattern,
         order: &[usize],
-    ) -> Result<Self, NotPositiveDefinite> {
+    ) -> Result<Self, FactorFault> {
         let mut position = vec![0; order.len()];
         for (place, unknown) in order.iter().enumerate() {
             position[*unknown] = place;
@@ -64,20 +112,20 @@ impl Cholesky {
     fn analyse_by(
         pattern: SymmetricPattern,
         ordering: SymmetricOrdering<'_, usize>,
-    ) -> Result<Self, NotPositiveDefinite> {
+    ) -> Result<Self, FactorFault> {
         let symbolic = factorize_symbolic_cholesky(
             structure(&pattern),
             Side::Lower,
             ordering,
             CholeskySymbolicParams::default(),
         )
-        .map_err(|_| NotPositiveDefinite)?;
+        .map_err(|_| FactorFault::OutOfMemory)?;
         let scratch = symbolic
             .factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::Spec::default())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         Ok(Self {
-            factor: vec![0.0; symbolic.len_val()],
-            workspace: MemBuffer::new(scratch),
+            factor: zeros(symbolic.len_val())?,
+            workspace: workspace(scratch)?,
             scratch,
             values: Vec::new(),
             pattern,
@@ -98,14 +146,10 @@ impl Cholesky {
     /// Puts a factor that was kept elsewhere in place of a factorisation.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the parts do not belong to this pattern.
-    pub fn restore(
-        &mut self,
-        values: Vec<f64>,
-        factor: Vec<f64>,
-    ) -> Result<(), NotPositiveDefinite> {
+    /// [`FactorFault`] when the parts do not belong to this pattern.
+    pub fn restore(&mut self, values: Vec<f64>, factor: Vec<f64>) -> Result<(), FactorFault> {
         if values.len() != self.pattern.entries() || factor.len() != self.factor.len() {
-            return Err(NotPositiveDefinite);
+            return Err(FactorFault::NotPositiveDefinite);
         }
         (self.values, self.factor) = (values, factor);
         Ok(())
@@ -114,10 +158,10 @@ impl Cholesky {
     /// Factorises the matrix with these `values`.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when a pivot is not positive.
-    pub fn factorise(&mut self, values: &[f64]) -> Result<(), NotPositiveDefinite> {
+    /// [`FactorFault`] when a pivot is not positive.
+    pub fn factorise(&mut self, values: &[f64]) -> Result<(), FactorFault> {
         if values.iter().any(|value| !value.is_finite()) {
-            return Err(NotPositiveDefinite);
+            return Err(FactorFault::NotPositiveDefinite);
         }
         self.symbolic
             .factorize_numeric_llt(
@@ -129,7 +173,7 @@ impl Cholesky {
                 MemStack::new(&mut self.workspace),
                 faer::Spec::default(),
             )
-            .map_err(|_| NotPositiveDefinite)?;
+            .map_err(|_| FactorFault::NotPositiveDefinite)?;
         self.values.clear();
         self.values.extend_from_slice(values);
         Ok(())
@@ -138,8 +182,8 @@ impl Cholesky {
     /// Solves A x = b with one step of iterative refinement, which also proves the factor right.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the residual shows that A is singular to working precision.
-    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, NotPositiveDefinite> {
+    /// [`FactorFault`] when the residual shows that A is singular to working precision.
+    pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, FactorFault> {
         let mut x = b.to_vec();
         self.substitute(&mut x);
         let mut correction = self.defect(b, &x);
@@ -186,8 +230,8 @@ impl SparseLu {
     /// Factorises a square matrix.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when the matrix is singular by its structure.
-    pub fn new(matrix: SparseRows) -> Result<Self, NotPositiveDefinite> {
+    /// [`FactorFault`] when the matrix is singular by its structure.
+    pub fn new(matrix: SparseRows) -> Result<Self, FactorFault> {
         let size = matrix.columns();
         let rows = (0..matrix.len()).flat_map(|row| {
             let entries = matrix.row(row).iter();
@@ -195,23 +239,24 @@ impl SparseLu {
         });
         let entries: Vec<_> = rows.collect();
         if matrix.len() != size || entries.iter().any(|entry| !entry.val.is_finite()) {
-            return Err(NotPositiveDefinite);
+            return Err(FactorFault::NotPositiveDefinite);
         }
         // More threads than free cores are ruinous, and one gives the same bits every time.
         faer::set_global_parallelism(Par::Seq);
         let sparse = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries);
-        let factor = sparse.map_err(|_| NotPositiveDefinite)?.sp_lu();
-        Ok(Self {
-            factor: factor.map_err(|_| NotPositiveDefinite)?,
-            matrix,
-        })
+        let factor = match sparse {
+            Ok(sparse) => sparse.sp_lu().map_err(FactorFault::from)?,
+            Err(CreationError::Generic(_)) => return Err(FactorFault::OutOfMemory),
+            Err(_) => return Err(FactorFault::NotPositiveDefinite),
+        };
+        Ok(Self { factor, matrix })
     }
 
     /// Solves A x = b, with two steps of refinement.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when x does not solve the system: the matrix is singular.
-    pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>, NotPositiveDefinite> {
+    /// [`FactorFault`] when x does not solve the system: the matrix is singular.
+    pub fn solve(&self, b: &[f64]) -> Result<Vec<f64>, FactorFault> {
         let mut x = vec![0.0; b.len()];
         let mut defect = b.to_vec();
         for _ in 0..3 {
@@ -232,11 +277,11 @@ fn structure(pattern: &SymmetricPattern) -> SymbolicSparseColMatRef<'_, usize> {
 }
 
 /// x where it solves A x = b, given b − A x.
-fn solved(x: Vec<f64>, b: &[f64], defect: &[f64]) -> Result<Vec<f64>, NotPositiveDefinite> {
+fn solved(x: Vec<f64>, b: &[f64], defect: &[f64]) -> Result<Vec<f64>, FactorFault> {
     let scale = norm(b).max(f64::MIN_POSITIVE);
     (norm(defect) / scale < 1e-6)
         .then_some(x)
-        .ok_or(NotPositiveDefinite)
+        .ok_or(FactorFault::NotPositiveDefinite)
 }
 
 #[cfg(test)]
@@ -291,9 +336,29 @@ mod tests {
         let (pattern, mut values) = laplacian(20);
         values[pattern.diagonal()[7]] = -1.0;
         let mut cholesky = Cholesky::analyse(pattern).unwrap();
-        assert_eq!(cholesky.factorise(&values), Err(NotPositiveDefinite));
+        assert_eq!(
+            cholesky.factorise(&values),
+            Err(FactorFault::NotPositiveDefinite)
+        );
         values[0] = f64::NAN;
-        assert_eq!(cholesky.factorise(&values), Err(NotPositiveDefinite));
+        assert_eq!(
+            cholesky.factorise(&values),
+            Err(FactorFault::NotPositiveDefinite)
+        );
+    }
+
+    #[test]
+    fn too_little_memory_is_no_singular_system() {
+        let fault = zeros(usize::MAX / 16).unwrap_err();
+        assert_eq!(fault, FactorFault::OutOfMemory);
+        assert_eq!(SolveFault::from(fault), SolveFault::OutOfMemory);
+        assert_eq!(
+            fault.or(SolveFault::NotPositiveDefinite),
+            SolveFault::OutOfMemory
+        );
+        let singular = SolveFault::from(FactorFault::NotPositiveDefinite);
+        assert_eq!(singular, SolveFault::Singular);
+        assert!(SolveFault::OutOfMemory.advice().contains("memory"));
     }
 
     #[test]
@@ -315,6 +380,6 @@ mod tests {
         singular.push([(0, 1.0), (1, 2.0)]);
         singular.push([(0, 2.0), (1, 4.0)]);
         let outcome = SparseLu::new(singular).and_then(|lu| lu.solve(&[1.0, 0.0]));
-        assert_eq!(outcome, Err(NotPositiveDefinite));
+        assert_eq!(outcome, Err(FactorFault::NotPositiveDefinite));
     }
 }

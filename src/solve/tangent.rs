@@ -2,7 +2,7 @@
 
 use super::assembly::Assembly;
 use super::potential::{Inadmissible, Potential, SkewCoupling};
-use super::sparse::{Cholesky, NotPositiveDefinite};
+use super::sparse::{Cholesky, FactorFault};
 use super::vector::{difference, dot, gather, largest, norm, scale, spread};
 use crate::error::SolveFault;
 
@@ -26,7 +26,7 @@ impl Tangent {
         let assembly = Assembly::new(potential, fixed);
         let cholesky = assembly.analyse(potential);
         Ok(Self {
-            cholesky: cholesky.map_err(|_| SolveFault::Singular)?,
+            cholesky: cholesky?,
             assembly,
             skew: Vec::new(),
         })
@@ -189,7 +189,10 @@ impl Tangent {
         let sum: f64 = diagonal.iter().map(|place| stiffness[*place].abs()).sum();
         let mean = sum / diagonal.len().max(1) as f64;
         let mut shift = 0.0;
-        while let Err(NotPositiveDefinite) = self.cholesky.factorise(stiffness) {
+        while let Err(fault) = self.cholesky.factorise(stiffness) {
+            if fault == FactorFault::OutOfMemory {
+                return Err(fault.into());
+            }
             let next = if shift == 0.0 {
                 1e-4 * mean
             } else {
@@ -231,8 +234,7 @@ impl Tangent {
         const ITERATIONS: usize = 60;
         let mut negative = gather(self.assembly.free(), residual);
         scale(&mut negative, -1.0);
-        let mut solve =
-            |right: &[f64]| self.cholesky.solve(right).map_err(|_| SolveFault::Singular);
+        let mut solve = |right: &[f64]| self.cholesky.solve(right).map_err(SolveFault::from);
         let mut step = solve(&negative)?;
         if self.skew.is_empty() {
             return Ok(step);

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::budget::Budget;
 use crate::error::Error;
 use crate::problem::ClampedPlate;
 use crate::results::{Material, Outcome};
@@ -24,12 +25,12 @@ use results::{Results, run};
 /// The `kind` of these studies.
 pub const KIND: &str = "plate";
 
-/// Reads a study of the file `path`.
+/// Reads a study of the file `path`, which may ask for so much.
 ///
 /// # Errors
 /// [`Error::Input`] with every fault of the study and of its card.
-pub fn prepare(path: &Path, text: String) -> Result<Ready, Error> {
-    let study = Study::of_file(path, text)?;
+pub fn prepare(path: &Path, text: String, budget: Budget) -> Result<Ready, Error> {
+    let study = Study::of_file(path, text, budget)?;
     Ok(Ready {
         name: study.name.clone(),
         title: study.title.clone(),

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::other_files;
-use crate::document::{self, Bound, Section};
+use crate::budget::{Budget, Need};
+use crate::document::{self, Bound, Section, file};
 use crate::error::Error;
 use crate::mass_spring::LARGEST_ASPECT;
 use crate::material::curve::Mode;
@@ -15,12 +16,9 @@ use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
 use crate::units::Dimension;
 
-/// Most cells of a mesh in one direction, and in all: more than this would not fit into common memories.
-pub const MOST_CELLS: usize = 2000;
-const MOST_CELLS_IN_ALL: usize = 200_000;
+/// Cells of a plate in one direction at most; how many fit into the budget is asked besides.
+pub const MOST_CELLS: usize = 100_000;
 
-/// Lengths that a plate may have, in mm: from a micrometre to a kilometre.
-const LENGTHS: Bound = Bound::Range(1e-3, 1e6, "greater than zero, from 1 µm to 1 km");
 /// Stretches that a plate may be given.
 const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
 
@@ -29,7 +27,8 @@ const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 100
 /// # Errors
 /// [`Error::Input`] when the file cannot be read, or is a table, a mesh or a field.
 pub fn read_text(path: &Path) -> Result<String, Error> {
-    let text = document::read_text(path, "`gelbench new NAME` writes a study to start from")?;
+    let hint = "`gelbench new NAME` writes a study to start from";
+    let text = document::read_text(path, file::MOST_OF_A_STUDY, hint)?;
     other_files::refuse(path, &text)?;
     Ok(text)
 }
@@ -81,11 +80,11 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
 
 /// The plate of a section without its stretches, and the cells of its lattice.
 pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, [usize; 2]) {
-    let length = |key| section.quantity(key, Dimension::Length, LENGTHS);
+    let length = |key| section.quantity(key, Dimension::Length, Bound::SIZE);
     let size = [length("length"), length("width")];
     let thickness = length("thickness");
     let cells = section.count_pair("cells", 2, MOST_CELLS);
-    let cells = cells.filter(|cells| check_cells(section, *cells));
+    let cells = cells.filter(|cells| affords_cells(section, *cells, 2.0, 1));
     if let Some(cells) = cells {
         check_aspect(section, size, cells);
     }
@@ -102,14 +101,16 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, 
     (problem, cells.unwrap_or([2, 2]))
 }
 
-/// Records the fault of a mesh with too many cells in all; whether it has not.
-pub fn check_cells(section: &Section<'_>, cells: [usize; 2]) -> bool {
-    let all = cells[0] * cells[1];
-    if all > MOST_CELLS_IN_ALL {
-        let hint = format!("take at most {MOST_CELLS_IN_ALL}");
-        section.fault("cells", &format!("{all} cells are too many"), &hint);
-    }
-    all <= MOST_CELLS_IN_ALL
+/// Whether so many states on the mesh of `cells`, with so many unknowns a cell, are not too much; that they are is recorded.
+pub fn affords_cells(
+    section: &Section<'_>,
+    cells: [usize; 2],
+    unknowns: f64,
+    states: usize,
+) -> bool {
+    let all = cells[0] as f64 * cells[1] as f64;
+    let need = Need::of_states(unknowns * all, states as f64).on_cells(all);
+    section.affords("cells", need, "take fewer")
 }
 
 /// Springs cannot make a lattice of long cells isotropic.
@@ -137,7 +138,7 @@ pub fn even_cells(size: [f64; 2], cells: [usize; 2]) -> [usize; 2] {
     let down = cells.map(|n| (n - n % 2).max(2));
     let nearest = [up, [up[0], down[1]], [down[0], up[1]], down];
     let mut usable = nearest.into_iter().filter(|cells| {
-        aspect(size, *cells) < LARGEST_ASPECT && cells[0] * cells[1] <= MOST_CELLS_IN_ALL
+        aspect(size, *cells) < LARGEST_ASPECT && cells[0] * cells[1] <= Budget::USUAL.cells as usize
     });
     usable
         .next()
@@ -148,7 +149,7 @@ pub fn even_cells(size: [f64; 2], cells: [usize; 2]) -> [usize; 2] {
 fn nearly_square_cells(size: [f64; 2], along: usize) -> [usize; 2] {
     let even = |number: f64| 2 * ((number / 2.0).round().max(1.0) as usize);
     let ratio = size[0] / size[1];
-    let most = (0.98 * MOST_CELLS_IN_ALL as f64 * ratio).sqrt();
+    let most = (0.98 * Budget::USUAL.cells * ratio).sqrt();
     let most = most.min(0.98 * MOST_CELLS as f64 * ratio.min(1.0));
     let across = even((along as f64).min(most) / ratio);
     [
@@ -157,9 +158,20 @@ fn nearly_square_cells(size: [f64; 2], along: usize) -> [usize; 2] {
     ]
 }
 
-/// Warns of a stretch outside the range of the card, or beyond the stability of its law.
-pub fn check_range(section: &Section<'_>, key: &'static str, stretch: f64, card: &Card) {
-    let [low, high] = stable_range(&*card.law, Mode::Uniaxial);
+/// Warns of stretches outside the range of the card, or beyond the stability of its law.
+pub fn check_range(section: &Section<'_>, key: &'static str, stretches: &[f64], card: &Card) {
+    let stable = stable_range(&*card.law, Mode::Uniaxial);
+    for stretch in stretches {
+        check_stretch(section, key, *stretch, (card, stable));
+    }
+}
+
+fn check_stretch(
+    section: &Section<'_>,
+    key: &'static str,
+    stretch: f64,
+    (card, [low, high]): (&Card, [f64; 2]),
+) {
     let end = if stretch > 0.0 {
         (1.0 + stretch > high && high < SEARCHED[1]).then_some(("tension", "up", high))
     } else {
@@ -248,7 +260,10 @@ mod tests {
                         cells.iter().all(|n| n % 2 == 0 && *n <= MOST_CELLS),
                         "{told}"
                     );
-                    assert!(cells[0] * cells[1] <= MOST_CELLS_IN_ALL, "{told}");
+                    assert!(
+                        cells[0] * cells[1] <= Budget::USUAL.cells as usize,
+                        "{told}"
+                    );
                 }
             }
         }

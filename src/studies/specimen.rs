@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::budget::Budget;
 use crate::document::Section;
 use crate::error::{Diagnostic, Error};
 use crate::results::Outcome;
@@ -32,8 +33,9 @@ pub fn load(
     case: &Kind,
     file: &Path,
     text: &str,
+    budget: Budget,
 ) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
-    let read = case.read_with(file, text, read::read)?;
+    let read = case.read_with(file, text, budget, read::read)?;
     let specimen = read.made.expect("a study without faults has a specimen");
     Ok((read.title, specimen, read.warnings))
 }

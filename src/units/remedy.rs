@@ -81,7 +81,7 @@ impl QuantityFault {
                     dimension.units().collect::<Vec<_>>().join(", ")
                 ),
             },
-            Self::NotANumber | Self::WrongDimension { .. } => {
+            Self::NotANumber | Self::OutOfRange(_) | Self::WrongDimension { .. } => {
                 format!(
                     "write a {} such as {}",
                     dimension.name(),

@@ -10,8 +10,8 @@ use super::case::{Check, Outcome, Prepared, check, largest, section};
 use super::plate::CORRECTOR;
 use crate::corrector::{CorrectionMatrix, Corrector, Factor, Linear, Projection, Solver, retained};
 use crate::document::Section;
-use crate::error::{Error, SolveFault};
-use crate::solve::{NotPositiveDefinite, SparseRows};
+use crate::error::Error;
+use crate::solve::{FactorFault, SparseRows};
 
 #[derive(Clone, Copy)]
 struct Settings {
@@ -38,10 +38,10 @@ pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
         settings
     });
     Box::new(move |_| {
-        compute(settings).map_err(|NotPositiveDefinite| Error::Solve {
+        compute(settings).map_err(|fault| Error::Solve {
             model: "corrector".into(),
             step: "a random system".into(),
-            fault: SolveFault::Singular,
+            fault: fault.into(),
         })
     })
 }
@@ -63,7 +63,7 @@ fn random_numbers(random: &mut ChaCha8Rng, size: usize) -> Vec<f64> {
     (0..size).map(|_| random.random_range(-1.0..1.0)).collect()
 }
 
-fn compute(settings: Settings) -> Result<Outcome, NotPositiveDefinite> {
+fn compute(settings: Settings) -> Result<Outcome, FactorFault> {
     let Settings {
         unknowns,
         conditions,
@@ -113,7 +113,7 @@ fn same_projection(form: &str, distance: f64) -> Check {
 }
 
 /// What Eq. 14 and 16–19 say of Y, S and B.
-fn properties(rows: &SparseRows, square: &SparseRows) -> Result<Vec<Check>, NotPositiveDefinite> {
+fn properties(rows: &SparseRows, square: &SparseRows) -> Result<Vec<Check>, FactorFault> {
     let (unknowns, conditions) = (rows.columns(), rows.len());
     let matrix = CorrectionMatrix::new(rows, vec![1.0; unknowns])?;
     let (y, s, b) = (matrix.y(), matrix.s(), matrix.b());
@@ -151,16 +151,16 @@ struct System {
 }
 
 impl System {
-    fn factor(&self, solver: Solver) -> Result<Factor, NotPositiveDefinite> {
+    fn factor(&self, solver: Solver) -> Result<Factor, FactorFault> {
         Factor::new(self.rows.clone(), vec![1.0; self.pull.len()], None, solver)
     }
 
-    fn project(&self, solver: Solver) -> Result<Projection, NotPositiveDefinite> {
+    fn project(&self, solver: Solver) -> Result<Projection, FactorFault> {
         self.factor(solver)?.project(&self.values, &self.pull)
     }
 
     /// The sparse forms of the projection compared with the dense one.
-    fn forms(&self) -> Result<[Check; 2], NotPositiveDefinite> {
+    fn forms(&self) -> Result<[Check; 2], FactorFault> {
         let dense = self.project(Solver::Dense)?;
         let cholesky = far(&self.project(Solver::Cholesky)?, &dense);
         let kkt = far(&self.project(Solver::Kkt)?, &dense);
@@ -171,27 +171,27 @@ impl System {
     }
 
     /// Distance of a factor that was written and read to the dense form and to itself.
-    fn retained(&self) -> Result<f64, NotPositiveDefinite> {
+    fn retained(&self) -> Result<f64, FactorFault> {
         let mut kept = self.factor(Solver::Cholesky)?;
         let conditions = Linear::new("rows", self.rows.clone(), vec![0.0; self.rows.len()]);
         let weights = vec![1.0; self.pull.len()];
         let corrector = Corrector::new(vec![Box::new(conditions)], weights, CORRECTOR);
         let bytes = retained::to_bytes(&kept, &corrector);
         let read = retained::from_bytes(&bytes, &corrector);
-        let mut read = read.map_err(|_| NotPositiveDefinite)?;
+        let mut read = read.map_err(|_| FactorFault::NotPositiveDefinite)?;
         let found = read.project(&self.values, &self.pull)?;
         let before = kept.project(&self.values, &self.pull)?;
         Ok(far(&found, &self.project(Solver::Dense)?).max(far(&found, &before)))
     }
 
     /// Largest relative difference of −ψ and the derivatives of ½ ‖δ − pull‖² with respect to the right-hand sides.
-    fn derivative(&self) -> Result<f64, NotPositiveDefinite> {
+    fn derivative(&self) -> Result<f64, FactorFault> {
         let mut factor = self.factor(Solver::Dense)?;
         let psi = factor.project(&self.values, &self.pull)?.multipliers;
         let size = largest(psi.iter().copied());
         let mut worst = 0.0_f64;
         for (row, psi) in psi.iter().enumerate() {
-            let mut minimum = |step: f64| -> Result<f64, NotPositiveDefinite> {
+            let mut minimum = |step: f64| -> Result<f64, FactorFault> {
                 let mut moved = self.values.clone();
                 moved[row] -= step;
                 let found = factor.project(&moved, &self.pull)?.step;
@@ -217,7 +217,7 @@ fn far(found: &Projection, expected: &Projection) -> f64 {
 }
 
 /// Y for unequal weights compared with its definition, computed with an explicit inverse: largest difference.
-fn weighted(rows: &SparseRows, random: &mut ChaCha8Rng) -> Result<f64, NotPositiveDefinite> {
+fn weighted(rows: &SparseRows, random: &mut ChaCha8Rng) -> Result<f64, FactorFault> {
     let weights: Vec<f64> = (0..rows.columns())
         .map(|_| random.random_range(0.5..2.0))
         .collect();
@@ -226,13 +226,13 @@ fn weighted(rows: &SparseRows, random: &mut ChaCha8Rng) -> Result<f64, NotPositi
     let inverse = DMatrix::from_diagonal(&DVector::from_vec(weights).map(|weight| 1.0 / weight));
     let s = (&b * &inverse * b.transpose())
         .try_inverse()
-        .ok_or(NotPositiveDefinite)?;
+        .ok_or(FactorFault::NotPositiveDefinite)?;
     let expected = DMatrix::identity(y.nrows(), y.nrows()) - inverse * b.transpose() * s * &b;
     Ok((y - expected).amax())
 }
 
 /// The symmetric form compared with the dense one for a stiffness with every third unknown prescribed.
-fn symmetric(random: &mut ChaCha8Rng, unknowns: usize) -> Result<f64, NotPositiveDefinite> {
+fn symmetric(random: &mut ChaCha8Rng, unknowns: usize) -> Result<f64, FactorFault> {
     let a = random_rows(random, unknowns, unknowns).to_dense();
     let stiffness = &a * a.transpose() + DMatrix::identity(unknowns, unknowns);
     let mut rows = SparseRows::new(unknowns);

@@ -270,7 +270,7 @@ impl Regression {
         for (k, factor) in self.starts.iter().zip(factors) {
             let values: Vec<f64> = factor.jacobian().multiply(data);
             let projection = factor.project(&values, &vec![0.0; data.len()]);
-            let step = projection.map_err(|_| SolveFault::Singular)?.step;
+            let step = projection?.step;
             let distance: f64 = step.iter().map(|d| d * d).sum();
             if distance < best.0 {
                 let field = data.iter().zip(&step).map(|(u, d)| u + d).collect();

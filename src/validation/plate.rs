@@ -54,7 +54,7 @@ impl Plate {
         let (problem, cells) = sections::read_plate(&section, card.as_ref());
         let stretch = sections::read_stretch(&section, "stretch");
         if let Some(card) = card.filter(|_| stretch > 0.0) {
-            sections::check_range(&section, "stretch", stretch, &card);
+            sections::check_range(&section, "stretch", &[stretch], &card);
         }
         section.unknown_keys();
         let stretches = vec![stretch];

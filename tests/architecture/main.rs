@@ -10,7 +10,7 @@ use sources::{Arrows, ModulePath, Sources, expand, functions};
 /// The modules by floor, the lowest first; a module may name only modules of lower floors, and itself.
 const FLOORS: &[&[&str]] = &[
     &["error", "statistics"],
-    &["units"],
+    &["units", "budget"],
     &["document"],
     &["mesh", "material", "solve", "multigrid"],
     &["calibration"],

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::solve::{Cholesky, NotPositiveDefinite, SparseLu, SparseRows, SymmetricPattern};
+use crate::solve::{Cholesky, FactorFault, SparseLu, SparseRows, SymmetricPattern};
 
 /// Step and multipliers of one projection.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,14 +31,14 @@ pub(in crate::corrector) enum Form {
 /// δ and ψ of the system with the curvature C of the conditions: [W + C, Bᵀ; B, 0] [δ; ψ] = [W (ū − u); −c].
 ///
 /// # Errors
-/// [`NotPositiveDefinite`] when the system is singular to working precision.
+/// [`FactorFault`] when the system is singular to working precision.
 pub(in crate::corrector) fn project_curved(
     jacobian: &SparseRows,
     weights: &[f64],
     curvature: &SparseRows,
     values: &[f64],
     pull: &[f64],
-) -> Result<Projection, NotPositiveDefinite> {
+) -> Result<Projection, FactorFault> {
     let lu = SparseLu::new(kkt(jacobian, weights, Some(curvature)))?;
     project_kkt(&lu, weights, values, pull)
 }
@@ -48,7 +48,7 @@ pub(super) fn project_kkt(
     weights: &[f64],
     values: &[f64],
     pull: &[f64],
-) -> Result<Projection, NotPositiveDefinite> {
+) -> Result<Projection, FactorFault> {
     let weighted = pull.iter().zip(weights).map(|(pull, weight)| pull * weight);
     let right: Vec<f64> = weighted.chain(values.iter().map(|c| -c)).collect();
     let mut step = lu.solve(&right)?;
@@ -81,7 +81,7 @@ pub(super) fn kkt(
     system
 }
 
-pub(super) fn dense(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, NotPositiveDefinite> {
+pub(super) fn dense(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, FactorFault> {
     let (q, r) = weighted_qr(jacobian, weights)?;
     Ok(Form::Dense { q, r })
 }
@@ -89,25 +89,27 @@ pub(super) fn dense(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, NotP
 /// Q (n × m, orthonormal columns) and R (m × m) of W^(−½) Bᵀ = Q R.
 ///
 /// # Errors
-/// [`NotPositiveDefinite`] when rows of B depend on each other.
+/// [`FactorFault`] when rows of B depend on each other.
 pub(in crate::corrector) fn weighted_qr(
     jacobian: &SparseRows,
     weights: &[f64],
-) -> Result<(DMatrix<f64>, DMatrix<f64>), NotPositiveDefinite> {
+) -> Result<(DMatrix<f64>, DMatrix<f64>), FactorFault> {
     let (n, m) = (weights.len(), jacobian.len());
     let mut transposed = jacobian.to_dense().transpose();
     for (mut row, weight) in transposed.row_iter_mut().zip(weights) {
         row /= weight.sqrt();
     }
     if m > n || transposed.iter().any(|value: &f64| !value.is_finite()) {
-        return Err(NotPositiveDefinite);
+        return Err(FactorFault::NotPositiveDefinite);
     }
     let columns = transposed.column_iter();
     let norms: Vec<f64> = columns.map(|column| column.norm()).collect();
     let (q, r) = transposed.qr().unpack();
     let mut rows = norms.iter().enumerate();
     let independent = rows.all(|(row, norm)| r[(row, row)].abs() > 1e-10 * norm);
-    independent.then_some((q, r)).ok_or(NotPositiveDefinite)
+    independent
+        .then_some((q, r))
+        .ok_or(FactorFault::NotPositiveDefinite)
 }
 
 /// With W^(−½) Bᵀ = Q R and δ = W^(−½) δ̂: δ̂ = p − Q (Qᵀ p + R⁻ᵀ c), p = W^½ (ū − u).
@@ -145,10 +147,7 @@ pub(super) fn normal(jacobian: &SparseRows, weights: &[f64]) -> Normal {
     (scaled, scales, pattern, values)
 }
 
-pub(super) fn cholesky(
-    jacobian: &SparseRows,
-    weights: &[f64],
-) -> Result<Form, NotPositiveDefinite> {
+pub(super) fn cholesky(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, FactorFault> {
     let (scaled, scales, pattern, values) = normal(jacobian, weights);
     let mut cholesky = Cholesky::analyse(pattern)?;
     cholesky.factorise(&values)?;
@@ -167,7 +166,7 @@ pub(super) fn project_cholesky(
     weights: &[f64],
     values: &[f64],
     pull: &[f64],
-) -> Result<Projection, NotPositiveDefinite> {
+) -> Result<Projection, FactorFault> {
     let mut step = pull.to_vec();
     let mut multipliers = vec![0.0; values.len()];
     for _ in 0..2 {
@@ -202,7 +201,7 @@ impl Symmetric {
     pub(super) fn analyse(
         jacobian: &SparseRows,
         unknowns: Vec<usize>,
-    ) -> Result<(Self, Vec<f64>), NotPositiveDefinite> {
+    ) -> Result<(Self, Vec<f64>), FactorFault> {
         let is_free = |row: &usize| jacobian.row(*row) != [(unknowns[*row], 1.0)];
         let (free, prescribed): (Vec<usize>, Vec<usize>) = (0..unknowns.len()).partition(is_free);
         let mut free_index = vec![None; unknowns.len()];
@@ -242,10 +241,7 @@ impl Symmetric {
         ))
     }
 
-    pub(super) fn new(
-        jacobian: &SparseRows,
-        unknowns: Vec<usize>,
-    ) -> Result<Self, NotPositiveDefinite> {
+    pub(super) fn new(jacobian: &SparseRows, unknowns: Vec<usize>) -> Result<Self, FactorFault> {
         let (mut symmetric, values) = Self::analyse(jacobian, unknowns)?;
         symmetric.cholesky.factorise(&values)?;
         Ok(symmetric)
@@ -257,7 +253,7 @@ impl Symmetric {
         weights: &[f64],
         values: &[f64],
         pull: &[f64],
-    ) -> Result<Projection, NotPositiveDefinite> {
+    ) -> Result<Projection, FactorFault> {
         let unknowns = &self.unknowns;
         let mut step = vec![0.0; unknowns.len()];
         for row in &self.prescribed {

@@ -66,11 +66,10 @@ impl EquationOfMotion<'_> {
         start: &Start,
         settings: WindowSettings,
     ) -> Result<CorrectedMotion, SolveFault> {
-        let singular = |_| SolveFault::Singular;
         let cholesky = self
             .assembly
             .analyse(self.motion.energy)
-            .map_err(singular)?;
+            .map_err(SolveFault::from)?;
         let mut retained = RetainedFactor {
             cholesky,
             fresh: false,
@@ -163,7 +162,7 @@ impl EquationOfMotion<'_> {
                 retained
                     .cholesky
                     .factorise(&newest)
-                    .map_err(|_| SolveFault::NotPositiveDefinite)?;
+                    .map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
                 retained.fresh = true;
                 retained.made += 1;
             }

@@ -315,7 +315,13 @@ fn quantity(value: &DeValue<'_>, dimension: Dimension) -> Result<f64, (String, S
             (format!("\"{text}\" {fault}"), hint)
         }),
         other => match plain_number(other) {
-            Some(number) if dimension == Dimension::Ratio => Ok(number),
+            Some(number) if dimension == Dimension::Ratio => match dimension.admits(number) {
+                true => Ok(number),
+                false => {
+                    let fault = QuantityFault::OutOfRange(dimension);
+                    Err((fault.to_string(), fault.remedy("", dimension)))
+                }
+            },
             Some(number) => {
                 let text = number.to_string();
                 let hint = QuantityFault::MissingUnit.remedy(&text, dimension);

@@ -131,7 +131,8 @@ impl Reader {
             }
             (Block::Elements, ["-2", ..]) => {
                 let (_, own) = self.element.as_mut().ok_or_else(|| fault("element"))?;
-                for field in line.as_bytes()[3..].chunks(self.width) {
+                let fields = line.as_bytes().get(3..).unwrap_or_default();
+                for field in fields.chunks(self.width) {
                     let field = std::str::from_utf8(field).unwrap_or_default().trim();
                     own.push(field.parse().map_err(|_| fault("number of a node"))?);
                 }

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
-use crate::document::inputs;
+use crate::document::file;
 use crate::mesh::cell_shape::CellShape;
 use crate::mesh::cells::Mesh;
-use crate::mesh::geometry::polygon_area;
+use crate::mesh::geometry::{check_size, polygon_area};
 
 /// Displacements by the file's own number of the node.
 pub type Displacements = HashMap<u64, [f64; 2]>;
@@ -26,25 +26,10 @@ pub struct Raw {
     pub points: BTreeMap<String, Vec<u64>>,
 }
 
-/// Bytes of a file that is read.
-const MOST_BYTES: u64 = 4 << 30;
-
 /// The bytes of a file.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    let unreadable = |cause| format!("cannot be read: {cause}");
-    let about = std::fs::metadata(path).map_err(unreadable)?;
-    if !about.is_file() {
-        return Err("is no file".into());
-    }
-    if about.len() > MOST_BYTES {
-        let size = about.len() >> 30;
-        return Err(format!(
-            "has {size} GiB; at most {} are read",
-            MOST_BYTES >> 30
-        ));
-    }
-    inputs::note(path);
-    std::fs::read(path).map_err(unreadable)
+    let bytes = file::read_bytes(path, file::MOST_OF_DATA);
+    bytes.map_err(|fault| format!("cannot be read: {fault}"))
 }
 
 /// The text of a file.
@@ -69,7 +54,8 @@ impl Raw {
             let Some([x, y, _]) = self.places.get(&name) else {
                 continue;
             };
-            let [i, j] = [x, y].map(|x| (x / tolerance).floor() as i64);
+            // Beyond 2⁵³ squares numbers are no longer told apart.
+            let [i, j] = [x, y].map(|x| (x / tolerance).clamp(-9e15, 9e15).floor() as i64);
             let around = (-1..=1).flat_map(|di| (-1..=1).map(move |dj| [i + di, j + dj]));
             let others = around.filter_map(|square| squares.get(&square)).flatten();
             let near = |other: &&u64| {
@@ -116,6 +102,8 @@ impl Raw {
             names.insert(name, nodes.len());
             nodes.push([unit * x, unit * y]);
         }
+        let sized = check_size(nodes.iter().copied());
+        sized.map_err(|measures| format!("has nodes that {measures}"))?;
         let cells: Vec<_> = self
             .cells
             .iter()

@@ -1,5 +1,7 @@
 //! Why points or lines make no outline.
 
+use crate::mesh::geometry::OutOfSize;
+
 /// Why points or lines make no outline.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum OutlineFault {
@@ -15,6 +17,12 @@ pub enum OutlineFault {
     /// The points lie in several parts.
     #[error("the points lie in two separated parts, one of them near ({:.4}, {:.4}) mm", .0[0], .0[1])]
     SeparatedPoints([f64; 2]),
+    /// Points as no specimen has them.
+    #[error("the points {0}")]
+    Size(#[from] OutOfSize),
+    /// Lines of too many points.
+    #[error("the outline has {0} points, which is more than {most}; leave some out", most = Self::MOST_POINTS)]
+    TooMany(usize),
     /// No line at all.
     #[error("the outline has no line")]
     NoLine,
@@ -27,4 +35,9 @@ pub enum OutlineFault {
     /// A line outside of the outer one.
     #[error("the outline has two separated parts, one of them near ({:.4}, {:.4}) mm", .0[0], .0[1])]
     SeparatedLines([f64; 2]),
+}
+
+impl OutlineFault {
+    /// Points of an outline at most.
+    pub const MOST_POINTS: usize = 30_000;
 }

@@ -74,16 +74,14 @@ pub fn straightened(line: &[[f64; 2]], near: f64) -> Vec<[f64; 2]> {
 
 /// Adds the points that a line needs after its first one.
 fn keep(line: &[[f64; 2]], near: f64, kept: &mut Vec<[f64; 2]>) {
-    let (first, last) = (line[0], line[line.len() - 1]);
-    let inner = 1..line.len().saturating_sub(1);
-    let far = |point: usize| distance([first, last], line[point]);
-    let most = inner.max_by(|a, b| far(*a).total_cmp(&far(*b)));
-    match most.filter(|most| far(*most) > near) {
-        Some(most) => {
-            keep(&line[..=most], near, kept);
-            keep(&line[most..], near, kept);
+    let mut open = vec![(0, line.len() - 1)];
+    while let Some((from, to)) = open.pop() {
+        let far = |point: usize| distance([line[from], line[to]], line[point]);
+        let most = (from + 1..to).max_by(|a, b| far(*a).total_cmp(&far(*b)));
+        match most.filter(|most| far(*most) > near) {
+            Some(most) => open.extend([(most, to), (from, most)]),
+            None => kept.push(line[to]),
         }
-        None => kept.push(last),
     }
 }
 
@@ -142,13 +140,17 @@ pub fn divided(line: &[[f64; 2]], size: f64) -> Vec<[f64; 2]> {
 
 /// A place where edges of lines cross or touch that do not follow each other.
 pub fn crossing(lines: &[Polygon]) -> Option<[f64; 2]> {
-    let edges: Vec<(usize, [[f64; 2]; 2])> = lines
+    let mut edges: Vec<(usize, [[f64; 2]; 2])> = lines
         .iter()
         .enumerate()
         .flat_map(|(line, polygon)| polygon.edges().map(move |edge| (line, edge)))
         .collect();
+    let left = |(_, [a, b]): &(usize, [[f64; 2]; 2])| a[0].min(b[0]);
+    edges.sort_by(|one, other| left(one).total_cmp(&left(other)));
     for (i, (line, [a, b])) in edges.iter().enumerate() {
-        for (other, [c, d]) in &edges[i + 1..] {
+        let right = a[0].max(b[0]);
+        let beside = edges[i + 1..].iter();
+        for (other, [c, d]) in beside.take_while(|edge| left(edge) <= right) {
             // Neighbours have a point in common; they cross where one runs back on the other.
             if line == other && b == c {
                 if a != d && distance([*a, *b], *d) == 0.0 {

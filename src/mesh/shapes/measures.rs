@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::Shape;
+use super::{MOST_RATIO, Shape};
 
 /// What a measure must be below, in mm or degrees, and why.
 type Demand = (&'static str, f64, f64, &'static str);
@@ -14,12 +14,22 @@ impl Shape {
     /// Says which measure does not fit, and what would.
     pub fn check(self) -> Result<(), Misfit> {
         let mut demands = self.demands().into_iter();
-        match demands.find(|(_, value, limit, _)| *value >= *limit) {
-            None => Ok(()),
-            Some((measure, _, limit, reason)) => Err(Misfit {
+        if let Some((measure, _, limit, reason)) =
+            demands.find(|(_, value, limit, _)| *value >= *limit)
+        {
+            return Err(Misfit {
                 measure,
                 reason,
                 limit,
+            });
+        }
+        let [least, most] = self.extremes();
+        match most <= MOST_RATIO * least {
+            true => Ok(()),
+            false => Err(Misfit {
+                measure: "shape",
+                reason: "its measures differ by more than 100,000 times",
+                limit: 0.0,
             }),
         }
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::conditions::Conditions;
+use crate::budget::Budget;
 use crate::markers::ReadSettings;
 use crate::mesh::{CellShape, MeshReading};
 
@@ -38,4 +39,6 @@ pub struct Request {
     pub holes: bool,
     /// What is known besides.
     pub conditions: Conditions,
+    /// What it may ask for.
+    pub budget: Budget,
 }

@@ -3,15 +3,17 @@
 use std::path::Path;
 
 use super::request::{MeshSource, Request};
+use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, read_lines};
-use crate::mesh::{Allowed, Mesh, Outline, OutlineFault, import};
+use crate::mesh::{Allowed, CellShape, Mesh, Outline, OutlineFault, import};
 
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
 
-/// A mesh that is asked for has at most about so many.
-const TOO_MANY_CELLS: f64 = 1e6;
+/// Memory of an unknown of an estimate, with its intervals and what is written: as measured. Meshes that are refined for their
+/// own error take more of it, but are small.
+const BYTES_OF_AN_UNKNOWN: f64 = 12_000.0;
 
 /// A mesh that is made has at least about so many cells across the specimen, if no size is given.
 const LEAST_ACROSS: f64 = 12.0;
@@ -48,9 +50,20 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
             "leave out --edge-gap (edge_gap), or the mesh and the outline",
         ));
     }
+    let frames = field.series.frames.len();
+    let whole = |mesh: &Mesh, place: &str| {
+        let need = need(mesh.cell_count() as f64, mesh.nodes.len() as f64, frames);
+        affords(
+            request,
+            need,
+            &format!("the mesh {place}"),
+            "take a coarser mesh or fewer frames",
+        )
+    };
     match (&request.mesh, &field.mesh) {
         (MeshSource::File(path, reading), _) => {
             let (mesh, warnings) = import(path, *reading).map_err(Error::Input)?;
+            whole(&mesh, &format!("of {}", path.display()))?;
             let origin = format!("from {}", path.display());
             Ok(SpecimenMesh {
                 warnings,
@@ -58,7 +71,10 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
             })
         }
         (MeshSource::Outline(path), _) => in_outline(request, path, field),
-        (MeshSource::Data, Some(mesh)) => Ok(of_field(mesh)),
+        (MeshSource::Data, Some(mesh)) => {
+            whole(mesh, "of the field")?;
+            Ok(of_field(mesh))
+        }
         (MeshSource::Data, None) => of_markers(request, field),
     }
 }
@@ -72,7 +88,7 @@ fn in_outline(request: &Request, path: &Path, field: &MarkerFiles) -> Result<Spe
     })?;
     let markers = field.series.places().len() as f64;
     let spacing = (outline.area() / markers).sqrt();
-    let mesh = made(request, &outline, spacing)?;
+    let mesh = made(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!("made inside the outline of {}", path.display());
     Ok(SpecimenMesh::known(mesh, origin))
 }
@@ -115,7 +131,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     if let Some(gap) = gap {
         outline = outline.widened(gap).map_err(refuse)?;
     }
-    let mesh = made(request, &outline, found.spacing)?;
+    let mesh = made(request, &outline, found.spacing, field.series.frames.len())?;
     let spacing = found.spacing;
     let mut origin =
         format!("made inside the outline of the markers, which are about {spacing:.4} mm apart");
@@ -143,7 +159,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
 
 /// A mesh inside an outline. Without a wish its cells are as long as the markers' spacing, but at least 12 go across
 /// the specimen and at most about 20,000 are made.
-fn made(request: &Request, outline: &Outline, spacing: f64) -> Result<Mesh, Error> {
+fn made(request: &Request, outline: &Outline, spacing: f64, frames: usize) -> Result<Mesh, Error> {
     // Of a triangle with edges of length 1.
     let cell_area = 3f64.sqrt() / 4.0;
     let smallest = |cells: f64| (outline.area() / (cells * cell_area)).sqrt();
@@ -162,9 +178,37 @@ fn made(request: &Request, outline: &Outline, spacing: f64) -> Result<Mesh, Erro
         let message = format!("cells of {size} mm are too large for a specimen of {across:.4} mm");
         return Err(Error::input(message, "choose a smaller --cell-size"));
     }
-    if size < smallest(TOO_MANY_CELLS) {
-        let message = format!("cells of {size} mm would be more than a million");
-        return Err(Error::input(message, "choose a larger --cell-size"));
-    }
+    let triangles = outline.area() / (size * size * cell_area);
+    let (cells, nodes) = match request.shape {
+        CellShape::Triangle3 => (triangles, 0.5 * triangles),
+        CellShape::Quad4 => (3.0 * triangles, 3.0 * triangles),
+        CellShape::Quad8 => (3.0 * triangles, 9.0 * triangles),
+        CellShape::Quad9 => (3.0 * triangles, 12.0 * triangles),
+        CellShape::Triangle6 => (triangles, 2.0 * triangles),
+    };
+    let remedy = "choose a larger --cell-size";
+    affords(
+        request,
+        need(cells, nodes, frames),
+        &format!("a mesh of cells of {size} mm"),
+        remedy,
+    )?;
     Ok(outline.mesh(size, request.shape))
+}
+
+/// What so many frames on a mesh will use.
+fn need(cells: f64, nodes: f64, frames: usize) -> Need {
+    let (unknowns, instants) = (2.0 * nodes, frames as f64);
+    Need {
+        cells,
+        instants,
+        unknowns,
+        bytes: unknowns * (BYTES_OF_AN_UNKNOWN + 200.0 * instants),
+        ..Need::default()
+    }
+}
+
+fn affords(request: &Request, need: Need, what: &str, smaller: &str) -> Result<(), Error> {
+    let excess = |excess: Excess| Error::input(format!("{what} {excess}"), excess.remedy(smaller));
+    request.budget.afford(need).map_err(excess)
 }

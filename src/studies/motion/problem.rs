@@ -1,7 +1,9 @@
 //! A plate that moves: supports, loads, start, and what is computed.
 
+use crate::budget::Need;
 use crate::dynamics::{
-    Motion, MovingForce, MovingSupport, Start, TimeFunction, TimeSettings, Viscosity, lumped_mass,
+    Integrator, Motion, MovingForce, MovingSupport, Start, Step, TimeFunction, TimeSettings,
+    Viscosity, lumped_mass,
 };
 use crate::error::Error;
 use crate::finite_element::Element;
@@ -17,6 +19,9 @@ const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
     max_iterations: 60,
 };
+
+/// Memory of an unknown at an instant, with what is written of it: as measured.
+const BYTES_OF_AN_INSTANT: f64 = 200.0;
 
 /// A point of the plate that is watched.
 pub struct Probe {
@@ -82,6 +87,50 @@ pub struct MovingPlate {
 }
 
 impl MovingPlate {
+    /// What its motion will use. With the wave speed c at rest and cells of the side a, velocity Verlet takes steps of about
+    /// half of the longest stable one, which is shorter in a stretched or damped plate:
+    ///
+    /// ```text
+    /// c² = 4 μ/ρ,   h ≈ a/(2 c),   steps = duration/h
+    /// ```
+    pub fn need(&self) -> Need {
+        let TimeSettings {
+            duration,
+            interval,
+            step,
+            integrator,
+        } = self.time;
+        let (element, fine) = self.element;
+        let cells = |cells: [usize; 2]| cells[0] as f64 * cells[1] as f64;
+        let per_cell = match element {
+            Element::Q1 => 2.0,
+            Element::Q2 => 8.0,
+        };
+        let unknowns = (2.0 * cells(self.cells)).max(per_cell * cells(fine));
+        let instants =
+            duration / interval + (self.grip.kinks().len() + 2 * self.forces.len()) as f64;
+        let side = |cells: [usize; 2]| {
+            let sides = [0, 1].map(|axis| self.problem.size[axis] / cells[axis] as f64);
+            sides[0].min(sides[1])
+        };
+        let speed = (4.0 * self.problem.law.shear_modulus() / self.density).sqrt();
+        let step = match (step, integrator) {
+            (Step::AtMost(step), _) => step.min(interval),
+            (Step::Automatic, Integrator::VelocityVerlet) => {
+                side(self.cells).min(side(fine)) / (2.0 * speed)
+            }
+            (Step::Automatic, Integrator::GeneralisedAlpha { .. }) => interval,
+        };
+        Need {
+            cells: cells(self.cells).max(cells(fine)),
+            instants,
+            steps: duration / step,
+            unknowns,
+            bytes: unknowns
+                * (3000.0 + BYTES_OF_AN_INSTANT * instants + 8.0 * self.forces.len() as f64),
+        }
+    }
+
     /// The motion of a model of the plate.
     pub fn motion<'a>(
         &self,

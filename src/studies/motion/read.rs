@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::functions::{GripMotion, STRETCHES, largest, read_damping, read_grip, read_stiffness};
 use super::problem::{MovingPlate, PointForce, Probe, Tolerances};
+use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::dynamics::{Integrator, Step, TimeFunction, TimeSettings};
 use crate::finite_element::Element;
@@ -15,9 +16,6 @@ use crate::material::viscosity::ViscousMaterial;
 use crate::problem::ClampedPlate;
 use crate::studies::sections;
 use crate::units::Dimension;
-
-/// Most instants: every one is kept in memory.
-const MOST_INSTANTS: f64 = 20_000.0;
 
 /// The plate's material in motion.
 struct Material {
@@ -47,16 +45,17 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let (start, grip) = read_stretches(root, material.card.as_ref());
     let gravity = read_gravity(&root.section("gravity"));
     let forces = tables(root, "force", |one| read_force(one, &problem));
-    let time = read_time(&root.section("time").requiring(&["duration"]));
+    let in_time = root.section("time").requiring(&["duration"]);
+    let time = read_time(&in_time);
     let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity);
     let section = root.section("finite_element");
     let element = section.choice("element", &Element::NAMES);
-    let element_cells = section.count_pair("cells", 1, 500);
+    let element_cells = section.count_pair("cells", 1, sections::MOST_CELLS);
     section.unknown_keys();
     let probes = tables(root, "probe", |probe| read_probe(probe, &problem));
     let tolerances = read_tolerances(&root.section("tolerances"));
     let (grip, card) = (grip?, material.card?);
-    Some(MovingPlate {
+    let plate = MovingPlate {
         problem: ClampedPlate {
             law: Arc::clone(&card.law),
             stretches: (start != 0.0).then_some(start).into_iter().collect(),
@@ -77,8 +76,22 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
         element: (element?, element_cells?),
         probes,
         tolerances,
-    })
+    };
+    let need = plate.need();
+    let (steps, rest) = (need.steps, Need { steps: 0.0, ..need });
+    let steps = Need {
+        steps,
+        ..Need::default()
+    };
+    let affords =
+        in_time.affords("step", steps, FEWER_STEPS) && in_time.affords("interval", rest, SMALLER);
+    affords.then_some(plate)
 }
+
+/// What makes a motion smaller.
+const FEWER_STEPS: &str = "take a shorter duration, longer steps, or generalised-α; a short automatic step comes from small \
+                           cells, little density or a stiff material";
+const SMALLER: &str = "take a shorter duration, longer intervals or fewer cells";
 
 /// All tables of a kind; none where the study has none.
 fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T) -> Vec<T> {
@@ -113,14 +126,14 @@ fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotio
     let section = root.section("start").requiring(&["stretch"]);
     let start = section.quantity("stretch", Dimension::Ratio, STRETCHES);
     if let Some(card) = card.filter(|_| start > 0.0) {
-        sections::check_range(&section, "stretch", start, card);
+        sections::check_range(&section, "stretch", &[start], card);
     }
     section.unknown_keys();
     let section = root.section("grip").requiring(&["motion", "time"]);
     let grip = read_grip(&section, start);
     let most = grip.as_ref().map_or(0.0, |grip| largest(&grip.stretch));
     if let Some(card) = card.filter(|_| most > start) {
-        sections::check_range(&section, "motion", most, card);
+        sections::check_range(&section, "motion", &[most], card);
     }
     section.unknown_keys();
     (start, grip)
@@ -209,10 +222,6 @@ fn read_force(section: &Section, problem: &ClampedPlate) -> PointForce {
 fn read_time(section: &Section) -> Option<TimeSettings> {
     let instant = |key| section.quantity(key, Dimension::Time, Bound::Positive);
     let (duration, interval) = (instant("duration"), instant("interval"));
-    if duration / interval > MOST_INSTANTS {
-        let hint = format!("take at most {MOST_INSTANTS} instants");
-        section.fault("interval", "is too short for the duration", &hint);
-    }
     if interval > duration {
         section.fault(
             "interval",

@@ -5,6 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use super::problem::{Correction, OutputSettings, Reference, Study};
+use crate::budget::{Budget, Need};
 use crate::corrector::climb::ClimbSettings;
 use crate::corrector::{CorrectorSettings, DifferenceScheme};
 use crate::document::{Bound, Document, Faults, Section, name_of};
@@ -15,7 +16,7 @@ use crate::material::Card;
 use crate::problem::ClampedPlate;
 use crate::studies::name;
 use crate::studies::sections::{
-    MOST_CELLS, Tolerances, check_cells, check_range, even_cells, read_card, read_newton,
+    MOST_CELLS, Tolerances, affords_cells, check_range, even_cells, read_card, read_newton,
     read_plate,
 };
 use crate::units::Dimension;
@@ -28,13 +29,19 @@ const SMALLEST: f64 = 1e-9;
 pub const DEFAULT: &str = include_str!("default.toml");
 
 impl Study {
-    /// Checks the text of the study file `path`.
+    /// Checks the text of the study file `path`, which may ask for so much.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault of the study and of its card.
-    pub fn of_file(path: &Path, text: String) -> Result<Self, Error> {
+    pub fn of_file(path: &Path, text: String, budget: Budget) -> Result<Self, Error> {
         let folder = path.parent().unwrap_or(Path::new("."));
-        Self::parse(&name(path), &path.display().to_string(), folder, text)
+        Self::parse_within(
+            &name(path),
+            &path.display().to_string(),
+            folder,
+            text,
+            budget,
+        )
     }
 
     /// Reads a study's text; a card given by a path is looked for relative to `folder`.
@@ -42,7 +49,17 @@ impl Study {
     /// # Errors
     /// [`Error::Input`] with every fault of the study and of its card.
     pub fn parse(name: &str, file: &str, folder: &Path, text: String) -> Result<Self, Error> {
-        let faults = Faults::default();
+        Self::parse_within(name, file, folder, text, Budget::USUAL)
+    }
+
+    fn parse_within(
+        name: &str,
+        file: &str,
+        folder: &Path,
+        text: String,
+        budget: Budget,
+    ) -> Result<Self, Error> {
+        let faults = Faults::within(budget);
         let study = {
             let defaults = Document::parse("default.toml", DEFAULT, &faults);
             let document = Document::parse(file, &text, &faults);
@@ -71,7 +88,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let plate = root.section("plate");
     let (problem, cells) = read_plate(&plate, card.as_ref());
     plate.unknown_keys();
-    let stretches = read_stretches(&root.section("load"), card.as_ref());
+    let stretches = read_stretches(&root.section("load"), card.as_ref(), cells);
     let problem = ClampedPlate {
         stretches,
         ..problem
@@ -83,7 +100,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let mass_spring = read_newton(&section);
     section.unknown_keys();
     let corrector = read_corrector(&root.section("corrector"), &plate, (problem.size, cells));
-    let reference = read_reference(&root.section("finite_element"), problem.size, cells);
+    let reference = read_reference(&root.section("finite_element"), &problem, cells);
     let tolerances = Tolerances::read(&root.section("tolerances"), true);
     let output = read_output(&root.section("output"), name);
     root.unknown_keys();
@@ -141,9 +158,18 @@ fn read_corrector(
     })
 }
 
-fn read_reference(section: &Section<'_>, size: [f64; 2], lattice: [usize; 2]) -> Option<Reference> {
+fn read_reference(
+    section: &Section<'_>,
+    plate: &ClampedPlate,
+    lattice: [usize; 2],
+) -> Option<Reference> {
     let element = section.choice("element", &Element::NAMES);
-    let cells = read_reference_cells(section, size, lattice);
+    let cells = read_reference_cells(section, plate.size, lattice);
+    let unknowns = match element {
+        Some(Element::Q1) => 2.0,
+        _ => 8.0,
+    };
+    affords_cells(section, cells, unknowns, plate.stretches.len());
     let grading = section.number("grading", Bound::Within(1.0, 4.0));
     let newton = read_newton(section);
     section.unknown_keys();
@@ -170,7 +196,6 @@ fn read_reference_cells(section: &Section<'_>, size: [f64; 2], lattice: [usize; 
             &format!("the next are [{x}, {y}]"),
         );
     }
-    check_cells(section, cells);
     cells
 }
 
@@ -192,10 +217,15 @@ fn reference_cells(size: [f64; 2], lattice: [usize; 2]) -> [usize; 2] {
 }
 
 /// The stretches of a plate: at least one, all of one sign, from small to large, as a path from rest takes them.
-fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
+fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2]) -> Vec<f64> {
     const KEY: &str = "stretches";
     let stretches = section.quantities(KEY, Dimension::Ratio, WITH_COMPRESSIONS);
     section.unknown_keys();
+    let unknowns = 2.0 * cells[0] as f64 * cells[1] as f64;
+    let need = Need::of_states(unknowns, stretches.len() as f64);
+    if !section.affords(KEY, need, "take fewer") {
+        return stretches;
+    }
     if stretches.is_empty() {
         let hint = "such as [\"15 %\", \"30 %\"]";
         section.fault(KEY, "needs at least one stretch", hint);
@@ -219,8 +249,8 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>) -> Vec<f64> {
         let hint = "sort them by their size and leave out repetitions";
         section.fault(KEY, "must go from small to large", hint);
     }
-    for (stretch, card) in stretches.iter().zip(card.into_iter().cycle()) {
-        check_range(section, KEY, *stretch, card);
+    if let Some(card) = card {
+        check_range(section, KEY, &stretches, card);
     }
     stretches
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::problem::{Outline, Refinement, Specimen};
+use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::error::suggestion;
 use crate::mesh::{CellShape, Mesh};
@@ -41,7 +42,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let specimen = root.section("specimen").requiring(MEASURES);
     let section = &specimen;
     let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
-    let thickness = section.quantity("thickness", Dimension::Length, Bound::Positive);
+    let thickness = section.quantity("thickness", Dimension::Length, Bound::SIZE);
     let element = element.unwrap_or(CellShape::Quad9);
     let outline = name.and_then(|name| read_outline(section, name, folder, element));
     section.unknown_keys();
@@ -53,9 +54,20 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let factors = read_factors(&path);
     let group = path.text("measured_group");
     path.unknown_keys();
+    path.affords(
+        "factors",
+        Need {
+            instants: factors.len() as f64,
+            ..Need::default()
+        },
+        "take fewer",
+    );
     let tolerances = Tolerances::read(&root.section("tolerances"), false);
     let (card, name, outline) = (card?, name?, outline?);
-    let mesh = coarse(&specimen, &outline)?;
+    if !fits(section, &outline) || !affords(section, &outline, factors.len(), refinement) {
+        return None;
+    }
+    let mesh = outline.coarse();
     given.check_groups(&mesh);
     check_measured(&path, &group, &mesh);
     let specimen = Specimen {
@@ -101,21 +113,39 @@ fn check_measured(path: &Section, group: &str, mesh: &Mesh) {
     }
 }
 
-/// A coarse mesh with the groups of the specimen; `None` where its measures do not fit, which is recorded.
-fn coarse(section: &Section, outline: &Outline) -> Option<Mesh> {
+/// Whether the measures could be read, and fit together; what does not is recorded.
+fn fits(section: &Section, outline: &Outline) -> bool {
     if !outline.is_complete() {
-        return None; // told already
+        return false; // told already
     }
-    let mesh = outline.coarse();
-    if let Err(misfit) = &mesh {
+    let fits = outline.check();
+    if let Err(misfit) = &fits {
         section.fault(misfit.measure, misfit.reason, &misfit.remedy());
     }
-    mesh.ok()
+    fits.is_ok()
+}
+
+/// Whether the meshes are not too large; that they are is recorded.
+fn affords(
+    section: &Section,
+    outline: &Outline,
+    factors: usize,
+    refinement: Option<Refinement>,
+) -> bool {
+    let (key, smaller) = match (refinement, outline.is_shape()) {
+        (Some(_), _) => ("shape", "take fewer `most_cells` or load factors"),
+        (None, true) => ("cells", "take fewer, or fewer load factors"),
+        (None, false) => (
+            "file",
+            "take a coarser mesh: it is refined twice, for its own error",
+        ),
+    };
+    section.affords(key, outline.need(factors, refinement), smaller)
 }
 
 fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refinement> {
     let error = section.quantity("error", Dimension::Ratio, Bound::Within(1e-6, 0.5));
-    let most_cells = section.count("most_cells", 10, 200_000);
+    let most_cells = section.count("most_cells", 10, 1_000_000_000);
     if !section.flag("adaptive") {
         return None;
     }

@@ -84,7 +84,9 @@ fn of_many_faults_the_first_are_told_and_the_others_counted() {
 fn settings_that_contradict_each_other_are_refused() {
     assert!(faults("[plate]\ncells = [60, 10]\n")[0].contains("take [60, 20]"));
     assert!(faults("[plate]\ncells = [2, 2]\n")[0].contains("take [6, 2]"));
-    assert!(faults("[plate]\ncells = [1500, 500]\n")[0].contains("750000 cells are too many"));
+    assert!(faults("[plate]\ncells = [3000, 1000]\n")[0].contains(
+        "needs about 3,000,000 cells, and 1,000,000 are allowed (take fewer, or say --allow-large)"
+    ));
     assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
     assert!(faults("[finite_element]\ngrading = 0.5\n")[0].contains("must be"));
     assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));

@@ -1,7 +1,10 @@
 //! What of a specimen is meshed, and how.
 
+use crate::budget::Need;
 use crate::mesh::{CellShape, Mesh, Misfit, Shape};
 use crate::results::number;
+
+use super::Refinement;
 
 /// What is meshed, and how.
 pub enum Outline {
@@ -21,18 +24,43 @@ pub enum Outline {
 }
 
 impl Outline {
-    /// A coarse mesh with the groups of the specimen.
+    /// Whether the measures fit together.
     ///
     /// # Errors
-    /// Says which measures do not fit together.
-    pub fn coarse(&self) -> Result<Mesh, Misfit> {
+    /// Says which do not.
+    pub fn check(&self) -> Result<(), Misfit> {
         match self {
-            Self::Shape { shape, .. } => {
-                shape.check()?;
-                Ok(shape.mesh(2, CellShape::Quad4))
-            }
-            Self::File { mesh, .. } => Ok((**mesh).clone()),
+            Self::Shape { shape, .. } => shape.check(),
+            Self::File { .. } => Ok(()),
         }
+    }
+
+    /// A coarse mesh with the groups of the specimen.
+    pub fn coarse(&self) -> Mesh {
+        match self {
+            Self::Shape { shape, .. } => shape.mesh(2, CellShape::Quad4),
+            Self::File { mesh, .. } => (**mesh).clone(),
+        }
+    }
+
+    /// What so many states on the finest of the finite elements' meshes will use; none where local refinement decides.
+    pub fn need(&self, states: usize, refinement: Option<Refinement>) -> Need {
+        let (Self::Shape { element, .. } | Self::File { element, .. }) = self;
+        let cells = match self {
+            Self::Shape {
+                shape,
+                cells,
+                element,
+                ..
+            } => {
+                let coarser = if element.degree() == 2 { 2.0 } else { 1.0 };
+                let halves = if element.is_triangle() { 2.0 } else { 1.0 };
+                halves * shape.cell_count(4.0 * *cells as f64 / coarser)
+            }
+            Self::File { mesh, .. } => 16.0 * mesh.cell_count() as f64,
+        };
+        let cells = refinement.map_or(cells, |goal| goal.most_cells as f64);
+        Need::of_states(2.0 * nodes_per_cell(*element) * cells, states as f64).on_cells(cells)
     }
 
     /// Whether it is a shape by its measures, and no file's.
@@ -147,6 +175,17 @@ impl Outline {
             shape.fit(&mut mesh);
         }
         mesh
+    }
+}
+
+/// The nodes of a large mesh over its cells.
+fn nodes_per_cell(shape: CellShape) -> f64 {
+    match shape {
+        CellShape::Triangle3 => 0.5,
+        CellShape::Quad4 => 1.0,
+        CellShape::Triangle6 => 2.0,
+        CellShape::Quad8 => 3.0,
+        CellShape::Quad9 => 4.0,
     }
 }
 

@@ -8,6 +8,9 @@ use crate::mesh::{Allowed, CellShape, Mesh, MeshReading, Shape, import};
 use crate::studies::specimen::problem::{MESH, Outline};
 use crate::units::Dimension;
 
+/// Cells across a specimen at most; how many fit into the budget depends on its measures.
+const MOST_CELLS: usize = 10_000;
+
 /// The names of the shapes.
 pub const SHAPES: [&str; 6] = [
     MESH,
@@ -34,7 +37,7 @@ pub fn read_outline(
         });
     }
     let shape = read_shape(section, name);
-    let cells = section.count("cells", 2, 400);
+    let cells = section.count("cells", 2, MOST_CELLS);
     if !cells.is_multiple_of(2) {
         let hint = format!("one of the meshes has half as many; take {}", cells + 1);
         section.fault("cells", "must be even", &hint);
@@ -95,7 +98,7 @@ fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
 }
 
 fn read_shape(section: &Section, name: &str) -> Shape {
-    let length = |key| section.quantity(key, Dimension::Length, Bound::Positive);
+    let length = |key| section.quantity(key, Dimension::Length, Bound::SIZE);
     if name == "ring-sector" {
         return Shape::RingSector {
             radii: [length("inner_radius"), length("outer_radius")],

@@ -1,0 +1,24 @@
+//! The option that lets large studies pass.
+
+use clap::Args;
+
+use crate::budget::Budget;
+
+/// What a command may use.
+#[derive(Args)]
+pub struct Large {
+    /// Let pass what needs more than a common machine has: over a million cells, 20,000 instants or 8 GB of memory, as
+    /// estimated before anything is built
+    #[arg(long)]
+    allow_large: bool,
+}
+
+impl Large {
+    /// The budget that it stands for.
+    pub fn budget(&self) -> Budget {
+        match self.allow_large {
+            true => Budget::LARGE,
+            false => Budget::USUAL,
+        }
+    }
+}
