@@ -35,6 +35,7 @@ mod export;
 mod fit;
 mod fit_message;
 mod identify;
+mod identity;
 mod interrupt;
 mod large;
 mod materials;

@@ -2,6 +2,7 @@
 //! scale, the inverse of normal matrices, B-splines.
 
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 mod spline;
@@ -9,7 +10,7 @@ mod spline;
 pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
 /// An estimated value with its uncertainty, in the unit of the value.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Estimate {
     /// The value.
     pub value: f64,

@@ -5,23 +5,25 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
+use super::identity;
 use super::interrupt;
 use super::large::Large;
 use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
-use crate::corrector::estimation::{EdgeCondition, MeasuredForce, Physics, Robust};
+use crate::corrector::estimation::{EdgeCondition, FieldEstimate, MeasuredForce, Physics, Robust};
 use crate::error::{Diagnostic, Error};
 use crate::markers::ReadSettings;
 use crate::mesh::{Allowed, CellShape, MeshReading};
 use crate::output::{self, ResultFolder};
-use crate::studies::markers::written;
+use crate::results::NamedGrid;
+use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
 use crate::studies::markers::{Conditions, MarkerStudy, MeshSource, Request, measured_force};
 use crate::studies::name;
 use crate::studies::sections::read_text;
 use crate::units::{self, Dimension};
 
 /// What the command line says about a correction.
-#[derive(Args)]
+#[derive(Args, Debug)]
 pub struct Options {
     /// The field: .csv with x, y, ux, uy; output of DICe or muDIC; two matrices of Ncorr; .vtu, .vtk, .pvd, .msh, .frd.
     /// Several files are frames
@@ -108,7 +110,7 @@ pub struct Options {
 }
 
 /// Kinds of cells.
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Cells {
     /// Triangles of three nodes
     Triangle3,
@@ -121,7 +123,7 @@ pub enum Cells {
 }
 
 /// What gaps among markers are.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Holes {
     /// Holes of the specimen, where they are much wider than the spacing
     Found,
@@ -130,7 +132,7 @@ pub enum Holes {
 }
 
 /// Weights of markers that are far off.
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Weights {
     /// As all others
     No,
@@ -141,7 +143,7 @@ pub enum Weights {
 }
 
 /// How far the physics holds.
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Holds {
     /// Equilibrium holds exactly
     Exact,
@@ -156,17 +158,16 @@ pub fn run(options: Options) -> Outcome {
     let study = options.study.as_deref();
     let text = study.map_or(Ok(String::new()), read_text)?;
     let name = name(study.unwrap_or(&options.fields[0]));
+    let said = format!("{options:?}");
     let field = MarkerStudy::prepare(request(options)?)?;
+    let identity = identity::of(&said);
     warn(&field.warnings);
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-    let mut results_folder = ResultFolder::open(&folder, "correct", &inputs)?;
+    let mut results_folder = ResultFolder::resume(&folder, "correct", &inputs, &identity)?;
     interrupt::guard(&results_folder);
     let progress = Progress::of(field.series.frames.len() as u64);
     let start = Instant::now();
-    let estimates = field.estimate(&|frame| {
-        progress.tell(&format!("frame {}", frame.number));
-        progress.advance();
-    })?;
+    let estimates = estimates(&field, &mut results_folder, &progress)?;
     let seconds = start.elapsed().as_secs_f64();
     progress.tell("files");
     let results = written::results(&field, &estimates, (name, text), seconds);
@@ -182,6 +183,41 @@ pub fn run(options: Options) -> Outcome {
     ))?;
     warn(&field.all_doubts(&estimates));
     Ok(u8::from(!results.passed()))
+}
+
+/// Corrects frame after frame and writes each at once; what a run of the same identity has done is not done again.
+fn estimates(
+    field: &MarkerStudy,
+    folder: &mut ResultFolder,
+    progress: &Progress,
+) -> Result<Vec<FieldEstimate>, Error> {
+    let mut all = Vec::new();
+    for frame in &field.series.frames {
+        progress.tell(&format!("frame {}", frame.number));
+        let part = frame.number.to_string();
+        let estimate = match folder.kept(&part) {
+            Some(estimate) => estimate,
+            None => {
+                let estimate = field.estimate_frame(frame)?;
+                let files = FrameFiles::new(field, frame, &estimate);
+                for NamedGrid { name, grid, .. } in &files.grids {
+                    folder.add(&format!("vtk/{name}.vtu"), &output::vtk::grid(grid))?;
+                }
+                for (name, table) in &files.tables {
+                    folder.add(name, table.as_bytes())?;
+                }
+                folder.keep(&part, &estimate)?;
+                estimate
+            }
+        };
+        all.push(estimate);
+        progress.advance();
+    }
+    for series in SERIES {
+        let collection = output::vtk::collection(&played(field, series));
+        folder.add(&format!("vtk/{series}.pvd"), &collection)?;
+    }
+    Ok(all)
 }
 
 /// The files that the results follow from.

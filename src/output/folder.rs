@@ -19,6 +19,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use crate::error::Error;
 
 mod inputs;
@@ -146,7 +149,7 @@ impl ResultFolder {
     ///
     /// # Errors
     /// [`Error::Write`] when it cannot be written.
-    pub fn keep(&mut self, part: &str, record: &[u8]) -> Result<(), Error> {
+    pub fn keep(&mut self, part: &str, record: &impl Serialize) -> Result<(), Error> {
         let files = &self.names[self.kept..];
         let fault = |cause: postcard::Error| Error::write(&self.path, cause);
         let note = postcard::to_allocvec(&(files, record)).map_err(fault)?;
@@ -159,10 +162,10 @@ impl ResultFolder {
     }
 
     /// The record of a part of the work that is done already; its files are among those of this run then.
-    pub fn kept(&mut self, part: &str) -> Option<Vec<u8>> {
+    pub fn kept<T: DeserializeOwned>(&mut self, part: &str) -> Option<T> {
         let partial = &self.unfinished.partial;
         let note = fs::read(partial.join(PARTS).join(part)).ok()?;
-        let (files, record): (Vec<String>, Vec<u8>) = postcard::from_bytes(&note).ok()?;
+        let (files, record): (Vec<String>, T) = postcard::from_bytes(&note).ok()?;
         if !files.iter().all(|name| partial.join(name).is_file()) {
             return None;
         }

@@ -16,7 +16,7 @@ pub fn files(series: &GridSeries) -> impl Iterator<Item = (String, Vec<u8>)> {
     let file = |name: &str| format!("{name}.vtu");
     let timed = grids.clone();
     let timed: Vec<_> = timed
-        .filter_map(|named| Some((named.time?, file(&named.name))))
+        .filter_map(|named| Some((named.time?, named.name.clone())))
         .collect();
     let played = (!timed.is_empty()).then(|| (format!("{}.pvd", series.name), collection(&timed)));
     let files = grids.map(move |named| (file(&named.name), grid(&named.grid)));
@@ -102,12 +102,12 @@ fn attribute(array: &Array) -> Attribute {
     })
 }
 
-/// ParaView's collection of files, with the stretch or the load factor as their times.
-fn collection(files: &[(f64, String)]) -> Vec<u8> {
+/// ParaView's collection of `.vtu` files by their names, with the stretch or the load factor as their times.
+pub fn collection(grids: &[(f64, String)]) -> Vec<u8> {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
-    let steps = files.iter();
-    let data_set = |writer: &mut Writer<Vec<u8>>, (time, file): &(f64, String)| {
-        let time = time.to_string();
+    let steps = grids.iter();
+    let data_set = |writer: &mut Writer<Vec<u8>>, (time, name): &(f64, String)| {
+        let (time, file) = (time.to_string(), format!("{name}.vtu"));
         let attributes = [
             ("timestep", time.as_str()),
             ("part", "0"),

@@ -134,29 +134,33 @@ impl MarkerStudy {
     ///
     /// # Errors
     /// As [`estimate`], with the frame in its message.
-    pub fn estimate(&self, told: &dyn Fn(&Frame)) -> Result<Vec<FieldEstimate>, Error> {
+    pub fn estimate(&self) -> Result<Vec<FieldEstimate>, Error> {
+        let frames = self.series.frames.iter();
+        frames.map(|frame| self.estimate_frame(frame)).collect()
+    }
+
+    /// Estimates the field of a frame.
+    ///
+    /// # Errors
+    /// As [`estimate`], with the frame in its message.
+    pub fn estimate_frame(&self, frame: &Frame) -> Result<FieldEstimate, Error> {
         let specimen = Specimen {
             mesh: &self.mesh,
             law: Arc::clone(&self.card.law),
             thickness: self.thickness,
         };
-        let frames = &self.series.frames;
-        let of_frame = |frame: &Frame| {
-            told(frame);
-            let law = self.regressed.as_ref();
-            let knowledge = self.conditions.knowledge(frame.number, law);
-            let found = match &self.coarse {
-                None => estimate(&specimen, &frame.markers, &knowledge),
-                Some(coarse) => {
-                    let markers = frame.markers.iter();
-                    let field: Vec<f64> = markers.flat_map(|marker| marker.displacement).collect();
-                    transfer(&specimen, (coarse, &field), &knowledge)
-                }
-            };
-            let found = found.map(|found| self.with_unknown_edge(found));
-            found.map_err(|error| of_one_frame(error, frame.number, frames.len()))
+        let law = self.regressed.as_ref();
+        let knowledge = self.conditions.knowledge(frame.number, law);
+        let found = match &self.coarse {
+            None => estimate(&specimen, &frame.markers, &knowledge),
+            Some(coarse) => {
+                let markers = frame.markers.iter();
+                let field: Vec<f64> = markers.flat_map(|marker| marker.displacement).collect();
+                transfer(&specimen, (coarse, &field), &knowledge)
+            }
         };
-        frames.iter().map(of_frame).collect()
+        let found = found.map(|found| self.with_unknown_edge(found));
+        found.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
     }
 }
 

@@ -1,5 +1,9 @@
 //! An estimated field with what the data say about its uncertainty.
 
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
 use super::knowledge::{EdgeCondition, MeasuredForce};
 use crate::statistics::Estimate;
 
@@ -9,7 +13,7 @@ use crate::statistics::Estimate;
 /// displacements, forces and parameters e comes from the same equations on cells half as large, of stress and thickness from the
 /// recovered gradient. They know nothing of a wrong material or a wrong thickness.
 /// `± reach · standard error` is the 95 % interval.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct FieldEstimate {
     /// ux, uy of node after node in mm.
     pub displacement: Vec<f64>,
@@ -42,13 +46,13 @@ pub struct FieldEstimate {
     /// Forces on the interior in N on node after node that stand for what the physics lacks; zero where it is exact.
     pub interior_forces: Vec<f64>,
     /// The rule by which data, smoothness and physics were traded.
-    pub rule: &'static str,
+    pub rule: Cow<'static, str>,
     /// How smooth the edges of unknown motion came out by the rule, and how large the forces on the interior.
     pub smoothing: Vec<Smoothing>,
     /// The condition of each part of the boundary.
     pub edges: Vec<EdgeOutcome>,
     /// The parameters of the law that were found: key, unit, estimate.
-    pub parameters: Vec<(&'static str, &'static str, Estimate)>,
+    pub parameters: Vec<(Cow<'static, str>, Cow<'static, str>, Estimate)>,
     /// Steps of the search.
     pub steps: usize,
     /// Whether the standard errors of displacements, forces and parameters hold the mesh's own error: of meshes with too many
@@ -66,7 +70,7 @@ pub struct FieldEstimate {
 }
 
 /// A measured force and that of the field.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct ForceCheck {
     /// What was measured.
     pub measured: MeasuredForce,
@@ -84,7 +88,7 @@ pub const TRADE: &str = "equilibrium holds exactly; the roughness of each edge o
 pub const TRADE_WEIGHTED: &str = "equilibrium holds up to smooth forces on the interior; these forces and the roughness of each edge of unknown motion are weighted by restricted maximum likelihood";
 
 /// The state in the middle of a cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct StressEstimate {
     /// First Piola–Kirchhoff stress P₁₁, P₁₂, P₂₁, P₂₂ in MPa, the transpose of the nominal stress.
     pub first_piola_kirchhoff_stress: [f64; 4],
@@ -98,7 +102,7 @@ pub struct StressEstimate {
 }
 
 /// The force that an edge exerts on the sheet.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct EdgeForce {
     /// The edge.
     pub edge: String,
@@ -107,7 +111,7 @@ pub struct EdgeForce {
 }
 
 /// The condition of a part of the boundary.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct EdgeOutcome {
     /// The edge.
     pub edge: String,
@@ -120,7 +124,7 @@ pub struct EdgeOutcome {
 }
 
 /// What is left of a marker.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct MarkerEstimate {
     /// Measured less estimated displacement in mm.
     pub residual: [f64; 2],
@@ -133,7 +137,7 @@ pub struct MarkerEstimate {
 }
 
 /// How smooth an edge came out along an axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Smoothing {
     /// The edge.
     pub edge: String,
@@ -147,7 +151,7 @@ pub struct Smoothing {
 }
 
 /// What the data contradict.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contradiction {
     /// How probable so large a fall of the misfit is if all that is said of the edges holds.
     pub probability: f64,
@@ -156,7 +160,7 @@ pub struct Contradiction {
 }
 
 /// The correlation of what is left of neighbouring markers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Whiteness {
     /// I of both components together.
     pub correlation: f64,

@@ -1,5 +1,7 @@
 //! The forces on the edges of an estimated field, the parameters of its law, and how both depend on where the edges lie.
 
+use std::borrow::Cow;
+
 use super::field_estimate::{EdgeForce, ForceCheck};
 use super::linearise::dot;
 use super::mesh_error::MeshError;
@@ -46,7 +48,7 @@ impl NearestField<'_> {
         &self,
         reach: f64,
         own: Option<&MeshError>,
-    ) -> Vec<(&'static str, &'static str, Estimate)> {
+    ) -> Vec<(Cow<'static, str>, Cow<'static, str>, Estimate)> {
         let first = self.equations.motion.parameters();
         let regressed = self.equations.task.knowledge.law.iter();
         let parameters = regressed.flat_map(|law| law.parameters()).enumerate();
@@ -55,7 +57,7 @@ impl NearestField<'_> {
             let error = self.fit.covariance[(place, place)].max(0.0).sqrt();
             let mesh = own.map_or(0.0, |own| own.parameters[place]);
             let value = Estimate::new(self.parameters[place], error.hypot(mesh), reach);
-            (parameter.key, parameter.unit(), value)
+            (parameter.key.into(), parameter.unit().into(), value)
         };
         parameters.map(estimate).collect()
     }

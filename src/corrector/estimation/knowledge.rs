@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::regressed_law::RegressedLaw;
 use super::robust::Robust;
 use crate::error::Diagnostic;
@@ -79,7 +81,7 @@ impl Physics {
 }
 
 /// A force that was measured on an edge that is not free.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct MeasuredForce {
     /// The group of the edge.
     pub edge: String,
@@ -92,7 +94,7 @@ pub struct MeasuredForce {
 }
 
 /// What is known of a part of the boundary.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub enum EdgeCondition {
     /// No traction.
     Free,

@@ -61,8 +61,8 @@ impl NearestField<'_> {
             reach,
             smoothing: self.smoothing(),
             rule: match self.equations.body {
-                Some(_) => TRADE_WEIGHTED,
-                None => TRADE,
+                Some(_) => TRADE_WEIGHTED.into(),
+                None => TRADE.into(),
             },
             interior_forces: self.equations.forces.clone(),
             edges: edges.iter().map(outcome).collect(),

@@ -88,7 +88,7 @@ pub fn transfer(
         markers: differences(mesh, &field, (given, displacement)),
         known_noise: true,
         noise_scale: 1.0,
-        rule: RULE,
+        rule: RULE.into(),
         edges: edges.iter().map(outcome).collect(),
         steps,
         reactions,

@@ -179,23 +179,23 @@ fn work_that_was_broken_off_goes_on_where_it_was_with_the_same_identity_only() {
     let begin = |identity| ResultFolder::resume(path, "correct", &[], identity).unwrap();
     let mut first = begin("1");
     first.add("a.csv", b"1").unwrap();
-    first.keep("1", b"one").unwrap();
+    first.keep("1", &"one".to_owned()).unwrap();
     first.add("b.csv", b"half").unwrap();
     assert!(first.unfinished().break_off());
     // As a kill leaves it.
     *first.unfinished().settled() = true;
     drop(first);
     let mut second = begin("1");
-    assert_eq!(second.kept("1").as_deref(), Some(&b"one"[..]));
-    assert_eq!(second.kept("2"), None);
+    assert_eq!(second.kept("1"), Some("one".to_owned()));
+    assert_eq!(second.kept::<String>("2"), None);
     second.add("b.csv", b"2").unwrap();
     second.finish().unwrap();
     assert_eq!(names(path), [MANIFEST, "a.csv", "b.csv"]);
     let mut third = begin("1");
-    third.keep("1", b"one").unwrap();
+    third.keep("1", &"one".to_owned()).unwrap();
     assert!(third.unfinished().break_off());
     *third.unfinished().settled() = true;
     drop(third);
-    assert_eq!(begin("2").kept("1"), None);
+    assert_eq!(begin("2").kept::<String>("1"), None);
     assert_eq!(names(path), [MANIFEST, "a.csv", "b.csv"]);
 }

@@ -19,7 +19,7 @@ pub fn problem(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Map<String, 
             "nodes": field.mesh.nodes.len(),
             "cells": field.mesh.cell_count(),
         },
-        "trade": estimates.first().map(|estimate| estimate.rule),
+        "trade": estimates.first().map(|estimate| &*estimate.rule),
         "brought_onto_another_mesh": field.coarse.is_some(),
         "edge_may_lie_farther_out_by_mm": field.unknown_gap,
     });

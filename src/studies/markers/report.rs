@@ -258,8 +258,8 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
             let [low, high] = found.interval;
             vec![
                 frame.number.to_string(),
-                (*key).to_owned(),
-                (*unit).to_owned(),
+                key.to_string(),
+                unit.to_string(),
                 format!("{:.6}", found.value),
                 format!("{:.6}", found.standard_error),
                 format!("{low:.6} … {high:.6}"),

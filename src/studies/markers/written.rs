@@ -12,7 +12,7 @@
 
 use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
-use crate::results::{Array, Content, Grid, GridSeries, Material, Outcome, Results, Sheet};
+use crate::results::{Array, Content, Grid, Material, NamedGrid, Outcome, Results, Sheet};
 use crate::studies::markers::MarkerStudy;
 
 use super::quantities::{Residual, nominal, residuals};
@@ -21,7 +21,7 @@ use super::{figures, json, report, tables};
 /// The `kind` of these results.
 pub const KIND: &str = "markers";
 
-/// What is told of a correction: of the study's `text`, empty where there is none, and after `seconds`.
+/// What is told of a correction but for the [`FrameFiles`]: of the study's `text`, empty where there is none, and after `seconds`.
 pub fn results(
     field: &MarkerStudy,
     estimates: &[FieldEstimate],
@@ -42,11 +42,10 @@ pub fn results(
             .collect(),
         blocks: report::blocks(field, estimates),
         figures: figures.unwrap_or_default(),
-        grids: vec![
-            series("corrected", field, estimates, corrected),
-            series("markers", field, estimates, markers),
-        ],
-        files: files(field, estimates),
+        files: vec![(
+            "forces.csv".to_owned(),
+            Content::Text(tables::forces(field, estimates)),
+        )],
         doubts: doubts.iter().map(ToString::to_string).collect(),
         summary: report::summary(field, estimates),
         ..Outcome::default()
@@ -63,47 +62,63 @@ pub fn results(
     }
 }
 
-/// The tables of all frames.
-fn files(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<(String, Content)> {
-    let frames = field.series.frames.iter().zip(estimates);
-    let tables = frames.flat_map(|(frame, estimate)| {
+/// Grids and tables of one frame, which can be written as soon as it is corrected.
+pub struct FrameFiles {
+    /// The corrected field, and the markers.
+    pub grids: [NamedGrid; 2],
+    /// Tables by the names of their files.
+    pub tables: [(String, String); 3],
+}
+
+impl FrameFiles {
+    /// Of a frame and its corrected field.
+    pub fn new(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Self {
         let number = frame.number;
-        [
-            (
-                format!("nodes_{number:03}.csv"),
-                tables::nodes(field, estimate),
-            ),
-            (
-                format!("cells_{number:03}.csv"),
-                tables::cells(field, estimate),
-            ),
-            (
-                format!("markers_{number:03}.csv"),
-                tables::markers(frame, estimate),
-            ),
-        ]
-    });
-    let forces = ("forces.csv".to_owned(), tables::forces(field, estimates));
-    let tables = tables.chain([forces]);
-    tables
-        .map(|(name, text)| (name, Content::Text(text)))
+        let named = |series: &str, grid: Grid| NamedGrid {
+            name: grid_name(series, frame),
+            time: Some(time(frame)),
+            grid,
+        };
+        Self {
+            grids: [
+                named(SERIES[0], corrected(field, estimate)),
+                named(SERIES[1], markers(frame, estimate)),
+            ],
+            tables: [
+                (
+                    format!("nodes_{number:03}.csv"),
+                    tables::nodes(field, estimate),
+                ),
+                (
+                    format!("cells_{number:03}.csv"),
+                    tables::cells(field, estimate),
+                ),
+                (
+                    format!("markers_{number:03}.csv"),
+                    tables::markers(frame, estimate),
+                ),
+            ],
+        }
+    }
+}
+
+/// The series of grids.
+pub const SERIES: [&str; 2] = ["corrected", "markers"];
+
+/// The times of the frames and the names of their grids in a series.
+pub fn played(field: &MarkerStudy, series: &str) -> Vec<(f64, String)> {
+    let frames = field.series.frames.iter();
+    frames
+        .map(|frame| (time(frame), grid_name(series, frame)))
         .collect()
 }
 
-type OfFrame = fn(&MarkerStudy, &Frame, &FieldEstimate) -> Grid;
+fn grid_name(series: &str, frame: &Frame) -> String {
+    format!("{series}_{:03}", frame.number)
+}
 
-fn series(
-    name: &str,
-    field: &MarkerStudy,
-    estimates: &[FieldEstimate],
-    grid: OfFrame,
-) -> GridSeries {
-    let frames = field.series.frames.iter().zip(estimates);
-    let frames = frames.map(|(frame, estimate)| {
-        let time = frame.time.unwrap_or(frame.number as f64);
-        (frame.number, time, grid(field, frame, estimate))
-    });
-    GridSeries::numbered(name, 3, frames)
+fn time(frame: &Frame) -> f64 {
+    frame.time.unwrap_or(frame.number as f64)
 }
 
 /// The heading of a report.
@@ -114,7 +129,7 @@ pub(super) fn title(field: &MarkerStudy) -> String {
     }
 }
 
-fn corrected(field: &MarkerStudy, _frame: &Frame, estimate: &FieldEstimate) -> Grid {
+fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
     let law = field.law(estimate);
     let sheet = Sheet {
         law: &*law,
@@ -147,7 +162,7 @@ fn corrected(field: &MarkerStudy, _frame: &Frame, estimate: &FieldEstimate) -> G
     ])
 }
 
-fn markers(_field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Grid {
+fn markers(frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let all = &frame.markers;
     let places: Vec<[f64; 2]> = all.iter().map(|marker| marker.place).collect();
     let measured: Vec<f64> = all.iter().flat_map(|marker| marker.displacement).collect();
