@@ -53,7 +53,7 @@ fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
     let mut models = Models::solve(specimen, &mut ends, progress)?;
     if models.reference.may_be_finer(specimen) && outcome::is_open(specimen, &models) {
         progress("finer finite elements");
-        models.reference = models.reference.finer(specimen, &mut ends)?;
+        models.reference = models.reference.finer(specimen, &mut ends, progress)?;
     }
     if models.reached() == 0 && ends.iter().all(End::is_empty) {
         // Not even an equilibrium on the way to the first load factor.

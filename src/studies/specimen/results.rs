@@ -24,7 +24,7 @@ use reference::Reference;
 /// [`Error::Solve`] when they have no solution.
 pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
     let mut ends = Vec::new();
-    let reference = Reference::solve(specimen, &mut ends)?;
+    let reference = Reference::solve(specimen, &mut ends, &|_| ())?;
     if let Some(end) = ends.pop() {
         return Err(end.error());
     }
@@ -44,7 +44,7 @@ pub fn finest_mesh(specimen: &Specimen) -> Result<Mesh, Error> {
         return Ok(mesh);
     }
     let mut ends = Vec::new();
-    let finest = refine::finest(specimen, &mut ends)?;
+    let finest = refine::finest(specimen, &mut ends, &|_| ())?;
     ends.pop().map_or(Ok(finest.mesh), |end| Err(end.error()))
 }
 
@@ -62,7 +62,7 @@ pub fn fields(
     specimen.factors.push(factor);
     let mut ends = Vec::new();
     progress("finite elements");
-    let elements = refine::finest(&specimen, &mut ends)?;
+    let elements = refine::finest(&specimen, &mut ends, progress)?;
     let OnLattice {
         uncorrected,
         corrected,

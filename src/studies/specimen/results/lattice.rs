@@ -49,8 +49,15 @@ pub struct OnLattice {
 
 /// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
 /// begin with.
-pub fn solve(specimen: &Specimen, model: &Model, file: &str, ends: &mut Vec<End>) -> Solution {
-    let states = model.solve(&specimen.factors, NEWTON, &|_| ());
+pub fn solve(
+    specimen: &Specimen,
+    model: &Model,
+    file: &str,
+    ends: &mut Vec<End>,
+    progress: Progress,
+) -> Solution {
+    let told = |factor: f64| progress(&format!("{}, load factor {factor} solved", model.name));
+    let states = model.solve(&specimen.factors, NEWTON, &told);
     let states = states.unwrap_or_else(|end| {
         ends.push(End::of_path(specimen, model, file, &end));
         end.states
@@ -74,7 +81,7 @@ impl OnLattice {
             .on(lattice, springs.potential())?
             .named("mass-spring");
         let model = model.describing(|element| springs.describe_element(element));
-        let uncorrected = solve(specimen, &model, "mass_spring", ends);
+        let uncorrected = solve(specimen, &model, "mass_spring", ends, progress);
         drop(model);
 
         progress("corrector");

@@ -37,7 +37,7 @@ impl Models {
         progress: Progress,
     ) -> Result<Self, Error> {
         progress("finite elements");
-        let reference = Reference::solve(specimen, ends)?;
+        let reference = Reference::solve(specimen, ends, progress)?;
         let on_lattice = OnLattice::solve(specimen, ends, progress)?;
         Ok(Self {
             reference,

@@ -11,6 +11,7 @@ use crate::finite_element::recovery::Recovery;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::solve::State;
+use crate::studies::Progress;
 use crate::studies::specimen::problem::{Refinement, Specimen};
 
 /// The part of the squared error that is refined in a round.
@@ -25,17 +26,21 @@ const FILE: &str = "finite_element";
 
 impl Reference {
     /// Solves the specimen on three meshes, or on as many as the goal of local refinement takes.
-    pub fn solve(specimen: &Specimen, ends: &mut Vec<End>) -> Result<Self, Error> {
+    pub fn solve(
+        specimen: &Specimen,
+        ends: &mut Vec<End>,
+        progress: Progress,
+    ) -> Result<Self, Error> {
         match specimen.refinement {
-            Some(goal) => Self::adaptive(specimen, goal, ends),
-            None => Self::halved(specimen, ends),
+            Some(goal) => Self::adaptive(specimen, goal, ends, progress),
+            None => Self::halved(specimen, ends, progress),
         }
     }
 
-    fn halved(specimen: &Specimen, ends: &mut Vec<End>) -> Result<Self, Error> {
+    fn halved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Self, Error> {
         let meshes = specimen.outline.reference_meshes();
         let meshes = meshes.iter().zip(FILES);
-        let solutions = meshes.map(|(mesh, file)| on_mesh(specimen, mesh, file, ends));
+        let solutions = meshes.map(|(mesh, file)| on_mesh(specimen, mesh, file, ends, progress));
         let solutions = solutions.collect::<Result<Vec<_>, _>>()?;
         Self::of_meshes(specimen, solutions, Vec::new(), ends)
     }
@@ -72,15 +77,25 @@ impl Reference {
     ///
     /// # Errors
     /// [`Error::Input`] when a group of the mesh cannot be held or loaded as the study says.
-    pub fn finer(mut self, specimen: &Specimen, ends: &mut Vec<End>) -> Result<Self, Error> {
+    pub fn finer(
+        mut self,
+        specimen: &Specimen,
+        ends: &mut Vec<End>,
+        progress: Progress,
+    ) -> Result<Self, Error> {
         let mesh = specimen.outline.reference_mesh(3);
-        let finer = on_mesh(specimen, &mesh, FILE, ends)?;
+        let finer = on_mesh(specimen, &mesh, FILE, ends, progress)?;
         let mut meshes = self.coarser.split_off(self.coarser.len() - 1);
         meshes.extend([self.finest, finer]);
         Self::of_meshes(specimen, meshes, Vec::new(), ends)
     }
 
-    fn adaptive(specimen: &Specimen, goal: Refinement, ends: &mut Vec<End>) -> Result<Self, Error> {
+    fn adaptive(
+        specimen: &Specimen,
+        goal: Refinement,
+        ends: &mut Vec<End>,
+        progress: Progress,
+    ) -> Result<Self, Error> {
         let mut triangles = specimen.outline.first_triangles();
         let (mut rounds, mut meshes) = (Vec::new(), Vec::new());
         let ends_before = ends.len();
@@ -88,7 +103,7 @@ impl Reference {
             // A finer mesh may reach what a coarser one did not.
             ends.truncate(ends_before);
             let mesh = specimen.outline.elements_on(&triangles);
-            let solution = on_mesh(specimen, &mesh, FILE, ends)?;
+            let solution = on_mesh(specimen, &mesh, FILE, ends, progress)?;
             let measured = measured(specimen, &solution, ends);
             let estimates = estimates(specimen, &solution, &measured)?;
             meshes.push(solution);
@@ -110,12 +125,16 @@ impl Reference {
 }
 
 /// The finest finite elements alone: without the coarser meshes that an error by three of them takes.
-pub fn finest(specimen: &Specimen, ends: &mut Vec<End>) -> Result<Solution, Error> {
+pub fn finest(
+    specimen: &Specimen,
+    ends: &mut Vec<End>,
+    progress: Progress,
+) -> Result<Solution, Error> {
     if let Some(goal) = specimen.refinement {
-        return Ok(Reference::adaptive(specimen, goal, ends)?.finest);
+        return Ok(Reference::adaptive(specimen, goal, ends, progress)?.finest);
     }
     let [_, _, mesh] = specimen.outline.reference_meshes();
-    on_mesh(specimen, &mesh, FILE, ends)
+    on_mesh(specimen, &mesh, FILE, ends, progress)
 }
 
 /// The finite elements on a mesh; `file` is what their files begin with.
@@ -124,10 +143,11 @@ fn on_mesh(
     mesh: &Mesh,
     file: &str,
     ends: &mut Vec<End>,
+    progress: Progress,
 ) -> Result<Solution, Error> {
     let energy = specimen.problem.finite_elements(mesh);
     let model = specimen.on(mesh, &energy)?;
-    Ok(solve(specimen, &model, file, ends))
+    Ok(solve(specimen, &model, file, ends, progress))
 }
 
 impl Round {
@@ -170,7 +190,7 @@ fn outline_errors(
     };
     // Where a path ends is told of the meshes whose results are given.
     let mut untold = Vec::new();
-    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, FILE, &mut untold);
+    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, FILE, &mut untold, &|_| ());
     let rounded = on(&rounded)?;
     let halved;
     let middle = match middle {

@@ -1,0 +1,409 @@
+//! Kills, full disks, closed outputs and other misfortunes: results are those of the run before or those of this one, whole,
+//! and the next run succeeds.
+#![cfg(unix)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+mod common;
+
+const MANIFEST: &str = ".gelbench-manifest.json";
+const PARTIAL: &str = ".gelbench-partial-";
+
+/// A plate that is computed at once, at some stretches.
+fn study(stretches: &str) -> String {
+    format!(
+        "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\ncells = [6, 2]\n[material]\ncard = \"neo-hooke\"\n[load]\n\
+         stretches = [{stretches}]\n[finite_element]\ncells = [4, 4]\n[output]\nplots = false\n"
+    )
+}
+
+/// Frames of a pulled strip, three markers across.
+fn markers(frames: usize) -> String {
+    let mut text = String::from("frame,x [mm],y [mm],ux [mm],uy [mm]\n");
+    for frame in 1..=frames {
+        for (i, j) in (0..6).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            let (x, y) = (6.0 * f64::from(i), 5.0 * f64::from(j));
+            let strain = 0.01 * frame as f64;
+            let off = 0.01 * f64::from((7 * i + 5 * j) % 3 - 1);
+            let (ux, uy) = (strain * x + off, -0.4 * strain * (y - 5.0) - off);
+            text += &format!("{frame},{x},{y},{ux:.4},{uy:.4}\n");
+        }
+    }
+    text
+}
+
+const CORRECT: &str = "correct m.csv --material neo-hooke --thickness 2mm --free top,bottom --rigid left,right \
+                       --cells triangle3 --cell-size 5mm --edge-gap 0mm --noise 0.01mm --output c";
+
+/// A folder with two studies of which the second has more results, and with markers.
+fn workplace() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let write = |name, text: String| fs::write(folder.path().join(name), text).unwrap();
+    write("a.toml", study("\"10 %\""));
+    write("b.toml", study("\"10 %\", \"20 %\""));
+    write("m.csv", markers(4));
+    folder
+}
+
+fn command(folder: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gelbench"));
+    command.current_dir(folder).args(arguments.split(' '));
+    command
+}
+
+fn run(folder: &Path, arguments: &str) -> Output {
+    command(folder, arguments).output().unwrap()
+}
+
+fn start(folder: &Path, arguments: &str) -> Child {
+    let mut command = command(folder, arguments);
+    let silent = command.stdout(Stdio::null()).stderr(Stdio::piped());
+    silent.spawn().unwrap()
+}
+
+/// Runs a script in which `$G` is the program.
+fn shell(folder: &Path, script: &str) -> Output {
+    let mut command = Command::new("sh");
+    command
+        .current_dir(folder)
+        .env("G", env!("CARGO_BIN_EXE_gelbench"));
+    command.args(["-c", script]).output().unwrap()
+}
+
+fn told(output: &Output) -> String {
+    let text = String::from_utf8_lossy(&output.stderr);
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[track_caller]
+fn assert_ends(output: &Output, code: i32, words: &str) {
+    let told = told(output);
+    assert_eq!(output.status.code(), Some(code), "{told}");
+    assert!(told.contains(words), "{told}");
+}
+
+/// All files below a folder by their names, but for partial folders.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let (mut found, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
+    while let Some(next) = open.pop() {
+        for entry in fs::read_dir(next).into_iter().flatten().flatten() {
+            let path = entry.path();
+            let name = path
+                .strip_prefix(folder)
+                .unwrap()
+                .to_str()
+                .unwrap()
+                .to_owned();
+            if path.is_dir() && !name.starts_with(PARTIAL) {
+                open.push(path);
+            } else if path.is_file() {
+                found.insert(name, fs::read(path).unwrap_or_default());
+            }
+        }
+    }
+    found
+}
+
+/// The results that are the same bytes on every run: reports hold times.
+fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = files(folder);
+    all.retain(|name, _| !name.starts_with("report.") && name != MANIFEST);
+    all
+}
+
+fn manifest(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join(MANIFEST)).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+fn partial(folder: &Path) -> bool {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names = entries.map(|entry| entry.file_name().into_string().unwrap());
+    names.any(|name| name.starts_with(PARTIAL))
+}
+
+/// Every file that a collection or the manifest names is there.
+#[track_caller]
+fn assert_whole(folder: &Path) {
+    let files = files(folder);
+    for (name, text) in files.iter().filter(|(name, _)| name.ends_with(".pvd")) {
+        let text = String::from_utf8_lossy(text).into_owned();
+        for part in text.split("file=\"").skip(1) {
+            let file = format!("vtk/{}", part.split('"').next().unwrap());
+            assert!(files.contains_key(&file), "{name} names {file}");
+        }
+    }
+    if manifest(folder)["complete"] == true {
+        for name in manifest(folder)["files"].as_object().unwrap().keys() {
+            assert!(files.contains_key(name), "the manifest names {name}");
+        }
+    }
+}
+
+fn wait_for(what: impl Fn() -> bool) {
+    let start = Instant::now();
+    while !what() && start.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn a_run_killed_at_any_moment_leaves_the_old_results_or_the_new_ones() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("o"));
+    let mut whole = Vec::new();
+    let mut longest = Duration::ZERO;
+    for study in ["b", "a"] {
+        let start = Instant::now();
+        run(folder, &format!("run {study}.toml --output o"));
+        longest = longest.max(start.elapsed());
+        whole.push((study, results(output)));
+    }
+    assert_ne!(whole[0].1.len(), whole[1].1.len());
+    for moment in 0..30 {
+        let (new, _) = whole[moment % 2];
+        let mut child = start(folder, &format!("run {new}.toml --output o"));
+        // Two thirds of the moments fall into the last tenth, when files are written and moved.
+        let share = match moment {
+            0..10 => 0.09 * moment as f64,
+            _ => 0.9 + 0.01 * (moment - 10) as f64,
+        };
+        std::thread::sleep(longest.mul_f64(share));
+        let _ = child.kill();
+        child.wait().unwrap();
+        assert_whole(output);
+        let left = results(output);
+        let is_one = whole.iter().any(|(_, results)| *results == left);
+        let moving = manifest(output)["moving"].is_object();
+        assert!(is_one || moving, "moment {moment}: {:?}", left.keys());
+    }
+    for (study, results_of) in &whole {
+        run(folder, &format!("run {study}.toml --output o"));
+        assert_eq!(results(output), *results_of);
+        assert_whole(output);
+        assert!(!partial(output), "leftovers are swept");
+    }
+}
+
+#[test]
+fn an_interrupt_ends_with_130_and_leaves_nothing_of_the_run() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("o"));
+    let interrupted = |arguments: &str, ready: &dyn Fn() -> bool| {
+        let child = start(folder, arguments);
+        wait_for(ready);
+        shell(folder, &format!("kill -INT {}", child.id()));
+        child.wait_with_output().unwrap()
+    };
+    let ended = interrupted("run b.toml --output o", &|| partial(output));
+    assert_ends(&ended, 130, "nothing of this run is left");
+    assert!(!output.exists(), "{:?}", files(output).keys());
+    run(folder, "run a.toml --output o");
+    let before = files(output);
+    let ended = interrupted("run b.toml --output o", &|| partial(output));
+    assert_ends(&ended, 130, "results of earlier runs are as they were");
+    assert_eq!(files(output), before);
+    assert!(!partial(output));
+}
+
+#[test]
+fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("c"));
+    run(folder, CORRECT);
+    let whole = results(output);
+    assert_eq!(whole.len(), 4 * 5 + 2 + 1 + 9, "{:?}", whole.keys());
+    fs::remove_dir_all(output).unwrap();
+
+    let first = |of: &str| {
+        let entries = fs::read_dir(output).into_iter().flatten().flatten();
+        let mut folders =
+            entries.filter(|entry| entry.file_name().to_str().unwrap().starts_with(PARTIAL));
+        folders.next().map(|partial| partial.path().join(of))
+    };
+    let is_done = |frame: &str| first(&format!(".parts/{frame}")).is_some_and(|part| part.exists());
+    let kill_after = |frame: &str| {
+        let mut child = start(folder, CORRECT);
+        wait_for(|| is_done(frame));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    };
+    kill_after("2");
+    let made = |path: &Path| fs::metadata(path).unwrap().modified().unwrap();
+    let early = made(&first("nodes_001.csv").unwrap());
+    run(folder, CORRECT);
+    assert_eq!(
+        made(&output.join("nodes_001.csv")),
+        early,
+        "the first frame is not done again"
+    );
+    assert_eq!(results(output), whole);
+    assert!(!partial(output));
+
+    // Other markers are another correction.
+    kill_after("2");
+    let changed = markers(4).replacen("0.0100", "0.0150", 1);
+    fs::write(folder.join("m.csv"), changed).unwrap();
+    run(folder, CORRECT);
+    assert_ne!(results(output)["nodes_001.csv"], whole["nodes_001.csv"]);
+    assert_ne!(results(output)["markers_001.csv"], whole["markers_001.csv"]);
+    assert!(!partial(output));
+
+    let child = start(folder, &CORRECT.replace("c.csv", "m.csv"));
+    wait_for(|| is_done("1"));
+    shell(folder, &format!("kill -INT {}", child.id()));
+    assert_ends(
+        &child.wait_with_output().unwrap(),
+        130,
+        "the same command goes on from here",
+    );
+    assert!(is_done("1"));
+}
+
+#[test]
+fn a_full_disk_leaves_the_results_before_it() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("o"));
+    run(folder, "run a.toml --output o");
+    let before = files(output);
+    // Files end at 4 blocks, by a signal or, where it is ignored, by a fault of writing.
+    let ended = shell(
+        folder,
+        "trap '' XFSZ; ulimit -f 4; \"$G\" run b.toml --output o",
+    );
+    assert_ends(&ended, 4, "cannot write o/");
+    assert_eq!(files(output), before);
+    assert!(!partial(output));
+    let ended = shell(folder, "ulimit -f 4; \"$G\" run b.toml --output o");
+    assert_ne!(ended.status.code(), Some(0));
+    assert_eq!(files(output), before);
+    run(folder, "run a.toml --output o");
+    assert_eq!(results(output).len(), before.len() - 4);
+    assert!(!partial(output));
+    let ended = shell(
+        folder,
+        "trap '' XFSZ; ulimit -f 4; \"$G\" materials plot neo-hooke --output p.png",
+    );
+    assert_ends(&ended, 4, "cannot write p.png");
+    assert!(!folder.join("p.png").exists());
+}
+
+#[test]
+fn closed_outputs_are_no_reason_to_lose_results() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("o"));
+    run(folder, "run a.toml --output whole");
+    let whole = results(&folder.join("whole"));
+    for closed in [">&- 2>&-", "| true", "2>/dev/full"] {
+        shell(folder, &format!("\"$G\" run a.toml --output o {closed}"));
+        assert_eq!(results(output), whole, "{closed}");
+        fs::remove_dir_all(output).unwrap();
+    }
+    let ended = shell(folder, "\"$G\" run a.toml --output o >/dev/full");
+    assert_ends(&ended, 4, "standard output");
+    assert_eq!(results(output), whole);
+}
+
+#[test]
+fn places_that_take_no_files_are_told_before_anything_is_computed() {
+    let place = workplace();
+    let folder = place.path();
+    let ended = run(folder, "run a.toml --output /proc/gelbench");
+    assert_ends(&ended, 4, "cannot write /proc/gelbench");
+    let closed = folder.join("closed");
+    fs::create_dir_all(closed.join("vtk")).unwrap();
+    shell(folder, "chmod a-w closed/vtk");
+    if fs::write(closed.join("vtk/probe"), "").is_ok() {
+        eprintln!("skipped: this user may write into read-only folders");
+        return;
+    }
+    let ended = run(folder, "run a.toml --output closed");
+    assert_ends(&ended, 4, "cannot write closed/vtk");
+}
+
+#[test]
+fn a_second_run_into_a_folder_is_refused_and_the_first_is_whole() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("o"));
+    let first = start(folder, "run b.toml --output o");
+    wait_for(|| partial(output));
+    let second = run(folder, "run a.toml --output o");
+    assert_ends(&second, 4, "another run is writing into this folder");
+    assert_ne!(first.wait_with_output().unwrap().status.code(), Some(4));
+    assert_whole(output);
+    assert!(output.join("vtk/corrected_002.vtu").exists());
+}
+
+#[test]
+fn a_folder_taken_away_during_a_run_is_told_or_made_anew() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("o"));
+    let child = start(folder, "run b.toml --output o");
+    wait_for(|| partial(output));
+    let _ = fs::remove_dir_all(output);
+    let ended = child.wait_with_output().unwrap();
+    let code = ended.status.code();
+    assert!(matches!(code, Some(0 | 1 | 4)), "{code:?} {}", told(&ended));
+    if code != Some(4) {
+        assert_whole(output);
+    }
+    assert_ne!(run(folder, "run b.toml --output o").status.code(), Some(4));
+    assert_whole(output);
+}
+
+/// A study on a mesh of an earlier run's results, and a `.pvd` whose parts would be replaced.
+#[test]
+fn no_command_writes_over_a_file_that_it_has_read() {
+    let place = workplace();
+    let folder = place.path();
+    run(folder, "run a.toml --output o");
+    let own = "kind = \"specimen\"\ntitle = \"own\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"mesh\"\n\
+        file = \"o/vtk/finite_element_001.vtu\"\nfile_unit = \"mm\"\nthickness = \"2 mm\"\n[path]\nfactors = [0.1]\n\
+        measured_group = \"left\"\n[[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
+        [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"1 mm\"\ny = \"0 mm\"\n";
+    fs::write(folder.join("own.toml"), own).unwrap();
+    let card = "card.toml";
+    let shipped = common::root().join("materials/neo-hooke.toml");
+    fs::copy(shipped, folder.join(card)).unwrap();
+    let before = files(folder);
+    let correct = "correct o/vtk/corrected.pvd --material neo-hooke --thickness 2mm --output";
+    for (arguments, input) in [
+        (
+            "run own.toml --output o".to_owned(),
+            "finite_element_001.vtu",
+        ),
+        (
+            "export own.toml --to calculix --output o/vtk/finite_element_001.vtu".to_owned(),
+            "finite_element_001.vtu",
+        ),
+        (format!("{correct} o"), "corrected_001.vtu"),
+        (
+            "export a.toml --to calculix --output a.toml".to_owned(),
+            "a.toml",
+        ),
+        (format!("materials plot ./{card} --output {card}"), card),
+        (
+            format!("materials compare {card} neo-hooke --output ./{card}"),
+            card,
+        ),
+    ] {
+        let ended = run(folder, &arguments);
+        let told = told(&ended);
+        let spared = before
+            .iter()
+            .all(|(name, bytes)| fs::read(folder.join(name)).ok().as_ref() == Some(bytes));
+        assert!(spared, "{arguments}: {told}");
+        assert!(
+            told.contains("is an input of this command") && told.contains(input),
+            "{arguments}: {told}"
+        );
+        assert_eq!(ended.status.code(), Some(4), "{arguments}: {told}");
+    }
+}
