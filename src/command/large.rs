@@ -5,7 +5,7 @@ use clap::Args;
 use crate::budget::Budget;
 
 /// What a command may use.
-#[derive(Args)]
+#[derive(Args, Debug)]
 pub struct Large {
     /// Let pass what needs more than a common machine has: over a million cells, 20,000 instants or 8 GB of memory, as
     /// estimated before anything is built
