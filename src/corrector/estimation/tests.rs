@@ -220,7 +220,7 @@ fn a_modulus_is_found_with_the_field() {
     };
     let found = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &knowledge).unwrap();
     let (key, unit, modulus) = &found.parameters[0];
-    assert_eq!((&*key, &*unit), ("c10", "MPa"));
+    assert_eq!([&**key, &**unit], ["c10", "MPa"]);
     assert!(modulus.standard_error > 0.008 * C10 && modulus.standard_error < 0.03 * C10);
     assert!(
         (modulus.value - C10).abs() < 3.0 * modulus.standard_error,
