@@ -13,19 +13,19 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::budget::Budget;
 use crate::document::inputs;
-use crate::error::{Diagnostic, Error};
+use crate::error::Diagnostic;
 use crate::output;
 use crate::output::ResultFolder;
 use crate::results::{Check, End, Results};
 use crate::studies::name;
-use crate::studies::plate::DEFAULT;
 use crate::validation;
 use large::Large;
 use progress::Progress;
+use reference::FileKind;
 use terminal::{Outcome, complain, complain_of_end, print, warn};
 
 mod compare;
@@ -41,18 +41,22 @@ mod large;
 mod materials;
 mod message;
 mod progress;
+mod reference;
+mod schema;
+mod shell;
 mod terminal;
 
 const SAMPLES: &str = "\
 Samples:
   gelbench new my_plate                      write my_plate.toml, a commented study
+  gelbench keys specimen                     every key of a kind of studies
   gelbench check my_plate.toml               read it and tell every fault
   gelbench run my_plate.toml                 compute it and write output/my_plate/
   gelbench export my_plate.toml --to abaqus  write it as the input file of another code
   gelbench compare my_plate.toml abaqus.vtu  compare its models with a field of another program
   gelbench identify spring.csv               spring and dashpot functions from recorded force and motion
   gelbench correct markers.csv …             make measured displacements satisfy the physics
-  gelbench validate                          redo the publication's claims, write validation/REPORT.md
+  gelbench validate                          redo the publication's claims, write output/validation/REPORT.md
   gelbench materials list                    the cards that come along
   gelbench materials show pva-10             one card with its moduli and its source
   gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the best as a card
@@ -110,15 +114,33 @@ enum Command {
     #[command(after_help = identify::HELP)]
     Identify(Box<identify::Options>),
     /// Write a commented study to start from
-    #[command(after_help = "Sample: gelbench new my_plate    writes my_plate.toml")]
+    #[command(
+        after_help = "Samples:\n  gelbench new my_plate    writes my_plate.toml\n  gelbench new my_strip --kind specimen"
+    )]
     New {
-        /// Name of the study; `.toml` is added where it is missing
+        /// Name of the file; `.toml` is added where it is missing
         name: PathBuf,
+        /// What it is
+        #[arg(long, value_enum, default_value = "plate")]
+        kind: FileKind,
+    },
+    /// Print every key of studies and cards with unit, range and default
+    #[command(after_help = "Sample: gelbench keys specimen")]
+    Keys {
+        /// One kind of files; all where it is not given
+        kind: Option<FileKind>,
+    },
+    /// Print the JSON Schema of a kind of files, by which editors complete and check them
+    #[command(
+        after_help = "Sample: gelbench schema specimen > specimen.schema.json\n\nThe first line `#:schema specimen.schema.json` of a study makes taplo and its editors use it."
+    )]
+    Schema {
+        /// The kind of files
+        kind: FileKind,
     },
     /// Redo the publication's claims and the comparisons with other codes
     ///
-    /// Writes REPORT.md with its pictures and REPORT.html: all cases into validation/, some of them into
-    /// output/validation/.
+    /// Writes REPORT.md with its pictures, REPORT.html and the times into output/validation/; some cases into a folder in it.
     #[command(after_help = "Sample: gelbench validate vibrating-spring --output /tmp/validation")]
     Validate {
         /// Cases to compute; all where none is named
@@ -129,6 +151,21 @@ enum Command {
         /// Write the report into this folder
         #[arg(long, value_name = "FOLDER")]
         output: Option<PathBuf>,
+    },
+    /// Print the completions of a shell
+    #[command(
+        after_help = "Sample: gelbench completions bash > ~/.local/share/bash-completion/completions/gelbench"
+    )]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write the pages of the manual
+    #[command(after_help = "Sample: gelbench man --output ~/.local/share/man/man1")]
+    Man {
+        /// Write into this folder
+        #[arg(long, value_name = "FOLDER", default_value = "output/man")]
+        output: PathBuf,
     },
     /// Look at material cards, fit laws to measured curves, convert test data
     Materials {
@@ -169,7 +206,11 @@ fn perform(command: Command) -> u8 {
         Command::Correct(options) => correct::run(*options),
         Command::Export(options) => export::run(&options),
         Command::Identify(options) => identify::run(*options),
-        Command::New { name } => new_study(name),
+        Command::New { name, kind } => reference::write(name, kind),
+        Command::Keys { kind } => reference::print_keys(kind),
+        Command::Schema { kind } => schema::print_schema(kind),
+        Command::Completions { shell } => shell::completions(shell, &mut Arguments::command()),
+        Command::Man { output } => shell::manual(&output, &mut Arguments::command()),
         Command::Validate {
             cases,
             quick,
@@ -215,13 +256,13 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
 fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     let chosen = validation::choose(names, quick)?;
     // A part never takes the place of the whole report.
-    let whole = chosen.len() == validation::CASES.len();
-    let usual = if whole {
-        "validation"
-    } else {
-        "output/validation"
+    let part = match &*chosen {
+        [case] => case.kind,
+        all if all.len() == validation::CASES.len() => "",
+        _ => "several",
     };
-    let folder = &folder.unwrap_or_else(|| PathBuf::from(usual));
+    let usual = || Path::new("output/validation").join(part);
+    let folder = &folder.unwrap_or_else(usual);
     let mut results = ResultFolder::open(folder, "validate", &[])?;
     interrupt::guard(&results);
     let progress = Progress::of(chosen.len() as u64);
@@ -233,7 +274,9 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
         progress.advance();
     }
     let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);
-    let warnings = output::write_document(&mut results, "REPORT", &blocks, &figures)?;
+    let mut warnings = output::write_document(&mut results, "REPORT", &blocks, &figures)?;
+    let times = validation::report::times(&cases);
+    warnings.extend(output::write_document(&mut results, "TIMES", &times, &[])?);
     drop(progress);
     warn(&warnings);
     results.finish()?;
@@ -265,23 +308,5 @@ fn check(path: &Path, budget: Budget) -> Outcome {
     let ready = validation::read(path, budget)?;
     warn(&ready.warnings);
     print(&format!("{}: no faults; {}\n", path.display(), ready.about))?;
-    Ok(0)
-}
-
-fn new_study(name: PathBuf) -> Outcome {
-    let name: PathBuf = name.components().collect();
-    let path = match name.extension() {
-        Some(extension) if extension == "toml" => name,
-        _ => PathBuf::from(format!("{}.toml", name.display())),
-    };
-    if path.exists() {
-        let cause = "it exists already; choose another name or remove it first";
-        return Err(Error::write(path, cause));
-    }
-    output::save(&path, DEFAULT.as_bytes())?;
-    let shown = path.display();
-    print(&format!(
-        "{shown} written; compute it with: gelbench run {shown}\n"
-    ))?;
     Ok(0)
 }

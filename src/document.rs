@@ -13,17 +13,23 @@ use crate::budget::Budget;
 use crate::error::{Diagnostic, Error, Severity, Source};
 use crate::units::SIZES;
 
+mod comments;
 mod decimals;
+mod explore;
 pub mod file;
 mod head;
 pub mod inputs;
+mod keys;
 mod lines;
 mod section;
 mod syntax;
 mod table;
 mod text;
 
+pub use comments::comments;
+pub use explore::{FoundKey, explore};
 pub use head::{Faulty, Head, Statements};
+pub use keys::{Key, Presence, Takes};
 pub use section::Section;
 pub use table::{Column, Table, plain_name};
 pub use text::read_text;
@@ -47,6 +53,7 @@ pub struct Faults {
     budget: Budget,
     found: RefCell<Vec<Diagnostic>>,
     defaulted: RefCell<Vec<String>>,
+    keys: RefCell<Vec<Key>>,
 }
 
 impl Faults {
@@ -69,6 +76,11 @@ impl Faults {
         if !all.contains(&said) {
             all.push(said);
         }
+    }
+
+    /// The keys that were asked for.
+    pub fn keys(&self) -> Vec<Key> {
+        self.keys.borrow().clone()
     }
 
     /// The keys that were not written, with the defaults that they took: `finite_element.element = "Q2"`.

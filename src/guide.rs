@@ -4,6 +4,7 @@
 //!
 //! | page | for |
 //! |---|---|
+//! | [Keys](keys) | every key of studies and cards with unit, range and default |
 //! | [Plates](plates) | a clamped plate in all three models: the study file, the report, the figures |
 //! | [Specimens](specimens) | any shape, any mesh, supports and loads, adaptive refinement, paths that end early |
 //! | [Motions](motions) | a plate that is released, driven or relaxing: dashpots, viscosity, energy |
@@ -40,6 +41,8 @@ pub mod own_condition {}
 #[doc = include_str!("guide/own_study.md")]
 pub mod own_study {}
 
+#[doc = include_str!("guide/keys.md")]
+pub mod keys {}
 #[doc = include_str!("guide/plates.md")]
 #[doc = "```toml"]
 #[doc = include_str!("../examples/pva_plate.toml")]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use web_time::Instant;
 
 use crate::budget::Budget;
-use crate::document::{Document, Faults, Section};
+use crate::document::{Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error};
 use crate::results::{Outcome, Results};
 
@@ -76,6 +76,18 @@ impl Kind {
             about: format!("a study of the kind {}", self.kind),
             progress_steps: 0,
         })
+    }
+
+    /// The keys that are asked for when a text is read.
+    pub fn keys(&self, text: &str) -> Vec<Key> {
+        let faults = Faults::default();
+        let defaults = Document::parse(self.file, self.study, &faults);
+        let document = Document::parse("", text, &faults);
+        let root = document.root(Some(&defaults), &faults);
+        root.text("kind");
+        root.heading("title");
+        drop((self.prepare)(&root, Path::new(".")));
+        faults.keys()
     }
 
     /// What `read` makes of a study of this case.

@@ -97,6 +97,22 @@ const UNITS: &[(&str, Dimension, f64)] = &[
 ];
 
 impl Dimension {
+    /// All of them.
+    pub const ALL: [Self; 12] = [
+        Self::Length,
+        Self::Area,
+        Self::Force,
+        Self::Stress,
+        Self::Density,
+        Self::Mass,
+        Self::Time,
+        Self::Frequency,
+        Self::Acceleration,
+        Self::Viscosity,
+        Self::Angle,
+        Self::Ratio,
+    ];
+
     /// The quantity's name as it stands in messages.
     pub fn name(self) -> &'static str {
         match self {

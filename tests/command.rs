@@ -368,14 +368,24 @@ fn cards_are_listed_and_shown() {
     );
     gelbench(folder.path(), &["materials", "show", "pva"]).code(2);
     gelbench(folder.path(), &["materials", "plot", "pva-10"]).code(0);
-    assert!(folder.path().join("pva-10_curves.png").exists());
+    assert!(
+        folder
+            .path()
+            .join("output/materials/pva-10_curves.png")
+            .exists()
+    );
     let done = gelbench(
         folder.path(),
         &["materials", "compare", "pva-10", "neo-hooke"],
     )
     .code(0);
     assert!(words(&done.get_output().stdout).contains("E₀ = 0.136540 MPa"));
-    assert!(folder.path().join("materials.png").exists());
+    assert!(
+        folder
+            .path()
+            .join("output/materials/comparison.png")
+            .exists()
+    );
     let done = gelbench(folder.path(), &["materials", "compare", "pva", "neo"]).code(2);
     let told = words(&done.get_output().stderr);
     assert!(

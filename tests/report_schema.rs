@@ -8,50 +8,8 @@ use tempfile::TempDir;
 
 mod common;
 
+use common::schema::faults;
 use common::{SMALL, folder_with, gelbench, root};
-
-/// What of a value does not follow a schema, of the keywords that the schema of reports uses.
-fn faults(schema: &Value, value: &Value, place: &str) -> Vec<String> {
-    let mut found = Vec::new();
-    let matches = |name: &Value| match name.as_str() {
-        Some("object") => value.is_object(),
-        Some("array") => value.is_array(),
-        Some("string") => value.is_string(),
-        Some("number") => value.is_number(),
-        Some("boolean") => value.is_boolean(),
-        Some("null") => value.is_null(),
-        other => panic!("unknown type {other:?}"),
-    };
-    let of_type = match &schema["type"] {
-        Value::Null => true,
-        Value::Array(names) => names.iter().any(matches),
-        name => matches(name),
-    };
-    let listed = schema["enum"].as_array();
-    if !of_type || listed.is_some_and(|listed| !listed.contains(value)) {
-        found.push(format!("{place}: {value}"));
-    }
-    for (index, item) in value.as_array().into_iter().flatten().enumerate() {
-        found.extend(faults(&schema["items"], item, &format!("{place}[{index}]")));
-    }
-    let Some(entries) = value.as_object() else {
-        return found;
-    };
-    for key in schema["required"].as_array().into_iter().flatten() {
-        if !entries.contains_key(key.as_str().unwrap()) {
-            found.push(format!("{place}: lacks {key}"));
-        }
-    }
-    for (key, own) in entries {
-        let place = format!("{place}.{key}");
-        match (&schema["properties"][key], &schema["additionalProperties"]) {
-            (Value::Null, Value::Bool(false)) => found.push(format!("{place}: not allowed")),
-            (Value::Null, other) => found.extend(faults(other, own, &place)),
-            (known, _) => found.extend(faults(known, own, &place)),
-        }
-    }
-    found
-}
 
 fn schema() -> Value {
     serde_json::from_str(REPORT_SCHEMA).unwrap()

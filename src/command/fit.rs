@@ -45,7 +45,7 @@ pub struct FitArguments {
     #[arg(long)]
     name: Option<String>,
     /// Write into this folder
-    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    #[arg(long, value_name = "FOLDER", default_value = "output/materials")]
     output: PathBuf,
     #[command(flatten)]
     reading: ReadingArguments,

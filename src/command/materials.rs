@@ -23,11 +23,13 @@ pub enum Materials {
         card: String,
     },
     /// Draw the curves of a card: uniaxial, planar and equibiaxial tension, simple shear
-    #[command(after_help = "Sample: gelbench materials plot pva-10    writes pva-10_curves.png")]
+    #[command(
+        after_help = "Sample: gelbench materials plot pva-10    writes output/materials/pva-10_curves.png"
+    )]
     Plot {
         /// Name of a card that comes along, or path of one ending in .toml
         card: String,
-        /// The picture; the card's name with _curves.png where it is not given
+        /// The picture; output/materials/ and the card's name with _curves.png where it is not given
         #[arg(long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
@@ -38,7 +40,11 @@ pub enum Materials {
         #[arg(required = true, num_args = 2..)]
         cards: Vec<String>,
         /// The picture
-        #[arg(long, value_name = "FILE", default_value = "materials.png")]
+        #[arg(
+            long,
+            value_name = "FILE",
+            default_value = "output/materials/comparison.png"
+        )]
         output: PathBuf,
     },
     /// Fit a law to measured curves and write a card, a picture and the figures
@@ -110,7 +116,8 @@ fn plot(name: &str, file: Option<PathBuf>) -> Outcome {
     let card = load(name)?;
     let stem = Path::new(name.strip_suffix(".toml").unwrap_or(name)).file_name();
     let stem = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    let file = file.unwrap_or_else(|| PathBuf::from(format!("{stem}_curves.png")));
+    let file =
+        file.unwrap_or_else(|| Path::new("output/materials").join(format!("{stem}_curves.png")));
     output::refuse_inputs(&file, &[Path::new(name)])?;
     save_picture(&file, &material_chart(&card).into())?;
     print(&format!("{} written\n", file.display()))?;

@@ -7,10 +7,12 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::Faults;
+use super::keys::{self, plain_path};
+use super::{Faults, Key, Presence, Takes};
 use crate::budget::Need;
 use crate::error::{Diagnostic, Source, suggestion};
 
+mod plain;
 mod values;
 
 /// One table of a document.
@@ -56,6 +58,7 @@ impl<'a> Section<'a> {
 
     /// The table under `key`; a missing one is read from the defaults alone.
     pub fn section(&self, key: &'static str) -> Section<'a> {
+        self.asks(key, Some(Takes::Section));
         let (mut table, mut span) = (None, self.span.clone());
         if let Some(value) = self.written(key) {
             span = value.span();
@@ -92,6 +95,7 @@ impl<'a> Section<'a> {
 
     /// The tables of a list under `key`, written as `[[key]]`; a missing list is read from the defaults.
     pub fn tables(&self, key: &'static str) -> Vec<Section<'a>> {
+        self.asks(key, Some(Takes::Sections));
         let Some(value) = self.value(key) else {
             return Vec::new();
         };
@@ -125,6 +129,7 @@ impl<'a> Section<'a> {
 
     /// Whether the file itself holds `key`.
     pub fn has(&self, key: &'static str) -> bool {
+        self.asks(key, None);
         self.written(key).is_some()
     }
 
@@ -186,6 +191,26 @@ impl<'a> Section<'a> {
             self.faults
                 .push(diagnostic.hint(hint).at(self.source, span));
         }
+    }
+
+    /// Notes that a key is asked for, and what it takes if its value is.
+    fn asks(&self, key: &'static str, takes: Option<Takes>) {
+        let example = self.defaults.and_then(|table| table.get(key));
+        let required = self.required.contains(&key);
+        let table = matches!(takes, Some(Takes::Section));
+        let presence = match (&takes, example) {
+            (None, _) => Presence::Optional,
+            (Some(_), Some(_)) if !required => Presence::Default,
+            (Some(_), None) if table => Presence::Optional,
+            _ => Presence::Required,
+        };
+        let key = Key {
+            path: plain_path(&self.full(key)),
+            takes: takes.into_iter().collect(),
+            example: example.map(|value| shown(value.get_ref())),
+            presence,
+        };
+        keys::note(&mut self.faults.keys.borrow_mut(), key);
     }
 
     /// The value in the file, else the default; a fault when there is neither, or when the file must hold it.

@@ -9,7 +9,7 @@ use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS, Law};
 use super::viscosity::{Relaxation, ViscousMaterial};
-use crate::document::{Bound, Document, Faults, Section, file, read_text};
+use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
@@ -101,8 +101,22 @@ impl Card {
     /// [`Error::Input`] with every fault of the card.
     pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, Error> {
         let faults = Faults::default();
-        let document = Document::parse(file, text, &faults);
-        let root = document.root(None, &faults);
+        let card = Self::read(name, file, text, &faults);
+        faults.finish()?;
+        Ok(card)
+    }
+
+    /// The keys that are asked for when a card's text is read.
+    pub fn keys(text: &str) -> Vec<Key> {
+        let faults = Faults::default();
+        Self::read("", "", text, &faults);
+        faults.keys()
+    }
+
+    /// Reads a card; its faults are recorded.
+    fn read(name: &str, file: &str, text: &str, faults: &Faults) -> Self {
+        let document = Document::parse(file, text, faults);
+        let root = document.root(None, faults);
         let unread = Arc::new(NeoHooke { c10: f64::NAN });
         let mut card = Self::of_law(name, unread, [1.0, 1.0]);
         card.text = text.to_owned();
@@ -121,15 +135,14 @@ impl Card {
         let parameters = root.section("parameters");
         root.unknown_keys();
         let Some(law) = law else {
-            return Err(faults.finish().expect_err("an unknown law is a fault"));
+            return card;
         };
         let parameters = Parameters::of_card(parameters, card.stress_measure, card.strain_measure);
         card.law = (law.read)(&parameters).into();
         (card.law_name, card.formula) = (law.name.to_owned(), law.formula);
         let entries = parameters.finish_with(|key| of_other_laws(key, law.name));
         (card.parameters, card.choices) = (entries.parameters, entries.choices);
-        faults.finish()?;
-        Ok(card)
+        card
     }
 
     /// A card of any law, in the registry or not, for the stretches within `stretch_range`: studies run with it as with a

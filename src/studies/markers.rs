@@ -27,7 +27,7 @@ mod specimen_mesh;
 mod tables;
 pub mod written;
 
-pub use conditions::{Conditions, EdgesByName, measured_force};
+pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use request::{MeshSource, Request};
 use specimen_mesh::{SpecimenMesh, mesh};
 

@@ -19,7 +19,7 @@ mod vtk;
 mod warnings;
 
 pub use problem::{OutputSettings, Study};
-pub use read::DEFAULT;
+pub use read::{DEFAULT, keys};
 use results::{Results, run};
 
 /// The `kind` of these studies.

@@ -55,7 +55,6 @@ pub fn report(title: &str, cases: &[Results]) -> (Vec<Block>, Vec<Figure>) {
     if let [case] = cases {
         blocks.extend(case.study());
     }
-    blocks.extend(times(cases));
     (blocks, figures)
 }
 
@@ -90,7 +89,8 @@ fn row(case: &str, check: &Check) -> Vec<String> {
     ]
 }
 
-fn times(cases: &[Results]) -> Vec<Block> {
+/// How long the cases took: a document of its own, as the report says the same on every run.
+pub fn times(cases: &[Results]) -> Vec<Block> {
     let mut rows = Vec::new();
     for case in cases {
         rows.push(vec![
@@ -105,7 +105,7 @@ fn times(cases: &[Results]) -> Vec<Block> {
     }
     let head = ["case", "what", "time [s]"];
     vec![
-        Block::Heading(2, "Times".into()),
+        Block::Heading(1, "Times".into()),
         Block::Paragraph(
             "Times differ from run to run; those of one case were measured side by side.".into(),
         ),

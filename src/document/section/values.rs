@@ -3,10 +3,13 @@
 use toml::Spanned;
 use toml::de::DeValue;
 
+use super::plain::{
+    bare, count_pair, plain_number, quantity, rounded, text, unquoted, whole_number,
+};
 use super::{Section, Value};
-use crate::document::Bound;
+use crate::document::{Bound, Takes};
 use crate::error::nearest;
-use crate::units::{self, Dimension, Linear, QuantityFault, bare_ratio};
+use crate::units::{self, Dimension, Linear};
 
 /// Bare ratios up to here are what they say; a larger one may have been meant in percent.
 const MOST_BARE: f64 = 5.0;
@@ -14,6 +17,7 @@ const MOST_BARE: f64 = 5.0;
 impl<'a> Section<'a> {
     /// A text.
     pub fn text(&self, key: &'static str) -> String {
+        self.asks(key, Some(Takes::Text));
         self.read(key, "text in quotes", text).unwrap_or_default()
     }
 
@@ -27,6 +31,7 @@ impl<'a> Section<'a> {
 
     /// A list of texts.
     pub fn texts(&self, key: &'static str) -> Vec<String> {
+        self.asks(key, Some(Takes::Texts));
         self.read(key, "a list of texts in quotes", |value| match value {
             DeValue::Array(items) => items.iter().map(|item| text(item.get_ref())).collect(),
             _ => None,
@@ -36,6 +41,7 @@ impl<'a> Section<'a> {
 
     /// A truth value.
     pub fn flag(&self, key: &'static str) -> bool {
+        self.asks(key, Some(Takes::Flag));
         self.read(key, "true or false", |value| match value {
             DeValue::Boolean(flag) => Some(*flag),
             _ => None,
@@ -45,6 +51,8 @@ impl<'a> Section<'a> {
 
     /// One of several names; `None` when it is missing or unknown, which is recorded as a fault.
     pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<T> {
+        let names = choices.iter().map(|(known, _)| (*known).to_owned());
+        self.asks(key, Some(Takes::Choice(names.collect())));
         let name = self.read(key, "text in quotes", text)?;
         if let Some((_, choice)) = choices.iter().find(|(known, _)| *known == name) {
             return Some(*choice);
@@ -63,6 +71,7 @@ impl<'a> Section<'a> {
 
     /// A whole number from `low` to `high`.
     pub fn count(&self, key: &'static str, low: usize, high: usize) -> usize {
+        self.asks(key, Some(Takes::Count([low, high])));
         let wanted = format!("a whole number from {low} to {high}");
         self.read(key, &wanted, |value| {
             whole_number(value).filter(|n| (low..=high).contains(n))
@@ -73,6 +82,7 @@ impl<'a> Section<'a> {
     /// A list of exactly two whole numbers from `low` to `high`; `None` when it is wrong, which is recorded
     /// as a fault.
     pub fn count_pair(&self, key: &'static str, low: usize, high: usize) -> Option<[usize; 2]> {
+        self.asks(key, Some(Takes::Counts([low, high], None)));
         let wanted = format!("two whole numbers from {low} to {high}, such as [60, 20]");
         self.read(key, &wanted, |value| count_pair(value, low, high))
     }
@@ -84,6 +94,7 @@ impl<'a> Section<'a> {
         key: &'static str,
         [low, high]: [usize; 2],
     ) -> Option<Option<[usize; 2]>> {
+        self.asks(key, Some(Takes::Counts([low, high], Some(word.to_owned()))));
         let wanted =
             format!("two whole numbers from {low} to {high}, such as [60, 20], or \"{word}\"");
         self.read(key, &wanted, |value| match value {
@@ -94,6 +105,7 @@ impl<'a> Section<'a> {
 
     /// A number without a dimension.
     pub fn number(&self, key: &'static str, bound: Bound) -> f64 {
+        self.asks(key, Some(Takes::Number(bound)));
         let Some(value) = self.value(key) else {
             return f64::NAN;
         };
@@ -112,14 +124,31 @@ impl<'a> Section<'a> {
 
     /// A quantity with a unit, in the internal unit of `dimension`.
     pub fn quantity(&self, key: &'static str, dimension: Dimension, bound: Bound) -> f64 {
+        self.asks(key, Some(Takes::Quantity(dimension, bound)));
         match self.value_like(key, dimension.example()) {
             Some(value) => self.quantity_of(key, value, dimension, bound),
             None => f64::NAN,
         }
     }
 
+    /// The same, or a word that leaves the choice to the program: nothing then.
+    pub fn quantity_or(
+        &self,
+        word: &str,
+        key: &'static str,
+        dimension: Dimension,
+        bound: Bound,
+    ) -> Option<f64> {
+        self.asks(key, Some(Takes::Choice(vec![word.to_owned()])));
+        let is_word = |value: Value<'a>| text(value.get_ref()).is_some_and(|text| text == word);
+        let leaves = self.value(key).is_some_and(is_word);
+        self.asks(key, Some(Takes::Quantity(dimension, bound)));
+        (!leaves).then(|| self.quantity(key, dimension, bound))
+    }
+
     /// The size of a unit by its name alone, such as `"mm"`, or as a quantity, such as `"0.05 mm"`.
     pub fn unit(&self, key: &'static str, dimension: Dimension) -> f64 {
+        self.asks(key, Some(Takes::Unit(dimension)));
         let unit = dimension.units().next().unwrap_or_default();
         let Some(value) = self.value_like(key, &format!("\"{unit}\"")) else {
             return f64::NAN;
@@ -152,6 +181,7 @@ impl<'a> Section<'a> {
 
     /// A length that may be linear in the place at rest, as text such as `"2 mm + 0.1 * X"`.
     pub fn linear_length(&self, key: &'static str) -> Linear {
+        self.asks(key, Some(Takes::LinearLength));
         const EXAMPLE: &str = "\"2 mm\" or \"0.1 * X\"";
         let nothing = Linear::constant(f64::NAN);
         let Some(value) = self.value_like(key, EXAMPLE) else {
@@ -183,6 +213,7 @@ impl<'a> Section<'a> {
     }
 
     fn list(&self, key: &'static str, dimension: Dimension, bound: Bound, most: f64) -> Vec<f64> {
+        self.asks(key, Some(Takes::Quantities(dimension, bound)));
         let example = format!("[{}, …]", dimension.example());
         let Some(value) = self.value_like(key, &example) else {
             return Vec::new();
@@ -296,86 +327,5 @@ impl<'a> Section<'a> {
             .get(value.span())
             .unwrap_or_default()
             .to_owned()
-    }
-}
-
-fn text(value: &DeValue<'_>) -> Option<String> {
-    match value {
-        DeValue::String(text) => Some(text.to_string()),
-        _ => None,
-    }
-}
-
-/// A value's quantity in the internal unit, or what is wrong and what to do.
-fn quantity(value: &DeValue<'_>, dimension: Dimension) -> Result<f64, (String, String)> {
-    let (name, example) = (dimension.name(), dimension.example());
-    match value {
-        DeValue::String(text) => units::parse(text, dimension).map_err(|fault| {
-            let hint = fault.remedy(text, dimension);
-            (format!("\"{text}\" {fault}"), hint)
-        }),
-        other => match plain_number(other) {
-            Some(number) if dimension == Dimension::Ratio => match dimension.admits(number) {
-                true => Ok(number),
-                false => {
-                    let fault = QuantityFault::OutOfRange(dimension);
-                    Err((fault.to_string(), fault.remedy("", dimension)))
-                }
-            },
-            Some(number) => {
-                let text = number.to_string();
-                let hint = QuantityFault::MissingUnit.remedy(&text, dimension);
-                Err((format!("a {name} needs a unit"), hint))
-            }
-            None => Err((format!("must be a {name}"), format!("such as {example}"))),
-        },
-    }
-}
-
-/// A bare number, in quotes or not.
-fn bare(value: &DeValue<'_>) -> Option<f64> {
-    match value {
-        DeValue::String(text) => bare_ratio(text),
-        other => plain_number(other),
-    }
-}
-
-/// How to write a number that stands in quotes.
-fn unquoted(text: &str) -> String {
-    let point = text.trim().replacen(',', ".", 1);
-    match point.parse::<f64>() {
-        Ok(_) => format!("write {point}, without quotes"),
-        Err(_) => "write it without quotes and without a unit, such as 1e-8".to_owned(),
-    }
-}
-
-/// A number without the noise of its last binary digits.
-fn rounded(number: f64) -> f64 {
-    format!("{number:.9e}").parse().unwrap_or(number)
-}
-
-fn plain_number(value: &DeValue<'_>) -> Option<f64> {
-    let text = match value {
-        DeValue::Float(number) => number.as_str(),
-        DeValue::Integer(number) if number.radix() == 10 => number.as_str(),
-        _ => return None,
-    };
-    text.parse().ok().filter(|number: &f64| number.is_finite())
-}
-
-fn count_pair(value: &DeValue<'_>, low: usize, high: usize) -> Option<[usize; 2]> {
-    let DeValue::Array(items) = value else {
-        return None;
-    };
-    let numbers = items.iter().map(|item| whole_number(item.get_ref()));
-    let numbers: Vec<usize> = numbers.collect::<Option<_>>()?;
-    let inside = numbers.iter().all(|n| (low..=high).contains(n));
-    inside.then(|| numbers.try_into().ok()).flatten()
-}
-
-fn whole_number(value: &DeValue<'_>) -> Option<usize> {
-    match value {
-        DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
-        _ => None,
     }
 }

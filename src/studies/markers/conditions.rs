@@ -1,38 +1,11 @@
-//! What is known of a specimen besides its displacements: a file, completed by the command line.
-//!
-//! ```toml
-//! title = "Strip, test 12"   # of the report
-//! noise = "0.1 mm"           # standard deviation of each component; estimated where it is left out
-//! robust = "tukey"           # "no", "huber" or "tukey"
-//! physics = "exact"          # or "weighted" against the data, for a law that is not exactly right
-//! unnamed = "tested"         # outer edges that are not named: the data tell which are free, "loaded" or "free"
-//! edge_gap = "1.5 mm"        # how far inside of the specimen's edge the outermost markers lie, if the outline is theirs
-//! fit = ["c10"]              # one or two parameters of the law that are found with the field
-//!
-//! [[edges]]                  # holes that are not named are free
-//! names = ["top", "bottom"]
-//! condition = "free"         # "free", "known", "rigid" (moved by unknown amounts) or "unknown"
-//!
-//! [[edges]]
-//! names = ["left"]
-//! condition = "known"
-//! ux = "0 mm"                # an axis that is left out is free
-//! uy = "0 mm"
-//!
-//! [[force]]                  # that was measured on an edge that is not free
-//! edge = "left"
-//! axis = "x"
-//! force = "-1.2 N"           # of the grip on the specimen, positive along the axis
-//! standard_deviation = "0.02 N"   # 1 % of the force where it is left out
-//! frame = 3                  # may be left out if there is one frame
-//! ```
+//! What is known of a specimen besides its displacements: a file, completed by the command line. `default.toml` shows its keys.
 
 use std::path::Path;
 
 use crate::corrector::estimation::{
     EdgeCondition, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
 };
-use crate::document::{Bound, Document, Faults, Section};
+use crate::document::{Bound, Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::markers::{Frame, MarkerSeries};
 use crate::material::Card;
@@ -65,6 +38,9 @@ pub struct Conditions {
     /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
     pub edge_gap: Option<f64>,
 }
+
+/// The file that `gelbench new --kind markers` writes.
+pub const TEMPLATE: &str = include_str!("default.toml");
 
 /// Standard deviation of a force over the force where it is not given.
 const FORCE_DEVIATION: f64 = 0.01;
@@ -214,6 +190,15 @@ impl Conditions {
             forces,
         }
     }
+}
+
+/// The keys that are asked for when a text is read.
+pub fn keys(text: &str) -> Vec<Key> {
+    let faults = Faults::default();
+    let document = Document::parse("", text, &faults);
+    read(&document.root(None, &faults));
+    drop(document);
+    faults.keys()
 }
 
 fn read(root: &Section) -> Conditions {

@@ -230,10 +230,8 @@ fn read_time(section: &Section) -> Option<TimeSettings> {
         );
     }
     const STEP: &str = "step";
-    let step = match section.text(STEP).as_str() {
-        "automatic" => Step::Automatic,
-        _ => Step::AtMost(instant(STEP)),
-    };
+    let step = section.quantity_or("automatic", STEP, Dimension::Time, Bound::Positive);
+    let step = step.map_or(Step::Automatic, Step::AtMost);
     let alpha = Integrator::GeneralisedAlpha {
         spectral_radius: section.number("spectral_radius", Bound::Within(0.0, 1.0)),
         tolerance: section.number("tolerance", Bound::Within(1e-12, 1e-1)),

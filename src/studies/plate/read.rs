@@ -8,7 +8,7 @@ use super::problem::{Correction, OutputSettings, Reference, Study};
 use crate::budget::{Budget, Need};
 use crate::corrector::climb::ClimbSettings;
 use crate::corrector::{CorrectorSettings, DifferenceScheme};
-use crate::document::{Bound, Document, Faults, Section, name_of};
+use crate::document::{Bound, Document, Faults, Key, Section, name_of};
 use crate::error::Error;
 use crate::finite_element::Element;
 use crate::mass_spring::LatticeSettings;
@@ -76,6 +76,16 @@ impl Study {
             ..study
         })
     }
+}
+
+/// The keys that are asked for when a text is read.
+pub fn keys(text: &str) -> Vec<Key> {
+    let faults = Faults::default();
+    let defaults = Document::parse("default.toml", DEFAULT, &faults);
+    let document = Document::parse("", text, &faults);
+    let root = document.root(Some(&defaults), &faults);
+    drop(read_sections("", Path::new("."), root));
+    faults.keys()
 }
 
 /// Reads all sections; `None` where there is no card to work with, which is recorded as a fault.

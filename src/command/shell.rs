@@ -1,0 +1,40 @@
+//! `gelbench completions` and `gelbench man`: what shells and manuals need of the command.
+
+use std::path::Path;
+
+use clap::Command;
+use clap_complete::Shell;
+
+use super::terminal::{Outcome, print};
+use crate::error::Error;
+use crate::output;
+
+/// Prints the completions of a shell.
+pub fn completions(shell: Shell, command: &mut Command) -> Outcome {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, command, "gelbench", &mut script);
+    print(&String::from_utf8_lossy(&script))?;
+    Ok(0)
+}
+
+/// Writes a page of the manual for the command and for each of its parts.
+pub fn manual(folder: &Path, command: &mut Command) -> Outcome {
+    command.build();
+    let written = pages(command, folder)?;
+    print(&format!("{written} pages in {}\n", folder.display()))?;
+    Ok(0)
+}
+
+fn pages(command: &Command, folder: &Path) -> Result<usize, Error> {
+    let mut page = Vec::new();
+    let name = command.get_display_name().unwrap_or(command.get_name());
+    let target = folder.join(format!("{name}.1"));
+    let manual = clap_mangen::Man::new(command.clone());
+    manual
+        .render(&mut page)
+        .map_err(|cause| Error::write(&target, cause))?;
+    output::save(&target, &page)?;
+    let parts = command.get_subcommands();
+    let mut parts = parts.filter(|part| part.get_name() != "help");
+    parts.try_fold(1, |written, part| Ok(written + pages(part, folder)?))
+}

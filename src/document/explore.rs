@@ -1,0 +1,263 @@
+//! Every key that a reader knows, found by reading.
+//!
+//! A file is read, every key that the reader asks for is added to it with a value that suits, and it is read again until
+//! nothing new is asked for. Then every choice is given every one of its names in turn, and what is asked for only then belongs
+//! to that choice.
+
+use std::collections::VecDeque;
+
+use toml::{Table, Value};
+
+use super::keys::note;
+use super::{Key, Takes};
+
+/// Choices and the names that they are given.
+type Assignment = Vec<(String, String)>;
+
+/// A key with the choices under which it is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundKey {
+    /// The key.
+    pub key: Key,
+    /// The choice and those of its names for which the key is read; nothing for keys that are always read.
+    pub only_with: Option<(String, Vec<String>)>,
+}
+
+/// The keys that are asked for when a choice is given one of its names.
+struct Reading {
+    choice: String,
+    name: String,
+    paths: Vec<String>,
+}
+
+/// All keys that a reader asks for, in the order in which it does; `read` reads a text and returns what was asked for.
+pub fn explore(read: &dyn Fn(&str) -> Vec<Key>) -> Vec<FoundKey> {
+    let (mut found, mut readings): (Vec<Key>, Vec<Reading>) = (Vec::new(), Vec::new());
+    let mut open = VecDeque::from([Assignment::new()]);
+    while let Some(assignment) = open.pop_front() {
+        let keys = complete(read, &assignment);
+        if let Some((choice, name)) = assignment.last().cloned() {
+            let paths = keys.iter().map(|key| key.path.clone()).collect();
+            readings.push(Reading {
+                choice,
+                name,
+                paths,
+            });
+        }
+        for key in keys {
+            let is_new = found.iter().all(|known| known.path != key.path);
+            if let (true, Some(Takes::Choice(names))) = (is_new, key.takes.first())
+                && names.len() > 1
+            {
+                open.extend(names.iter().map(|name| with(&assignment, &key.path, name)));
+            }
+            note(&mut found, key);
+        }
+    }
+    let found = found.into_iter();
+    found
+        .map(|key| FoundKey {
+            only_with: only_with(&key.path, &readings),
+            key,
+        })
+        .collect()
+}
+
+fn with(assignment: &Assignment, path: &str, name: &str) -> Assignment {
+    let mut more = assignment.clone();
+    more.push((path.to_owned(), name.to_owned()));
+    more
+}
+
+/// The last choice of which some names make the reader ask for a key, and others do not.
+fn only_with(path: &str, readings: &[Reading]) -> Option<(String, Vec<String>)> {
+    let mut choices: Vec<&str> = readings.iter().map(|reading| &*reading.choice).collect();
+    choices.dedup();
+    let decides = |choice: &&&str| {
+        let of_choice = || readings.iter().filter(|reading| reading.choice == **choice);
+        let asks = |reading: &Reading| reading.paths.iter().any(|own| own == path);
+        of_choice().any(asks) && !of_choice().all(asks)
+    };
+    let choice = *choices.iter().rev().find(decides)?;
+    let names = readings
+        .iter()
+        .filter(|reading| reading.choice == choice && reading.paths.iter().any(|own| own == path));
+    Some((
+        choice.to_owned(),
+        names.map(|reading| reading.name.clone()).collect(),
+    ))
+}
+
+/// The keys that are asked for of a file that has all of them, with some choices made.
+fn complete(read: &dyn Fn(&str) -> Vec<Key>, assignment: &Assignment) -> Vec<Key> {
+    const ROUNDS: usize = 16;
+    let mut file = Table::new();
+    for (path, name) in assignment {
+        put(&mut file, path, Value::String(name.clone()));
+    }
+    let mut all = Vec::new();
+    for _ in 0..ROUNDS {
+        let before = file.clone();
+        let keys = read(&file.to_string());
+        for key in &keys {
+            let chosen = assignment.iter().find(|(path, _)| *path == key.path);
+            let value = match chosen {
+                Some((_, name)) => Value::String(name.clone()),
+                None => value(key),
+            };
+            put(&mut file, &key.path, value);
+        }
+        if file == before {
+            all = keys;
+            break;
+        }
+    }
+    alone(read, &file, &mut all);
+    all
+}
+
+/// Keys of which a reader takes one or the other: each is given without the others that are still unknown.
+fn alone(read: &dyn Fn(&str) -> Vec<Key>, file: &Table, all: &mut Vec<Key>) {
+    let unknown: Vec<String> = all
+        .iter()
+        .filter(|key| key.takes.is_empty())
+        .map(|key| key.path.clone())
+        .collect();
+    for path in &unknown {
+        let mut file = file.clone();
+        for other in unknown.iter().filter(|other| *other != path) {
+            remove(&mut file, other);
+        }
+        for key in read(&file.to_string()) {
+            note(all, key);
+        }
+    }
+}
+
+/// A value that suits a key.
+fn value(key: &Key) -> Value {
+    let example = key.example.as_deref().unwrap_or_default();
+    let parsed = format!("value = {example}").parse::<Table>().ok();
+    let parsed = parsed.and_then(|mut table| table.remove("value"));
+    let text = |text: &str| Value::String(text.to_owned());
+    let number = |number: usize| Value::Integer(number as i64);
+    let quantity = |example: &str| text(example.rsplit('"').nth(1).unwrap_or("1"));
+    match key.takes.first() {
+        Some(Takes::Section) => Value::Table(Table::new()),
+        Some(Takes::Sections) => Value::Array(vec![Value::Table(Table::new())]),
+        _ if parsed.is_some() => parsed.unwrap_or_else(|| text("")),
+        None | Some(Takes::Text) => text("?"),
+        Some(Takes::Texts) => Value::Array(vec![text("?")]),
+        Some(Takes::Flag) => Value::Boolean(true),
+        Some(Takes::Choice(names)) => text(names.first().map_or("", |name| name)),
+        Some(Takes::Count([low, _])) => number(*low),
+        Some(Takes::Counts([low, _], _)) => Value::Array(vec![number(*low); 2]),
+        Some(Takes::Number(_)) => Value::Float(1.0),
+        Some(Takes::Quantity(dimension, _) | Takes::Unit(dimension)) => {
+            quantity(dimension.example())
+        }
+        Some(Takes::Quantities(dimension, _)) => Value::Array(vec![quantity(dimension.example())]),
+        Some(Takes::LinearLength) => text("1 mm"),
+    }
+}
+
+/// The table that a path leads to and the name in it; tables on the way are made where they are missing.
+fn place<'a, 'b>(file: &'a mut Table, path: &'b str) -> Option<(&'a mut Table, &'b str)> {
+    let Some((first, rest)) = path.split_once('.') else {
+        return Some((file, path));
+    };
+    let list = first.ends_with("[]");
+    let entry = file.entry(first.trim_end_matches("[]").to_owned());
+    let empty = Value::Table(Table::new());
+    let entry = entry.or_insert(if list {
+        Value::Array(vec![empty])
+    } else {
+        empty
+    });
+    let inner = match entry {
+        Value::Array(tables) => tables.first_mut(),
+        other => Some(other),
+    };
+    place(inner?.as_table_mut()?, rest)
+}
+
+/// Gives a key a value; tables keep what they hold.
+fn put(file: &mut Table, path: &str, value: Value) {
+    let Some((table, name)) = place(file, path) else {
+        return;
+    };
+    let holds_tables = |value: &Value| match value {
+        Value::Table(_) => true,
+        Value::Array(items) => items.iter().any(Value::is_table),
+        _ => false,
+    };
+    let kept = table.get(name).is_some_and(holds_tables) && holds_tables(&value);
+    if !kept {
+        table.insert(name.to_owned(), value);
+    }
+}
+
+fn remove(file: &mut Table, path: &str) {
+    if let Some((table, name)) = place(file, path) {
+        table.remove(name);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Bound, Document, Faults, Presence, Section};
+    use super::*;
+    use crate::units::Dimension;
+
+    fn length(section: &Section, key: &'static str) {
+        section.quantity(key, Dimension::Length, Bound::Positive);
+    }
+
+    /// One of two keys, keys of choices within choices, lists of tables, keys that may be missing.
+    fn read(text: &str) -> Vec<Key> {
+        let faults = Faults::default();
+        let document = Document::parse("", text, &faults);
+        let root = document.root(None, &faults);
+        length(&root, "always");
+        if root.has("more") {
+            length(&root.section("more"), "inside");
+        }
+        if root.has("item") {
+            for item in root.tables("item") {
+                match item.choice("kind", &[("a", 0), ("b", 1)]) {
+                    Some(0) => length(&item, "of_a"),
+                    Some(_) => match (item.has("one"), item.has("other")) {
+                        (true, false) => length(&item, "one"),
+                        (false, true) => drop(item.flag("other")),
+                        _ => {}
+                    },
+                    None => {}
+                }
+            }
+        }
+        faults.keys()
+    }
+
+    #[test]
+    fn every_key_is_found_with_what_it_takes_and_when() {
+        let found = explore(&read);
+        let key = |path: &str| {
+            let own = found.iter().find(|own| own.key.path == path);
+            own.unwrap_or_else(|| panic!("{path}: {found:#?}"))
+        };
+        let takes = |path: &str| key(path).key.takes.clone();
+        let length = [Takes::Quantity(Dimension::Length, Bound::Positive)];
+        assert_eq!(takes("always"), length);
+        assert_eq!(key("always").key.presence, Presence::Required);
+        assert_eq!(takes("more.inside"), length);
+        assert_eq!(key("more").key.presence, Presence::Optional);
+        assert_eq!(takes("item[].one"), length);
+        assert_eq!(takes("item[].other"), [Takes::Flag]);
+        let only = |path: &str| key(path).only_with.clone();
+        let with = |name: &str| Some(("item[].kind".to_owned(), vec![name.to_owned()]));
+        assert_eq!(only("item[].of_a"), with("a"));
+        assert_eq!(only("item[].other"), with("b"));
+        assert_eq!(only("item[].kind"), None);
+        assert_eq!(found.len(), 8);
+    }
+}

@@ -1,0 +1,91 @@
+//! The keys that a reader asks for, noted while it reads.
+
+use super::Bound;
+use crate::units::Dimension;
+
+/// What the value of a key must be.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Takes {
+    /// A text.
+    Text,
+    /// A list of texts.
+    Texts,
+    /// A truth value.
+    Flag,
+    /// One of some names.
+    Choice(Vec<String>),
+    /// A whole number within limits.
+    Count([usize; 2]),
+    /// Two whole numbers within limits, or a word.
+    Counts([usize; 2], Option<String>),
+    /// A number without a unit.
+    Number(Bound),
+    /// A quantity with a unit.
+    Quantity(Dimension, Bound),
+    /// A list of quantities.
+    Quantities(Dimension, Bound),
+    /// The name of a unit, or a quantity.
+    Unit(Dimension),
+    /// A length that may be linear in the place.
+    LinearLength,
+    /// A table.
+    Section,
+    /// A list of tables.
+    Sections,
+}
+
+/// A key that a reader has asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Key {
+    /// Its tables and its name: `plate.length`, `support[].kind`.
+    pub path: String,
+    /// What it takes; nothing where the reader has only looked whether it is there.
+    pub takes: Vec<Takes>,
+    /// The value in the study that comes along.
+    pub example: Option<String>,
+    /// Whether it may be left out.
+    pub presence: Presence,
+}
+
+/// Whether a key may be left out, and what that means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// A file must hold it.
+    Required,
+    /// It takes the value in the study that comes along.
+    Default,
+    /// Nothing is said then.
+    Optional,
+}
+
+/// A path without the numbers of its tables.
+pub(super) fn plain_path(path: &str) -> String {
+    let mut plain = String::new();
+    let mut inside = false;
+    for letter in path.chars() {
+        inside = letter == '[' || inside && letter != ']';
+        if !inside || letter == '[' {
+            plain.push(letter);
+        }
+    }
+    plain
+}
+
+/// Adds a key to those that were asked for before, or what is new of it.
+pub(super) fn note(keys: &mut Vec<Key>, key: Key) {
+    match keys.iter_mut().find(|known| known.path == key.path) {
+        None => keys.push(key),
+        // Whether a key is there is asked for before it is read where it may be missing.
+        Some(known) => {
+            known.example = known.example.take().or(key.example);
+            // A choice is read as a text too.
+            let is_choice = matches!(known.takes.first(), Some(Takes::Choice(_)));
+            let new = key
+                .takes
+                .into_iter()
+                .filter(|one| !known.takes.contains(one) && !(is_choice && *one == Takes::Text));
+            let new: Vec<Takes> = new.collect();
+            known.takes.extend(new);
+        }
+    }
+}
