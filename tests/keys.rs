@@ -44,11 +44,11 @@ fn keys_of_choices_are_found_with_unit_range_and_default() {
     for (kind, row) in [
         (
             "plate",
-            "| `cells` | two whole numbers from 2 to 2000 | `[60, 20]` |",
+            "| `cells` | two whole numbers from 2 to 100000 | `[60, 20]` |",
         ),
         (
             "specimen",
-            "| `notch_depth` | length > 0 | must be stated, such as `\"2 mm\"` | with `shape` `\"notched-strip\"` |",
+            "| `notch_depth` | length, greater than zero, from 1 nm to 1 km | must be stated, such as `\"2 mm\"` | with `shape` `\"notched-strip\"` |",
         ),
         (
             "specimen",
@@ -64,7 +64,7 @@ fn keys_of_choices_are_found_with_unit_range_and_default() {
         ),
         (
             "specimen",
-            "| `hole_diameter` | length > 0 | must be stated, such as `\"12 mm\"` | with `shape` `\"strip-with-hole\"` |",
+            "| `hole_diameter` | length, greater than zero, from 1 nm to 1 km | must be stated, such as `\"12 mm\"` | with `shape` `\"strip-with-hole\"` |",
         ),
         (
             "motion",
@@ -114,7 +114,7 @@ fn files_that_come_along_follow_the_schema_of_their_kind() {
     for (from, to, place) in [
         ("thickness =", "thicknes =", ".specimen.thicknes"),
         ("\"clamp\"", "\"clap\"", ".support[0].kind"),
-        ("cells = 24", "cells = 2400", ".specimen.cells"),
+        ("cells = 24", "cells = 24000", ".specimen.cells"),
         (
             "adaptive = false",
             "adaptive = 0",
