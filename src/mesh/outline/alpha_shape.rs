@@ -1,6 +1,6 @@
 //! The lines around scattered points: the boundary of the small Delaunay triangles.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 
 use super::fault::OutlineFault;
 use crate::mesh::geometry::{distance, polygon_area};
@@ -29,9 +29,11 @@ pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), Outlin
     let spacing = median_edge(points, &triangles);
     let small = |triangle: &[usize; 3]| radius(points, triangle) < wider * RADIUS * spacing;
     let mut inside: Vec<bool> = triangles.iter().map(small).collect();
-    mend_touching(&triangles, &mut inside);
-    largest_part(points, &triangles, &mut inside)?;
-    let lines = boundary_lines(&triangles, &inside).into_iter();
+    let beyond = neighbours(&triangles);
+    mend_touching(&triangles, &beyond, &mut inside);
+    largest_part(points, (&triangles, &beyond), &mut inside)?;
+    let boundary = boundary_edges(&triangles, &beyond, &inside);
+    let lines = boundary_lines(boundary).into_iter();
     let places = lines.map(|line| line.iter().map(|point| points[*point]).collect());
     Ok((places.collect(), spacing))
 }
@@ -53,19 +55,51 @@ fn radius(points: &[[f64; 2]], triangle: &[usize; 3]) -> f64 {
     sides.iter().product::<f64>() / (2.0 * twice.abs())
 }
 
+/// The triangles beyond the edges ab, bc and ca of each triangle.
+type Neighbours = Vec<[Option<usize>; 3]>;
+
+fn neighbours(triangles: &[[usize; 3]]) -> Neighbours {
+    let sides = triangles
+        .iter()
+        .enumerate()
+        .flat_map(|(triangle, corners)| {
+            [0, 1, 2].map(|side| {
+                let [from, to] = [corners[side], corners[(side + 1) % 3]];
+                ([from.min(to), from.max(to)], triangle, side)
+            })
+        });
+    let mut sides: Vec<_> = sides.collect();
+    sides.sort_unstable();
+    let mut beyond = vec![[None; 3]; triangles.len()];
+    for pair in sides.windows(2) {
+        let [(edge, one, of_one), (same, other, of_other)] = [pair[0], pair[1]];
+        if edge == same {
+            beyond[one][of_one] = Some(other);
+            beyond[other][of_other] = Some(one);
+        }
+    }
+    beyond
+}
+
 /// The edges of triangles inside without one at their other side, by their first point, inside to the left.
-fn boundary_edges(triangles: &[[usize; 3]], inside: &[bool]) -> Vec<[usize; 2]> {
-    let kept = || triangles.iter().zip(inside).filter(|(_, inside)| **inside);
-    let edges = || kept().flat_map(|([a, b, c], _)| [[*a, *b], [*b, *c], [*c, *a]]);
-    let all: HashSet<[usize; 2]> = edges().collect();
-    edges().filter(|[a, b]| !all.contains(&[*b, *a])).collect()
+fn boundary_edges(
+    triangles: &[[usize; 3]],
+    beyond: &Neighbours,
+    inside: &[bool],
+) -> Vec<[usize; 2]> {
+    let kept = (0..triangles.len()).filter(|triangle| inside[*triangle]);
+    let edges = kept.flat_map(|triangle| [0, 1, 2].map(|side| (triangle, side)));
+    let open = edges
+        .filter(|(triangle, side)| !beyond[*triangle][*side].is_some_and(|other| inside[other]));
+    open.map(|(triangle, side)| [side, (side + 1) % 3].map(|corner| triangles[triangle][corner]))
+        .collect()
 }
 
 /// Where two lines of the boundary touch in a point, all triangles around it become inside.
-fn mend_touching(triangles: &[[usize; 3]], inside: &mut [bool]) {
+fn mend_touching(triangles: &[[usize; 3]], beyond: &Neighbours, inside: &mut [bool]) {
     loop {
         let mut leaving: HashMap<usize, usize> = HashMap::new();
-        for [from, _] in boundary_edges(triangles, inside) {
+        for [from, _] in boundary_edges(triangles, beyond, inside) {
             *leaving.entry(from).or_default() += 1;
         }
         let mut changed = false;
@@ -86,13 +120,9 @@ fn mend_touching(triangles: &[[usize; 3]], inside: &mut [bool]) {
 /// Leaves the largest connected part inside; others must be small.
 fn largest_part(
     points: &[[f64; 2]],
-    triangles: &[[usize; 3]],
+    (triangles, beyond): (&[[usize; 3]], &Neighbours),
     inside: &mut [bool],
 ) -> Result<(), OutlineFault> {
-    let mut by_edge: HashMap<[usize; 2], usize> = HashMap::new();
-    for (index, [a, b, c]) in triangles.iter().enumerate() {
-        by_edge.extend([[*a, *b], [*b, *c], [*c, *a]].map(|edge| (edge, index)));
-    }
     let mut part = vec![usize::MAX; triangles.len()];
     let mut areas = Vec::new();
     for start in 0..triangles.len() {
@@ -104,13 +134,10 @@ fn largest_part(
         while let Some(triangle) = open.pop() {
             let [a, b, c] = triangles[triangle];
             sum += polygon_area(&[points[a], points[b], points[c]]);
-            for edge in [[b, a], [c, b], [a, c]] {
-                if let Some(next) = by_edge.get(&edge)
-                    && inside[*next]
-                    && part[*next] == usize::MAX
-                {
-                    part[*next] = number;
-                    open.push(*next);
+            for next in beyond[triangle].into_iter().flatten() {
+                if inside[next] && part[next] == usize::MAX {
+                    part[next] = number;
+                    open.push(next);
                 }
             }
         }
@@ -137,8 +164,7 @@ fn largest_part(
 }
 
 /// The closed lines of the boundary, in the order of their first points.
-fn boundary_lines(triangles: &[[usize; 3]], inside: &[bool]) -> Vec<Vec<usize>> {
-    let edges = boundary_edges(triangles, inside);
+fn boundary_lines(edges: Vec<[usize; 2]>) -> Vec<Vec<usize>> {
     let mut next: BTreeMap<usize, usize> = edges.into_iter().map(|[a, b]| (a, b)).collect();
     let mut lines = Vec::new();
     while let Some((start, mut point)) = next.pop_first() {
