@@ -48,6 +48,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("mm", Dimension::Length, 1.0),
     ("cm", Dimension::Length, 10.0),
     ("m", Dimension::Length, 1e3),
+    ("km", Dimension::Length, 1e6),
     ("nm", Dimension::Length, 1e-6),
     ("um", Dimension::Length, 1e-3),
     ("µm", Dimension::Length, 1e-3),

@@ -268,3 +268,14 @@ pub(super) struct FactorParts {
     pub solver: Solver,
     pub cholesky: Option<(Vec<f64>, Vec<f64>)>,
 }
+
+impl FactorParts {
+    /// Whether all numbers are finite, and those of B stand where B has places.
+    pub fn is_sound(&self) -> bool {
+        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        let kept = self.cholesky.as_ref();
+        self.jacobian.is_sound()
+            && finite(&self.weights)
+            && kept.is_none_or(|(values, factor)| finite(values) && finite(factor))
+    }
+}

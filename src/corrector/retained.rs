@@ -76,6 +76,9 @@ pub fn from_bytes(bytes: &[u8], corrector: &Corrector) -> Result<Factor, Retaine
     let content = &content[MAGIC.len() + size_of::<u32>()..];
     let (conditions, parts): (Fingerprint, FactorParts) =
         postcard::from_bytes(content).map_err(|_| RetainedFault::Damaged)?;
+    if !parts.is_sound() {
+        return Err(RetainedFault::Damaged);
+    }
     fits(&conditions, &parts, corrector).map_err(RetainedFault::DoesNotFit)?;
     Factor::from_parts(parts).map_err(|_| RetainedFault::Damaged)
 }

@@ -150,6 +150,10 @@ impl<'a> Section<'a> {
     /// not.
     pub fn affords(&self, key: &'static str, need: Need, smaller: &str) -> bool {
         let excess = self.faults.budget.afford(need).err();
+        // An estimate from a value that has a fault is none.
+        if excess.as_ref().is_some_and(|excess| excess.needed.is_nan()) && !self.faults.none() {
+            return false;
+        }
         if let Some(excess) = &excess {
             self.fault(key, &excess.to_string(), &excess.remedy(smaller));
         }

@@ -186,14 +186,22 @@ impl Grid {
     }
 }
 
-/// Stresses, stretches, thickness and energy in the centres of the cells.
+/// Stresses, stretches, thickness and energy in the centres of the cells; no numbers where a cell is folded there.
 fn material_state(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 8] {
     let (mut nominal, mut cauchy, mut stretches) = (Vec::new(), Vec::new(), Vec::new());
     let (mut i1, mut thickness, mut energy) = (Vec::new(), Vec::new(), Vec::new());
     for cell in 0..mesh.cell_count() {
         let gradient = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
-        let kinematics = Kinematics::new(&Vector4::from(gradient))
-            .expect("cells with positive corners have a positive centre");
+        // A cell may fold between the points where a solution is held to be sound.
+        let Ok(kinematics) = Kinematics::new(&Vector4::from(gradient)) else {
+            nominal.extend([f64::NAN; 4]);
+            cauchy.extend([f64::NAN; 4]);
+            stretches.extend([f64::NAN; 3]);
+            for values in [&mut i1, &mut thickness, &mut energy] {
+                values.push(f64::NAN);
+            }
+            continue;
+        };
         let (density, p) = sheet.law.stress(&kinematics);
         nominal.extend([p[0], p[2], p[1], p[3]]);
         let [s11, s12, s22] = kinematics.cauchy_stress(&p);

@@ -32,6 +32,16 @@ impl SparseRows {
         self.rows.push(merged.into_iter().collect());
     }
 
+    /// Whether it is as [`Self::push`] makes it, of finite numbers: a matrix from a file may be anything.
+    pub fn is_sound(&self) -> bool {
+        let ascending = |row: &Vec<(usize, f64)>| row.windows(2).all(|pair| pair[0].0 < pair[1].0);
+        let within = |row: &Vec<(usize, f64)>| {
+            let mut entries = row.iter();
+            entries.all(|(column, value)| *column < self.columns && value.is_finite())
+        };
+        self.rows.iter().all(|row| ascending(row) && within(row))
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.rows.len()

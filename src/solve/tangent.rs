@@ -75,8 +75,10 @@ impl Tangent {
             let right = group.iter().flat_map(|r| free.iter().map(|i| -r[*i]));
             let mut columns: Vec<f64> = right.collect();
             self.cholesky.substitute_columns(&mut columns, group.len());
-            for (residual, column) in group.iter().zip(columns.chunks(free.len().max(1))) {
-                changes.push(spread(free, column, residual.len()));
+            // Where nothing is free every column is empty.
+            for (residual, begin) in group.iter().zip((0..).step_by(free.len().max(1))) {
+                let column = columns.get(begin..begin + free.len());
+                changes.push(spread(free, column.unwrap_or_default(), residual.len()));
             }
         }
         Ok(changes)

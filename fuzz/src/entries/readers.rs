@@ -1,0 +1,180 @@
+//! Readers of files and texts.
+
+use std::path::Path;
+
+use gelbench::budget::Budget;
+use gelbench::corrector::condition::Linear;
+use gelbench::corrector::{Corrector, CorrectorSettings, Solver, retained};
+use gelbench::document::{Statements, Table};
+use gelbench::identification::Recording;
+use gelbench::markers::{ReadSettings, read, read_lines};
+use gelbench::material::Card;
+use gelbench::mesh::{CellShape, MeshReading, Outline, import, import_series};
+use gelbench::solve::SparseRows;
+use gelbench::studies::plate::Study;
+use gelbench::validation::case_of;
+
+use super::{Became, with_file};
+
+/// Bytes as text; what is no text is refused by every reader alike.
+fn text(bytes: &[u8]) -> Option<&str> {
+    std::str::from_utf8(bytes).ok()
+}
+
+/// A study of any kind is read and checked.
+pub fn study(bytes: &[u8]) -> Became {
+    let Some(text) = text(bytes) else {
+        return Became::Refused;
+    };
+    let file = Path::new("study.toml");
+    let read = match case_of("study.toml", text) {
+        Ok(Some(case)) => case.read(file, text, Budget::USUAL).is_ok(),
+        Ok(None) => Study::of_file(file, text.to_owned(), Budget::USUAL).is_ok(),
+        Err(_) => false,
+    };
+    read.into()
+}
+
+/// A card is read, and its law evaluated.
+pub fn card(bytes: &[u8]) -> Became {
+    let card = text(bytes).map(|text| Card::parse("card", "card.toml", text));
+    let Some(Ok(card)) = card else {
+        return Became::Refused;
+    };
+    let _ = card.law.shear_modulus();
+    let _ = gelbench::material::stability::stable_range(
+        &*card.law,
+        gelbench::material::curve::Mode::Uniaxial,
+    );
+    Became::Complete
+}
+
+/// A table is read.
+pub fn tables(bytes: &[u8]) -> Became {
+    text(bytes)
+        .is_some_and(|text| Table::parse("table.csv", text).is_ok())
+        .into()
+}
+
+/// Markers are read, and an outline is laid around them.
+pub fn markers(bytes: &[u8]) -> Became {
+    let settings = ReadSettings {
+        unit: Some(1.0),
+        ..ReadSettings::default()
+    };
+    with_file("markers.csv", bytes, |file| {
+        let Ok(found) = read(&[file.to_owned()], &settings) else {
+            return Became::Refused;
+        };
+        let _ = Outline::of_points(&found.series.places());
+        Became::Complete
+    })
+}
+
+/// Closed lines are read and meshed.
+pub fn outline(bytes: &[u8]) -> Became {
+    with_file("outline.csv", bytes, |file| {
+        let Ok(lines) = read_lines(file, Some(1.0)) else {
+            return Became::Refused;
+        };
+        let Ok(outline) = Outline::of_lines(lines) else {
+            return Became::Refused;
+        };
+        let size = (outline.area() / 50.0).sqrt();
+        for shape in [CellShape::Triangle3, CellShape::Quad9] {
+            let _ = outline.mesh(size, shape);
+        }
+        Became::Complete
+    })
+}
+
+/// A mesh and the fields on it are read.
+fn mesh_file(name: &str, bytes: &[u8]) -> Became {
+    with_file(name, bytes, |file| {
+        let mesh = import(file, MeshReading::in_unit(1.0)).is_ok();
+        let field = import_series(file, 1.0, None).is_ok();
+        (mesh || field).into()
+    })
+}
+
+/// Gmsh's files.
+pub fn gmsh(bytes: &[u8]) -> Became {
+    mesh_file("mesh.msh", bytes)
+}
+
+/// VTK's legacy files.
+pub fn vtk(bytes: &[u8]) -> Became {
+    mesh_file("mesh.vtk", bytes)
+}
+
+/// VTK's XML files.
+pub fn vtu(bytes: &[u8]) -> Became {
+    mesh_file("mesh.vtu", bytes)
+}
+
+/// CalculiX' result files.
+pub fn frd(bytes: &[u8]) -> Became {
+    mesh_file("mesh.frd", bytes)
+}
+
+/// ParaView's collections beside a file that they may name, `a.vtu`.
+pub fn pvd(bytes: &[u8]) -> Became {
+    const ONE: &[u8] = include_bytes!("../../corpus/vtu/triangle.vtu");
+    with_file("all.pvd", bytes, |file| {
+        std::fs::write(file.with_file_name("a.vtu"), ONE).expect("a file beside the collection");
+        import_series(file, 1.0, None).is_ok().into()
+    })
+}
+
+/// A recording of a spring is read.
+pub fn recording(bytes: &[u8]) -> Became {
+    let table = text(bytes).map(|text| Table::parse("spring.csv", text));
+    let Some(Ok(table)) = table else {
+        return Became::Refused;
+    };
+    Recording::of_table(&table, &Statements::new())
+        .is_ok()
+        .into()
+}
+
+/// A small corrector: two rows over four unknowns.
+fn corrector() -> Corrector<'static> {
+    let mut rows = SparseRows::new(4);
+    rows.push([(0, 1.0), (1, -2.0)]);
+    rows.push([(1, 0.5), (3, 1.0)]);
+    let condition = Linear::new("pins", rows, vec![0.5, -1.0]);
+    let settings = CorrectorSettings {
+        solver: Solver::Cholesky,
+        ..CorrectorSettings::default()
+    };
+    Corrector::new(
+        vec![Box::new(condition)],
+        vec![1.0, 2.0, 1.0, 4.0],
+        settings,
+    )
+}
+
+/// A kept factor is read and applied. Its checksum is made right first, so that what stands behind it is reached.
+pub fn factor(bytes: &[u8]) -> Became {
+    let corrector = corrector();
+    let _ = retained::from_bytes(bytes, &corrector);
+    let mut forged = bytes.to_vec();
+    if let Some(content) = forged.len().checked_sub(4) {
+        let checksum = checksum(&forged[..content]);
+        forged[content..].copy_from_slice(&checksum.to_le_bytes());
+    }
+    match retained::from_bytes(&forged, &corrector) {
+        Ok(mut factor) => {
+            let _ = factor.project(&[0.25, 1.0], &[0.0, 1.0, -1.0, 0.5]);
+            Became::Complete
+        }
+        Err(_) => Became::Refused,
+    }
+}
+
+/// CRC-32 as in zlib.
+fn checksum(bytes: &[u8]) -> u32 {
+    let step = |crc: u32, _: u32| (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
+    let byte = |crc: u32, byte: &u8| (0..8).fold(crc ^ u32::from(*byte), step);
+    !bytes.iter().fold(!0, byte)
+}
