@@ -40,7 +40,7 @@ pub(super) fn fastest(pattern: &SymmetricPattern, stiffness: &[f64], mass: &[f64
 }
 
 /// The `count` slowest vibrations about a displacement in mm, ascending, by inverse iteration of a subspace: with
-/// ψ = M^½ φ they are the largest eigenvalues 1/ω² of M^½ K⁻¹ M^½, several equal ones included.
+/// ψ = M^½ φ they are the largest eigenvalues 1/ω² of M^½ K⁻¹ M^½, several equal ones included. None where nothing is free.
 ///
 /// # Errors
 /// [`SolveFault`] when the body is not stable there, or when the iteration stalls.
@@ -56,6 +56,9 @@ pub fn slowest(
     const ITERATIONS: usize = 200;
     const TOLERANCE: f64 = 1e-11;
     let assembly = Assembly::new(motion.energy, held);
+    if assembly.free().is_empty() {
+        return Ok(Vec::new());
+    }
     let mut cholesky = factorised(motion, &assembly, displacement)?;
     let mass = gather(assembly.free(), &motion.mass);
     let roots = DVector::from_iterator(mass.len(), mass.iter().map(|m| m.sqrt()));
