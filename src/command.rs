@@ -61,7 +61,7 @@ Samples:
   gelbench materials show pva-10             one card with its moduli and its source
   gelbench materials fit tensile.csv --all   fit all laws to a measured curve, write the best as a card
 
-Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write,\n70 a fault of gelbench itself, 130 interrupted.";
+Exit codes: 0 done, 1 a requirement of the study is not met, 2 wrong input, 3 no solution, 4 cannot write,\n5 measured data are not explained, 70 a fault of gelbench itself, 130 interrupted.";
 
 #[derive(Parser)]
 #[command(version, about, after_help = SAMPLES)]

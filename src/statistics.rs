@@ -1,12 +1,18 @@
 //! Statistics, each formula in one place: quantiles and tail probabilities, estimates with their intervals, robust measures of
-//! scale, the inverse of normal matrices, B-splines.
+//! scale, the inverse of normal matrices, B-splines, noise that correlates with distance.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
+mod correlated_regression;
+mod correlation;
+mod neighbours;
 mod spline;
 
+pub use correlated_regression::{CorrelatedNoise, CorrelatedRegression, WhiteRegression};
+pub use correlation::{Correlation, Decay, Sites, Whitening};
+pub use neighbours::nearest;
 pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
 /// An estimated value with its uncertainty, in the unit of the value.
@@ -40,6 +46,11 @@ impl Estimate {
 /// Half the width of a 95 % interval in standard errors where the noise is known.
 pub fn normal_reach() -> f64 {
     Normal::standard().inverse_cdf(0.975)
+}
+
+/// P(|z| > x) for a standard normal number z.
+pub fn normal_tail(x: f64) -> f64 {
+    2.0 * Normal::standard().sf(x.abs())
 }
 
 /// Half the width of a 95 % interval in standard errors where the noise is estimated with so many degrees of freedom;

@@ -96,7 +96,12 @@ fn markers_follow_the_schema() {
     gelbench(folder.path(), &arguments);
     let report = report(&folder, "markers", Some("frame"), 1);
     assert_eq!(report["name"], "field");
-    assert!(report["steps"][0]["corrected"]["noise_mm"].is_number());
+    let corrected = &report["steps"][0]["corrected"];
+    assert!(corrected["noise_mm"].is_number());
+    let answer = corrected["verdict"]["answer"].as_str().unwrap();
+    let [error, interval] =
+        ["standard_error", "interval"].map(|key| corrected["forces"][0]["x_N"][key].is_null());
+    assert_eq!([error, interval], [answer.starts_with("not"); 2]);
 }
 
 #[test]

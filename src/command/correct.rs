@@ -10,20 +10,25 @@ use super::interrupt;
 use super::large::Large;
 use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
-use crate::corrector::estimation::{EdgeCondition, FieldEstimate, MeasuredForce, Physics, Robust};
+use crate::corrector::estimation::{
+    Answer, EdgeCondition, FieldEstimate, MeasuredForce, Physics, Robust,
+};
 use crate::error::{Diagnostic, Error};
 use crate::markers::ReadSettings;
 use crate::mesh::{Allowed, CellShape, MeshReading};
 use crate::output::{self, ResultFolder};
 use crate::results::NamedGrid;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
-use crate::studies::markers::{Conditions, MarkerStudy, MeshSource, Request, measured_force};
+use crate::studies::markers::{
+    Conditions, MarkerStudy, MeshSource, Request, measured_force, worst_answer,
+};
 use crate::studies::name;
 use crate::studies::sections::read_text;
 use crate::units::{self, Dimension};
 
 /// What the command line says about a correction.
 #[derive(Args, Debug)]
+#[command(after_help = AFTER_HELP)]
 pub struct Options {
     /// The field: .csv with x, y, ux, uy; output of DICe or muDIC; two matrices of Ncorr; .vtu, .vtk, .pvd, .msh, .frd.
     /// Several files are frames
@@ -182,8 +187,22 @@ pub fn run(options: Options) -> Outcome {
         folder.display()
     ))?;
     warn(&field.all_doubts(&estimates));
-    Ok(u8::from(!results.passed()))
+    Ok(match worst_answer(&estimates) {
+        Answer::NotExplained => NOT_EXPLAINED,
+        _ => u8::from(!results.passed()),
+    })
 }
+
+/// The exit code where the data are not explained.
+const NOT_EXPLAINED: u8 = 5;
+
+/// What stands below the help.
+const AFTER_HELP: &str = "\
+Verdict: \"explained\", what is left of the markers is white noise; \"explained with correlated noise\", its length is told and
+intervals hold it; \"not explained by this law, thickness and conditions\", no interval is given, and what would mend it is ranked.
+
+Exit codes: 0 explained, also with correlated noise; 1 explained, but something else is doubtful; 5 not explained; 2 wrong input,
+3 no solution, 4 cannot write.";
 
 /// Corrects frame after frame and writes each at once; what a run of the same identity has done is not done again.
 fn estimates(

@@ -27,37 +27,44 @@ use crate::error::{Diagnostic, Error};
 use crate::markers::Marker;
 
 mod approach;
+mod bodies;
 mod body_force;
-mod contradiction;
 mod edge_displacements;
 mod edge_motion;
 mod equations;
 mod field_estimate;
 mod forces;
 mod free_edges;
+mod freedoms;
+mod judge;
 mod knowledge;
+mod linear_model;
 mod linearise;
 mod mesh_error;
+mod noise;
 mod observations;
 mod outline;
 mod regressed_law;
 mod regression;
 mod result;
 mod robust;
+mod rows;
 mod search;
 mod start;
 mod task;
 mod transfer;
+mod verdict;
 mod whiteness;
 
 pub use field_estimate::{
     Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, MarkerEstimate, Smoothing,
-    StressEstimate, TRADE, TRADE_WEIGHTED, Whiteness,
+    StressEstimate, TRADE, TRADE_WEIGHTED, VariogramBin, Whiteness,
 };
 pub use knowledge::{EdgeCondition, Knowledge, MeasuredForce, Physics, Specimen, Unnamed};
 pub use regressed_law::RegressedLaw;
 pub use robust::Robust;
 pub use transfer::transfer;
+pub use verdict::{Answer, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Worst};
 
 /// Estimates the field from the markers of one frame.
 ///
@@ -73,18 +80,48 @@ pub fn estimate(
     let outline = outline::segments(specimen.mesh, &knowledge.edge_names()).map_err(input)?;
     knowledge.check().map_err(input)?;
     let observations = observations::Observations::new(specimen.mesh, markers, knowledge.noise);
-    let observations = observations.map_err(input)?;
-    let edges = outline.iter();
-    let edges = edges.map(|segment| task::Edge::new(segment, knowledge));
-    let task = task::Task {
-        specimen,
-        observations: &observations,
-        knowledge,
+    let mut observations = observations.map_err(input)?;
+    let edges: Vec<_> = outline
+        .iter()
+        .map(|segment| task::Edge::new(segment, knowledge))
+        .collect();
+    let search = |observations: &observations::Observations| {
+        let task = task::Task {
+            specimen,
+            observations,
+            knowledge,
+        };
+        result_of(&task, edges.clone())
     };
-    let (found, edges) = free_edges::search(&task, edges.collect())?;
+    let (found, ratio) = search(&observations)?;
+    match ratio {
+        None => Ok(found),
+        // Noise that the data contradict keeps its proportions, and its size is estimated.
+        Some(ratio) => {
+            observations.known_noise = false;
+            let (found, _) = search(&observations)?;
+            Ok(FieldEstimate {
+                noise_ratio: Some(ratio),
+                ..found
+            })
+        }
+    }
+}
+
+/// The estimate, and what the markers scatter over their stated noise, where they contradict it.
+fn result_of(
+    task: &task::Task,
+    edges: Vec<task::Edge>,
+) -> Result<(FieldEstimate, Option<f64>), Error> {
+    let (mut found, edges) = free_edges::search(task, edges)?;
+    let markers = found.markers();
+    if let Some(ratio) = found.contradicted_noise(&markers) {
+        return Ok((FieldEstimate::default(), Some(ratio)));
+    }
     let own = found.mesh_error(&edges);
-    let contradiction = contradiction::contradiction(&task, &found, &edges, own.as_ref());
-    found.into_estimate(&edges, own.as_ref(), contradiction)
+    let judged = judge::judge(task, &mut found, &edges, &markers, own.as_ref())?;
+    let found = found.into_estimate(&edges, own.as_ref(), (markers, judged))?;
+    Ok((found, None))
 }
 
 #[cfg(test)]

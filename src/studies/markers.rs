@@ -25,11 +25,13 @@ mod report;
 mod request;
 mod specimen_mesh;
 mod tables;
+mod verdict;
 pub mod written;
 
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use request::{MeshSource, Request};
 use specimen_mesh::{SpecimenMesh, mesh};
+pub use verdict::worst as worst_answer;
 
 /// A field that was read, with all that its correction needs.
 #[derive(Debug)]

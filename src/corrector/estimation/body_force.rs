@@ -91,7 +91,7 @@ impl BodyForce {
 }
 
 /// ∫ Nᵢ dA of every node in mm².
-fn nodal_areas(mesh: &Mesh) -> Vec<f64> {
+pub fn nodal_areas(mesh: &Mesh) -> Vec<f64> {
     let mut areas = vec![0.0; mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
         let shape = mesh.shape(cell);

@@ -75,7 +75,7 @@ fn standard_errors_are_the_scatter_over_seeds() {
     assert!(held >= 34, "{held} of 40 intervals of the force hold it");
     // Moran's I of white noise: its mean and its scatter are as its null distribution says.
     let standardised = |found: &FieldEstimate| {
-        let white = found.whiteness.unwrap();
+        let white = found.whiteness.clone().unwrap();
         assert!(white.is_white(), "{white:?}");
         (white.correlation - white.expected) / white.deviation
     };
@@ -200,6 +200,6 @@ fn noise_that_correlates_between_neighbours_is_not_white() {
         &with_grips(EdgeCondition::Rigid),
     )
     .unwrap();
-    let white = found.whiteness.unwrap();
+    let white = found.whiteness.clone().unwrap();
     assert!(!white.is_white() && white.correlation > 0.1, "{white:?}");
 }

@@ -1,6 +1,6 @@
 //! How the loaded edges of a specimen move, in as few numbers as their conditions allow.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::DMatrix;
 
@@ -74,8 +74,16 @@ impl EdgeMotion {
         }
         let rigid =
             |(_, condition): &&(&Segment, EdgeCondition)| *condition == EdgeCondition::Rigid;
-        for (segment, _) in segments.iter().filter(rigid) {
-            motion.rigid(segment, &mut moved);
+        let mut rigid: Vec<_> = segments.iter().filter(rigid).map(|pair| pair.0).collect();
+        while let Some(first) = rigid.first().copied() {
+            // All sides of one name are one body.
+            let is_one = |other: &&Segment| {
+                std::ptr::eq(*other, first)
+                    || (first.condition.is_some() && other.condition == first.condition)
+            };
+            let (body, others): (Vec<&Segment>, _) = rigid.into_iter().partition(is_one);
+            motion.rigid(&body, &mut moved);
+            rigid = others;
         }
         for (segment, condition) in segments {
             if *condition == EdgeCondition::Unknown {
@@ -98,8 +106,12 @@ impl EdgeMotion {
         });
     }
 
-    fn rigid(&mut self, segment: &Segment, moved: &mut Movers) {
-        let nodes = segment.nodes.clone();
+    fn rigid(&mut self, sides: &[&Segment], moved: &mut Movers) {
+        let all = sides.iter().flat_map(|side| &side.nodes);
+        let nodes: Vec<usize> = match sides {
+            [one] => one.nodes.clone(),
+            _ => all.copied().collect::<BTreeSet<_>>().into_iter().collect(),
+        };
         [0, 1]
             .into_iter()
             .for_each(|axis| hold(&nodes, axis, moved));

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::approach::approach;
+use super::bodies::{Body, bodies};
 use super::body_force::BodyForce;
 use super::edge_motion::EdgeMotion;
 use super::knowledge::{Physics, Specimen};
@@ -37,6 +38,8 @@ pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
 pub struct Equations<'a> {
     pub task: Task<'a>,
     pub motion: EdgeMotion,
+    /// What holds the sheet.
+    pub bodies: Vec<Body>,
     pub law: Arc<dyn HyperelasticLaw>,
     pub energy: SheetEnergy,
     pub newton: Newton,
@@ -90,6 +93,7 @@ impl<'a> Equations<'a> {
         };
         Ok(Self {
             task: *task,
+            bodies: bodies(conditions.iter().copied()),
             motion,
             law,
             energy,

@@ -5,13 +5,14 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::knowledge::{EdgeCondition, MeasuredForce};
+use super::verdict::{Answer, Verdict};
 use crate::statistics::Estimate;
 
 /// The field nearest to the markers.
 ///
 /// Standard errors come from the noise of the markers, to first order, and from the mesh's own error: √(s² + e²). Of
 /// displacements, forces and parameters e comes from the same equations on cells half as large, of stress and thickness from the
-/// recovered gradient. They know nothing of a wrong material or a wrong thickness.
+/// recovered gradient. They hold where the verdict is that the data are explained.
 /// `± reach · standard error` is the 95 % interval.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct FieldEstimate {
@@ -23,7 +24,7 @@ pub struct FieldEstimate {
     pub cells: Vec<StressEstimate>,
     /// ∂Π/∂u in N of node after node: reactions at loaded edges, nothing elsewhere.
     pub reactions: Vec<f64>,
-    /// The total force on each edge that is not free.
+    /// The total force on each edge that is not free; edges of one name are one body, and a node where two meet counts once.
     pub forces: Vec<EdgeForce>,
     /// ζ of the equilibrium of node after node in mm²/N: less the derivative of ½ ‖H u − d‖²_W by a force there, the weights
     /// relative to their mean; zero where the edges are not free.
@@ -34,8 +35,8 @@ pub struct FieldEstimate {
     pub noise: f64,
     /// Whether the noise was given; else it is estimated from what is left of the markers.
     pub known_noise: bool,
-    /// `noise` over the given one: 1 but where markers that scatter far more are judged by their own level.
-    pub noise_scale: f64,
+    /// The scatter of the markers over their stated noise, where they contradict it: the stated noise is scaled then.
+    pub noise_ratio: Option<f64>,
     /// How many parameters the data have determined: the trace of the matrix that makes the fitted displacements of the
     /// measured ones.
     pub effective_parameters: f64,
@@ -61,12 +62,16 @@ pub struct FieldEstimate {
     /// By how much, relative to itself, the force grows with the distance in mm that all free edges lie farther out:
     /// ∮ Ψ ds/∫ Ψ dA over free edges and sheet, the derivative of its energy by that distance, in 1/mm.
     pub growth: f64,
-    /// The measured forces and those of the field.
+    /// How far the forces of all edges and on the interior are from balance, over the largest of them.
+    pub imbalance: f64,
+    /// The measured forces beside those of the field.
     pub force_checks: Vec<ForceCheck>,
     /// What the data contradict of what is said of the edges.
     pub contradiction: Option<Contradiction>,
     /// How what is left of neighbouring markers correlates, where there is enough of it to tell.
     pub whiteness: Option<Whiteness>,
+    /// Whether law, thickness and conditions explain the data.
+    pub verdict: Verdict,
 }
 
 /// A measured force and that of the field.
@@ -79,6 +84,22 @@ pub struct ForceCheck {
     /// The difference in units of its own standard deviation, √(σ² − s² + e²): σ of the measured force, s of the field's by the
     /// noise, e by the mesh.
     pub standardised: f64,
+}
+
+impl ForceCheck {
+    /// Whether the measured force is farther from the field's than four standard deviations: noise alone does so in six of a
+    /// hundred thousand cases.
+    pub fn contradicts(&self) -> bool {
+        const CONTRADICTS: f64 = 4.0;
+        self.standardised.abs() > CONTRADICTS
+    }
+}
+
+impl FieldEstimate {
+    /// Whether law, thickness and conditions explain the data, so that intervals mean something.
+    pub fn is_explained(&self) -> bool {
+        self.verdict.answer != Answer::NotExplained
+    }
 }
 
 /// The rule by which data and smoothness are traded.
@@ -160,7 +181,7 @@ pub struct Contradiction {
 }
 
 /// The correlation of what is left of neighbouring markers.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Whiteness {
     /// I of both components together.
     pub correlation: f64,
@@ -169,6 +190,19 @@ pub struct Whiteness {
     /// Its standard deviation.
     pub deviation: f64,
     /// I of ux and of uy.
+    pub of_components: [f64; 2],
+    /// Half the mean squared difference of what is left over the noise, by distance: 1 everywhere where it is white.
+    pub variogram: Vec<VariogramBin>,
+}
+
+/// The variogram at about one distance.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct VariogramBin {
+    /// The mean distance in mm.
+    pub distance: f64,
+    /// Pairs of markers.
+    pub pairs: usize,
+    /// Of ux and of uy.
     pub of_components: [f64; 2],
 }
 

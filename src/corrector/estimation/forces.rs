@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::bodies::Body;
 use super::field_estimate::{EdgeForce, ForceCheck};
 use super::linearise::dot;
 use super::mesh_error::MeshError;
@@ -13,18 +14,13 @@ use crate::material::sheet::{Gradient, Kinematics};
 use crate::statistics::Estimate;
 
 impl NearestField<'_> {
-    /// The forces on the edges that are not free; with the mesh's own error, if it is known.
-    pub fn forces(
-        &self,
-        edges: &[Edge],
-        reach: f64,
-        own: Option<&MeshError>,
-    ) -> Result<Vec<EdgeForce>, Error> {
+    /// The forces of the bodies that hold the sheet; with the mesh's own error, if it is known.
+    pub fn forces(&self, reach: f64, own: Option<&MeshError>) -> Result<Vec<EdgeForce>, Error> {
         let reactions = self.reactions();
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let first = self.equations.motion.parameters();
         let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
-            let nodes = &edges[index].segment.nodes;
+            let nodes = &self.equations.bodies[index].nodes[axis];
             let grip = self.equations.grip(nodes, axis, &self.field)?;
             let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
             let force = dot(&grip.marks, &reactions);
@@ -33,14 +29,18 @@ impl NearestField<'_> {
             });
             Ok(Estimate::new(force, self.error(&row).hypot(mesh), reach))
         };
-        let held = (0..edges.len()).filter(|index| edges[*index].is_loaded());
-        let force = |index: usize| {
+        let force = |(index, body): (usize, &Body)| {
             Ok(EdgeForce {
-                edge: edges[index].segment.name.clone(),
+                edge: body.name.clone(),
                 force: [along(index, 0)?, along(index, 1)?],
             })
         };
-        held.map(force).collect()
+        self.equations
+            .bodies
+            .iter()
+            .enumerate()
+            .map(force)
+            .collect()
     }
 
     /// The parameters of the law that were found.
@@ -62,15 +62,11 @@ impl NearestField<'_> {
         parameters.map(estimate).collect()
     }
 
-    /// The measured forces and those of the field; those that a parameter of the law follows say nothing.
-    pub(super) fn force_checks(
-        &self,
-        edges: &[Edge],
-        own: Option<&MeshError>,
-    ) -> Result<Vec<ForceCheck>, Error> {
+    /// The measured forces beside those of the field; those that a parameter of the law follows say nothing.
+    pub(super) fn force_checks(&self, own: Option<&MeshError>) -> Result<Vec<ForceCheck>, Error> {
         const REDUNDANT: f64 = 1e-3;
-        let with_mesh = self.forces(edges, 1.0, own)?;
-        let plain = self.forces(edges, 1.0, None)?;
+        let with_mesh = self.forces(1.0, own)?;
+        let plain = self.forces(1.0, None)?;
         let mut checks = Vec::new();
         for measured in &self.equations.task.knowledge.forces {
             let axis = measured.axis;
@@ -94,6 +90,24 @@ impl NearestField<'_> {
             }
         }
         Ok(checks)
+    }
+
+    /// |Σ F| of all bodies and forces on the interior over the largest force of a body: how far the forces are from balance.
+    pub(super) fn imbalance(&self) -> f64 {
+        let reactions = self.reactions();
+        let along = |nodes: &[usize], axis: usize| -> f64 {
+            nodes.iter().map(|node| reactions[2 * node + axis]).sum()
+        };
+        let (mut sum, mut largest) = ([0.0; 2], 0.0_f64);
+        for body in &self.equations.bodies {
+            let force = [0, 1].map(|axis| along(&body.nodes[axis], axis));
+            (0..2).for_each(|axis| sum[axis] += force[axis]);
+            largest = largest.max(force[0].hypot(force[1]));
+        }
+        for pair in self.equations.forces.chunks_exact(2) {
+            (0..2).for_each(|axis| sum[axis] += pair[axis]);
+        }
+        sum[0].hypot(sum[1]) / largest.max(f64::MIN_POSITIVE)
     }
 
     /// ∮ Ψ ds/∫ Ψ dA.

@@ -38,7 +38,7 @@ pub fn search<'a>(
         if !freed.iter().any(Edge::is_loaded) {
             break;
         }
-        if found.is_pulled(&edges, index)? {
+        if found.is_pulled(index)? {
             edges[index].probability = Some(0.0);
             continue;
         }
@@ -69,14 +69,14 @@ fn probability(loaded: &NearestField, free: &NearestField) -> f64 {
 impl NearestField<'_> {
     /// Whether the force on an edge is so large, and so well known, that it needs no trial: more than a third of the largest
     /// one, and more than ten times its standard error.
-    fn is_pulled(&self, edges: &[Edge], index: usize) -> Result<bool, Error> {
+    fn is_pulled(&self, index: usize) -> Result<bool, Error> {
         const LARGE: f64 = 1.0 / 3.0;
         const SURE: f64 = 10.0;
-        let forces = self.forces(edges, 1.0, None)?;
-        let held = edges.iter().filter(|edge| edge.is_loaded());
-        let own = held
+        let forces = self.forces(1.0, None)?;
+        let bodies = self.equations.bodies.iter();
+        let own = bodies
             .zip(&forces)
-            .find(|(edge, _)| edge.segment.nodes == edges[index].segment.nodes);
+            .find(|(body, _)| body.edges.contains(&index));
         let size = |force: &EdgeForce| force.force[0].value.hypot(force.force[1].value);
         let error = |force: &EdgeForce| {
             let [x, y] = force.force.map(|along| along.standard_error);

@@ -83,8 +83,9 @@ impl Equations<'_> {
                 force,
                 standard_deviation,
             } = measured;
-            let nodes = &self.task.specimen.mesh.groups()[edge].nodes;
-            let grip = self.grip(nodes, *axis, field)?;
+            let own = self.bodies.iter().filter(|body| body.name == *edge);
+            let nodes: Vec<usize> = own.flat_map(|body| &body.nodes[*axis]).copied().collect();
+            let grip = self.grip(&nodes, *axis, field)?;
             let there = dot(&grip.marks, residual) + dot(&grip.pull, still);
             values[row] = (force - there) / standard_deviation;
             let slopes = grip.slopes(sensitivities, (self.motion.parameters(), slopes));

@@ -10,6 +10,8 @@
 //! meshes is at least half of the coarser one's error where the order is one, as beside a singular corner, and more of it
 //! elsewhere: ± 1.96 e holds the error.
 
+use std::collections::BTreeSet;
+
 use nalgebra::DVector;
 
 use super::knowledge::EdgeCondition;
@@ -37,7 +39,7 @@ pub struct MeshError {
     pub parameters: DVector<f64>,
     /// H e, two numbers a marker.
     pub markers: Vec<f64>,
-    /// Of the force on each edge in N, in the order of the edges.
+    /// Of the force of each body in N, in the order of the bodies.
     pub forces: Vec<[f64; 2]>,
 }
 
@@ -66,8 +68,8 @@ impl NearestField<'_> {
         let markers =
             places.flat_map(|place| fine.mesh.displacement_at(&fine.displacement, *place));
         let at_markers: Vec<f64> = markers.zip(nearby).map(|(a, b)| a - b).collect();
-        let forces = self.force_differences(edges, &fine);
-        let change = self.regressed(&at_markers, edges, &forces);
+        let forces = self.force_differences(&fine);
+        let change = self.regressed(&at_markers, &forces);
         let along = |values: &[f64], slopes: &dyn Fn(usize) -> f64| -> Vec<f64> {
             let whole = values.iter().enumerate();
             whole.map(|(row, value)| value + slopes(row)).collect()
@@ -139,30 +141,28 @@ impl NearestField<'_> {
         &self.parameters[self.parameters.len() - count..]
     }
 
-    /// d_F of each edge.
-    fn force_differences(&self, edges: &[Edge], fine: &Fine) -> Vec<[f64; 2]> {
+    /// d_F of each body.
+    fn force_differences(&self, fine: &Fine) -> Vec<[f64; 2]> {
         let reactions = self.reactions();
-        let along = |(edge, held): (&Edge, &[Vec<usize>; 2])| {
-            [0, 1].map(|axis| {
-                let mut nodes = edge.segment.nodes.clone();
-                nodes.sort_unstable();
-                nodes.dedup();
-                let before: f64 = nodes.iter().map(|node| reactions[2 * node + axis]).sum();
-                let after: f64 = held[axis]
-                    .iter()
-                    .map(|unknown| fine.residual[*unknown])
-                    .sum();
-                match edge.condition {
-                    EdgeCondition::Free => 0.0,
-                    _ => after - before,
-                }
-            })
-        };
-        edges.iter().zip(&fine.held).map(along).collect()
+        let bodies = &self.equations.bodies;
+        let mut turns: Vec<usize> = (0..bodies.len()).collect();
+        turns.sort_by_key(|body| bodies[*body].turn);
+        let (mut taken, mut all) = (BTreeSet::new(), vec![[0.0; 2]; bodies.len()]);
+        for index in turns {
+            all[index] = [0, 1].map(|axis| {
+                let body = &bodies[index];
+                let nodes = body.nodes[axis].iter();
+                let before: f64 = nodes.map(|node| reactions[2 * node + axis]).sum();
+                let held = body.edges.iter().flat_map(|edge| &fine.held[*edge][axis]);
+                let own = held.filter(|unknown| taken.insert(**unknown));
+                own.map(|unknown| fine.residual[*unknown]).sum::<f64>() - before
+            });
+        }
+        all
     }
 
     /// δp.
-    fn regressed(&self, at_markers: &[f64], edges: &[Edge], forces: &[[f64; 2]]) -> DVector<f64> {
+    fn regressed(&self, at_markers: &[f64], forces: &[[f64; 2]]) -> DVector<f64> {
         let weights = &self.equations.task.observations.weights;
         let weight = |row: usize| weights[row / 2] * self.trade.trust[row / 2];
         let weighted = at_markers.iter().enumerate();
@@ -171,8 +171,8 @@ impl NearestField<'_> {
         let mut target = self.linear.design.tr_mul(&weighted);
         let measured = self.equations.task.knowledge.forces.iter().enumerate();
         for (row, measured) in measured {
-            let own = edges.iter().zip(forces);
-            let own = own.filter(|(edge, _)| edge.segment.name == measured.edge);
+            let own = self.equations.bodies.iter().zip(forces);
+            let own = own.filter(|(body, _)| body.name == measured.edge);
             let off: f64 = own.map(|(_, force)| force[measured.axis]).sum();
             let slopes = self.linear.facts.0.row(row).transpose();
             target -= slopes * (off / measured.standard_deviation);

@@ -81,6 +81,8 @@ pub struct Fit {
     pub residual: DVector<f64>,
     /// √(δᵀ M δ): the length of the step in standard errors.
     pub length: f64,
+    /// GᵀG + Σ λⱼ BⱼᵀBⱼ: M but for the data.
+    pub held: DMatrix<f64>,
     /// tr(M⁻¹AᵀWA)/v, the effective number of parameters.
     pub effective: f64,
     /// qⱼ − λⱼ tr(M⁻¹BⱼᵀBⱼ) of each prior: what is left of its freedom.
@@ -163,12 +165,13 @@ impl Regression<'_> {
         trade: &Trade,
     ) -> Result<Fit, Undetermined> {
         let (facts, values) = self.facts;
-        let mut matrix = normal / trade.variance + facts.tr_mul(facts);
+        let mut held = facts.tr_mul(facts);
         let mut target = right / trade.variance + facts.tr_mul(values);
         for (form, smoothing) in forms.iter().zip(&trade.smoothing) {
-            matrix += &form.square * *smoothing;
+            held += &form.square * *smoothing;
             target -= &form.slope * *smoothing;
         }
+        let matrix = normal / trade.variance + &held;
         let covariance = inverse(&matrix, LEAST_PIVOT).ok_or(Undetermined)?;
         let step = &covariance * &target;
         let left = |(form, smoothing): (&Form, &f64)| {
@@ -181,6 +184,7 @@ impl Regression<'_> {
             freedom: priors.map(left).collect(),
             length: step.dot(&target).max(0.0).sqrt(),
             covariance,
+            held,
             step,
         })
     }

@@ -5,9 +5,9 @@ use rayon::prelude::*;
 
 use super::equations::{Equations, Neighbours, solve};
 use super::field_estimate::{
-    Contradiction, EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE,
-    TRADE_WEIGHTED,
+    EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE, TRADE_WEIGHTED,
 };
+use super::judge::Judgement;
 use super::mesh_error::MeshError;
 use super::robust::Robust;
 use super::search::NearestField;
@@ -23,39 +23,41 @@ const FALSE_ALARMS: f64 = 1e-3;
 impl NearestField<'_> {
     /// The field with all that follows from it.
     pub fn into_estimate(
-        self,
+        mut self,
         edges: &[Edge],
         own: Option<&MeshError>,
-        contradiction: Option<Contradiction>,
+        (markers, judged): (Vec<Option<MarkerEstimate>>, Judgement),
     ) -> Result<FieldEstimate, Error> {
+        let whiteness = self.whiteness(&markers, own);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust != Robust::No;
         let rows = self.linear.design.nrows() as f64;
-        let freedom = (rows - self.fit.effective).max(1.0);
-        let reach = match known_noise && !robust {
+        let white = (rows - self.fit.effective).max(1.0);
+        let freedom = self.widen(&judged).unwrap_or(white);
+        let reach = match known_noise && !robust && judged.noise.is_none() {
             true => normal_reach(),
             false => student_reach(freedom),
         };
+        let larger = judged.noise.map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        let markers = self.markers();
+        let force_checks = self.force_checks(own)?;
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(own),
             cells: self.cells()?,
-            forces: self.forces(edges, reach, own)?,
+            forces: self.forces(reach, own)?,
             parameters: self.law_parameters(reach, own),
             holds_mesh_error: own.is_some(),
+            imbalance: self.imbalance(),
             growth: self.growth(edges),
-            force_checks: self.force_checks(edges, own)?,
-            contradiction,
-            whiteness: self.whiteness(&markers, own),
+            verdict: judged.verdict.with_forces(&force_checks),
+            force_checks,
+            contradiction: judged.contradiction,
+            whiteness,
             markers,
-            noise: (self.trade.sound / mean).sqrt(),
+            noise: (larger * self.trade.sound / mean).sqrt(),
             known_noise,
-            noise_scale: match known_noise {
-                true => self.trade.sound.sqrt(),
-                false => 1.0,
-            },
+            noise_ratio: None,
             effective_parameters: self.fit.effective,
             degrees_of_freedom: freedom,
             reach,
@@ -168,7 +170,7 @@ impl NearestField<'_> {
         })
     }
 
-    fn markers(&self) -> Vec<Option<MarkerEstimate>> {
+    pub(super) fn markers(&self) -> Vec<Option<MarkerEstimate>> {
         let observations = self.observations();
         let limit = chi_squared_limit(2.0, FALSE_ALARMS);
         let mut all = vec![None; observations.markers];

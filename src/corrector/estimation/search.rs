@@ -37,6 +37,13 @@ pub struct NearestField<'a> {
     pub steps: usize,
 }
 
+/// One linearised regression.
+pub struct Scored {
+    pub linear: Linear,
+    pub fit: Fit,
+    pub trade: Trade,
+}
+
 impl<'a> Equations<'a> {
     /// Finds the equilibrium nearest to the data.
     ///
@@ -92,7 +99,7 @@ impl<'a> Equations<'a> {
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn score(mut self, found: &NearestField) -> Result<(Fit, Trade), Error> {
+    pub fn score(mut self, found: &NearestField) -> Result<Scored, Error> {
         let mut parameters = self.nearest_parameters(&found.field);
         let others = &found.parameters[found.equations.motion.parameters()..];
         parameters.extend_from_slice(others);
@@ -107,7 +114,7 @@ impl<'a> Equations<'a> {
         };
         let linear = self.linearise(&place)?;
         let fit = self.regress((&place, 1), &linear, &mut trade)?;
-        Ok((fit, trade))
+        Ok(Scored { linear, fit, trade })
     }
 
     /// The largest move that does not matter, in mm.

@@ -8,9 +8,11 @@
 //! depend on the norm; the multipliers ζ, K ζ = ū − u, show where the given field contradicts the physics. An edge
 //! that is known has its known displacement instead of ū, a rigid one the rigid motion nearest to ū.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::approach::approach;
+use super::bodies::{Body, bodies};
 use super::equations::solve;
 use super::field_estimate::{
     EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, StressEstimate,
@@ -87,7 +89,6 @@ pub fn transfer(
         forces: forces(&edges, &reactions),
         markers: differences(mesh, &field, (given, displacement)),
         known_noise: true,
-        noise_scale: 1.0,
         rule: RULE.into(),
         edges: edges.iter().map(outcome).collect(),
         steps,
@@ -137,7 +138,14 @@ fn imposed(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], start: &[f64]) -> Ve
                 }
             }
             EdgeCondition::Rigid => {
-                for (node, u) in nodes.iter().zip(rigid(mesh, nodes, start)) {
+                let sides = edges.iter().filter(|(other, condition)| {
+                    let is_rigid = *condition == EdgeCondition::Rigid;
+                    is_rigid && other.name == segment.name
+                });
+                let body: BTreeSet<usize> =
+                    sides.flat_map(|(side, _)| side.nodes.clone()).collect();
+                let body: Vec<usize> = body.into_iter().collect();
+                for (node, u) in body.iter().zip(rigid(mesh, &body, start)) {
                     put(*node, u.map(Some));
                 }
             }
@@ -224,24 +232,24 @@ fn state(specimen: &Specimen, field: &[f64], cell: usize) -> Result<StressEstima
     })
 }
 
-/// The forces on the edges that are not free.
+/// The forces of the bodies that hold the sheet.
 fn forces(edges: &[(Segment, EdgeCondition)], reactions: &[f64]) -> Vec<EdgeForce> {
-    let held = edges
-        .iter()
-        .filter(|(_, condition)| *condition != EdgeCondition::Free);
-    let force = |(segment, _): &(Segment, EdgeCondition)| {
-        let mut nodes = segment.nodes.clone();
-        nodes.sort_unstable();
-        nodes.dedup();
+    let bodies = bodies(
+        edges
+            .iter()
+            .map(|(segment, condition)| (segment, *condition)),
+    );
+    let force = |body: Body| {
         let along = |axis: usize| {
-            Estimate::exact(nodes.iter().map(|node| reactions[2 * node + axis]).sum())
+            let nodes = body.nodes[axis].iter();
+            Estimate::exact(nodes.map(|node| reactions[2 * node + axis]).sum())
         };
         EdgeForce {
-            edge: segment.name.clone(),
             force: [along(0), along(1)],
+            edge: body.name,
         }
     };
-    held.map(force).collect()
+    bodies.into_iter().map(force).collect()
 }
 
 /// The given field at its nodes less the corrected one.

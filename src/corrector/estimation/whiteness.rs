@@ -14,13 +14,13 @@
 //! P. A. P. Moran, Biometrika 37, 17 (1950), doi:10.1093/biomet/37.1-2.17;
 //! A. D. Cliff, J. K. Ord, Spatial Processes (1981), chapter 8 (residuals of a regression)
 
-use std::collections::HashMap;
-
 use nalgebra::DMatrix;
 
-use super::field_estimate::{MarkerEstimate, Whiteness};
+use super::field_estimate::{MarkerEstimate, VariogramBin, Whiteness};
 use super::mesh_error::MeshError;
+use super::rows::Rows;
 use super::search::NearestField;
+use crate::statistics::{Sites, nearest};
 
 /// Neighbours of a marker.
 const NEIGHBOURS: usize = 4;
@@ -36,19 +36,17 @@ impl NearestField<'_> {
         markers: &[Option<MarkerEstimate>],
         own: Option<&MeshError>,
     ) -> Option<Whiteness> {
-        const FEWEST: usize = 30;
-        const TRUSTED: f64 = 0.5;
         let observations = self.equations.task.observations;
-        let sound = |row: &usize| {
-            let outlier = markers[observations.chosen[*row]].is_some_and(|marker| marker.outlier);
-            self.trade.trust[*row] >= TRUSTED && !outlier
-        };
-        let rows: Vec<usize> = (0..observations.places.len()).filter(sound).collect();
-        if rows.len() < FEWEST || self.leaves_nothing(&rows, own) {
-            return None;
-        }
-        let places: Vec<[f64; 2]> = rows.iter().map(|row| observations.places[*row]).collect();
-        let pairs = neighbours(&places);
+        let Rows {
+            chosen: rows,
+            sites,
+            spacing,
+            ..
+        } = Rows::new(self, markers, own)?;
+        let around = nearest(sites.places(), NEIGHBOURS).into_iter().enumerate();
+        let pairs: Pairs = around
+            .flat_map(|(i, others)| others.into_iter().map(move |j| [i, j]))
+            .collect();
         let scale = |row: usize| (observations.weights[row] / self.trade.sound).sqrt();
         let z = |index: usize, axis: usize| {
             scale(rows[index]) * self.fit.residual[2 * rows[index] + axis]
@@ -67,21 +65,8 @@ impl NearestField<'_> {
             of_components: [moran(&[0]), moran(&[1])],
             expected: self.expected(&rows, &pairs),
             deviation: deviation(rows.len(), &pairs),
+            variogram: variogram(&sites, spacing, &z),
         })
-    }
-
-    /// Whether what is left is no more than twice the mesh's own error, or a millionth of the displacement.
-    fn leaves_nothing(&self, rows: &[usize], own: Option<&MeshError>) -> bool {
-        const ROUNDING: f64 = 1e-6;
-        let sum = |values: &dyn Fn(usize) -> f64| -> f64 {
-            let entries = rows.iter().flat_map(|row| [2 * row, 2 * row + 1]);
-            entries.map(|entry| values(entry).powi(2)).sum()
-        };
-        let observations = self.equations.task.observations;
-        let left = sum(&|entry| self.fit.residual[entry]);
-        let moved = sum(&|entry| observations.displacements[entry / 2][entry % 2]);
-        let mesh = own.map_or(0.0, |own| sum(&|entry| own.markers[entry]));
-        left <= (4.0 * mesh).max(ROUNDING * ROUNDING * moved)
     }
 
     /// E[I].
@@ -110,6 +95,36 @@ impl NearestField<'_> {
     }
 }
 
+/// γ(h) = ½ mean (zᵢ − zⱼ)² of pairs in classes of distance that are one spacing wide.
+fn variogram(sites: &Sites, spacing: f64, z: &dyn Fn(usize, usize) -> f64) -> Vec<VariogramBin> {
+    const CLASSES: usize = 12;
+    const MOST: usize = 1500;
+    let places = sites.places();
+    let stride = places.len().div_ceil(MOST).max(1);
+    let mut sums = [([0.0; 2], 0.0, 0); CLASSES];
+    for i in (0..places.len()).step_by(stride) {
+        for j in 0..places.len() {
+            let [a, b] = [places[i], places[j]];
+            let distance = (a[0] - b[0]).hypot(a[1] - b[1]);
+            let class = (distance / spacing + 0.5) as usize;
+            // Of places that are all looked at, each pair once.
+            if class == 0 || class > CLASSES || (stride == 1 && j <= i) {
+                continue;
+            }
+            let (squares, far, pairs) = &mut sums[class - 1];
+            (0..2).for_each(|axis| squares[axis] += (z(i, axis) - z(j, axis)).powi(2));
+            (*far, *pairs) = (*far + distance, *pairs + 1);
+        }
+    }
+    let known = sums.iter().filter(|(.., pairs)| *pairs > 0);
+    let bin = |(squares, far, pairs): &([f64; 2], f64, usize)| VariogramBin {
+        distance: far / *pairs as f64,
+        pairs: *pairs,
+        of_components: squares.map(|square| 0.5 * square / *pairs as f64),
+    };
+    known.map(bin).collect()
+}
+
 /// √Var[I] of two components at so many places.
 fn deviation(places: usize, pairs: &Pairs) -> f64 {
     let weight = 1.0 / NEIGHBOURS as f64;
@@ -132,53 +147,4 @@ fn deviation(places: usize, pairs: &Pairs) -> f64 {
         / ((count * count - 1.0) * whole * whole)
         - (count - 1.0).powi(-2);
     square.max(0.0).sqrt()
-}
-
-/// Each place with its nearest neighbours.
-fn neighbours(places: &[[f64; 2]]) -> Pairs {
-    let ends = places.iter().fold(
-        [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
-        |[low, high], p| {
-            [
-                [low[0].min(p[0]), low[1].min(p[1])],
-                [high[0].max(p[0]), high[1].max(p[1])],
-            ]
-        },
-    );
-    let area = (ends[1][0] - ends[0][0]).max(1e-300) * (ends[1][1] - ends[0][1]).max(1e-300);
-    let side = 2.0 * (area / places.len() as f64).sqrt();
-    let square = |p: [f64; 2]| [0, 1].map(|axis| ((p[axis] - ends[0][axis]) / side) as i64);
-    let mut squares: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
-    for (index, place) in places.iter().enumerate() {
-        squares.entry(square(*place)).or_default().push(index);
-    }
-    let distance =
-        |i: usize, j: usize| (places[i][0] - places[j][0]).hypot(places[i][1] - places[j][1]);
-    let near = |i: usize, reach: i64| {
-        let [x, y] = square(places[i]);
-        let around =
-            (-reach..=reach).flat_map(|dx| (-reach..=reach).map(move |dy| [x + dx, y + dy]));
-        let others = around.filter_map(|key| squares.get(&key)).flatten();
-        let mut others: Vec<(f64, usize)> = others
-            .filter(|j| **j != i)
-            .map(|j| (distance(i, *j), *j))
-            .collect();
-        others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        others
-    };
-    let mut pairs = Vec::with_capacity(NEIGHBOURS * places.len());
-    for i in 0..places.len() {
-        let mut reach = 1;
-        let mut found = near(i, reach);
-        // Beyond the squares that were looked at there may be nearer ones.
-        while found.len() < NEIGHBOURS || found[NEIGHBOURS - 1].0 > reach as f64 * side {
-            reach *= 2;
-            found = near(i, reach);
-            if found.len() + 1 == places.len() {
-                break;
-            }
-        }
-        pairs.extend(found.iter().take(NEIGHBOURS).map(|(_, j)| [i, *j]));
-    }
-    pairs
 }

@@ -3,20 +3,13 @@
 //! A doubt stands next to the figures and makes the command end with exit code 1.
 
 use super::MarkerStudy;
-use crate::corrector::estimation::FieldEstimate;
+use crate::corrector::estimation::{Answer, FieldEstimate};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
-use crate::statistics::{Estimate, robust_deviation};
-
-/// A measured force farther from the field's than so many of its standard deviations contradicts it: noise alone does so in
-/// six of a hundred thousand cases.
-const CONTRADICTS: f64 = 4.0;
+use crate::statistics::Estimate;
 
 /// More outliers than this share of the markers are no outliers.
 const MANY: f64 = 0.1;
-
-/// Noise farther from what was stated than this factor is told, if it is by four standard errors too.
-const OFF: f64 = 1.25;
 
 impl MarkerStudy {
     /// What makes the figures of the frames doubtful, of all of them first.
@@ -65,7 +58,7 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Vec<Diagnostic> {
         noise(estimate),
         outliers(estimate),
         edges(estimate),
-        correlation(estimate),
+        not_explained(estimate),
     ];
     let doubts = doubts.into_iter().flatten().chain(forces(estimate));
     let named = |(message, hint): (String, &str)| {
@@ -76,30 +69,18 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Vec<Diagnostic> {
 
 type Doubt = (String, &'static str);
 
-/// The noise that is left, from the median of the standardised residuals, compared with the stated one.
+/// The noise that was stated, where the data contradict it.
 fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
-    // The standard error of ln of a deviation from the median.
-    const ERROR: f64 = 0.72;
-    const SURE: f64 = 4.0;
-    let markers = estimate.markers.iter().flatten();
-    let lengths: Vec<f64> = markers.map(|marker| marker.standardised_residual).collect();
-    // A field without noise that was brought onto another mesh has nothing to compare.
-    if !estimate.known_noise || estimate.noise == 0.0 || lengths.is_empty() {
-        return None;
-    }
-    let sure = SURE * ERROR / (lengths.len() as f64).sqrt();
-    let ratio = estimate.noise_scale * robust_deviation(lengths);
-    (ratio.ln().abs() > OFF.ln().max(sure)).then(|| {
-        let relation = if ratio > 1.0 { "more" } else { "less" };
-        let message = format!(
-            "the markers scatter {ratio:.2} times as much as their stated noise, {relation} than chance allows"
-        );
-        (
-            message,
-            "intervals follow the stated noise: correct it, or leave it out to have it estimated; noise that is far too large \
-             is misfit of law, thickness or conditions",
-        )
-    })
+    let ratio = estimate.noise_ratio?;
+    let relation = if ratio > 1.0 { "more" } else { "less" };
+    let message = format!(
+        "the markers scatter {ratio:.2} times as much as their stated noise, {relation} than chance allows: it is scaled to what \
+         they show"
+    );
+    Some((
+        message,
+        "correct the stated noise, or leave it out to have it estimated",
+    ))
 }
 
 fn outliers(estimate: &FieldEstimate) -> Option<Doubt> {
@@ -134,23 +115,25 @@ fn edges(estimate: &FieldEstimate) -> Option<Doubt> {
     ))
 }
 
-fn correlation(estimate: &FieldEstimate) -> Option<Doubt> {
-    let found = estimate.whiteness.filter(|found| !found.is_white())?;
-    let message = format!(
-        "not explained: what is left of neighbouring markers correlates by {:.2}, white noise by {:.2} ± {:.2}; intervals are \
-         too narrow",
-        found.correlation, found.expected, found.deviation
-    );
-    Some((
-        message,
-        "law, thickness or conditions do not explain the data, or their noise is not independent from marker to marker, as where \
-         subsets of image correlation overlap: give fewer markers then",
-    ))
+fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
+    let verdict = &estimate.verdict;
+    (verdict.answer == Answer::NotExplained).then(|| {
+        let reasons: Vec<String> = verdict.reasons.iter().map(|reason| reason.words()).collect();
+        let mend = verdict.mends.first();
+        let mend = mend.map_or(String::new(), |mend| {
+            format!("; most would be mended by {}", mend.freedom.words())
+        });
+        let message = format!("{}: {}{mend}", verdict.answer.words(), reasons.join("; "));
+        (
+            message,
+            "no interval holds here; the report ranks what would mend it, and residuals.png and misfit.png show where it is worst",
+        )
+    })
 }
 
 fn forces(estimate: &FieldEstimate) -> Vec<Doubt> {
     let checks = estimate.force_checks.iter();
-    let wrong = checks.filter(|check| check.standardised.abs() > CONTRADICTS);
+    let wrong = checks.filter(|check| check.contradicts());
     let doubt = |check: &crate::corrector::estimation::ForceCheck| {
         let measured = &check.measured;
         let message = format!(

@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::results::{Drawing, FieldCell, FieldFigure, Figure, Panel, mesh_outlines};
 use crate::studies::markers::MarkerStudy;
 
-use super::quantities::{nominal_stress, residuals};
+use super::quantities::{misfits, nominal_stress, residuals};
 
 /// The pictures of one frame.
 pub fn figures(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Vec<Figure> {
@@ -84,7 +84,7 @@ impl Pictures<'_> {
         FieldFigure::new(title, quantity, [Panel { label, cells }])
     }
 
-    fn uncertainty(&self, frame: &Frame) -> [Figure; 3] {
+    fn uncertainty(&self, frame: &Frame) -> [Figure; 4] {
         let estimate = self.estimate;
         let displacement = self.at_nodes(
             "Standard error of the displacement",
@@ -102,22 +102,38 @@ impl Pictures<'_> {
             "standardised residual [–]",
             marker_squares(frame, residuals),
         );
+        let misfits = misfits(frame, estimate);
+        let lengths = misfits.into_iter().map(|[x, y]| x.hypot(y));
+        let misfit = self.at_markers(
+            "Mean of what is left of neighbouring markers",
+            "misfit [mm]",
+            marker_squares(frame, lengths),
+        );
+        let caption = |of: &str| match estimate.is_explained() {
+            true => format!("Standard error of the {of} from the noise of the markers."),
+            false => format!(
+                "Spread of the {of} if all that is left were noise: the data are not explained, so that it is no measure of the \
+                 error."
+            ),
+        };
         [
             Figure::new(
                 "displacement_error.png",
-                "Standard error of the displacement from the noise of the markers.",
+                caption("displacement"),
                 displacement,
             ),
-            Figure::new(
-                "stress_error.png",
-                "Standard error of the nominal stress from the noise of the markers.",
-                stress,
-            ),
+            Figure::new("stress_error.png", caption("nominal stress"), stress),
             Figure::new(
                 "residuals.png",
                 "What is left of every marker in units of its standard deviation, shown up to 5; normal noise leaves more \
                  than 3.7 in one of a thousand.",
                 residuals,
+            ),
+            Figure::new(
+                "misfit.png",
+                "Mean of what is left of every marker and its eight neighbours: noise alone leaves a third of its size; more shows where \
+                 law, thickness and conditions are wrong.",
+                misfit,
             ),
         ]
     }

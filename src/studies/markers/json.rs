@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::report::{largest_correction, largest_error, left, outliers, used};
+use super::verdict;
 use crate::corrector::estimation::{EdgeCondition, FieldEstimate};
 use crate::markers::Frame;
 use crate::results::Step;
@@ -36,16 +37,17 @@ pub fn step(frame: &Frame, estimate: &FieldEstimate) -> Step {
 }
 
 fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
+    let of = |found: &Estimate| of_estimate(found, estimate.is_explained());
     let forces = estimate.forces.iter().map(|force| {
         json!({
             "edge": force.edge,
-            "x_N": of_estimate(&force.force[0]),
-            "y_N": of_estimate(&force.force[1]),
+            "x_N": of(&force.force[0]),
+            "y_N": of(&force.force[1]),
         })
     });
     let parameters = estimate.parameters.iter();
     let parameters = parameters
-        .map(|(key, unit, found)| json!({ "key": key, "unit": unit, "found": of_estimate(found) }));
+        .map(|(key, unit, found)| json!({ "key": key, "unit": unit, "found": of(found) }));
     let checks = estimate.force_checks.iter().map(|check| {
         json!({
             "edge": check.measured.edge,
@@ -68,15 +70,21 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
         "left_mm": left(estimate),
         "largest_left_mm": largest_correction(estimate),
         "effective_parameters": estimate.effective_parameters,
-        "largest_standard_error_mm": largest_error(estimate),
+        "largest_standard_error_mm": estimate.is_explained().then(|| largest_error(estimate)),
+        "verdict": verdict::json(estimate),
         "steps": estimate.steps,
         "errors_hold_the_mesh": estimate.holds_mesh_error,
-        "residual_correlation": estimate.whiteness.map(|found| json!({
+        "residual_correlation": estimate.whiteness.as_ref().map(|found| json!({
             "of_neighbours": found.correlation,
             "of_components": found.of_components,
             "of_white_noise": found.expected,
             "standard_deviation": found.deviation,
             "is_white": found.is_white(),
+            "variogram": found.variogram.iter().map(|bin| json!({
+                "distance_mm": bin.distance,
+                "pairs": bin.pairs,
+                "of_components": bin.of_components,
+            })).collect::<Vec<_>>(),
         })),
         "measured_forces": checks.collect::<Vec<_>>(),
         "forces": forces.collect::<Vec<_>>(),
@@ -85,10 +93,11 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
     })
 }
 
-fn of_estimate(found: &Estimate) -> Value {
+/// A value with its uncertainty, which only an explained field has.
+fn of_estimate(found: &Estimate, explained: bool) -> Value {
     json!({
         "value": found.value,
-        "standard_error": found.standard_error,
-        "interval": found.interval,
+        "standard_error": explained.then_some(found.standard_error),
+        "interval": explained.then_some(found.interval),
     })
 }

@@ -1,6 +1,8 @@
 //! What files and pictures of a corrected frame hold in common: nominal stress, and residuals of markers.
 
 use crate::corrector::estimation::{FieldEstimate, StressEstimate};
+use crate::markers::Frame;
+use crate::statistics::nearest;
 
 /// The components xx, xy, yx, yy of the nominal stress from those of the first Piola–Kirchhoff stress, its transpose.
 pub fn nominal([p11, p12, p21, p22]: [f64; 4]) -> [f64; 4] {
@@ -40,4 +42,27 @@ pub fn residuals(estimate: &FieldEstimate) -> impl Iterator<Item = Residual> {
             outlier: f64::NAN,
         },
     })
+}
+
+/// The mean of what is left of every marker and its eight nearest neighbours in mm, which noise alone would make a third of its own
+/// size; NaN where a marker has no place on the mesh.
+pub fn misfits(frame: &Frame, estimate: &FieldEstimate) -> Vec<[f64; 2]> {
+    const NEIGHBOURS: usize = 8;
+    let pairs = frame.markers.iter().zip(&estimate.markers).enumerate();
+    let known = pairs.filter_map(|(index, (marker, left))| {
+        left.filter(|left| !left.outlier)
+            .map(|left| (index, marker.place, left.residual))
+    });
+    let known: Vec<_> = known.collect();
+    let places: Vec<[f64; 2]> = known.iter().map(|(_, place, _)| *place).collect();
+    let mut all = vec![[f64::NAN; 2]; frame.markers.len()];
+    for (own, others) in nearest(&places, NEIGHBOURS).into_iter().enumerate() {
+        let members = others.iter().chain([&own]);
+        let sum = members.fold([0.0; 2], |sum, one| {
+            let residual = known[*one].2;
+            [sum[0] + residual[0], sum[1] + residual[1]]
+        });
+        all[known[own].0] = sum.map(|sum| sum / (others.len() + 1) as f64);
+    }
+    all
 }

@@ -1,5 +1,6 @@
 //! The report of a correction.
 
+use super::verdict;
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::results::Block;
 use crate::statistics::Estimate;
@@ -43,9 +44,9 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     }
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
-            let [low, high] = found.interval;
+            let interval = interval(found, estimate.is_explained(), 6);
             text += &format!(
-                "{key} in frame {}: {:.6} {unit} ({low:.6} … {high:.6})\n",
+                "{key} in frame {}: {:.6} {unit}{interval}\n",
                 frame.number, found.value
             );
         }
@@ -57,22 +58,29 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 "force on {} in frame {}: x {}, y {}\n",
                 force.edge,
                 frame.number,
-                newtons(x),
-                newtons(y)
+                newtons(x, last.is_explained()),
+                newtons(y, last.is_explained())
             );
         }
     }
+    text += &verdict::summary(field, estimates);
     for doubt in field.all_doubts(estimates) {
         text += &format!("doubtful: {}\n", doubt.message);
     }
     text
 }
 
-fn newtons(force: &Estimate) -> String {
-    let [low, high] = force.interval;
-    match low < high {
-        true => format!("{:.4} N ({low:.4} … {high:.4})", force.value),
-        false => format!("{:.4} N", force.value),
+fn newtons(force: &Estimate, explained: bool) -> String {
+    format!("{:.4} N{}", force.value, interval(force, explained, 4))
+}
+
+/// The interval behind a value, which only an explained field has.
+fn interval(found: &Estimate, explained: bool, digits: usize) -> String {
+    let [low, high] = found.interval;
+    match (explained, low < high) {
+        (true, true) => format!(" ({low:.digits$} … {high:.digits$})"),
+        (false, true) => " (no interval: not explained)".to_owned(),
+        _ => String::new(),
     }
 }
 
@@ -144,9 +152,14 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         Block::heading("Frames"),
         frames,
         Block::paragraph(explanation),
+    ];
+    if field.coarse.is_none() {
+        blocks.extend(verdict::blocks(field, estimates));
+    }
+    blocks.extend([
         Block::heading("Forces on the edges"),
         forces(field, estimates),
-    ];
+    ]);
     blocks.extend(field.unknown_gap.map(|gap| {
         Block::paragraph(format!(
             "The specimen's edge is not known but for the markers: intervals of forces and moduli hold that it may lie up to a \
@@ -167,7 +180,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
 const EXPLANATION: &str = "Noise is the standard deviation of each component of a marker's displacement; left is the root \
     mean square of measured less corrected displacements. Standard errors and intervals (95 %) come from the noise \
     and from the mesh's own error, which the same equations on cells half as large tell (on meshes of more than 25,000 cells it \
-    is left out): they know nothing of a wrong material, a wrong thickness or a wrong condition. An outlier is a \
+    is left out): they hold where the verdict is that the data are explained. An outlier is a \
     marker whose residual normal noise would leave in less than one of a thousand.";
 
 const TRANSFERRED: &str = "The given field is taken to be free of noise: edges that are not free keep its displacements, and \
@@ -215,14 +228,19 @@ fn frames(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
             format!("{:.5}", estimate.noise),
             if estimate.known_noise {
                 "given"
+            } else if estimate.noise_ratio.is_some() {
+                "given, scaled"
             } else {
                 "estimated"
             }
             .to_owned(),
             format!("{:.5}", left(estimate)),
             format!("{:.1}", estimate.effective_parameters),
-            format!("{:.5}", largest_error(estimate)),
-            estimate.whiteness.map_or(String::new(), |found| {
+            match estimate.is_explained() {
+                true => format!("{:.5}", largest_error(estimate)),
+                false => "not explained".to_owned(),
+            },
+            estimate.whiteness.as_ref().map_or(String::new(), |found| {
                 format!(
                     "{:.2} ({:.2} ± {:.2})",
                     found.correlation, found.expected, found.deviation
@@ -242,8 +260,8 @@ fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
             vec![
                 frame.number.to_string(),
                 force.edge.clone(),
-                newtons(x),
-                newtons(y),
+                newtons(x, estimate.is_explained()),
+                newtons(y, estimate.is_explained()),
             ]
         })
     });
@@ -255,14 +273,17 @@ fn parameters(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let frames = field.series.frames.iter().zip(estimates);
     let rows = frames.flat_map(|(frame, estimate)| {
         estimate.parameters.iter().map(move |(key, unit, found)| {
-            let [low, high] = found.interval;
+            let error = match estimate.is_explained() {
+                true => format!("{:.6}", found.standard_error),
+                false => String::new(),
+            };
             vec![
                 frame.number.to_string(),
                 key.to_string(),
                 unit.to_string(),
                 format!("{:.6}", found.value),
-                format!("{:.6}", found.standard_error),
-                format!("{low:.6} … {high:.6}"),
+                error,
+                interval(found, estimate.is_explained(), 6),
             ]
         })
     });

@@ -18,10 +18,19 @@ fn row(text: &mut String, first: &[usize], values: &[f64]) {
     let _ = writeln!(text, "{}", fields.join(","));
 }
 
+/// The name of a standard error; where the data are not explained it is none, and the name says so.
+fn error(estimate: &FieldEstimate) -> &'static str {
+    match estimate.is_explained() {
+        true => "standard_error",
+        false => "spread_not_explained",
+    }
+}
+
 /// The field at the nodes.
 pub fn nodes(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
-    let mut text = String::from(
-        "node,X_mm,Y_mm,ux_mm,uy_mm,ux_standard_error_mm,uy_standard_error_mm,reaction_x_N,reaction_y_N,\
+    let error = error(estimate);
+    let mut text = format!(
+        "node,X_mm,Y_mm,ux_mm,uy_mm,ux_{error}_mm,uy_{error}_mm,reaction_x_N,reaction_y_N,\
          multiplier_x_mm2_per_N,multiplier_y_mm2_per_N\n",
     );
     for (node, [x, y]) in field.mesh.nodes.iter().enumerate() {
@@ -41,12 +50,13 @@ pub fn nodes(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
 /// Stress and thickness in the middle of the cells.
 pub fn cells(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
     let mut text = String::from("cell,X_mm,Y_mm");
-    for of in ["", "_standard_error"] {
+    let error = error(estimate);
+    for of in [String::new(), format!("_{error}")] {
         for component in ["xx", "xy", "yx", "yy"] {
             let _ = write!(text, ",nominal_stress_{component}{of}_MPa");
         }
     }
-    text += ",thickness_mm,thickness_standard_error_mm\n";
+    let _ = writeln!(text, ",thickness_mm,thickness_{error}_mm");
     for (index, cell) in estimate.cells.iter().enumerate() {
         let mut values = field.mesh.centre(index).to_vec();
         values.extend(nominal_stress(cell));
@@ -89,7 +99,7 @@ pub fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
             ",force_{axis}_N,force_{axis}_standard_error_N,force_{axis}_low_N,force_{axis}_high_N"
         );
     }
-    text += "\n";
+    text += ",verdict\n";
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for force in &estimate.forces {
             let values = force.force.iter().flat_map(|force| {
@@ -100,9 +110,16 @@ pub fn forces(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                     force.interval[1],
                 ]
             });
-            let values: Vec<String> = values.map(|value| format!("{value:.9e}")).collect();
+            let known = |index: usize| index.is_multiple_of(4) || estimate.is_explained();
+            let values = values.enumerate().map(|(index, value)| match known(index) {
+                true => format!("{value:.9e}"),
+                false => String::new(),
+            });
+            let values: Vec<String> = values.collect();
             let edge = force.edge.replace(',', ";");
-            let _ = writeln!(text, "{},{edge},{}", frame.number, values.join(","));
+            let verdict = estimate.verdict.answer.words().replace(',', ";");
+            let values = values.join(",");
+            let _ = writeln!(text, "{},{edge},{values},{verdict}", frame.number);
         }
     }
     text

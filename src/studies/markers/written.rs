@@ -15,7 +15,7 @@ use crate::markers::Frame;
 use crate::results::{Array, Content, Grid, Material, NamedGrid, Outcome, Results, Sheet};
 use crate::studies::markers::MarkerStudy;
 
-use super::quantities::{Residual, nominal, residuals};
+use super::quantities::{Residual, misfits, nominal, residuals};
 use super::{figures, json, report, tables};
 
 /// The `kind` of these results.
@@ -47,6 +47,10 @@ pub fn results(
             Content::Text(tables::forces(field, estimates)),
         )],
         doubts: doubts.iter().map(ToString::to_string).collect(),
+        balance: estimates
+            .iter()
+            .map(|found| found.imbalance)
+            .reduce(f64::max),
         summary: report::summary(field, estimates),
         ..Outcome::default()
     };
@@ -152,14 +156,23 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
     let cells = estimate.cells.iter();
     let stress = cells.clone().flat_map(|cell| nominal(cell.stress_error));
     let thickness = cells.map(|cell| cell.thickness_error);
-    grid.with([nodal(
-        "displacement_standard_error_mm",
-        &estimate.displacement_error,
-    )])
-    .with_in_cells([
-        Array::tensors("nominal_stress_standard_error_MPa", stress),
-        Array::scalars("thickness_standard_error_mm", thickness),
-    ])
+    let [of_displacement, of_stress, of_thickness] = match estimate.is_explained() {
+        true => [
+            "displacement_standard_error_mm",
+            "nominal_stress_standard_error_MPa",
+            "thickness_standard_error_mm",
+        ],
+        false => [
+            "displacement_spread_not_explained_mm",
+            "nominal_stress_spread_not_explained_MPa",
+            "thickness_spread_not_explained_mm",
+        ],
+    };
+    grid.with([nodal(of_displacement, &estimate.displacement_error)])
+        .with_in_cells([
+            Array::tensors(of_stress, stress),
+            Array::scalars(of_thickness, thickness),
+        ])
 }
 
 fn markers(frame: &Frame, estimate: &FieldEstimate) -> Grid {
@@ -170,8 +183,10 @@ fn markers(frame: &Frame, estimate: &FieldEstimate) -> Grid {
     let of =
         |name, value: fn(Residual) -> f64| Array::scalars(name, residuals(estimate).map(value));
     let differences = residuals(estimate).flat_map(|left| left.residual);
+    let misfit = misfits(frame, estimate).into_iter().flatten();
     Grid::scattered(&places, &measured).with([
         Array::vectors("residual_mm", differences),
+        Array::vectors("mean_residual_of_neighbours_mm", misfit),
         of("standardised_residual_1", |left| left.standardised),
         of("trust_1", |left| left.trust),
         of("outlier_1", |left| left.outlier),

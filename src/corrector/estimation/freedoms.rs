@@ -1,0 +1,157 @@
+//! What the equations could lack, as small changes of the field that it would make.
+//!
+//! ```text
+//! ∂u/∂c = K⁻¹ f,   fᵢ = ∫ Nᵢ φ dA (a force),   −∫ φ P ∇Nᵢ dV (a stiffness that varies),   −∫ P* ∇Nᵢ dV (another law's P*)
+//! ```
+
+use nalgebra::DMatrix;
+
+use super::body_force::nodal_areas;
+use super::equations::solve;
+use super::mesh_error::MeshError;
+use super::search::NearestField;
+use super::verdict::Freedom;
+use crate::error::Error;
+use crate::material::sheet::{Gradient, Kinematics, cofactor};
+use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
+
+/// A freedom with the displacements of the markers that its parameters make: two rows a marker.
+pub type Column = (Freedom, DMatrix<f64>);
+
+impl NearestField<'_> {
+    /// The freedoms of forces, stiffness, law and mesh, with all edges as they are.
+    pub(super) fn freedoms(&mut self, own: Option<&MeshError>) -> Result<Vec<Column>, Error> {
+        let mut all = Vec::new();
+        if self.equations.body.is_none() {
+            all.push((Freedom::BodyForce, self.smooth_forces()));
+        }
+        all.push((Freedom::Stiffness, self.varied_stiffness()));
+        all.push((Freedom::Law, self.other_laws()));
+        all.push((Freedom::Direction, self.directions()));
+        all.push((Freedom::Volume, self.volume_change()));
+        let mut columns: Vec<Column> = Vec::new();
+        for (freedom, forces) in all {
+            let changes = self
+                .equations
+                .newton
+                .tangent
+                .changes(&forces)
+                .map_err(solve)?;
+            let interpolation = &self.observations().interpolation;
+            let values = changes
+                .iter()
+                .flat_map(|change| interpolation.multiply(change));
+            let design = DMatrix::from_iterator(interpolation.len(), changes.len(), values);
+            columns.push((freedom, design));
+        }
+        if let Some(own) = own {
+            let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
+            columns.push((Freedom::Mesh, error));
+        }
+        Ok(columns)
+    }
+
+    /// 1, x, y, x², xy, y² of a place, from −1 to 1 over the specimen.
+    fn shapes(&self, place: [f64; 2]) -> [f64; 6] {
+        let [low, high] = self.equations.task.specimen.mesh.bounding_box();
+        let [x, y] = [0, 1].map(|axis| {
+            let size = (high[axis] - low[axis]).max(f64::MIN_POSITIVE);
+            2.0 * (place[axis] - low[axis]) / size - 1.0
+        });
+        [1.0, x, y, x * x, x * y, y * y]
+    }
+
+    /// Forces along x and along y with smooth densities.
+    fn smooth_forces(&self) -> Vec<Vec<f64>> {
+        let mesh = self.equations.task.specimen.mesh;
+        let areas = nodal_areas(mesh);
+        let mut forces = vec![vec![0.0; self.field.len()]; 12];
+        for (node, place) in mesh.nodes.iter().enumerate() {
+            for (shape, value) in self.shapes(*place).into_iter().enumerate() {
+                for axis in [0, 1] {
+                    forces[6 * axis + shape][2 * node + axis] = areas[node] * value;
+                }
+            }
+        }
+        forces
+    }
+
+    fn varied_stiffness(&self) -> Vec<Vec<f64>> {
+        let law = &self.equations.law;
+        self.stresses(5, &|place, kinematics| {
+            let stress = law.stress(kinematics).1;
+            let shapes = self.shapes(place);
+            shapes[1..].iter().map(|shape| stress * *shape).collect()
+        })
+    }
+
+    fn other_laws(&self) -> Vec<Vec<f64>> {
+        let laws: [Box<dyn HyperelasticLaw>; 4] = [
+            Box::new(NeoHooke { c10: 1.0 }),
+            Box::new(MooneyRivlin { c10: 0.0, c01: 1.0 }),
+            Box::new(Yeoh {
+                coefficients: [0.0, 1.0, 0.0],
+            }),
+            Box::new(Yeoh {
+                coefficients: [0.0, 0.0, 1.0],
+            }),
+        ];
+        self.stresses(4, &|_, kinematics| {
+            laws.iter().map(|law| law.stress(kinematics).1).collect()
+        })
+    }
+
+    /// Fibres along x and y, and shear between them: F S with one component of S = E each.
+    fn directions(&self) -> Vec<Vec<f64>> {
+        self.stresses(3, &|_, kinematics| {
+            let f = kinematics.deformation_gradient;
+            let [xx, xy, yy] = kinematics.stretch_change.map(|change| change / 2.0);
+            vec![
+                Gradient::new(f[0] * xx, 0.0, f[2] * xx, 0.0),
+                Gradient::new(0.0, f[1] * yy, 0.0, f[3] * yy),
+                Gradient::new(f[1] * xy, f[0] * xy, f[3] * xy, f[2] * xy),
+            ]
+        })
+    }
+
+    /// ½ (ln J)².
+    fn volume_change(&self) -> Vec<Vec<f64>> {
+        self.stresses(1, &|_, kinematics| {
+            let area = kinematics.area_ratio();
+            vec![cofactor(&kinematics.deformation_gradient) * (area.ln() / area)]
+        })
+    }
+
+    /// ∫ P* ∇N dV of several stresses.
+    fn stresses(
+        &self,
+        count: usize,
+        stresses: &dyn Fn([f64; 2], &Kinematics) -> Vec<Gradient>,
+    ) -> Vec<Vec<f64>> {
+        let mesh = self.equations.task.specimen.mesh;
+        let mut forces = vec![vec![0.0; self.field.len()]; count];
+        for cell in 0..mesh.cell_count() {
+            let nodes = mesh.cell(cell);
+            let own: Vec<f64> = nodes
+                .iter()
+                .flat_map(|node| [self.field[2 * node], self.field[2 * node + 1]])
+                .collect();
+            let centre = mesh.place(cell, mesh.shape(cell).centre());
+            for point in self.equations.energy.cell_points(cell) {
+                let Ok(kinematics) = Kinematics::new(&point.gradient(&own)) else {
+                    continue;
+                };
+                let all = stresses(centre, &kinematics).into_iter();
+                for (stress, force) in all.zip(&mut forces) {
+                    let mut added = vec![0.0; own.len()];
+                    point.add_force(&stress, &mut added);
+                    for (pair, node) in added.chunks_exact(2).zip(nodes) {
+                        force[2 * node] += pair[0];
+                        force[2 * node + 1] += pair[1];
+                    }
+                }
+            }
+        }
+        forces
+    }
+}

@@ -1,0 +1,246 @@
+//! The verdict on an estimate: is what is left white, does it correlate as noise does, or is it no noise?
+//!
+//! Noise that correlates is found by restricted likelihood, once with the equations as they are, for the intervals, and once with
+//! every freedom of [`super::freedoms`] and all edges let go: what is left then is noise more surely. Made white by the latter, the
+//! data tell which freedom takes more from the misfit than noise would let it (F test, in one linearised step).
+
+use super::equations::Equations;
+use super::field_estimate::{Contradiction, ForceCheck, MarkerEstimate};
+use super::knowledge::EdgeCondition;
+use super::linear_model::{Model, Reference};
+use super::mesh_error::MeshError;
+use super::rows::Rows;
+use super::search::{NearestField, Scored};
+use super::task::{Edge, Task};
+use super::verdict::{Answer, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Worst};
+use crate::error::Error;
+use crate::statistics::{CorrelatedNoise, nearest, normal_tail};
+
+/// Probability by noise below which a freedom speaks against the equations. Eight are tried, and smoothness is chosen by the data.
+const LEVEL: f64 = 1e-5;
+
+/// A freedom mends something where it leaves less than this share of the misfit.
+const MENDED: f64 = 0.98;
+
+/// Noise that leaves fewer independent values than this beside the parameters cannot be told from a misfit.
+const INDEPENDENT: f64 = 20.0;
+
+/// What was found of the noise, and the verdict.
+#[derive(Default)]
+pub struct Judgement {
+    /// How the noise correlates with the equations as they are; white where it is none.
+    pub noise: Option<CorrelatedNoise>,
+    /// The verdict, but for measured forces.
+    pub verdict: Verdict,
+    /// What is contradicted of what is said of the edges.
+    pub contradiction: Option<Contradiction>,
+}
+
+/// Judges what is left of the sound markers.
+///
+/// # Errors
+/// Where the tangent cannot be solved with.
+pub fn judge(
+    task: &Task,
+    found: &mut NearestField,
+    edges: &[Edge],
+    markers: &[Option<MarkerEstimate>],
+    own: Option<&MeshError>,
+) -> Result<Judgement, Error> {
+    let Some(rows) = Rows::new(found, markers, own) else {
+        return Ok(Judgement::default());
+    };
+    let base = Model::of_search(&rows, found);
+    let noise = base.noise(&rows);
+    let columns = found.freedoms(own)?;
+    let found = &*found;
+    let released = |goes: &dyn Fn(&str) -> bool| {
+        let scored = let_go(task, found, edges, goes)?;
+        Some(Model::of_score(&rows, found, &scored))
+    };
+    let all = released(&|_| true);
+    let trials = Trials {
+        reference: Reference::new(&rows, noise.as_ref(), (&base, all.as_ref()), &columns, own),
+        rows: &rows,
+        found,
+        base: &base,
+    };
+    let mut mends: Vec<Mend> = columns
+        .iter()
+        .map(|(freedom, design)| trials.mend(freedom.clone(), &base.with(&rows, [design])))
+        .collect();
+    let together = all.as_ref().map(|model| trials.mend(Freedom::Edges, model));
+    let correlation = noise.as_ref().map(|noise| rows.correlation(noise));
+    let reasons = reasons(mends.iter().chain(&together), correlation, found);
+    let mut contradiction = None;
+    if !reasons.is_empty() {
+        let alone = |name: &str| {
+            let model = released(&|other| other == name)?;
+            Some(trials.mend(Freedom::Edge(name.to_owned()), &model))
+        };
+        let each: Vec<Mend> = said(edges).into_iter().filter_map(alone).collect();
+        contradiction = contradicted(together.as_ref(), &each);
+        mends.extend(together.filter(|_| each.len() > 1));
+        mends.extend(each);
+    }
+    // What hardly moves the misfit mends nothing.
+    let left = base.plain_left(&rows, found);
+    mends.retain(|mend| mend.left < MENDED * left);
+    mends.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    let answer = match (reasons.is_empty(), noise) {
+        (false, _) => Answer::NotExplained,
+        (true, Some(_)) => Answer::Correlated,
+        (true, None) => Answer::Explained,
+    };
+    let verdict = Verdict {
+        answer,
+        correlation,
+        worst: (!reasons.is_empty()).then(|| rows.worst(found)),
+        reasons,
+        mends,
+    };
+    Ok(Judgement {
+        noise,
+        verdict,
+        contradiction,
+    })
+}
+
+/// What freedoms are tried on.
+struct Trials<'a> {
+    rows: &'a Rows,
+    found: &'a NearestField<'a>,
+    base: &'a Model,
+    reference: Reference,
+}
+
+impl Trials<'_> {
+    fn mend(&self, freedom: Freedom, model: &Model) -> Mend {
+        Mend {
+            left: model.plain_left(self.rows, self.found),
+            ..self.reference.test(freedom, self.base, model)
+        }
+    }
+}
+
+/// Why the data are not explained, if they are not.
+fn reasons<'a>(
+    mends: impl Iterator<Item = &'a Mend>,
+    correlation: Option<NoiseCorrelation>,
+    found: &NearestField,
+) -> Vec<Reason> {
+    let probability = mends.map(|mend| mend.probability).fold(1.0, f64::min);
+    let freedom = (probability < LEVEL).then_some(Reason::Freedom(probability));
+    let long = correlation.filter(|one| 2.0 * one.independent - found.fit.effective < INDEPENDENT);
+    let long = long.map(|one| Reason::Long(one.length));
+    freedom.into_iter().chain(long).collect()
+}
+
+/// The names of the edges of which something is said, but that they moved in an unknown way.
+fn said<'a>(edges: &'a [Edge]) -> Vec<&'a str> {
+    let said = edges.iter().filter(|edge| is_said(edge));
+    let mut names: Vec<&str> = said.map(|edge| edge.segment.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+fn is_said(edge: &Edge) -> bool {
+    edge.segment.condition.is_some() && edge.condition != EdgeCondition::Unknown
+}
+
+/// The regression with some of the edges let go of which something is said; `None` where there are none, or data do not determine so
+/// much.
+fn let_go(
+    task: &Task,
+    found: &NearestField,
+    edges: &[Edge],
+    goes: &dyn Fn(&str) -> bool,
+) -> Option<Scored> {
+    let mut relaxed = edges.to_vec();
+    let mut any = false;
+    for edge in &mut relaxed {
+        if is_said(edge) && goes(&edge.segment.name) {
+            edge.condition = EdgeCondition::Unknown;
+            any = true;
+        }
+    }
+    let search = any.then(|| Equations::new(task, &relaxed).ok()).flatten()?;
+    search.score(found).ok()
+}
+
+fn contradicted(together: Option<&Mend>, each: &[Mend]) -> Option<Contradiction> {
+    let probability = together.map_or(1.0, |mend| mend.probability);
+    let named = |mend: &Mend| match &mend.freedom {
+        Freedom::Edge(name) => Some((name.clone(), mend.probability)),
+        _ => None,
+    };
+    let mut edges: Vec<(String, f64)> = each
+        .iter()
+        .filter(|mend| mend.probability < LEVEL)
+        .filter_map(named)
+        .collect();
+    edges.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    (probability < LEVEL).then_some(Contradiction { probability, edges })
+}
+
+impl Verdict {
+    /// With what measured forces say beside those of the field.
+    pub(super) fn with_forces(mut self, checks: &[ForceCheck]) -> Self {
+        let size = |check: &&ForceCheck| check.standardised.abs();
+        let worst = checks.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+        if let Some(worst) = worst.filter(|check| check.contradicts()) {
+            self.answer = Answer::NotExplained;
+            self.reasons.push(Reason::Force(worst.standardised.abs()));
+            let factor = worst.measured.force / worst.found;
+            if factor > 0.0 && factor.is_finite() {
+                self.mends.push(Mend {
+                    freedom: Freedom::Factor(factor),
+                    left: f64::NAN,
+                    probability: normal_tail(worst.standardised),
+                    gain: worst.standardised.powi(2) - 2.0,
+                });
+                self.mends.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+            }
+        }
+        self
+    }
+}
+
+impl Rows {
+    fn correlation(&self, noise: &CorrelatedNoise) -> NoiseCorrelation {
+        NoiseCorrelation {
+            length: noise.correlation.length,
+            share: noise.correlation.share,
+            independent: noise.correlation.independent(self.sites.places()),
+            evidence: noise.evidence,
+        }
+    }
+
+    /// Where the mean of what is left of a marker and its neighbours is largest.
+    fn worst(&self, found: &NearestField) -> Worst {
+        const NEIGHBOURS: usize = 8;
+        let around = nearest(self.sites.places(), NEIGHBOURS);
+        let mean = |index: usize| {
+            let members = around[index].iter().chain([&index]);
+            let sum = members.fold([0.0; 2], |sum, one| {
+                let row = 2 * self.chosen[*one];
+                [0, 1].map(|axis| sum[axis] + found.fit.residual[row + axis])
+            });
+            sum.map(|sum| sum / (around[index].len() + 1) as f64)
+        };
+        let all = (0..self.chosen.len()).map(|index| (index, mean(index)));
+        let size = |[x, y]: [f64; 2]| x.hypot(y);
+        let worst = all.max_by(|a, b| size(a.1).total_cmp(&size(b.1)));
+        worst.map_or(
+            Worst {
+                place: [f64::NAN; 2],
+                misfit: [f64::NAN; 2],
+            },
+            |(index, misfit)| Worst {
+                place: self.sites.places()[index],
+                misfit,
+            },
+        )
+    }
+}

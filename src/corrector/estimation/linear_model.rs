@@ -1,0 +1,177 @@
+//! Linear models of the sound markers, and how far one fits better than another under noise that may correlate.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::freedoms::Column;
+use super::mesh_error::MeshError;
+use super::rows::Rows;
+use super::search::{NearestField, Scored};
+use super::verdict::{Freedom, Mend};
+use crate::statistics::{
+    CorrelatedNoise, CorrelatedRegression, WhiteRegression, Whitening, f_tail,
+};
+
+/// Evidence from which on noise counts as correlated: white noise has as much in one of four hundred cases.
+const EVIDENCE: f64 = 12.0;
+
+/// Twice the mesh's own error, squared.
+const MESH: f64 = 4.0;
+
+/// A linear model of the sound markers.
+pub struct Model {
+    design: DMatrix<f64>,
+    residual: DVector<f64>,
+    held: DMatrix<f64>,
+    slope: DVector<f64>,
+}
+
+/// The noise by which freedoms are tested.
+pub struct Reference {
+    whitening: Option<Whitening>,
+    variance: f64,
+    /// Independent values.
+    values: f64,
+    /// Variance that the mesh's own error adds.
+    mesh: f64,
+}
+
+impl Model {
+    /// That of a search, about its field.
+    pub fn of_search(rows: &Rows, found: &NearestField) -> Self {
+        Self {
+            design: rows.scaled(&found.linear.design),
+            residual: rows.residual.clone(),
+            held: found.fit.held.clone(),
+            slope: found.slope(&found.linear.design, &found.fit.residual, &found.trade),
+        }
+    }
+
+    /// That of one regression with other conditions.
+    pub fn of_score(rows: &Rows, found: &NearestField, scored: &Scored) -> Self {
+        let left = DMatrix::from_column_slice(
+            scored.fit.residual.len(),
+            1,
+            scored.fit.residual.as_slice(),
+        );
+        Self {
+            design: rows.scaled(&scored.linear.design),
+            residual: rows.scaled(&left).column(0).into_owned(),
+            held: scored.fit.held.clone(),
+            slope: found.slope(&scored.linear.design, &scored.fit.residual, &scored.trade),
+        }
+    }
+
+    /// With further columns that nothing holds down.
+    pub fn with<'a>(&self, rows: &Rows, more: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Self {
+        let mut columns: Vec<DVector<f64>> = Vec::new();
+        for design in more {
+            let scaled = rows.scaled(design);
+            for column in scaled.column_iter() {
+                let length = column.norm();
+                if length > 0.0 && length.is_finite() {
+                    columns.push(column * ((column.len() as f64).sqrt() / length));
+                }
+            }
+        }
+        let (own, all) = (self.design.ncols(), self.design.ncols() + columns.len());
+        let mut design = self.design.clone().resize_horizontally(all, 0.0);
+        for (index, column) in columns.iter().enumerate() {
+            design.set_column(own + index, column);
+        }
+        Self {
+            design,
+            residual: self.residual.clone(),
+            held: self.held.clone().resize(all, all, 0.0),
+            slope: self.slope.clone().resize_vertically(all, 0.0),
+        }
+    }
+
+    /// How the noise correlates, where the data speak for it.
+    pub fn noise(&self, rows: &Rows) -> Option<CorrelatedNoise> {
+        let some = rows.clusters();
+        let entry = |row: usize| 2 * some.chosen[row / 2] + row % 2;
+        let count = 2 * some.chosen.len();
+        let columns = self.design.ncols();
+        let regression = CorrelatedRegression {
+            sites: &some.sites,
+            design: &DMatrix::from_fn(count, columns, |row, j| self.design[(entry(row), j)]),
+            residual: &DVector::from_fn(count, |row, _| self.residual[entry(row)]),
+            held: &self.held,
+            slope: &self.slope,
+        };
+        let longest = 0.5 * (rows.extent[0] * rows.extent[1]).sqrt();
+        let found = regression.likeliest(rows.spacing, longest)?;
+        (found.evidence > EVIDENCE).then_some(found)
+    }
+
+    /// What is left of the markers in mm, after an ordinary regression.
+    pub fn plain_left(&self, rows: &Rows, found: &NearestField) -> f64 {
+        let white = WhiteRegression::new(&self.design, &self.residual, None);
+        let left = white.left(&self.held, &self.slope, 1.0);
+        let count = 2.0 * rows.chosen.len() as f64;
+        left.map_or(f64::NAN, |(square, _)| {
+            (square / count).sqrt() * found.deviation()
+        })
+    }
+}
+
+impl Reference {
+    /// The noise that is left by the equations with all freedoms.
+    pub fn new(
+        rows: &Rows,
+        noise: Option<&CorrelatedNoise>,
+        (base, all): (&Model, Option<&Model>),
+        columns: &[Column],
+        own: Option<&MeshError>,
+    ) -> Self {
+        let most = all.unwrap_or(base);
+        let flexible = || most.with(rows, columns.iter().map(|(_, design)| design));
+        let noise = noise.and_then(|_| flexible().noise(rows));
+        let correlation = noise.as_ref().map(|noise| noise.correlation);
+        let count = rows.chosen.len() as f64;
+        let mesh = own.map_or(0.0, |own| {
+            let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
+            MESH * rows.scaled(&error).norm_squared() / (2.0 * count)
+        });
+        Self {
+            whitening: correlation
+                .as_ref()
+                .map(|one| Whitening::new(&rows.sites, one)),
+            variance: noise.as_ref().map_or(1.0, |noise| noise.variance),
+            values: 2.0 * correlation.map_or(count, |one| one.independent(rows.sites.places())),
+            mesh,
+        }
+    }
+
+    /// How much a model takes from the misfit of the equations.
+    pub fn test(&self, freedom: Freedom, base: &Model, model: &Model) -> Mend {
+        let left = |model: &Model| {
+            let white =
+                WhiteRegression::new(&model.design, &model.residual, self.whitening.as_ref());
+            white.left(&model.held, &model.slope, self.variance)
+        };
+        let (Some((before, few)), Some((after, many))) = (left(base), left(model)) else {
+            return Mend::nothing(freedom);
+        };
+        let count = model.residual.len() as f64;
+        let more = (many - few).max(1.0);
+        let variance = after / (count - many).max(1.0) + self.mesh;
+        let gain = (before - after).max(0.0) / variance;
+        Mend {
+            probability: f_tail([more, (self.values - many).max(3.0)], gain / more),
+            gain: gain - 2.0 * more,
+            ..Mend::nothing(freedom)
+        }
+    }
+}
+
+impl Mend {
+    fn nothing(freedom: Freedom) -> Self {
+        Self {
+            freedom,
+            left: f64::NAN,
+            probability: 1.0,
+            gain: 0.0,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! The rows of sound markers in the last regression, over the noise.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::field_estimate::MarkerEstimate;
+use super::mesh_error::MeshError;
+use super::search::NearestField;
+use crate::statistics::{Sites, nearest};
+
+/// Fewer markers tell nothing of each other.
+const FEWEST: usize = 30;
+
+/// Rows of sound markers: trusted by at least one half, and no outliers.
+pub struct Rows {
+    /// Numbers of the markers among those on the mesh.
+    pub chosen: Vec<usize>,
+    /// Their places.
+    pub sites: Sites,
+    /// √(w ω)/s of each, s the noise's standard deviation.
+    scales: Vec<f64>,
+    /// r √(w ω)/s, of variance one where the noise is white.
+    pub residual: DVector<f64>,
+    /// Largest and smallest coordinates differ by so much, in mm.
+    pub extent: [f64; 2],
+    /// √(area of the box over the number of markers), in mm.
+    pub spacing: f64,
+}
+
+/// Some of the sound markers.
+pub struct Clusters {
+    /// Their numbers among the sound ones.
+    pub chosen: Vec<usize>,
+    /// Their places.
+    pub sites: Sites,
+}
+
+impl Rows {
+    /// The rows; `None` where there are few, or what is left is no more than the mesh's own error and the rounding of numbers.
+    pub fn new(
+        found: &NearestField,
+        markers: &[Option<MarkerEstimate>],
+        own: Option<&MeshError>,
+    ) -> Option<Self> {
+        const TRUSTED: f64 = 0.5;
+        let observations = found.observations();
+        let sound = |row: &usize| {
+            let outlier = markers[observations.chosen[*row]].is_some_and(|marker| marker.outlier);
+            found.trade.trust[*row] >= TRUSTED && !outlier
+        };
+        let count = observations.places.len();
+        let mut chosen: Vec<usize> = (0..count).filter(sound).collect();
+        // Where most are outliers there is nothing sound to tell them from.
+        if 2 * chosen.len() < count {
+            chosen = (0..count).collect();
+        }
+        if chosen.len() < FEWEST || leaves_nothing(found, &chosen, own) {
+            return None;
+        }
+        let scale = |row: &usize| {
+            (observations.weights[*row] * found.trade.trust[*row] / found.trade.sound).sqrt()
+        };
+        let scales: Vec<f64> = chosen.iter().map(scale).collect();
+        let left = |row: usize| {
+            let index = row / 2;
+            scales[index] * found.fit.residual[2 * chosen[index] + row % 2]
+        };
+        let places: Vec<[f64; 2]> = chosen.iter().map(|row| observations.places[*row]).collect();
+        let extent = [0, 1].map(|axis| {
+            let values = places.iter().map(|place| place[axis]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            });
+            (high - low).max(f64::MIN_POSITIVE)
+        });
+        Some(Self {
+            residual: DVector::from_fn(2 * chosen.len(), |row, _| left(row)),
+            sites: Sites::new(places),
+            spacing: (extent[0] * extent[1] / chosen.len() as f64).sqrt(),
+            extent,
+            chosen,
+            scales,
+        })
+    }
+
+    /// At most some thousands of them, in clusters that show short and long distances alike.
+    pub fn clusters(&self) -> Clusters {
+        const MOST: usize = 3000;
+        const TOGETHER: usize = 30;
+        let places = self.sites.places();
+        if places.len() <= MOST {
+            return Clusters {
+                chosen: (0..places.len()).collect(),
+                sites: self.sites.clone(),
+            };
+        }
+        let around = nearest(places, TOGETHER - 1);
+        let first = (0..places.len()).step_by(places.len() * TOGETHER / MOST);
+        let mut chosen: Vec<usize> = first
+            .flat_map(|index| around[index].iter().copied().chain([index]))
+            .collect();
+        chosen.sort_unstable();
+        chosen.dedup();
+        Clusters {
+            sites: Sites::new(chosen.iter().map(|index| places[*index]).collect()),
+            chosen,
+        }
+    }
+
+    /// Rows of these markers out of a matrix with two rows for each marker on the mesh, over the noise.
+    pub fn scaled(&self, design: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(2 * self.chosen.len(), design.ncols(), |row, column| {
+            self.scales[row / 2] * design[(2 * self.chosen[row / 2] + row % 2, column)]
+        })
+    }
+}
+
+/// Whether what is left is no more than twice the mesh's own error, or a millionth of the displacement.
+fn leaves_nothing(found: &NearestField, rows: &[usize], own: Option<&MeshError>) -> bool {
+    const ROUNDING: f64 = 1e-6;
+    let sum = |values: &dyn Fn(usize) -> f64| -> f64 {
+        let entries = rows.iter().flat_map(|row| [2 * row, 2 * row + 1]);
+        entries.map(|entry| values(entry).powi(2)).sum()
+    };
+    let observations = found.observations();
+    let left = sum(&|entry| found.fit.residual[entry]);
+    let moved = sum(&|entry| observations.displacements[entry / 2][entry % 2]);
+    let mesh = own.map_or(0.0, |own| sum(&|entry| own.markers[entry]));
+    left <= (4.0 * mesh).max(ROUNDING * ROUNDING * moved)
+}

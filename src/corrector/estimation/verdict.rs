@@ -1,0 +1,146 @@
+//! Whether law, thickness and conditions explain the data.
+
+use serde::{Deserialize, Serialize};
+
+/// The answer.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
+pub enum Answer {
+    /// What is left is white noise.
+    #[default]
+    Explained,
+    /// What is left is noise that correlates between neighbours; the intervals hold that.
+    Correlated,
+    /// What is left is no noise: intervals say nothing.
+    NotExplained,
+}
+
+impl Answer {
+    /// The answer in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Explained => "explained",
+            Self::Correlated => "explained with correlated noise",
+            Self::NotExplained => "not explained by this law, thickness and conditions",
+        }
+    }
+}
+
+/// The answer with what it stands on.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Verdict {
+    /// The answer.
+    pub answer: Answer,
+    /// How the noise correlates, where it does.
+    pub correlation: Option<NoiseCorrelation>,
+    /// Why the data are not explained; empty where they are.
+    pub reasons: Vec<Reason>,
+    /// What would mend it, the best first, where the data are not explained.
+    pub mends: Vec<Mend>,
+    /// Where it is worst, where the data are not explained.
+    pub worst: Option<Worst>,
+}
+
+/// How noise correlates with distance.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct NoiseCorrelation {
+    /// The distance in mm at which the correlation has fallen to 1/e.
+    pub length: f64,
+    /// The share of the noise's variance that correlates.
+    pub share: f64,
+    /// The number of markers that would tell as much if their noise were white.
+    pub independent: f64,
+    /// 2 ln of its likelihood over that of white noise.
+    pub evidence: f64,
+}
+
+/// Why data are not explained.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub enum Reason {
+    /// A freedom takes more from the misfit than noise would let it: the probability of that by noise.
+    Freedom(f64),
+    /// What is left correlates over so many mm that it cannot be told from a misfit.
+    Long(f64),
+    /// A measured force is off by so many standard errors.
+    Force(f64),
+}
+
+impl Reason {
+    /// The reason in words.
+    pub fn words(self) -> String {
+        match self {
+            Self::Freedom(probability) => format!(
+                "other equations take so much from the misfit as by noise in {probability:.0e} of cases"
+            ),
+            Self::Long(length) => format!(
+                "what is left correlates over {length:.3} mm, too far to be told from a misfit"
+            ),
+            Self::Force(errors) => {
+                format!("a measured force is {errors:.1} standard errors off")
+            }
+        }
+    }
+}
+
+/// What would make the equations fit the data better.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub enum Freedom {
+    /// One edge moves in an unknown smooth way.
+    Edge(String),
+    /// All edges of which something is said do so.
+    Edges,
+    /// A smooth force on the sheet, such as friction or weight.
+    BodyForce,
+    /// Thickness or stiffness that varies smoothly over the sheet.
+    Stiffness,
+    /// Another isotropic law.
+    Law,
+    /// A stiffness that depends on the direction.
+    Direction,
+    /// A volume that changes.
+    Volume,
+    /// A finer mesh.
+    Mesh,
+    /// Stiffness times thickness, by a factor.
+    Factor(f64),
+}
+
+impl Freedom {
+    /// What it is in words.
+    pub fn words(&self) -> String {
+        match self {
+            Self::Edge(name) => format!("`{name}` moved in an unknown way"),
+            Self::Edges => "all edges of which something is said moved in an unknown way".into(),
+            Self::BodyForce => "a smooth force on the sheet (friction, weight, a fixture)".into(),
+            Self::Stiffness => "a thickness or stiffness that varies over the sheet".into(),
+            Self::Law => "another isotropic law".into(),
+            Self::Direction => "a stiffness that depends on the direction".into(),
+            Self::Volume => "a volume that changes".into(),
+            Self::Mesh => "a finer mesh".into(),
+            Self::Factor(factor) => {
+                format!("stiffness times thickness larger by a factor of {factor:.3}")
+            }
+        }
+    }
+}
+
+/// What a freedom does, tried in one linearised step.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Mend {
+    /// The freedom.
+    pub freedom: Freedom,
+    /// Root mean square of what would be left of each component of the markers in mm.
+    pub left: f64,
+    /// How probable it is that noise alone makes the misfit fall so much.
+    pub probability: f64,
+    /// The misfit that it takes in units of the noise's variance, less twice its parameters.
+    pub gain: f64,
+}
+
+/// Where the field is farthest from the data.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Worst {
+    /// The place in mm.
+    pub place: [f64; 2],
+    /// The mean of measured less corrected displacement of the markers around it in mm.
+    pub misfit: [f64; 2],
+}

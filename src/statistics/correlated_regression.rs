@@ -1,0 +1,311 @@
+//! How the noise of a regression correlates, by restricted likelihood.
+//!
+//! ```text
+//! z = A δ + ε,   Cov(ε) = τ² R,   δ held by S with slope g₀
+//! −2 ln L = n ln τ² + 2 ln det R₁ + ln det M + (zᵀR⁻¹z)/τ² − gᵀM⁻¹g,   M = AᵀR⁻¹A/τ² + S,   g = AᵀR⁻¹z/τ² + g₀
+//! ```
+//!
+//! R₁ is that of one component of n/2 places. What the fit has taken away from the noise is thereby given back to it.
+//!
+//! # References
+//! D. A. Harville, J. Am. Stat. Assoc. 72, 320 (1977), doi:10.1080/01621459.1977.10480998
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::correlation::{Correlation, Decay, Sites, Whitening};
+
+/// A regression, its rows of variance one if they were white; two of each place.
+pub struct CorrelatedRegression<'a> {
+    /// The places of the rows.
+    pub sites: &'a Sites,
+    /// A.
+    pub design: &'a DMatrix<f64>,
+    /// z.
+    pub residual: &'a DVector<f64>,
+    /// S.
+    pub held: &'a DMatrix<f64>,
+    /// g₀.
+    pub slope: &'a DVector<f64>,
+}
+
+/// The likeliest noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CorrelatedNoise {
+    /// How it correlates.
+    pub correlation: Correlation,
+    /// τ².
+    pub variance: f64,
+    /// 2 ln of its likelihood over that of white noise.
+    pub evidence: f64,
+}
+
+/// A regression with its rows made white.
+pub struct WhiteRegression {
+    normal: DMatrix<f64>,
+    right: DVector<f64>,
+    square: f64,
+    rows: f64,
+    log_determinant: f64,
+}
+
+/// Its likelihood.
+struct Score {
+    /// −2 ln L.
+    surprise: f64,
+    variance: f64,
+}
+
+impl WhiteRegression {
+    /// Of rows that are white, or are made so.
+    pub fn new(
+        design: &DMatrix<f64>,
+        residual: &DVector<f64>,
+        whitening: Option<&Whitening>,
+    ) -> Self {
+        let Some(whitening) = whitening else {
+            return Self::of_rows(design, residual, 0.0);
+        };
+        let mut white = DVector::zeros(residual.len());
+        whitening.apply(residual.as_slice(), white.as_mut_slice());
+        Self::of_rows(
+            &whitening.columns(design),
+            &white,
+            whitening.log_determinant(),
+        )
+    }
+
+    fn of_rows(design: &DMatrix<f64>, residual: &DVector<f64>, log_determinant: f64) -> Self {
+        let transposed = design.transpose();
+        Self {
+            normal: &transposed * design,
+            right: transposed * residual,
+            square: residual.norm_squared(),
+            rows: residual.len() as f64,
+            log_determinant,
+        }
+    }
+
+    /// zᵀR⁻¹z of what is left at the best δ, and the number of parameters that took from it; `None` where nothing determines δ.
+    pub fn left(
+        &self,
+        held: &DMatrix<f64>,
+        slope: &DVector<f64>,
+        variance: f64,
+    ) -> Option<(f64, f64)> {
+        let (_, solution, effective) = self.solve(held, slope, variance)?;
+        let left = self.square - 2.0 * solution.dot(&self.right)
+            + solution.dot(&(&self.normal * &solution));
+        Some((left.max(f64::MIN_POSITIVE), effective))
+    }
+
+    /// ln det M − gᵀM⁻¹g, δ, and tr(M⁻¹AᵀR⁻¹A)/τ².
+    fn solve(
+        &self,
+        held: &DMatrix<f64>,
+        slope: &DVector<f64>,
+        variance: f64,
+    ) -> Option<(f64, DVector<f64>, f64)> {
+        const LEAST: f64 = 1e-12;
+        let mut matrix = &self.normal / variance + held;
+        // Directions that nothing determines stay where they are.
+        let ridge = LEAST * matrix.trace() / matrix.nrows().max(1) as f64;
+        (0..matrix.nrows()).for_each(|i| matrix[(i, i)] += ridge);
+        let target = &self.right / variance + slope;
+        let factor = matrix.cholesky()?;
+        let solution = factor.solve(&target);
+        let log: f64 = factor
+            .l_dirty()
+            .diagonal()
+            .iter()
+            .map(|pivot| 2.0 * pivot.ln())
+            .sum();
+        let effective = factor.solve(&self.normal).trace() / variance;
+        Some((log - target.dot(&solution), solution, effective))
+    }
+
+    fn score(&self, held: &DMatrix<f64>, slope: &DVector<f64>) -> Option<Score> {
+        const ITERATIONS: usize = 4;
+        let mut variance = 1.0;
+        for _ in 0..ITERATIONS {
+            let (left, effective) = self.left(held, slope, variance)?;
+            variance = (left / (self.rows - effective).max(1.0)).max(f64::MIN_POSITIVE);
+        }
+        let (rest, ..) = self.solve(held, slope, variance)?;
+        let surprise =
+            self.rows * variance.ln() + 2.0 * self.log_determinant + rest + self.square / variance;
+        Some(Score { surprise, variance })
+    }
+}
+
+/// Shares of the noise that are tried.
+const SHARES: [f64; 4] = [0.25, 0.6, 0.9, 0.995];
+
+impl CorrelatedRegression<'_> {
+    /// The likeliest correlation of a length between half of `spacing` and `longest`; `None` where nothing determines it.
+    pub fn likeliest(&self, spacing: f64, longest: f64) -> Option<CorrelatedNoise> {
+        const STEP: f64 = 1.8;
+        let white = WhiteRegression::new(self.design, self.residual, None);
+        let white = white.score(self.held, self.slope)?;
+        let lengths = std::iter::successors(Some(0.6 * spacing), |length| Some(STEP * length));
+        let lengths: Vec<f64> = lengths.take_while(|length| *length <= longest).collect();
+        let first = self.best(Decay::Exponential, &lengths)?;
+        let length = first.0.length;
+        let around = [length / STEP, length, STEP * length];
+        let around = around.map(|length| length.min(longest));
+        let second = self.best(Decay::Smooth, &around);
+        let both = [Some(first), second].into_iter().flatten();
+        let best = both.min_by(|a, b| a.1.surprise.total_cmp(&b.1.surprise))?;
+        let (correlation, score) = self.refined(best, STEP.sqrt(), longest);
+        Some(CorrelatedNoise {
+            correlation,
+            variance: score.variance,
+            evidence: white.surprise - score.surprise,
+        })
+    }
+
+    /// The likeliest of some lengths and shares.
+    fn best(&self, decay: Decay, lengths: &[f64]) -> Option<(Correlation, Score)> {
+        let of = |length: &f64| {
+            SHARES.map(|share| Correlation {
+                decay,
+                share,
+                length: *length,
+            })
+        };
+        let all: Vec<Correlation> = lengths.iter().flat_map(of).collect();
+        let tried = all.into_par_iter().filter_map(|one| self.tried(one));
+        tried.min_by(|a, b| a.1.surprise.total_cmp(&b.1.surprise))
+    }
+
+    fn tried(&self, correlation: Correlation) -> Option<(Correlation, Score)> {
+        let whitening = Whitening::new(self.sites, &correlation);
+        let white = WhiteRegression::new(self.design, self.residual, Some(&whitening));
+        let score = white.score(self.held, self.slope)?;
+        score.surprise.is_finite().then_some((correlation, score))
+    }
+
+    /// Smaller steps in length and share about the best.
+    fn refined(
+        &self,
+        mut best: (Correlation, Score),
+        step: f64,
+        longest: f64,
+    ) -> (Correlation, Score) {
+        const ROUNDS: usize = 2;
+        let mut step = step;
+        for _ in 0..ROUNDS {
+            let at = best.0;
+            let longer = |factor: f64| Correlation {
+                length: (at.length * factor).min(longest),
+                ..at
+            };
+            // Steps of the odds s/(1 − s).
+            let more = |factor: f64| {
+                let odds = factor.powi(3) * at.share / (1.0 - at.share);
+                Correlation {
+                    share: odds / (1.0 + odds),
+                    ..at
+                }
+            };
+            let around = [
+                longer(step),
+                longer(1.0 / step),
+                more(step),
+                more(1.0 / step),
+            ];
+            for near in around {
+                if let Some(found) = self.tried(near)
+                    && found.1.surprise < best.1.surprise
+                {
+                    best = found;
+                }
+            }
+            step = step.sqrt();
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+
+    /// Noise of a correlation on a grid of 20 × 12 places, with a plane taken away from each component.
+    fn noise(correlation: Option<Correlation>, seed: u64) -> (Sites, DMatrix<f64>, DVector<f64>) {
+        let places = (0..20).flat_map(|i| (0..12).map(move |j| [f64::from(i), f64::from(j)]));
+        let places: Vec<[f64; 2]> = places.collect();
+        let count = places.len();
+        let root = DMatrix::from_fn(count, count, |i, j| {
+            let [a, b] = [places[i], places[j]];
+            let far = (a[0] - b[0]).hypot(a[1] - b[1]);
+            match (i == j, correlation) {
+                (true, _) => 1.0,
+                (false, Some(one)) => one.at(far),
+                (false, None) => 0.0,
+            }
+        });
+        let root = root.cholesky().unwrap().unpack();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut draw = || DVector::from_fn(count, |_, _| StandardNormal.sample(&mut random));
+        let components = [&root * draw(), &root * draw()];
+        let values = DVector::from_fn(2 * count, |row, _| components[row % 2][row / 2]);
+        let design = DMatrix::from_fn(2 * count, 6, |row, column| {
+            let [x, y] = places[row / 2];
+            match column / 3 == row % 2 {
+                true => [1.0, x / 20.0, y / 12.0][column % 3],
+                false => 0.0,
+            }
+        });
+        let fitted = (design.tr_mul(&design))
+            .cholesky()
+            .unwrap()
+            .solve(&design.tr_mul(&values));
+        let left = &values - &design * fitted;
+        (Sites::new(places), design, left)
+    }
+
+    fn likeliest(correlation: Option<Correlation>, seed: u64) -> CorrelatedNoise {
+        let (sites, design, residual) = noise(correlation, seed);
+        let regression = CorrelatedRegression {
+            sites: &sites,
+            design: &design,
+            residual: &residual,
+            held: &DMatrix::zeros(6, 6),
+            slope: &DVector::zeros(6),
+        };
+        regression.likeliest(1.0, 12.0).unwrap()
+    }
+
+    #[test]
+    fn length_and_size_of_correlated_noise_are_found() {
+        for length in [1.0, 3.0] {
+            let truth = Correlation {
+                decay: Decay::Exponential,
+                share: 0.999,
+                length,
+            };
+            let found: Vec<_> = (0..6).map(|seed| likeliest(Some(truth), seed)).collect();
+            let mean = |value: fn(&CorrelatedNoise) -> f64| {
+                (found.iter().map(|one| value(one).ln()).sum::<f64>() / 6.0).exp()
+            };
+            let (range, size) = (mean(|one| one.correlation.length), mean(|one| one.variance));
+            assert!((range / length).ln().abs() < 0.4, "{length} {range}");
+            assert!(size > 0.6 && size < 1.6, "{length} {size}");
+            assert!(found.iter().all(|one| one.evidence > 30.0), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn white_noise_is_white() {
+        for seed in 0..12 {
+            let found = likeliest(None, seed);
+            assert!(found.evidence < 12.0, "{found:?}");
+            assert!((found.variance - 1.0).abs() < 0.25, "{found:?}");
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! Noise that correlates with distance, and what makes it white.
+//!
+//! ```text
+//! Corr(εᵢ, εⱼ) = s ρ(|xᵢ − xⱼ|/ℓ)  (i ≠ j),   ρ(1) = 1/e                       s: share of the noise that correlates
+//! exponential   ρ = e⁻ᵃ                                    smooth   ρ = (1 + a + a²/3) e⁻ᵃ  (Matérn 5/2)
+//! U ε is white:  (U ε)ᵢ = (εᵢ − Σⱼ bᵢⱼ εⱼ)/√fᵢ,   j: the nearest ones of those before i
+//! ```
+//!
+//! bᵢ and fᵢ are the best prediction of εᵢ by a few neighbours that stand before it in a random order, and its variance (Vecchia).
+//! UᵀU is the sparse precision, R⁻¹ of all markers up to what farther ones add.
+//!
+//! # References
+//! A. V. Vecchia, J. R. Stat. Soc. B 50, 297 (1988), doi:10.1111/j.2517-6161.1988.tb01729.x;
+//! J. Guinness, Technometrics 60, 415 (2018), doi:10.1080/00401706.2018.1437476
+
+use nalgebra::{DMatrix, DVector};
+
+use super::neighbours::nearest_before;
+
+/// Neighbours of which each value is predicted.
+const NEIGHBOURS: usize = 10;
+
+/// How a correlation falls with distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decay {
+    /// e⁻ᵃ.
+    Exponential,
+    /// (1 + a + a²/3) e⁻ᵃ.
+    Smooth,
+}
+
+/// A correlation that falls with distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correlation {
+    /// How it falls.
+    pub decay: Decay,
+    /// s in 0…1.
+    pub share: f64,
+    /// ℓ, in the unit of the places: where what correlates has fallen to 1/e.
+    pub length: f64,
+}
+
+impl Correlation {
+    /// The correlation of two values at a distance greater than zero.
+    pub fn at(&self, distance: f64) -> f64 {
+        /// (1 + a + a²/3) e⁻ᵃ = 1/e.
+        const SMOOTH: f64 = 2.904_629_975;
+        let a = distance / self.length;
+        self.share
+            * match self.decay {
+                Decay::Exponential => (-a).exp(),
+                Decay::Smooth => {
+                    let a = SMOOTH * a;
+                    (1.0 + a + a * a / 3.0) * (-a).exp()
+                }
+            }
+    }
+
+    /// The number of independent values that tell as much of a variance as values at these places: n²/Σ ρᵢⱼ².
+    pub fn independent(&self, places: &[[f64; 2]]) -> f64 {
+        const MOST: usize = 300;
+        let stride = places.len().div_ceil(MOST).max(1);
+        let some: Vec<_> = places.iter().step_by(stride).collect();
+        let of = |place: &[f64; 2]| -> f64 {
+            let others = places.iter().filter(|other| *other != place);
+            let squares = others.map(|other| self.at(distance(*place, *other)).powi(2));
+            1.0 + squares.sum::<f64>()
+        };
+        let mean = some.iter().map(|place| of(place)).sum::<f64>() / some.len().max(1) as f64;
+        places.len() as f64 / mean.max(1.0)
+    }
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Places with an order in which each one follows from few before it.
+#[derive(Clone, Debug)]
+pub struct Sites {
+    places: Vec<[f64; 2]>,
+    order: Vec<(usize, Vec<usize>)>,
+}
+
+impl Sites {
+    /// The order of places.
+    pub fn new(places: Vec<[f64; 2]>) -> Self {
+        Self {
+            order: nearest_before(&places, NEIGHBOURS),
+            places,
+        }
+    }
+
+    /// The places.
+    pub fn places(&self) -> &[[f64; 2]] {
+        &self.places
+    }
+}
+
+/// U: a row for each place, in their order.
+#[derive(Clone, Debug)]
+pub struct Whitening {
+    rows: Vec<Row>,
+}
+
+#[derive(Clone, Debug)]
+struct Row {
+    place: usize,
+    /// 1/√f.
+    scale: f64,
+    /// bⱼ of the places before.
+    before: Vec<(usize, f64)>,
+}
+
+impl Whitening {
+    /// What makes noise of this correlation white; nothing where it has none.
+    pub fn new(sites: &Sites, correlation: &Correlation) -> Self {
+        let row = |(place, before): &(usize, Vec<usize>)| {
+            let at = |a: usize, b: usize| match a == b {
+                true => 1.0,
+                false => correlation.at(distance(sites.places[a], sites.places[b])),
+            };
+            let own = DVector::from_iterator(before.len(), before.iter().map(|b| at(*place, *b)));
+            let mutual =
+                DMatrix::from_fn(before.len(), before.len(), |i, j| at(before[i], before[j]));
+            // Places twice in the data have the same row: their common part is counted once.
+            let weights = mutual.cholesky().map(|factor| factor.solve(&own));
+            let weights = weights.unwrap_or_else(|| DVector::zeros(before.len()));
+            let left = (1.0 - own.dot(&weights)).max(1e-6);
+            Row {
+                place: *place,
+                scale: left.sqrt().recip(),
+                before: before
+                    .iter()
+                    .copied()
+                    .zip(weights.iter().copied())
+                    .collect(),
+            }
+        };
+        Self {
+            rows: sites.order.iter().map(row).collect(),
+        }
+    }
+
+    /// ln det R of one component.
+    pub fn log_determinant(&self) -> f64 {
+        -2.0 * self.rows.iter().map(|row| row.scale.ln()).sum::<f64>()
+    }
+
+    /// U a of both components of each place.
+    pub fn apply(&self, values: &[f64], white: &mut [f64]) {
+        for row in &self.rows {
+            for axis in [0, 1] {
+                let known: f64 = row
+                    .before
+                    .iter()
+                    .map(|(j, b)| b * values[2 * j + axis])
+                    .sum();
+                let place = 2 * row.place + axis;
+                white[place] = row.scale * (values[place] - known);
+            }
+        }
+    }
+
+    /// U⁻ᵀ a, whose square is aᵀ R a.
+    pub fn apply_inverse_transposed(&self, values: &[f64]) -> Vec<f64> {
+        let (mut rest, mut result) = (values.to_vec(), vec![0.0; values.len()]);
+        for row in self.rows.iter().rev() {
+            for axis in [0, 1] {
+                let place = 2 * row.place + axis;
+                result[place] = rest[place] / row.scale;
+                for (j, b) in &row.before {
+                    rest[2 * j + axis] += b * rest[place];
+                }
+            }
+        }
+        result
+    }
+
+    /// U A of all columns.
+    pub fn columns(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut white = DMatrix::zeros(matrix.nrows(), matrix.ncols());
+        let rows = matrix.nrows().max(1);
+        let pairs = matrix.as_slice().chunks_exact(rows);
+        for (values, white) in pairs.zip(white.as_mut_slice().chunks_exact_mut(rows)) {
+            self.apply(values, white);
+        }
+        white
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sites() -> Sites {
+        let places = (0..6).flat_map(|i| (0..5).map(move |j| [f64::from(i), f64::from(j)]));
+        Sites::new(places.collect())
+    }
+
+    const SHORT: Correlation = Correlation {
+        decay: Decay::Exponential,
+        share: 0.6,
+        length: 1.0,
+    };
+
+    #[test]
+    fn correlations_fall_to_1_by_e_at_their_length() {
+        for decay in [Decay::Exponential, Decay::Smooth] {
+            let one = Correlation {
+                decay,
+                share: 1.0,
+                length: 2.5,
+            };
+            assert!((one.at(2.5) - (-1f64).exp()).abs() < 1e-8 && one.at(1e-12) > 0.999_999);
+        }
+    }
+
+    #[test]
+    fn whitening_is_the_inverse_root_of_the_correlation() {
+        let sites = sites();
+        let whitening = Whitening::new(&sites, &SHORT);
+        let places = sites.places();
+        let exact = DMatrix::from_fn(places.len(), places.len(), |i, j| match i == j {
+            true => 1.0,
+            false => SHORT.at(distance(places[i], places[j])),
+        });
+        let exact_log = exact.clone().determinant().ln();
+        assert!((whitening.log_determinant() / exact_log - 1.0).abs() < 0.02);
+        let wave = |k: usize| (0.7 * k as f64).sin();
+        let both: Vec<f64> = (0..places.len())
+            .flat_map(|k| [wave(k), -2.0 * wave(k)])
+            .collect();
+        let one = DVector::from_fn(places.len(), |k, _| wave(k));
+        let square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
+        let direct = one.dot(&(&exact * &one));
+        let found = square(&whitening.apply_inverse_transposed(&both));
+        assert!(
+            (found / (5.0 * direct) - 1.0).abs() < 0.02,
+            "{found} {direct}"
+        );
+        let inverse = one.dot(&exact.cholesky().unwrap().solve(&one));
+        let mut white = vec![0.0; both.len()];
+        whitening.apply(&both, &mut white);
+        assert!((square(&white) / (5.0 * inverse) - 1.0).abs() < 0.02);
+        // U⁻ᵀ undoes Uᵀ exactly: aᵀb = (U⁻ᵀa)ᵀ(U b).
+        let mutual: f64 = white
+            .iter()
+            .zip(whitening.apply_inverse_transposed(&both))
+            .map(|(a, b)| a * b)
+            .sum();
+        assert!((mutual / square(&both) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn long_correlations_leave_few_independent_values() {
+        let places = sites().places().to_vec();
+        assert!(SHORT.independent(&places) > 15.0);
+        let long = Correlation {
+            share: 1.0,
+            length: 100.0,
+            ..SHORT
+        };
+        assert!(long.independent(&places) < 1.2);
+    }
+}

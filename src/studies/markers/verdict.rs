@@ -1,0 +1,196 @@
+//! The verdict on every frame, for the terminal, the report and machines.
+
+use serde_json::{Value, json};
+
+use super::MarkerStudy;
+use crate::corrector::estimation::{Answer, FieldEstimate, Mend, Verdict};
+use crate::results::Block;
+
+/// Freedoms that are told in the terminal.
+const TOLD: usize = 3;
+
+/// The answers that frames have, the worst first.
+const ANSWERS: [Answer; 3] = [Answer::NotExplained, Answer::Correlated, Answer::Explained];
+
+/// The worst answer of all frames.
+pub fn worst(estimates: &[FieldEstimate]) -> Answer {
+    let of = |answer: &Answer| {
+        estimates
+            .iter()
+            .any(|found| found.verdict.answer == *answer)
+    };
+    ANSWERS.into_iter().find(of).unwrap_or_default()
+}
+
+/// The verdict on all frames, and what would mend the last one that is not explained.
+pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
+    if field.coarse.is_some() {
+        return String::new();
+    }
+    let frames = || field.series.frames.iter().zip(estimates);
+    let mut text = String::new();
+    for answer in ANSWERS {
+        let own = frames().filter(|(_, found)| found.verdict.answer == answer);
+        let own: Vec<String> = own
+            .map(|(frame, found)| match found.verdict.correlation {
+                Some(one) if answer == Answer::Correlated => {
+                    format!("{} (over {:.3} mm)", frame.number, one.length)
+                }
+                _ => frame.number.to_string(),
+            })
+            .collect();
+        if !own.is_empty() {
+            let frames = if own.len() == 1 { "frame" } else { "frames" };
+            text += &format!("verdict, {frames} {}: {}\n", own.join(", "), answer.words());
+        }
+    }
+    if let Some((frame, found)) = frames().rfind(|(_, found)| !found.is_explained()) {
+        text += &format!("frame {}: {}\n", frame.number, reasons(&found.verdict));
+        text += &found.verdict.worst.map_or(String::new(), |worst| {
+            let ([x, y], [ux, uy]) = (worst.place, worst.misfit);
+            format!("worst near ({x:.4}, {y:.4}) mm: markers there lie ({ux:.5}, {uy:.5}) mm off\n")
+        });
+        if found.verdict.mends.is_empty() {
+            text += "no edge, force, stiffness, law or finer mesh that was tried mends it\n";
+        }
+        for mend in found.verdict.mends.iter().take(TOLD) {
+            text += &format!("one linearised step with {}\n", words(mend));
+        }
+    }
+    text
+}
+
+fn reasons(verdict: &Verdict) -> String {
+    let words: Vec<String> = verdict
+        .reasons
+        .iter()
+        .map(|reason| reason.words())
+        .collect();
+    words.join("; ")
+}
+
+fn words(mend: &Mend) -> String {
+    match mend.left.is_finite() {
+        true => format!(
+            "{}: {:.5} mm would be left",
+            mend.freedom.words(),
+            mend.left
+        ),
+        false => mend.freedom.words(),
+    }
+}
+
+const EXPLANATION: &str = "Explained: what is left of the markers is white noise. Explained with correlated noise: it correlates \
+    between neighbours as noise of image correlation does, with the length at which the correlation has fallen to 1/e; the \
+    intervals hold that. Not explained: other equations take more from the misfit than noise would let them, what is left \
+    correlates too far to be told from a misfit, or a measured force is contradicted. Standard errors and intervals mean nothing \
+    then, and are not given.";
+
+/// The verdict on every frame, and what would mend the last one that is not explained.
+pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
+    let frames = || field.series.frames.iter().zip(estimates);
+    let rows = frames().map(|(frame, found)| {
+        let correlation = found.verdict.correlation;
+        let of = |value: fn(&crate::corrector::estimation::NoiseCorrelation) -> String| {
+            correlation.as_ref().map_or(String::new(), value)
+        };
+        vec![
+            frame.number.to_string(),
+            found.verdict.answer.words().to_owned(),
+            of(|one| format!("{:.4}", one.length)),
+            of(|one| format!("{:.2}", one.share)),
+            of(|one| format!("{:.1}", one.independent)),
+            reasons(&found.verdict),
+        ]
+    });
+    let head = [
+        "frame",
+        "verdict",
+        "correlation length [mm]",
+        "share that correlates",
+        "independent markers",
+        "why",
+    ];
+    let mut blocks = vec![
+        Block::heading("Verdict"),
+        Block::table(&head, rows),
+        Block::paragraph(EXPLANATION),
+    ];
+    if let Some((_, last)) = frames().next_back() {
+        blocks.extend(variogram(last));
+    }
+    if let Some((frame, found)) = frames().rfind(|(_, found)| !found.is_explained()) {
+        blocks.push(Block::paragraph(format!(
+            "What would mend frame {}, each tried in one linearised step beside the equations, the best first; the probability is \
+             that noise alone would make the misfit fall so much.",
+            frame.number
+        )));
+        let rows = found.verdict.mends.iter().map(|mend| {
+            let left = match mend.left.is_finite() {
+                true => format!("{:.5}", mend.left),
+                false => String::new(),
+            };
+            vec![
+                mend.freedom.words(),
+                left,
+                format!("{:.1e}", mend.probability),
+            ]
+        });
+        blocks.push(Block::table(
+            &["freedom", "would be left [mm]", "probability"],
+            rows,
+        ));
+    }
+    blocks
+}
+
+/// Half the mean squared difference of what is left, by distance.
+fn variogram(found: &FieldEstimate) -> Option<Block> {
+    let whiteness = found.whiteness.as_ref()?;
+    let rows = whiteness.variogram.iter().map(|bin| {
+        vec![
+            format!("{:.4}", bin.distance),
+            bin.pairs.to_string(),
+            format!("{:.3}", bin.of_components[0]),
+            format!("{:.3}", bin.of_components[1]),
+        ]
+    });
+    let head = [
+        "distance [mm]",
+        "pairs",
+        "variogram of ux",
+        "variogram of uy",
+    ];
+    Some(Block::table(&head, rows))
+}
+
+/// The verdict for machines.
+pub fn json(found: &FieldEstimate) -> Value {
+    let verdict = &found.verdict;
+    let mends = verdict.mends.iter().map(|mend| {
+        json!({
+            "freedom": mend.freedom.words(),
+            "left_mm": mend.left,
+            "probability": mend.probability,
+        })
+    });
+    let worst = verdict
+        .worst
+        .map(|worst| json!({ "place_mm": worst.place, "misfit_mm": worst.misfit }));
+    let reasons: Vec<String> = verdict
+        .reasons
+        .iter()
+        .map(|reason| reason.words())
+        .collect();
+    json!({
+        "answer": verdict.answer.words(),
+        "correlation_length_mm": verdict.correlation.map(|one| one.length),
+        "correlated_share": verdict.correlation.map(|one| one.share),
+        "independent_markers": verdict.correlation.map(|one| one.independent),
+        "evidence_of_correlation": verdict.correlation.map(|one| one.evidence),
+        "reasons": reasons,
+        "mends": mends.collect::<Vec<_>>(),
+        "worst": worst,
+        "stated_noise_is_off_by": found.noise_ratio,
+    })
+}
