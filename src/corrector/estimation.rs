@@ -119,7 +119,7 @@ fn result_of(
         return Ok((FieldEstimate::default(), Some(ratio)));
     }
     let own = found.mesh_error(&edges);
-    let judged = judge::judge(task, &mut found, &edges, &markers, own.as_ref())?;
+    let judged = judge::judge(task, &mut found, &edges, own.as_ref())?;
     let found = found.into_estimate(&edges, own.as_ref(), (markers, judged))?;
     Ok((found, None))
 }

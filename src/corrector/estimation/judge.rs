@@ -5,11 +5,11 @@
 //! data tell which freedom takes more from the misfit than noise would let it (F test, in one linearised step).
 
 use super::equations::Equations;
-use super::field_estimate::{Contradiction, ForceCheck, MarkerEstimate};
+use super::field_estimate::{Contradiction, ForceCheck};
 use super::knowledge::EdgeCondition;
 use super::linear_model::{Model, Reference};
 use super::mesh_error::MeshError;
-use super::rows::Rows;
+use super::rows::{Rows, soundness};
 use super::search::{NearestField, Scored};
 use super::task::{Edge, Task};
 use super::verdict::{Answer, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Worst};
@@ -28,6 +28,8 @@ const INDEPENDENT: f64 = 20.0;
 /// What was found of the noise, and the verdict.
 #[derive(Default)]
 pub struct Judgement {
+    /// The trust of the markers on the mesh, zero of gross errors.
+    pub sound: Vec<f64>,
     /// How the noise correlates with the equations as they are; white where it is none.
     pub noise: Option<CorrelatedNoise>,
     /// The verdict, but for measured forces.
@@ -44,11 +46,19 @@ pub fn judge(
     task: &Task,
     found: &mut NearestField,
     edges: &[Edge],
-    markers: &[Option<MarkerEstimate>],
     own: Option<&MeshError>,
 ) -> Result<Judgement, Error> {
-    let Some(rows) = Rows::new(found, markers, own) else {
-        return Ok(Judgement::default());
+    let all = let_go(task, found, edges, &|_| true);
+    let weights = &found.observations().weights;
+    let sound = match &all {
+        Some(all) => soundness(weights, &all.fit, &all.trade),
+        None => soundness(weights, &found.fit, &found.trade),
+    };
+    let Some(rows) = Rows::new(found, &sound, own) else {
+        return Ok(Judgement {
+            sound,
+            ..Judgement::default()
+        });
     };
     let base = Model::of_search(&rows, found);
     let noise = base.noise(&rows);
@@ -58,7 +68,7 @@ pub fn judge(
         let scored = let_go(task, found, edges, goes)?;
         Some(Model::of_score(&rows, found, &scored))
     };
-    let all = released(&|_| true);
+    let all = all.map(|scored| Model::of_score(&rows, found, &scored));
     let trials = Trials {
         reference: Reference::new(&rows, noise.as_ref(), (&base, all.as_ref()), &columns, own),
         rows: &rows,
@@ -100,6 +110,7 @@ pub fn judge(
         mends,
     };
     Ok(Judgement {
+        sound,
         noise,
         verdict,
         contradiction,

@@ -28,7 +28,7 @@ impl NearestField<'_> {
         own: Option<&MeshError>,
         (markers, judged): (Vec<Option<MarkerEstimate>>, Judgement),
     ) -> Result<FieldEstimate, Error> {
-        let whiteness = self.whiteness(&markers, own);
+        let whiteness = self.whiteness(&judged.sound, own);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust != Robust::No;
         let rows = self.linear.design.nrows() as f64;

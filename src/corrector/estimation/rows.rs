@@ -2,10 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::field_estimate::MarkerEstimate;
 use super::mesh_error::MeshError;
+use super::regression::{Fit, Trade};
 use super::search::NearestField;
-use crate::statistics::{Sites, nearest};
+use crate::statistics::{Sites, chi_squared_limit, nearest};
 
 /// Fewer markers tell nothing of each other.
 const FEWEST: usize = 30;
@@ -36,19 +36,10 @@ pub struct Clusters {
 
 impl Rows {
     /// The rows; `None` where there are few, or what is left is no more than the mesh's own error and the rounding of numbers.
-    pub fn new(
-        found: &NearestField,
-        markers: &[Option<MarkerEstimate>],
-        own: Option<&MeshError>,
-    ) -> Option<Self> {
-        const TRUSTED: f64 = 0.5;
+    pub fn new(found: &NearestField, sound: &[f64], own: Option<&MeshError>) -> Option<Self> {
         let observations = found.observations();
-        let sound = |row: &usize| {
-            let outlier = markers[observations.chosen[*row]].is_some_and(|marker| marker.outlier);
-            found.trade.trust[*row] >= TRUSTED && !outlier
-        };
         let count = observations.places.len();
-        let mut chosen: Vec<usize> = (0..count).filter(sound).collect();
+        let mut chosen: Vec<usize> = (0..count).filter(|row| sound[*row] > 0.0).collect();
         // Where most are outliers there is nothing sound to tell them from.
         if 2 * chosen.len() < count {
             chosen = (0..count).collect();
@@ -57,7 +48,8 @@ impl Rows {
             return None;
         }
         let scale = |row: &usize| {
-            (observations.weights[*row] * found.trade.trust[*row] / found.trade.sound).sqrt()
+            let trust = if sound[*row] > 0.0 { sound[*row] } else { 1.0 };
+            (observations.weights[*row] * trust / found.trade.sound).sqrt()
         };
         let scales: Vec<f64> = chosen.iter().map(scale).collect();
         let left = |row: usize| {
@@ -112,6 +104,30 @@ impl Rows {
             self.scales[row / 2] * design[(2 * self.chosen[row / 2] + row % 2, column)]
         })
     }
+}
+
+/// The trust of every marker on the mesh in a fit; nothing of those that are trusted by less than one half, or off by more than normal
+/// noise would be in one of a thousand.
+///
+/// Of a fit that lets edges go it tells gross errors from markers that a wrong condition leaves far off.
+pub fn soundness(weights: &[f64], fit: &Fit, trade: &Trade) -> Vec<f64> {
+    const TRUSTED: f64 = 0.5;
+    const FALSE_ALARMS: f64 = 1e-3;
+    let limit = chi_squared_limit(2.0, FALSE_ALARMS);
+    let rows = fit
+        .residual
+        .as_slice()
+        .chunks_exact(2)
+        .zip(weights)
+        .zip(&trade.trust);
+    let trust = |((r, weight), trust): ((&[f64], &f64), &f64)| {
+        let square = weight * (r[0] * r[0] + r[1] * r[1]) / trade.sound;
+        match *trust >= TRUSTED && square <= limit {
+            true => *trust,
+            false => 0.0,
+        }
+    };
+    rows.map(trust).collect()
 }
 
 /// Whether what is left is no more than twice the mesh's own error, or a millionth of the displacement.

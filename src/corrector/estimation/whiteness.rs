@@ -16,7 +16,7 @@
 
 use nalgebra::DMatrix;
 
-use super::field_estimate::{MarkerEstimate, VariogramBin, Whiteness};
+use super::field_estimate::{VariogramBin, Whiteness};
 use super::mesh_error::MeshError;
 use super::rows::Rows;
 use super::search::NearestField;
@@ -31,18 +31,14 @@ type Pairs = Vec<[usize; 2]>;
 impl NearestField<'_> {
     /// The correlation of what is left of neighbours; `None` where few markers are left, or what is left is no more than the
     /// mesh's own error and the rounding of numbers.
-    pub fn whiteness(
-        &self,
-        markers: &[Option<MarkerEstimate>],
-        own: Option<&MeshError>,
-    ) -> Option<Whiteness> {
+    pub fn whiteness(&self, sound: &[f64], own: Option<&MeshError>) -> Option<Whiteness> {
         let observations = self.equations.task.observations;
         let Rows {
             chosen: rows,
             sites,
             spacing,
             ..
-        } = Rows::new(self, markers, own)?;
+        } = Rows::new(self, sound, own)?;
         let around = nearest(sites.places(), NEIGHBOURS).into_iter().enumerate();
         let pairs: Pairs = around
             .flat_map(|(i, others)| others.into_iter().map(move |j| [i, j]))
