@@ -648,18 +648,22 @@ fn noise_that_correlates_is_told_and_held_by_the_intervals() {
 }
 
 #[test]
-fn half_of_the_markers_lost_leaves_the_force_in_its_interval() {
+fn half_of_the_markers_lost_gives_no_interval_that_lies() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let kept: Vec<bool> = (0..341).map(|_| random.random::<f64>() < 0.5).collect();
     let index = |[x, y]: [f64; 2]| 11 * (x / 5.0).round() as usize + (y / 5.0).round() as usize;
     let half = second_frame(|place| kept[index(place)]);
-    let (printed, found) = corrected(&half, &[], 1);
+    // The outline cuts corners of the specimen there: its sides are not free.
+    let (printed, found) = corrected(&half, &[], NOT_EXPLAINED);
     assert!(
         printed.contains("the outline of the markers is uncertain"),
         "{printed}"
     );
-    let [_, low, high] = right_force(&found);
-    assert!(low < FORCE && high > FORCE, "{low} {high}");
+    assert!(printed.contains("no interval: not explained"), "{printed}");
+    assert_eq!(
+        found["steps"][0]["corrected"]["forces"][0]["x_N"]["interval"],
+        Value::Null
+    );
     // Where lost markers still have rows, their places are the outline.
     let mut rows = second_frame(|_| true);
     rows = rows

@@ -12,6 +12,7 @@ use super::mesh_error::MeshError;
 use super::robust::Robust;
 use super::search::NearestField;
 use super::task::Edge;
+use super::verdict::Answer;
 use crate::error::{Error, SolveFault};
 use crate::finite_element::recovery::{RecoveredGradient, Recovery};
 use crate::material::sheet::{Gradient, Kinematics, cofactor};
@@ -33,6 +34,9 @@ impl NearestField<'_> {
         let robust = self.equations.task.knowledge.robust != Robust::No;
         let rows = self.linear.design.nrows() as f64;
         let white = (rows - self.fit.effective).max(1.0);
+        // Where the data are not explained, what is left would hide a wrong force if it were taken for noise.
+        let is_explained = judged.verdict.answer != Answer::NotExplained;
+        let before = self.force_checks(own)?;
         let freedom = self.widen(&judged).unwrap_or(white);
         let reach = match known_noise && !robust && judged.noise.is_none() {
             true => normal_reach(),
@@ -41,7 +45,10 @@ impl NearestField<'_> {
         let larger = judged.noise.map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        let force_checks = self.force_checks(own)?;
+        let force_checks = match is_explained {
+            true => self.force_checks(own)?,
+            false => before,
+        };
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(own),
             cells: self.cells()?,
