@@ -14,8 +14,9 @@
 //! ```
 //!
 //! A lattice of springs alone has C₁₁₂₂ = C₁₂₁₂ (Cauchy's relation), hence ν = ⅓ whatever the
-//! stiffnesses: this is the regular model. With s = 8/9 and an area term ½ κ A₀ (A/A₀ − 1)² in each cell,
-//! κ = ⅓ E t, the lattice has ν = ½ at small strain, as the incompressible sheet has.
+//! stiffnesses: this is the regular model. With s = 4/(3 (1 + ν)) and an area term ½ κ A₀ (A/A₀ − 1)² in each cell,
+//! κ = E t (3 ν − 1)/(2 (1 − ν²)), the lattice has the ν of the sheet at small strain: s = 8/9 and κ = ⅓ E t for the
+//! incompressible sheet, whose ν is ½.
 //!
 //! # References
 //! A. Van Gelder, J. Graph. Tools 3(2), 21 (1998), doi:10.1080/10867651.1998.10487490
@@ -24,6 +25,7 @@ use std::sync::Arc;
 
 use crate::error::Error;
 use crate::material::law::HyperelasticLaw;
+use crate::material::sheet::Kinematics;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{ClampedPlate, Model};
 use crate::solve::vector::gather;
@@ -53,7 +55,7 @@ pub struct SpringState {
 /// What the lattice consists of.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LatticeSettings {
-    /// Whether each cell has the area term that gives ν = ½ at small strain. Default: no.
+    /// Whether each cell has the area term that gives the ν of the sheet at small strain. Default: no.
     pub area_term: bool,
 }
 
@@ -70,6 +72,27 @@ pub struct MassSpring {
 /// The largest ratio of a cell's sides for which all springs pull: √3.
 pub const LARGEST_ASPECT: f64 = 1.732;
 
+/// The shares of the springs and of the areas in E t that give a lattice the small-strain stiffness of an isotropic sheet.
+///
+/// Springs alone have ν = ⅓ with C₁₁₁₁ = 9/8 E and C₁₁₂₂ = C₁₂₁₂ = 3/8 E; areas add κ to C₁₁₁₁ and C₁₁₂₂:
+///
+/// ```text
+/// springs 4/(3 (1 + ν)),   areas κ/E = (3 ν − 1)/(2 (1 − ν²))
+/// ```
+///
+/// ν = ½ for a law with fibres.
+fn isotropic_shares(law: &dyn HyperelasticLaw) -> [f64; 2] {
+    let tangent = law.response(&Kinematics::rest()).tangent;
+    let nu = match law.is_isotropic() {
+        true => tangent[(0, 3)] / tangent[(0, 0)],
+        false => 0.5,
+    };
+    [
+        4.0 / (3.0 * (1.0 + nu)),
+        (3.0 * nu - 1.0) / (2.0 * (1.0 - nu * nu)),
+    ]
+}
+
 impl MassSpring {
     /// Builds the lattice of a problem on `cells` cells.
     ///
@@ -77,7 +100,10 @@ impl MassSpring {
     /// would need edges of negative stiffness.
     pub fn new(problem: &ClampedPlate, cells: [usize; 2], settings: LatticeSettings) -> Self {
         let mesh = Mesh::plate(problem.size, cells, CellShape::Quad4);
-        let scale = if settings.area_term { 8.0 / 9.0 } else { 1.0 };
+        let [scale, area_stiffness] = match settings.area_term {
+            true => isotropic_shares(&*problem.law),
+            false => [1.0, 0.0],
+        };
         let [hx, hy] = mesh.cell_size();
         let diagonal = hx.hypot(hy);
         let edge =
@@ -106,10 +132,7 @@ impl MassSpring {
             }
         }
         let springs = sections.springs(&mesh.nodes);
-        let modulus = match settings.area_term {
-            true => problem.law.youngs_modulus() / 3.0,
-            false => 0.0,
-        };
+        let modulus = area_stiffness * problem.law.youngs_modulus();
         Self::of(&problem.law, mesh, springs, modulus * problem.thickness)
     }
 

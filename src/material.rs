@@ -26,6 +26,7 @@ pub mod sheet;
 pub mod stability;
 mod veronda_westmann;
 pub mod viscosity;
+pub mod volume;
 mod yeoh;
 
 #[cfg(test)]
@@ -43,5 +44,7 @@ pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hooke::NeoHooke;
 pub use ogden::Ogden;
 pub use polynomial::Polynomial;
+pub use sheet::PlaneState;
 pub use veronda_westmann::VerondaWestmann;
+pub use volume::{Volume, VolumetricSheet};
 pub use yeoh::Yeoh;

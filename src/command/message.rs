@@ -107,11 +107,15 @@ fn moduli(card: &Card) -> String {
     format!("E₀ = {young:.6} MPa{along}, μ₀ = {shear:.6} MPa")
 }
 
-/// Density, viscosity and relaxation, as far as the card says them.
+/// Density, resistance to a change of volume, viscosity and relaxation, as far as the card says them.
 fn in_time(card: &Card) -> String {
     let mut text = String::new();
     if let Some(density) = card.density {
         text += &format!("  density    {:.6} kg/m³\n", 1e12 * density);
+    }
+    if let Some(volume) = card.volume {
+        let modulus = volume.bulk_modulus;
+        text += &format!("  volume     bulk modulus κ = {modulus:.6} MPa\n");
     }
     let viscosity = &card.viscosity;
     if viscosity.shear_viscosity > 0.0 {

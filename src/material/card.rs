@@ -8,7 +8,9 @@ use super::law::HyperelasticLaw;
 use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS, Law};
+use super::sheet::PlaneState;
 use super::viscosity::{Relaxation, ViscousMaterial};
+use super::volume::{Volume, bulk_modulus};
 use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
@@ -24,8 +26,10 @@ pub struct Card {
     pub law_name: String,
     /// The law's formula.
     pub formula: &'static str,
-    /// The law with its parameters.
+    /// The law with its parameters, and with the resistance to a change of volume.
     pub law: Arc<dyn HyperelasticLaw>,
+    /// How the material resists a change of volume; `None` where it keeps its volume.
+    pub volume: Option<Volume>,
     /// The parameters in internal units.
     pub parameters: Vec<Parameter>,
     /// What else the law's card states: key and choice.
@@ -133,6 +137,7 @@ impl Card {
         card.read_source(&root.section("source"));
         card.fit = root.has("fit").then(|| read_fit(&root.section("fit")));
         let parameters = root.section("parameters");
+        let volume = root.has("volume").then(|| root.section("volume"));
         root.unknown_keys();
         let Some(law) = law else {
             return card;
@@ -142,6 +147,9 @@ impl Card {
         (card.law_name, card.formula) = (law.name.to_owned(), law.formula);
         let entries = parameters.finish_with(|key| of_other_laws(key, law.name));
         (card.parameters, card.choices) = (entries.parameters, entries.choices);
+        if let Some(volume) = volume {
+            card.resist(&volume);
+        }
         card
     }
 
@@ -155,6 +163,7 @@ impl Card {
             law_name: name.to_owned(),
             formula: "not stated",
             law,
+            volume: None,
             parameters: Vec::new(),
             choices: Vec::new(),
             density: None,
@@ -171,6 +180,49 @@ impl Card {
             fit: None,
             text: String::new(),
         }
+    }
+
+    /// Reads how the material resists a change of volume.
+    fn resist(&mut self, section: &Section) {
+        const RATIO: Bound = Bound::Range(-0.9, 0.4999, "between -0.9 and 0.4999");
+        let (bulk, ratio) = ("bulk_modulus", "poisson_ratio");
+        let bulk_modulus = match (section.has(bulk), section.has(ratio)) {
+            (false, true) => bulk_modulus(self.law.shear_modulus(), section.number(ratio, RATIO)),
+            (true, true) => {
+                let hint = "each follows from the other and from the law's shear modulus";
+                section.fault(
+                    ratio,
+                    "and `bulk_modulus` are both given; one of them is enough",
+                    hint,
+                );
+                f64::NAN
+            }
+            (_, false) => section.quantity(bulk, Dimension::Stress, Bound::Positive),
+        };
+        section.unknown_keys();
+        let plane = PlaneState::Stress;
+        let volume = Volume {
+            bulk_modulus,
+            plane,
+        };
+        match volume.of(Arc::clone(&self.law)) {
+            Some(law) => (self.law, self.volume) = (law, Some(volume)),
+            None => section.fault(
+                bulk,
+                &format!("the law `{}` cannot take a change of volume", self.law_name),
+                "take a law of the invariants I₁ and I₂: neo-hooke, mooney-rivlin, yeoh, gent and others; laws of the principal \
+                 stretches and laws with fibres keep their volume",
+            ),
+        }
+    }
+
+    /// The same material in plane strain; `None` where its card states no resistance to a change of volume.
+    pub fn in_plane_strain(self) -> Option<Self> {
+        Some(Self {
+            law: self.law.in_plane_strain()?,
+            volume: self.volume.map(Volume::in_plane_strain),
+            ..self
+        })
     }
 
     fn read_data(&mut self, data: &Section) {

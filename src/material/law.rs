@@ -1,13 +1,15 @@
-//! What a hyperelastic law is: energy, stress and tangent of an incompressible thin sheet.
+//! What a hyperelastic law is: energy, stress and tangent of a sheet.
+
+use std::sync::Arc;
 
 use nalgebra::Matrix4;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::code::{Code, CodeLaw};
 use super::invariants::{EnergyDerivatives, Invariants};
-use super::sheet::{Gradient, Kinematics, SheetResponse};
+use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse, cofactor};
 
-/// An incompressible hyperelastic law, as a thin sheet in plane stress sees it.
+/// A hyperelastic law, as a sheet in its plane sees it: incompressible and in plane stress unless it says otherwise.
 ///
 /// A law of the first two invariants is an [`InvariantLaw`], which needs scalars only and becomes a
 /// `HyperelasticLaw` by itself. Laws of the principal stretches and laws with fibres give the sheet's
@@ -79,6 +81,51 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         None
     }
 
+    /// J₃ = J λ₃, the volume over that at rest: 1 unless the law says otherwise.
+    fn volume_ratio(&self, _kinematics: &Kinematics) -> f64 {
+        1.0
+    }
+
+    /// λ₃ = J₃/J, the thickness over that at rest.
+    fn thickness_stretch(&self, kinematics: &Kinematics) -> f64 {
+        self.volume_ratio(kinematics) / kinematics.area_ratio()
+    }
+
+    /// ∂λ₃/∂F: −cof F/J² where the volume stays as it is.
+    fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
+        -cofactor(&kinematics.deformation_gradient) / kinematics.area_ratio().powi(2)
+    }
+
+    /// Cauchy stress σ₃₃ across the sheet in MPa; zero in plane stress.
+    fn thickness_stress(&self, _kinematics: &Kinematics) -> f64 {
+        0.0
+    }
+
+    /// Cauchy stress σ = P Fᵀ/J₃ in the plane, in MPa, of the first Piola–Kirchhoff stress `stress`: components 11, 12, 22.
+    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &Gradient) -> [f64; 3] {
+        let volume = self.volume_ratio(kinematics);
+        kinematics.kirchhoff_stress(stress).map(|tau| tau / volume)
+    }
+
+    /// What is known of the third direction.
+    fn plane_state(&self) -> PlaneState {
+        PlaneState::Stress
+    }
+
+    /// The same law in plane strain; `None` for a law without a change of volume, which has no stress there that follows from
+    /// the strain.
+    fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
+        None
+    }
+
+    /// The law as one of the invariants I₁ and I₂ of a body that keeps its volume; `None` where it is none.
+    fn of_invariants(self: Arc<Self>) -> Option<Arc<dyn InvariantLaw>>
+    where
+        Self: 'static,
+    {
+        None
+    }
+
     /// Whether all directions of the sheet are alike.
     fn is_isotropic(&self) -> bool {
         true
@@ -143,6 +190,13 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
             gradients,
             tangents,
         })
+    }
+
+    fn of_invariants(self: Arc<Self>) -> Option<Arc<dyn InvariantLaw>>
+    where
+        Self: 'static,
+    {
+        Some(self)
     }
 
     fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {

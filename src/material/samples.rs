@@ -45,7 +45,7 @@ pub const SAMPLES: &[(&str, &str)] = &[
     ),
     (
         "marlow-table",
-        "strain = [0, 0.1, 0.25, 0.6, 1.3, 4.0, 200.0]\nstress = [\"0 kPa\", \"18 kPa\", \"38 kPa\", \"100 kPa\", \"320 kPa\", \"3 MPa\", \"300 MPa\"]\nextrapolation = \"linear\"",
+        "strain = [\"0 %\", \"10 %\", \"25 %\", \"60 %\", \"130 %\", \"400 %\", \"20000 %\"]\nstress = [\"0 kPa\", \"18 kPa\", \"38 kPa\", \"100 kPa\", \"320 kPa\", \"3 MPa\", \"300 MPa\"]\nextrapolation = \"linear\"",
     ),
     (
         "holzapfel-gasser-ogden",

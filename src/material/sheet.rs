@@ -19,9 +19,33 @@
 use nalgebra::{Matrix4, Vector4};
 
 use super::invariants::{EnergyDerivatives, Invariants};
+use crate::document::name_of;
 
 /// Displacement gradient components H₁₁, H₁₂, H₂₁, H₂₂ where Hᵢⱼ = ∂uᵢ/∂Xⱼ.
 pub type Gradient = Vector4<f64>;
+
+/// What is known of the third direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PlaneState {
+    /// A thin sheet with free surfaces: σ₃₃ = 0.
+    #[default]
+    Stress,
+    /// A thick body between walls: λ₃ = 1.
+    Strain,
+}
+
+impl PlaneState {
+    /// The names that studies use.
+    pub const NAMES: [(&'static str, Self); 2] = [
+        ("plane-stress", Self::Stress),
+        ("plane-strain", Self::Strain),
+    ];
+
+    /// The name that studies use.
+    pub fn name(self) -> &'static str {
+        name_of(&Self::NAMES, self)
+    }
+}
 
 /// A sheet whose in-plane area ratio J is not positive, or not a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -126,17 +150,17 @@ impl Kinematics {
         1.0 + self.area_change
     }
 
-    /// In-plane principal stretches, the larger first, and the thickness stretch 1/J.
-    pub fn principal_stretches(&self) -> [f64; 3] {
+    /// In-plane principal stretches, the larger first.
+    pub fn principal_stretches(&self) -> [f64; 2] {
         let f = &self.deformation_gradient;
         // Singular values of a 2×2 matrix by its rotation-invariant halves.
         let sum = (f[0] + f[3]).hypot(f[2] - f[1]) / 2.0;
         let difference = (f[0] - f[3]).hypot(f[1] + f[2]) / 2.0;
-        [sum + difference, sum - difference, 1.0 / self.area_ratio()]
+        [sum + difference, sum - difference]
     }
 
-    /// Cauchy stress σ = P Fᵀ / det F₃ with det F₃ = 1, in MPa: components 11, 12, 22.
-    pub fn cauchy_stress(&self, first_piola_kirchhoff: &Gradient) -> [f64; 3] {
+    /// Kirchhoff stress τ = P Fᵀ in the plane, in MPa: components 11, 12, 22; the Cauchy stress where the volume stays as it is.
+    pub fn kirchhoff_stress(&self, first_piola_kirchhoff: &Gradient) -> [f64; 3] {
         let (p, f) = (first_piola_kirchhoff, &self.deformation_gradient);
         [
             p[0] * f[0] + p[1] * f[1],
@@ -223,9 +247,9 @@ mod tests {
     use super::*;
     use crate::material::{HyperelasticLaw, NeoHooke};
 
-    /// F = R(α) diag(λ₁, λ₂) R(β)ᵀ: the stretches are λ₁, λ₂ and 1/(λ₁ λ₂), and σ = 2 C₁₀ (F Fᵀ − λ₃² I).
+    /// F = R(α) diag(λ₁, λ₂) R(β)ᵀ: the stretches are λ₁ and λ₂, and τ = 2 C₁₀ (F Fᵀ − λ₃² I).
     #[test]
-    fn principal_stretches_and_cauchy_stress_are_those_of_the_polar_decomposition() {
+    fn principal_stretches_and_kirchhoff_stress_are_those_of_the_polar_decomposition() {
         let (c10, stretches) = (0.05, [1.4, 0.8]);
         let turn = |angle: f64| Rotation2::new(angle).into_inner();
         let diagonal = Matrix2::from_diagonal(&stretches.into());
@@ -234,12 +258,12 @@ mod tests {
         let state = Kinematics::new(&Vector4::new(h.m11, h.m12, h.m21, h.m22)).unwrap();
         let through = 1.0 / (1.4 * 0.8);
         let found = state.principal_stretches();
-        for (found, expected) in found.into_iter().zip([1.4, 0.8, through]) {
+        for (found, expected) in found.into_iter().zip([1.4, 0.8]) {
             assert!((found - expected).abs() < 1e-14, "{found} {expected}");
         }
         let (_, p) = NeoHooke { c10 }.stress(&state);
         let b = f * f.transpose() - Matrix2::identity() * (through * through);
-        let found = state.cauchy_stress(&p);
+        let found = state.kirchhoff_stress(&p);
         for (found, expected) in found.into_iter().zip([b.m11, b.m12, b.m22]) {
             assert!((found - 2.0 * c10 * expected).abs() < 1e-15);
         }

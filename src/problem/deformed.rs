@@ -94,7 +94,9 @@ impl DeformedSheet {
     /// # Errors
     /// [`PointFault`].
     pub fn principal_stretches_at(&self, point: [f64; 2]) -> Result<[f64; 3], PointFault> {
-        Ok(self.kinematics_at(point)?.principal_stretches())
+        let kinematics = self.kinematics_at(point)?;
+        let [larger, smaller] = kinematics.principal_stretches();
+        Ok([larger, smaller, self.law.thickness_stretch(&kinematics)])
     }
 
     /// The stress at a point; on the side of a cell that of one of the cells that share it.
@@ -106,7 +108,7 @@ impl DeformedSheet {
         let (_, stress) = self.law.stress(&kinematics);
         Ok(Stress {
             first_piola_kirchhoff: stress.into(),
-            cauchy: kinematics.cauchy_stress(&stress),
+            cauchy: self.law.cauchy_stress(&kinematics, &stress),
         })
     }
 

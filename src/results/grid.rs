@@ -204,11 +204,13 @@ fn material_state(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 8]
         };
         let (density, p) = sheet.law.stress(&kinematics);
         nominal.extend([p[0], p[2], p[1], p[3]]);
-        let [s11, s12, s22] = kinematics.cauchy_stress(&p);
+        let [s11, s12, s22] = sheet.law.cauchy_stress(&kinematics, &p);
         cauchy.extend([s11, s12, s12, s22]);
+        let thickness_stretch = sheet.law.thickness_stretch(&kinematics);
         stretches.extend(kinematics.principal_stretches());
+        stretches.push(thickness_stretch);
         i1.push(3.0 + kinematics.invariants.i1_minus_3);
-        thickness.push(sheet.thickness / kinematics.area_ratio());
+        thickness.push(sheet.thickness * thickness_stretch);
         energy.push(density);
     }
     let wrinkling = Wrinkling::new(sheet.law, mesh, displacement);

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector4;
 
-use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
+use crate::material::{HyperelasticLaw, PlaneState};
 use crate::mesh::Mesh;
 
 /// Compression below this share of the sheet's mean stress is not counted. The largest stress would be no measure: at a
@@ -15,7 +15,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 pub struct Wrinkling {
     /// The smaller principal Cauchy stress in the plane in MPa.
     pub smallest: Vec<f64>,
-    /// Whether a cell is under compression.
+    /// Whether a cell of a thin sheet is under compression; never in plane strain.
     pub compressed: Vec<bool>,
     /// The share of the reference area under compression in %.
     pub area_percent: f64,
@@ -31,7 +31,7 @@ impl Wrinkling {
                 return [f64::NAN; 2];
             };
             let (_, p) = law.stress(&kinematics);
-            principal(kinematics.cauchy_stress(&p))
+            principal(law.cauchy_stress(&kinematics, &p))
         };
         let stresses: Vec<[f64; 2]> = (0..mesh.cell_count()).map(stresses).collect();
         let areas: Vec<f64> = (0..mesh.cell_count())
@@ -45,7 +45,9 @@ impl Wrinkling {
             .sum();
         let smallest: Vec<f64> = stresses.iter().map(|[_, smaller]| *smaller).collect();
         let limit = -NEGLIGIBLE * loaded / all;
-        let compressed: Vec<bool> = smallest.iter().map(|stress| *stress < limit).collect();
+        let is_thin = law.plane_state() == PlaneState::Stress;
+        let compressed = smallest.iter().map(|stress| is_thin && *stress < limit);
+        let compressed: Vec<bool> = compressed.collect();
         let under = areas.iter().zip(&compressed);
         let under: f64 = under
             .filter_map(|(area, compressed)| compressed.then_some(area))

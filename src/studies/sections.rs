@@ -11,7 +11,7 @@ use crate::mass_spring::LARGEST_ASPECT;
 use crate::material::curve::Mode;
 use crate::material::parameters::OffsetTreatment;
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::material::{Card, HyperelasticLaw, NeoHooke};
+use crate::material::{Card, HyperelasticLaw, NeoHooke, PlaneState};
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
 use crate::units::Dimension;
@@ -61,7 +61,7 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
             );
             None
         }
-        Ok(card) => Some(card),
+        Ok(card) => in_plane(section, card),
         Err(Error::Input(found)) => {
             for fault in found {
                 match fault.place {
@@ -76,6 +76,28 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
             None
         }
     }
+}
+
+/// The card in the plane state that the section chooses with `sheet`; plane stress where it says nothing.
+fn in_plane(section: &Section<'_>, card: Card) -> Option<Card> {
+    const KEY: &str = "sheet";
+    let plane = match section.has(KEY) {
+        true => section.choice(KEY, &PlaneState::NAMES)?,
+        false => PlaneState::Stress,
+    };
+    if plane == PlaneState::Stress {
+        return Some(card);
+    }
+    let name = card.name.clone();
+    let found = card.in_plane_strain();
+    if found.is_none() {
+        let message = format!(
+            "the card `{name}` keeps its volume: in plane strain its stress does not follow from the strain"
+        );
+        let hint = "give the card a `[volume]` with `poisson_ratio` or `bulk_modulus`";
+        section.fault(KEY, &message, hint);
+    }
+    found
 }
 
 /// The plate of a section without its stretches, and the cells of its lattice.

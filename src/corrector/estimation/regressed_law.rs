@@ -6,13 +6,14 @@ use crate::error::{Diagnostic, suggestion};
 use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
 use crate::material::registry::Law;
 use crate::material::sheet::{Gradient, Kinematics};
-use crate::material::{Card, HyperelasticLaw};
+use crate::material::{Card, HyperelasticLaw, Volume};
 
 /// The law of a card with one or two parameters to be found.
 #[derive(Clone, Debug)]
 pub struct RegressedLaw {
     law: &'static Law,
     measures: (StressMeasure, StrainMeasure),
+    volume: Option<Volume>,
     values: Vec<f64>,
     chosen: Vec<Parameter>,
     places: Vec<usize>,
@@ -51,6 +52,7 @@ impl RegressedLaw {
         let all = law.map(|law| Self {
             law,
             measures: (card.stress_measure, card.strain_measure),
+            volume: card.volume,
             values: card
                 .parameters
                 .iter()
@@ -114,7 +116,9 @@ impl RegressedLaw {
             all[*place] = *value;
         }
         let (law, _) = self.law.with_values(&all, self.measures.0, self.measures.1);
-        Arc::from(law)
+        let law: Arc<dyn HyperelasticLaw> = Arc::from(law);
+        let resisting = self.volume.and_then(|volume| volume.of(Arc::clone(&law)));
+        resisting.unwrap_or(law)
     }
 }
 

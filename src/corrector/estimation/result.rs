@@ -15,7 +15,7 @@ use super::task::Edge;
 use super::verdict::Answer;
 use crate::error::{Error, SolveFault};
 use crate::finite_element::recovery::{RecoveredGradient, Recovery};
-use crate::material::sheet::{Gradient, Kinematics, cofactor};
+use crate::material::sheet::{Gradient, Kinematics};
 use crate::statistics::{chi_squared_limit, normal_reach, student_reach};
 
 /// Share of sound markers that are taken for outliers.
@@ -144,14 +144,14 @@ impl NearestField<'_> {
             })
         })?;
         let response = law.response(&kinematics);
-        let cofactor = cofactor(&kinematics.deformation_gradient);
-        let thickness = specimen.thickness / kinematics.area_ratio();
+        let thinning = law.thickness_gradient(&kinematics);
+        let thickness = specimen.thickness * law.thickness_stretch(&kinematics);
         let mut rows: [Vec<f64>; 5] = Default::default();
         for column in &self.linear.sensitivities {
             let change = gradient(column);
             let stress = response.tangent * change;
             (0..4).for_each(|component| rows[component].push(stress[component]));
-            rows[4].push(thickness / kinematics.area_ratio() * cofactor.dot(&change));
+            rows[4].push(specimen.thickness * thinning.dot(&change));
         }
         for (index, (laws, width)) in neighbours.iter().enumerate() {
             let [low, high] = laws.each_ref().map(|law| law.stress(&kinematics).1);
@@ -164,7 +164,7 @@ impl NearestField<'_> {
         // Where the recovered gradient turns the cell inside out, all of the stress is in doubt.
         let (stress_off, thickness_off) =
             Kinematics::new(&better).map_or((stress, thickness), |better| {
-                let thinner = specimen.thickness / better.area_ratio() - thickness;
+                let thinner = specimen.thickness * law.thickness_stretch(&better) - thickness;
                 (law.stress(&better).1 - stress, thinner)
             });
         let stress_error =

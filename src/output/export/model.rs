@@ -35,6 +35,13 @@ impl Export<'_> {
     }
 
     fn law(&self, code: Code) -> Result<CodeLaw, Diagnostic> {
+        if self.card.volume.is_some() {
+            let message = format!(
+                "the card `{}` changes its volume; sheets that keep it can be exported",
+                self.card.name
+            );
+            return Err(Diagnostic::error("", message).hint("leave out the card's `[volume]`"));
+        }
         let law = self.card.law.in_code(code, self.bulk_modulus(code));
         let known = law.filter(|law| code == Code::Abaqus || *law != CodeLaw::TensionCurve);
         known.ok_or_else(|| {

@@ -113,6 +113,12 @@ fn read_material(section: &Section, folder: &Path) -> Material {
         (false, Some(card)) => card.viscosity.clone(),
         (false, None) => ViscousMaterial::default(),
     };
+    if !viscosity.is_none() && card.as_ref().is_some_and(|card| card.volume.is_some()) {
+        let hint = "leave out the viscosity, or the card's `[volume]`";
+        let message =
+            "the viscous stress is that of a sheet that keeps its volume, and this card's does not";
+        section.fault("card", message, hint);
+    }
     section.unknown_keys();
     Material {
         card,

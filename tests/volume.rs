@@ -1,0 +1,175 @@
+//! Sheets that change their volume: the clamped plate by another code, the incompressible limit, and whole studies.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use gelbench::finite_element::{Element, FiniteElements};
+use gelbench::material::volume::bulk_modulus;
+use gelbench::material::{
+    HyperelasticLaw, MooneyRivlin, NeoHooke, PlaneState, Volume, VolumetricSheet, Yeoh,
+};
+use gelbench::problem::{ClampedPlate, Measures};
+use gelbench::solve::NewtonSettings;
+use serde_json::Value;
+use tempfile::TempDir;
+
+mod common;
+
+use common::{SMALL, gelbench, words};
+
+const SETTINGS: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
+    max_iterations: 30,
+};
+
+fn law(name: &str) -> Arc<dyn HyperelasticLaw> {
+    match name {
+        "neo-hooke" => Arc::new(NeoHooke { c10: 0.05 }),
+        "mooney-rivlin" => Arc::new(MooneyRivlin {
+            c10: 0.04,
+            c01: 0.01,
+        }),
+        "yeoh" => Arc::new(Yeoh {
+            coefficients: [0.03, -0.002, 0.001],
+        }),
+        other => panic!("no law {other}"),
+    }
+}
+
+fn sheet(name: &str, poisson_ratio: f64, plane: PlaneState) -> Arc<dyn HyperelasticLaw> {
+    let law = law(name);
+    let bulk_modulus = bulk_modulus(law.shear_modulus(), poisson_ratio);
+    let volume = Volume {
+        bulk_modulus,
+        plane,
+    };
+    Arc::new(VolumetricSheet::new(law, volume).unwrap())
+}
+
+fn plate(law: Arc<dyn HyperelasticLaw>) -> ClampedPlate {
+    ClampedPlate {
+        size: [150.0, 50.0],
+        thickness: 2.0,
+        law,
+        stretches: vec![0.15, 0.5],
+    }
+}
+
+/// Force in N, width at mid length in mm and energy in mJ at both stretches.
+fn measured(law: Arc<dyn HyperelasticLaw>) -> Vec<[f64; 3]> {
+    let plate = plate(law);
+    let elements = FiniteElements::new(&plate, [24, 8], Element::Q2);
+    let states = elements.solve(&plate, SETTINGS, &|_| ()).unwrap();
+    let measures = states.iter().map(|state| {
+        let found = Measures::of(&elements.mesh, state);
+        [found.force, found.mid_width, found.energy]
+    });
+    measures.collect()
+}
+
+#[test]
+fn a_clamped_plate_that_changes_its_volume_is_that_of_another_code() {
+    let text = include_str!("../validation/plate/volume.csv");
+    let rows: Vec<Vec<&str>> = text
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .skip(1)
+        .map(|line| line.split(',').collect())
+        .collect();
+    assert_eq!(rows.len(), 24);
+    for pair in rows.chunks(2) {
+        let plane = PlaneState::NAMES
+            .iter()
+            .find(|(name, _)| *name == pair[0][2]);
+        let found = measured(sheet(
+            pair[0][0],
+            pair[0][1].parse().unwrap(),
+            plane.unwrap().1,
+        ));
+        for (row, found) in pair.iter().zip(found) {
+            for (found, expected) in found.iter().zip(&row[4..]) {
+                let off = (found / expected.parse::<f64>().unwrap() - 1.0).abs();
+                assert!(off < 1e-6, "{row:?}: {found}, {off:.1e}");
+            }
+        }
+    }
+}
+
+/// Its difference falls as 1/κ, so 1 − 2 ν times ten is ten times as much.
+#[test]
+fn the_limit_of_plane_stress_is_the_sheet_that_keeps_its_volume() {
+    for name in ["neo-hooke", "mooney-rivlin", "yeoh"] {
+        let exact = measured(law(name));
+        let far = |poisson_ratio| {
+            let found = measured(sheet(name, poisson_ratio, PlaneState::Stress));
+            let pairs = found.iter().flatten().zip(exact.iter().flatten());
+            pairs.map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max)
+        };
+        let (near, nearer) = (far(0.4995), far(0.49995));
+        assert!(nearer < 1e-4, "{name}: {nearer:.1e}");
+        assert!(
+            (near / nearer - 10.0).abs() < 0.2,
+            "{name}: {near:.1e} {nearer:.1e}"
+        );
+    }
+}
+
+fn card(volume: &str) -> String {
+    let card = fs::read_to_string(common::root().join("materials/neo-hooke.toml")).unwrap();
+    card.replace("[data]", &format!("[volume]\n{volume}\n\n[data]"))
+}
+
+fn study(folder: &Path, sheet: &str, volume: &str) {
+    fs::write(folder.join("own.toml"), card(volume)).unwrap();
+    let material = format!("[material]\ncard = \"own.toml\"\nsheet = \"{sheet}\"\n");
+    fs::write(folder.join("small.toml"), material + SMALL).unwrap();
+}
+
+#[test]
+fn plates_run_in_all_models_in_both_plane_states() {
+    let mut reports = Vec::new();
+    for sheet in ["plane-stress", "plane-strain"] {
+        let folder = TempDir::new().unwrap();
+        study(folder.path(), sheet, "poisson_ratio = 0.4");
+        let done = gelbench(folder.path(), &["run", "small.toml"]);
+        let printed = words(&done.get_output().stdout);
+        done.code(0);
+        let report = fs::read_to_string(folder.path().join("output/small/report.json")).unwrap();
+        let report: Value = serde_json::from_str(&report).unwrap();
+        assert_eq!(report["material"]["sheet"], sheet);
+        let corrected = printed.matches("pass").count();
+        assert_eq!(corrected, 4, "{printed}");
+        reports.push(report);
+    }
+    assert_ne!(reports[0]["steps"], reports[1]["steps"]);
+}
+
+#[test]
+fn what_cannot_change_its_volume_is_told() {
+    let told = |sheet: &str, volume: &str, replace: [&str; 2]| {
+        let folder = TempDir::new().unwrap();
+        study(folder.path(), sheet, volume);
+        let path = folder.path().join("own.toml");
+        let text = fs::read_to_string(&path).unwrap();
+        fs::write(&path, text.replace(replace[0], replace[1])).unwrap();
+        let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
+        let printed = words(&done.get_output().stderr);
+        printed.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let none = told("plane-strain", "", ["[volume]", ""]);
+    assert!(
+        none.contains("keeps its volume") && none.contains("poisson_ratio"),
+        "{none}"
+    );
+    let both = told(
+        "plane-stress",
+        "poisson_ratio = 0.3\nbulk_modulus = \"1 MPa\"",
+        ["", ""],
+    );
+    assert!(both.contains("one of them is enough"), "{both}");
+    let half = told("plane-stress", "poisson_ratio = 0.5", ["", ""]);
+    assert!(half.contains("between -0.9 and 0.4999"), "{half}");
+    let unknown = told("thick", "poisson_ratio = 0.3", ["", ""]);
+    assert!(unknown.contains("plane-strain"), "{unknown}");
+}
