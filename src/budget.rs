@@ -105,7 +105,7 @@ impl Need {
     /// bytes = unknowns (3,000 + 200 instants)
     /// ```
     ///
-    /// as measured for plates and specimens between 20,000 and 400,000 unknowns.
+    /// The first term was measured for plates and specimens between 20,000 and 400,000 unknowns, the second is estimated.
     pub fn of_states(unknowns: f64, instants: f64) -> Self {
         Self {
             unknowns,

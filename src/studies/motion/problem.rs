@@ -20,7 +20,7 @@ const NEWTON: NewtonSettings = NewtonSettings {
     max_iterations: 60,
 };
 
-/// Memory of an unknown at an instant, with what is written of it: as measured.
+/// Memory of an unknown at an instant, with what is written of it, estimated: numbers of the state, of the history and of the text.
 const BYTES_OF_AN_INSTANT: f64 = 200.0;
 
 /// A point of the plate that is watched.
