@@ -344,7 +344,7 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
         ),
         (
             &["plate.csv", "--cell-size", "0.001 mm"],
-            "more than a million",
+            "1,000,000 are allowed",
             "larger",
         ),
         (
