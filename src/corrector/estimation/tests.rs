@@ -175,7 +175,7 @@ fn the_data_tell_which_edges_are_free() {
                 .unwrap();
             (edge.condition, edge.probability)
         };
-        for free in ["edge (0.0, 0.0)", "edge (60.0, 30.0)"] {
+        for free in ["bottom", "top"] {
             assert_eq!(
                 condition(free).0,
                 EdgeCondition::Free,
@@ -183,7 +183,7 @@ fn the_data_tell_which_edges_are_free() {
                 found.edges
             );
         }
-        for loaded in ["edge (60.0, 0.0)", "edge (0.0, 30.0)"] {
+        for loaded in ["right", "left"] {
             let (condition, probability) = condition(loaded);
             assert_eq!(condition, EdgeCondition::Unknown);
             assert!(probability.unwrap() < 1e-6);
