@@ -62,7 +62,7 @@ impl Budget {
             // What is no number is too much.
             quantities
                 .into_iter()
-                .find(|(_, needed, allowed)| !(needed <= allowed))
+                .find(|(_, needed, allowed)| needed.is_nan() || needed > allowed)
         };
         let Some((what, needed, allowed)) = excess(self) else {
             return Ok(());
@@ -151,7 +151,7 @@ struct Amount(f64);
 
 impl fmt::Display for Amount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !(self.0.abs() < 1e9) {
+        if self.0.is_nan() || self.0.abs() >= 1e9 {
             return write!(f, "{:.1e}", self.0);
         }
         let digits = format!("{:.0}", self.0);

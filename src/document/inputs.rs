@@ -18,10 +18,10 @@ pub fn remember() {
 
 /// Notes that a file is read.
 pub fn note(path: &Path) {
-    if let (Some(read), Ok(path)) = (all().as_mut(), std::fs::canonicalize(path)) {
-        if !read.contains(&path) {
-            read.push(path);
-        }
+    if let (Some(read), Ok(path)) = (all().as_mut(), std::fs::canonicalize(path))
+        && !read.contains(&path)
+    {
+        read.push(path);
     }
 }
 

@@ -83,7 +83,7 @@ pub(super) fn note(keys: &mut Vec<Key>, key: Key) {
             let new = key
                 .takes
                 .into_iter()
-                .filter(|one| !known.takes.contains(one) && !(is_choice && *one == Takes::Text));
+                .filter(|one| !(known.takes.contains(one) || is_choice && *one == Takes::Text));
             let new: Vec<Takes> = new.collect();
             known.takes.extend(new);
         }
