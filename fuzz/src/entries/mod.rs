@@ -27,8 +27,11 @@ impl From<bool> for Became {
     }
 }
 
+/// What a target does with its bytes.
+pub type Entry = fn(&[u8]) -> Became;
+
 /// The targets, each with what it does with its bytes.
-pub const TARGETS: &[(&str, fn(&[u8]) -> Became)] = &[
+pub const TARGETS: &[(&str, Entry)] = &[
     ("study", readers::study),
     ("card", readers::card),
     ("tables", readers::tables),
