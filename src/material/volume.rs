@@ -90,6 +90,14 @@ impl VolumetricSheet {
     fn body<'a>(&self, kinematics: &'a Kinematics) -> Body<'a> {
         match self.volume.plane {
             PlaneState::Strain => self.at(kinematics, 0.0),
+            PlaneState::Stress => self.at_free_surface(kinematics).0,
+        }
+    }
+
+    /// The same with the second derivatives of W.
+    fn body_with_curvatures<'a>(&self, kinematics: &'a Kinematics) -> (Body<'a>, Curvatures) {
+        match self.volume.plane {
+            PlaneState::Strain => self.at(kinematics, 0.0).with_curvatures(),
             PlaneState::Stress => self.at_free_surface(kinematics),
         }
     }
@@ -103,14 +111,14 @@ impl VolumetricSheet {
     /// P₃₃ = 0 by Newton's method in λ₃ − 1 within bounds that close in on it, from the thickness without volume change.
     ///
     /// P₃₃ is negative for a vanishing thickness and positive for a large one, so there is a root.
-    fn at_free_surface<'a>(&self, kinematics: &'a Kinematics) -> Body<'a> {
+    fn at_free_surface<'a>(&self, kinematics: &'a Kinematics) -> (Body<'a>, Curvatures) {
         const MOST_STEPS: usize = 200;
         let [mut low, mut high] = [-1.0, f64::INFINITY];
         let mut z = -kinematics.area_change / kinematics.area_ratio();
-        let mut body = self.at(kinematics, z);
+        let (mut body, mut curvatures) = self.at(kinematics, z).with_curvatures();
         for _ in 0..MOST_STEPS {
             let p33 = body.stress[THICKNESS];
-            let step = p33 / body.second_derivative_by_thickness();
+            let step = p33 / curvatures[(THICKNESS, THICKNESS)];
             if p33 == 0.0 || step.abs() <= 1e-15 * z.abs() {
                 break;
             }
@@ -125,9 +133,9 @@ impl VolumetricSheet {
                 false if high.is_finite() => 0.5 * (low + high),
                 false => 1.0 + 2.0 * z,
             };
-            body = self.at(kinematics, z);
+            (body, curvatures) = self.at(kinematics, z).with_curvatures();
         }
-        body
+        (body, curvatures)
     }
 }
 
@@ -267,20 +275,19 @@ impl<'a> Body<'a> {
         ]
     }
 
-    /// ∂²W/∂λ₃².
-    fn second_derivative_by_thickness(&self) -> f64 {
-        self.second_derivatives()[(THICKNESS, THICKNESS)]
+    fn with_curvatures(self) -> (Self, Curvatures) {
+        let curvatures = self.second_derivatives();
+        (self, curvatures)
     }
+}
 
-    /// ∂²W/∂F², ∂²W/∂F∂λ₃ and ∂²W/∂λ₃².
-    fn parts(&self) -> (Matrix4<f64>, Gradient, f64) {
-        let all = self.second_derivatives();
-        (
-            all.fixed_view::<4, 4>(0, 0).into_owned(),
-            all.fixed_view::<4, 1>(0, THICKNESS).into_owned(),
-            all[(THICKNESS, THICKNESS)],
-        )
-    }
+/// ∂²W/∂F², ∂²W/∂F∂λ₃ and ∂²W/∂λ₃².
+fn parts(curvatures: &Curvatures) -> (Matrix4<f64>, Gradient, f64) {
+    (
+        curvatures.fixed_view::<4, 4>(0, 0).into_owned(),
+        curvatures.fixed_view::<4, 1>(0, THICKNESS).into_owned(),
+        curvatures[(THICKNESS, THICKNESS)],
+    )
 }
 
 impl HyperelasticLaw for VolumetricSheet {
@@ -290,8 +297,8 @@ impl HyperelasticLaw for VolumetricSheet {
     }
 
     fn response(&self, kinematics: &Kinematics) -> SheetResponse {
-        let body = self.body(kinematics);
-        let (plane, mixed, across) = body.parts();
+        let (body, curvatures) = self.body_with_curvatures(kinematics);
+        let (plane, mixed, across) = parts(&curvatures);
         let tangent = match self.volume.plane {
             PlaneState::Stress => plane - mixed * (mixed / across).transpose(),
             PlaneState::Strain => plane,
@@ -315,7 +322,7 @@ impl HyperelasticLaw for VolumetricSheet {
     fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
         match self.volume.plane {
             PlaneState::Stress => {
-                let (_, mixed, across) = self.body(kinematics).parts();
+                let (_, mixed, across) = parts(&self.at_free_surface(kinematics).1);
                 -mixed / across
             }
             PlaneState::Strain => Vector4::zeros(),
