@@ -20,13 +20,13 @@ pub mod specimen;
 pub type Progress<'a> = &'a dyn Fn(&str);
 
 /// A study that has been read, ready to be computed.
-pub struct Ready {
+pub struct PreparedStudy {
     name: String,
     title: String,
     kind: &'static str,
     text: String,
     defaults: Vec<String>,
-    prepared: Prepared,
+    computation: Computation,
     /// What deserves attention but does not stop the work.
     pub warnings: Vec<Diagnostic>,
     /// The folder that it names for its results.
@@ -40,7 +40,7 @@ pub struct Ready {
 }
 
 /// The computation of a study.
-pub type Prepared = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
+pub type Computation = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
 
 /// A kind of study.
 pub struct Kind {
@@ -53,7 +53,7 @@ pub struct Kind {
     /// Whether `--quick` leaves it out.
     pub slow: bool,
     /// Reads one.
-    pub prepare: fn(&Section, &Path) -> Prepared,
+    pub prepare: fn(&Section, &Path) -> Computation,
 }
 
 impl Kind {
@@ -61,15 +61,15 @@ impl Kind {
     ///
     /// # Errors
     /// [`Error::Input`] with every fault.
-    pub fn read(&self, file: &Path, text: &str, budget: Budget) -> Result<Ready, Error> {
+    pub fn read(&self, file: &Path, text: &str, budget: Budget) -> Result<PreparedStudy, Error> {
         let read = self.read_with(file, text, budget, self.prepare)?;
-        Ok(Ready {
+        Ok(PreparedStudy {
             name: name(file),
             title: read.title,
             kind: self.kind,
             text: text.to_owned(),
             defaults: read.defaults,
-            prepared: read.made,
+            computation: read.made,
             warnings: read.warnings,
             folder: None,
             report: true,
@@ -137,14 +137,14 @@ struct Read<T> {
     warnings: Vec<Diagnostic>,
 }
 
-impl Ready {
+impl PreparedStudy {
     /// Computes the study.
     ///
     /// # Errors
     /// [`Error::Solve`] when a model has no solution.
     pub fn compute(self, progress: Progress) -> Result<Results, Error> {
         let start = Instant::now();
-        let outcome = (self.prepared)(progress)?;
+        let outcome = (self.computation)(progress)?;
         Ok(Results {
             name: self.name,
             title: self.title,

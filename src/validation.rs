@@ -10,7 +10,7 @@ use crate::error::{Diagnostic, Error, suggestion};
 use crate::results::{Check, Outcome, Results};
 use crate::studies::plate as plate_study;
 use crate::studies::sections::read_text;
-use crate::studies::{Kind, Progress, Ready, motion, other_files, specimen};
+use crate::studies::{Kind, PreparedStudy, Progress, motion, other_files, specimen};
 
 mod case;
 mod correction_matrix;
@@ -128,7 +128,7 @@ pub fn case_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
 ///
 /// # Errors
 /// [`Error::Input`] with every fault.
-pub fn read(path: &Path, budget: Budget) -> Result<Ready, Error> {
+pub fn read(path: &Path, budget: Budget) -> Result<PreparedStudy, Error> {
     let text = read_text(path)?;
     match case_of(&path.display().to_string(), &text)? {
         Some(case) => case.read(path, &text, budget),

@@ -15,7 +15,7 @@ use crate::corrector::estimation::{
 };
 use crate::error::{Diagnostic, Error};
 use crate::markers::ReadSettings;
-use crate::mesh::{Allowed, CellShape, MeshReading};
+use crate::mesh::{CellShape, Exemptions, MeshReading};
 use crate::output::{self, ResultFolder};
 use crate::results::NamedGrid;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
@@ -66,7 +66,7 @@ pub struct Options {
     #[arg(long, value_name = "LENGTH", requires = "mesh", value_parser = length)]
     pub merge_nodes: Option<f64>,
     /// What looks like a fault of the mesh but is meant
-    #[arg(long, value_name = "FAULT", requires = "mesh", value_delimiter = ',', value_parser = Allowed::NAMES)]
+    #[arg(long, value_name = "FAULT", requires = "mesh", value_delimiter = ',', value_parser = Exemptions::NAMES)]
     pub allow: Vec<String>,
     /// The specimen's edge as a table: x [mm], y [mm], and line where there are holes
     #[arg(long, value_name = "FILE", conflicts_with = "mesh")]
@@ -319,7 +319,7 @@ fn mesh_source(options: &Options) -> MeshSource {
             let reading = MeshReading {
                 unit: options.mesh_unit,
                 merge_nodes: options.merge_nodes,
-                allowed: Allowed::of_names(names).unwrap_or_default(),
+                allowed: Exemptions::of_names(names).unwrap_or_default(),
             };
             MeshSource::File(mesh.clone(), reading)
         }

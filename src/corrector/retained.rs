@@ -79,7 +79,7 @@ pub fn from_bytes(bytes: &[u8], corrector: &Corrector) -> Result<Factor, Retaine
     if !parts.is_sound() {
         return Err(RetainedFault::Damaged);
     }
-    fits(&conditions, &parts, corrector).map_err(RetainedFault::DoesNotFit)?;
+    fits(&conditions, &parts, corrector)?;
     Factor::from_parts(parts).map_err(|_| RetainedFault::Damaged)
 }
 
@@ -97,7 +97,8 @@ fn fits(
     conditions: &Fingerprint,
     parts: &FactorParts,
     corrector: &Corrector,
-) -> Result<(), String> {
+) -> Result<(), RetainedFault> {
+    let other = |reason: String| Err(RetainedFault::DoesNotFit(reason));
     let rows: usize = corrector
         .conditions
         .iter()
@@ -106,7 +107,7 @@ fn fits(
     let unknowns = corrector.weights.len();
     let (its_rows, its_unknowns) = (parts.jacobian.len(), parts.jacobian.columns());
     if (its_rows, its_unknowns) != (rows, unknowns) {
-        return Err(format!(
+        return other(format!(
             "it has {its_rows} rows and {its_unknowns} unknowns, the problem {rows} and {unknowns}"
         ));
     }
@@ -115,13 +116,13 @@ fn fits(
             .iter()
             .map(|(name, rows)| format!("{name} ({rows})"))
             .collect();
-        return Err(format!("its conditions are others: {}", names.join(", ")));
+        return other(format!("its conditions are others: {}", names.join(", ")));
     }
     if parts.weights != corrector.weights {
-        return Err("its weights are others".into());
+        return other("its weights are others".into());
     }
     if parts.unknowns.is_some() && parts.unknowns != corrector.square_unknowns() {
-        return Err("its conditions belong to other unknowns".into());
+        return other("its conditions belong to other unknowns".into());
     }
     Ok(())
 }

@@ -34,8 +34,8 @@ mod exponential;
 mod table;
 
 pub use exponential::ExponentialCurve;
-pub use table::TableCurve;
 pub(super) use table::slopes;
+pub use table::{CurveFault, TableCurve};
 
 /// A tension curve P(x) of the strain x = λ − 1 ≥ 0, with P(0) = 0.
 pub trait TensionCurve: Send + Sync + std::fmt::Debug {

@@ -25,7 +25,7 @@ mod parts;
 mod sides;
 mod touching;
 
-pub use finding::{Allowed, UnknownName};
+pub use finding::{Exemptions, UnknownName};
 use sides::Sides;
 
 impl Mesh {
@@ -35,7 +35,7 @@ impl Mesh {
     }
 
     /// All faults, each kind once with its number and first places in mm: errors first, then warnings.
-    pub fn faults(&self, allowed: Allowed) -> Vec<Diagnostic> {
+    pub fn faults(&self, allowed: Exemptions) -> Vec<Diagnostic> {
         let mut found = self.cells_without_sense();
         let twice = cells::given_twice(self);
         found.extend(cells::twice_told(self, &twice));

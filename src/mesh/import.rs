@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::cells::Mesh;
-use super::faults::Allowed;
+use super::faults::Exemptions;
 use crate::error::{Diagnostic, Severity};
 
 mod field;
@@ -15,11 +15,13 @@ mod frd;
 mod gmsh;
 mod pvd;
 mod raw;
+mod unreadable;
 mod unstructured;
 mod vtk;
 mod vtu;
 
 use raw::{Raw, read_text};
+use unreadable::Unreadable;
 
 pub use field::{
     ImportFault, ImportedField, ImportedSeries, ImportedStep, import_field, import_series,
@@ -33,7 +35,7 @@ pub struct MeshReading {
     /// Nodes that are not farther from each other become one, in mm.
     pub merge_nodes: Option<f64>,
     /// What looks like a fault but is meant.
-    pub allowed: Allowed,
+    pub allowed: Exemptions,
 }
 
 impl MeshReading {
@@ -42,7 +44,7 @@ impl MeshReading {
         Self {
             unit,
             merge_nodes: None,
-            allowed: Allowed::default(),
+            allowed: Exemptions::default(),
         }
     }
 }
@@ -56,7 +58,7 @@ pub fn import(
     path: &Path,
     reading: MeshReading,
 ) -> Result<(Mesh, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let unreadable = |reason: String| {
+    let unreadable = |reason: Unreadable| {
         let hint = "a mesh stands in Gmsh's .msh (ASCII, 2.2 or 4.1), .vtu or .vtk, and is flat";
         let message = format!("{} {reason}", path.display());
         vec![Diagnostic::error("", message).hint(hint)]
@@ -86,7 +88,7 @@ pub fn import(
     Ok((if mixed { mesh.quadratic() } else { mesh }, told))
 }
 
-fn read(path: &Path) -> Result<Raw, String> {
+fn read(path: &Path) -> Result<Raw, Unreadable> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());

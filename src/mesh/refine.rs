@@ -307,7 +307,7 @@ mod tests {
                     other.shape(0).is_triangle()
                 );
                 assert_eq!(other.degree(), 2);
-                assert!(other.faults(crate::mesh::Allowed::default()).is_empty());
+                assert!(other.faults(crate::mesh::Exemptions::default()).is_empty());
             }
             // Where the map of an edge has it, a quarter along: ⅜, ¾ and −⅛ of its nodes' places.
             let edge = &mesh.groups()["inside"].edges[0];

@@ -43,6 +43,23 @@ impl Support {
     }
 }
 
+/// Why a group cannot be held as a support says, in words that follow the group's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+enum SupportMisfit {
+    #[error(
+        "has a node at the centre of its radial displacement, where no direction leads away from it; move the centre, or \
+         leave the node out"
+    )]
+    NodeAtCentre,
+    #[error("has no nodes")]
+    NoNodes,
+    #[error(
+        "is no straight line parallel to an axis, which a roller or an axis of symmetry needs; turn the mesh, or hold the \
+         group with the kind \"displacement\""
+    )]
+    NotAlongAxis,
+}
+
 /// All supports of a problem on the unknowns of a mesh.
 #[derive(Default)]
 pub struct Constraints {
@@ -63,17 +80,17 @@ impl Constraints {
         let mut all = Self::default();
         for (name, support) in supports {
             let added = all.add(mesh, named("support", mesh, name)?, support);
-            added.map_err(|reason| refused("support", name, &reason))?;
+            added.map_err(|misfit| refused("support", name, &misfit.to_string()))?;
         }
         Ok(all)
     }
 
     /// Adds a support of a group, or says why the group cannot be held so.
-    fn add(&mut self, mesh: &Mesh, group: &Group, support: &Support) -> Result<(), String> {
+    fn add(&mut self, mesh: &Mesh, group: &Group, support: &Support) -> Result<(), SupportMisfit> {
         if let Support::Radial { centre, .. } = support
             && group.nodes.iter().any(|node| mesh.nodes[*node] == *centre)
         {
-            return Err("has a node at the centre of its radial displacement, where no direction leads away from it; move the centre, or leave the node out".into());
+            return Err(SupportMisfit::NodeAtCentre);
         }
         for axis in [0, 1] {
             if let Support::Grip(drives) = support
@@ -93,9 +110,9 @@ impl Constraints {
     }
 
     /// Ties the nodes of a group along an axis to the first of them, which takes the force.
-    fn tie(&mut self, group: &Group, axis: usize, force: f64) -> Result<(), String> {
+    fn tie(&mut self, group: &Group, axis: usize, force: f64) -> Result<(), SupportMisfit> {
         let mut unknowns = group.nodes.iter().map(|node| 2 * node + axis);
-        let first = unknowns.next().ok_or("has no nodes")?;
+        let first = unknowns.next().ok_or(SupportMisfit::NoNodes)?;
         self.ties.extend(unknowns.map(|unknown| (unknown, first)));
         self.forces.push((first, force));
         Ok(())
@@ -130,7 +147,7 @@ fn motion(support: &Support, node: [f64; 2], axis: usize) -> Option<Motion> {
 }
 
 /// The axis across the straight line, parallel to the other axis, on which a group lies.
-fn normal(mesh: &Mesh, group: &Group) -> Result<usize, String> {
+fn normal(mesh: &Mesh, group: &Group) -> Result<usize, SupportMisfit> {
     let extent = |axis: usize| {
         let places = group.nodes.iter().map(|node| mesh.nodes[*node][axis]);
         let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
@@ -143,6 +160,5 @@ fn normal(mesh: &Mesh, group: &Group) -> Result<usize, String> {
     if extents[axis] <= 1e-9 * extents[1 - axis] {
         return Ok(axis);
     }
-    Err("is no straight line parallel to an axis, which a roller or an axis of symmetry needs; turn the mesh, or \
-         hold the group with the kind \"displacement\"".into())
+    Err(SupportMisfit::NotAlongAxis)
 }

@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::results::Outcome;
-use crate::studies::{Prepared, Progress};
+use crate::studies::{Computation, Progress};
 
 mod corrected;
 mod files;
@@ -22,7 +22,7 @@ mod statement;
 use problem::MovingPlate;
 
 /// Reads a study of this kind.
-pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let plate = read::read(root, folder);
     Box::new(move |progress| {
         plate.map_or(Ok(Outcome::default()), |plate| compute(&plate, progress))

@@ -6,7 +6,7 @@ use crate::budget::Budget;
 use crate::error::Error;
 use crate::problem::ClampedPlate;
 use crate::results::{Material, Outcome};
-use crate::studies::{Progress, Ready};
+use crate::studies::{PreparedStudy, Progress};
 
 mod figures;
 mod json;
@@ -29,9 +29,9 @@ pub const KIND: &str = "plate";
 ///
 /// # Errors
 /// [`Error::Input`] with every fault of the study and of its card.
-pub fn prepare(path: &Path, text: String, budget: Budget) -> Result<Ready, Error> {
+pub fn prepare(path: &Path, text: String, budget: Budget) -> Result<PreparedStudy, Error> {
     let study = Study::of_file(path, text, budget)?;
-    Ok(Ready {
+    Ok(PreparedStudy {
         name: study.name.clone(),
         title: study.title.clone(),
         kind: KIND,
@@ -42,7 +42,7 @@ pub fn prepare(path: &Path, text: String, budget: Budget) -> Result<Ready, Error
         report: study.output.report,
         progress_steps: run::progress_steps(&study),
         about: study.describe(),
-        prepared: Box::new(move |progress: Progress| {
+        computation: Box::new(move |progress: Progress| {
             let told = |model: &str, stretch: f64| {
                 progress(&format!(
                     "{model}, {}",

@@ -6,7 +6,7 @@ use crate::budget::Budget;
 use crate::document::Section;
 use crate::error::{Diagnostic, Error};
 use crate::results::Outcome;
-use crate::studies::{Kind, Prepared, Progress};
+use crate::studies::{Computation, Kind, Progress};
 
 mod files;
 mod forces;
@@ -41,7 +41,7 @@ pub fn load(
 }
 
 /// Reads a study of this kind.
-pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let specimen = read::read(root, folder);
     Box::new(move |progress| {
         specimen.map_or(Ok(Outcome::default()), |read| compute(&read, progress))

@@ -11,7 +11,7 @@ use crate::results::{Line, Stroke, mesh_outlines};
 use crate::statistics::median;
 
 pub use crate::results::{Block, Check, Claim, Figure, Outcome, limit, number};
-pub use crate::studies::{Prepared, Progress};
+pub use crate::studies::{Computation, Progress};
 
 /// Reads a section and reports its unknown keys.
 pub fn section<'a, T>(

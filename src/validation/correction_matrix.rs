@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::case::{Check, Outcome, Prepared, check, largest, section};
+use super::case::{Check, Computation, Outcome, check, largest, section};
 use super::plate::CORRECTOR;
 use crate::corrector::{CorrectionMatrix, Corrector, Factor, Linear, Projection, Solver, retained};
 use crate::document::Section;
@@ -21,7 +21,7 @@ struct Settings {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let settings = section(root, "system", |system| {
         let settings = Settings {
             unknowns: system.count("unknowns", 4, 400),

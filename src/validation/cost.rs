@@ -7,7 +7,7 @@
 
 use std::path::Path;
 
-use super::case::{Check, Claim, Outcome, Prepared, Progress, check, number, section, table};
+use super::case::{Check, Claim, Computation, Outcome, Progress, check, number, section, table};
 use super::plate::Plate;
 use web_time::Instant;
 
@@ -20,7 +20,7 @@ use crate::finite_element::Element;
 use crate::mass_spring::MassSpring;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let plate = Plate::read(root, folder);
     let repetitions = section(root, "measure", |measure| {
         measure.count("repetitions", 1, 1000)

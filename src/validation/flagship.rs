@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::case::{Block, Outcome, Prepared, Progress, check, number, section, table};
+use super::case::{Block, Computation, Outcome, Progress, check, number, section, table};
 use super::plate::NEWTON;
 use crate::corrector::DifferenceScheme;
 use crate::corrector::climb::{Climb, ClimbSettings, ClimbSolution};
@@ -20,7 +20,7 @@ use crate::solve::State;
 use crate::units::Dimension;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let plates = section(root, "plates", |plates| {
         let length = |shape: &Section, key| shape.quantity(key, Dimension::Length, Bound::Positive);
         let sizes = plates.tables("shape").into_iter().map(|shape| {

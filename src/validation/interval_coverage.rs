@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::case::{Block, Figure, Outcome, Prepared, Progress, line, section, table};
+use super::case::{Block, Computation, Figure, Outcome, Progress, line, section, table};
 use super::plate::{Plate, read_noise};
 use web_time::Instant;
 
@@ -44,7 +44,7 @@ struct Settings {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let card = sections::read_card(&root.section("plate"), folder);
     let law = card.and_then(|card| {
         let first = card.parameters.first().map(|parameter| parameter.key);

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::case::{Outcome, Prepared, Progress, section};
+use super::case::{Computation, Outcome, Progress, section};
 use super::plate::Plate;
 use crate::document::{Bound, Section};
 use crate::error::Error;
@@ -26,7 +26,7 @@ struct Settings {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let plate = Plate::read(root, folder);
     bodies::check_even(&root.section("plate"), plate.cells);
     let recording = section(root, "recording", Recording::read);

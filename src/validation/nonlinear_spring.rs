@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use super::case::{
-    Block, Check, Claim, Figure, Outcome, Prepared, check, largest, line, number, percent, row,
+    Block, Check, Claim, Computation, Figure, Outcome, check, largest, line, number, percent, row,
     section, table,
 };
 use crate::corrector::{Corrector, CorrectorSettings, Function, Linearisation, Solver};
@@ -24,7 +24,7 @@ struct Spring {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let spring = section(root, "spring", |section| {
         let stiffness = section.number("stiffness", Bound::Positive);
         let largest = section.quantity("largest_force", Dimension::Force, Bound::Positive);

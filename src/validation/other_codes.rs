@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::case::{Check, Outcome, Prepared, Progress, check, section};
+use super::case::{Check, Computation, Outcome, Progress, check, section};
 use crate::document::Section;
 use crate::error::Error;
 use crate::finite_element::convergence::richardson;
@@ -19,7 +19,7 @@ const SUMMARY: &str = include_str!("../../validation/plate/summary.csv");
 const STRETCHES: [f64; 5] = [0.15, 0.3, 0.5, 0.75, 1.0];
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let finest = section(root, "mesh", |mesh| mesh.count("finest", 30, 120));
     Box::new(move |progress| compute(finest, progress))
 }

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use super::case::{Block, Check, Outcome, Prepared, Progress, check, section};
+use super::case::{Block, Check, Computation, Outcome, Progress, check, section};
 use super::plate::{NEWTON, Plate};
 use crate::document::{Bound, Section};
 use crate::error::Error;
@@ -19,7 +19,7 @@ mod lattices;
 mod springs_or_affine;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let plate = Plate::read(root, folder);
     let disturbance = section(root, "springs", |section| Disturbance {
         share: section.quantity("disturbance", Dimension::Ratio, Bound::Within(0.0, 0.95)),

@@ -8,8 +8,8 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::case::{
-    Block, Check, Claim, Figure, Outcome, Prepared, Progress, check, largest, line, normal_numbers,
-    number, removed_percent, row, section, table,
+    Block, Check, Claim, Computation, Figure, Outcome, Progress, check, largest, line,
+    normal_numbers, number, removed_percent, row, section, table,
 };
 use super::plate::{CORRECTOR, Plate};
 use crate::compare::{departure_percent, displacement_percent};
@@ -34,7 +34,7 @@ struct Settings {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let plate = Plate::read(root, folder);
     let settings = section(root, "data", |section| Settings {
         plate,

@@ -8,7 +8,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::case::{
-    Block, Check, Claim, Figure, Outcome, Prepared, Progress, check, limit, mean, number, row,
+    Block, Check, Claim, Computation, Figure, Outcome, Progress, check, limit, mean, number, row,
     section, share, table,
 };
 use crate::document::{Bound, Section};
@@ -26,7 +26,7 @@ struct Settings {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let places = section(root, "comparison", |comparison| {
         comparison.count("places", 3, 1000)
     });

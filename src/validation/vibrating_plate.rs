@@ -9,7 +9,7 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::viscosity::{Relaxation, ViscousMaterial};
 use crate::problem::Measures;
-use crate::validation::case::{Check, Outcome, Prepared, Progress, check, largest, section};
+use crate::validation::case::{Check, Computation, Outcome, Progress, check, largest, section};
 use crate::validation::plate::NEWTON;
 use motion::{METHODS, NEWMARK, Run, clamped, problem, unknowns_of};
 
@@ -18,7 +18,7 @@ mod motion;
 mod spring;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let cells = section(root, "mesh", |mesh| {
         let cells = mesh.multiples("cells", Bound::Within(3.0, 96.0), f64::INFINITY);
         let whole = |cells: &f64| cells.fract() == 0.0 && (*cells as usize).is_multiple_of(3);

@@ -8,8 +8,8 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::case::{
-    Check, Claim, Figure, Outcome, Prepared, Progress, Spread, check, line, mean, normal_numbers,
-    number, percent, removed_percent, row, section, share, table,
+    Check, Claim, Computation, Figure, Outcome, Progress, Spread, check, line, mean,
+    normal_numbers, number, percent, removed_percent, row, section, share, table,
 };
 use super::oscillator::{Differences, Motion, Regression};
 use super::plate::CORRECTOR;
@@ -31,7 +31,7 @@ struct Settings {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let (motion, damping) = section(root, "motion", read_motion);
     let order = section(root, "differences", |section| {
         let order = section.count("order", 2, 4);

@@ -25,6 +25,34 @@ pub struct TableCurve {
     extrapolate: bool,
 }
 
+/// What is wrong with the points of a tension curve.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CurveFault {
+    /// There are none.
+    #[error("the curve has no points")]
+    Empty,
+    /// A strain or a stress is no number.
+    #[error("{0} is not a finite number")]
+    NotFinite(f64),
+    /// The first strain is compression.
+    #[error("the curve begins below rest")]
+    BelowRest,
+    /// Stretches do not increase.
+    #[error("the strain does not increase: a stretch of {after} follows {before}")]
+    NotIncreasing {
+        /// A stretch.
+        before: f64,
+        /// The one that follows.
+        after: f64,
+    },
+    /// The only point is the one at rest.
+    #[error("the curve needs a point other than rest")]
+    RestAlone,
+    /// The stress falls, or stays, with the first strain.
+    #[error("the curve does not rise from rest")]
+    DoesNotRise,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Knot {
     x: f64,
@@ -45,9 +73,9 @@ impl TableCurve {
         let extrapolate = parameters.choice("extrapolation", &[("linear", true), ("none", false)]);
         match Self::new(&points, extrapolate) {
             Ok(curve) => Box::new(Marlow { curve }),
-            Err(reason) => {
+            Err(fault) => {
                 let hint = "give increasing strains from rest on, and a stress that begins to rise";
-                parameters.fault("stress", &reason, hint);
+                parameters.fault("stress", &fault.to_string(), hint);
                 let rest = [Knot::default(), Knot::default()];
                 let knots = rest.to_vec();
                 Box::new(Marlow {
@@ -60,18 +88,18 @@ impl TableCurve {
     /// A curve through points x = λ − 1, P in MPa.
     ///
     /// # Errors
-    /// Says what is wrong with the points.
-    pub fn new(points: &[[f64; 2]], extrapolate: bool) -> Result<Self, String> {
+    /// A [`CurveFault`].
+    pub fn new(points: &[[f64; 2]], extrapolate: bool) -> Result<Self, CurveFault> {
         let mut points = points.to_vec();
         if points.is_empty() {
-            return Err("the curve has no points".into());
+            return Err(CurveFault::Empty);
         }
         if let Some(bad) = points.iter().flatten().find(|value| !value.is_finite()) {
-            return Err(format!("{bad} is not a finite number"));
+            return Err(CurveFault::NotFinite(*bad));
         }
         let [first, at_rest] = points[0];
         if first < 0.0 {
-            return Err("the curve begins below rest".into());
+            return Err(CurveFault::BelowRest);
         }
         if first > 0.0 {
             points.insert(0, [0.0, 0.0]);
@@ -79,18 +107,17 @@ impl TableCurve {
             points.iter_mut().for_each(|point| point[1] -= at_rest);
         }
         if let Some(pair) = points.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-            return Err(format!(
-                "the strain does not increase: a stretch of {} follows {}",
-                1.0 + pair[1][0],
-                1.0 + pair[0][0]
-            ));
+            return Err(CurveFault::NotIncreasing {
+                before: 1.0 + pair[0][0],
+                after: 1.0 + pair[1][0],
+            });
         }
         if points.len() < 2 {
-            return Err("the curve needs a point other than rest".into());
+            return Err(CurveFault::RestAlone);
         }
         let slopes = slopes(&points);
         if slopes[0] <= 0.0 {
-            return Err("the curve does not rise from rest".into());
+            return Err(CurveFault::DoesNotRise);
         }
         let mut knots: Vec<Knot> = Vec::with_capacity(points.len());
         for ([x, stress], slope) in points.into_iter().zip(slopes) {
@@ -276,7 +303,7 @@ mod tests {
 
     #[test]
     fn bad_tables_are_refused_with_a_reason() {
-        let reason = |points: &[[f64; 2]]| TableCurve::new(points, true).unwrap_err();
+        let reason = |points: &[[f64; 2]]| TableCurve::new(points, true).unwrap_err().to_string();
         assert!(reason(&[]).contains("no points"));
         assert!(reason(&[[0.0, 0.0]]).contains("other than rest"));
         assert!(reason(&[[0.2, 0.1], [0.1, 0.2]]).contains("does not increase"));

@@ -4,7 +4,7 @@ use crate::error::Diagnostic;
 
 /// What looks like a fault but may be meant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Allowed {
+pub struct Exemptions {
     /// Slits: neighbouring cells with nodes of their own at the same places.
     pub seams: bool,
     /// Parts that are not attached to each other.
@@ -15,12 +15,12 @@ pub struct Allowed {
     pub polygons: bool,
 }
 
-/// A name that is none of [`Allowed::NAMES`].
+/// A name that is none of [`Exemptions::NAMES`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("\"{0}\" is not known here")]
 pub struct UnknownName(String);
 
-impl Allowed {
+impl Exemptions {
     /// The names that studies and options use.
     pub const NAMES: [&'static str; 4] = ["seams", "parts", "hinges", "polygons"];
 

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::finding::{Allowed, Finding, at};
+use super::finding::{Exemptions, Finding, at};
 use super::sides::Sides;
 use crate::error::Diagnostic;
 
@@ -31,7 +31,7 @@ impl DisjointSets {
 }
 
 /// Parts that are not attached to each other.
-pub fn parts(sides: &Sides, allowed: Allowed) -> Option<Diagnostic> {
+pub fn parts(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
     if allowed.parts {
         return None;
     }
@@ -71,7 +71,7 @@ pub fn parts(sides: &Sides, allowed: Allowed) -> Option<Diagnostic> {
 }
 
 /// Nodes from which the boundary goes on in two ways.
-pub fn hinges(sides: &Sides, allowed: Allowed) -> Option<Diagnostic> {
+pub fn hinges(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
     if allowed.hinges {
         return None;
     }

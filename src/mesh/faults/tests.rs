@@ -22,20 +22,20 @@ fn mesh(nodes: Vec<[f64; 2]>, cells: Vec<Vec<usize>>) -> Mesh {
     Mesh::new(nodes, cells.into_iter().map(|nodes| (shape(&nodes), nodes)))
 }
 
-fn told(mesh: &Mesh, allowed: Allowed) -> Vec<String> {
+fn told(mesh: &Mesh, allowed: Exemptions) -> Vec<String> {
     let faults = mesh.faults(allowed).into_iter();
     faults.map(|fault| fault.message).collect()
 }
 
 fn assert_told(mesh: &Mesh, expected: &[&str]) {
-    let found = told(mesh, Allowed::default());
+    let found = told(mesh, Exemptions::default());
     assert_eq!(found.len(), expected.len(), "{found:?}");
     for (found, expected) in found.iter().zip(expected) {
         assert!(found.contains(expected), "{found}");
     }
 }
 
-const ALL: Allowed = Allowed {
+const ALL: Exemptions = Exemptions {
     seams: true,
     parts: true,
     hinges: true,
@@ -79,7 +79,7 @@ fn cells_without_area_or_inside_out_are_found() {
     );
     let (nodes, mut cells) = strip();
     cells.push(vec![0, 1, 2]);
-    let found = told(&mesh(nodes.clone(), cells.clone()), Allowed::default());
+    let found = told(&mesh(nodes.clone(), cells.clone()), Exemptions::default());
     assert!(
         found[0].starts_with("one cell has no area, near (0, 1) mm"),
         "{found:?}"
@@ -87,7 +87,7 @@ fn cells_without_area_or_inside_out_are_found() {
     // Corners that do not follow each other.
     cells.pop();
     cells[7] = vec![10, 13, 11, 14];
-    let found = told(&mesh(nodes, cells), Allowed::default());
+    let found = told(&mesh(nodes, cells), Exemptions::default());
     assert!(found[0].contains("turned inside out"), "{found:?}");
 }
 
@@ -117,7 +117,7 @@ fn cells_given_twice_and_cells_on_each_other_are_found() {
     let (mut nodes, mut cells) = strip();
     nodes.extend([[1.2, 0.3], [1.9, 0.3], [1.9, 0.9]]);
     cells.push(vec![15, 16, 17]);
-    let found = told(&mesh(nodes.clone(), cells.clone()), Allowed::default());
+    let found = told(&mesh(nodes.clone(), cells.clone()), Exemptions::default());
     assert!(found[0].contains("2 parts are not attached"), "{found:?}");
     let found = told(&mesh(nodes, cells), ALL);
     assert!(found[0].contains("covered by two cells"), "{found:?}");
@@ -146,7 +146,7 @@ fn hanging_nodes_are_found_on_straight_and_curved_sides() {
     ];
     let found = told(
         &mesh(nodes, vec![(0..6).collect(), vec![1, 6, 4], vec![4, 6, 2]]),
-        Allowed::default(),
+        Exemptions::default(),
     );
     assert!(found[0].contains("one node hangs"), "{found:?}");
 }
@@ -166,10 +166,10 @@ fn seams_of_doubled_nodes_are_found_unless_they_are_allowed() {
     }
     let split = mesh(nodes, cells);
     assert_told(&split, &["2 sides lie on another cell's"]);
-    let seams = Allowed {
+    let seams = Exemptions {
         seams: true,
         hinges: true,
-        ..Allowed::default()
+        ..Exemptions::default()
     };
     assert_eq!(told(&split, seams), Vec::<String>::new());
 }
@@ -218,7 +218,7 @@ fn unattached_parts_and_hinges_are_found() {
 #[test]
 fn bad_shapes_are_warnings() {
     let nodes = vec![[0.0, 0.0], [1.0, 0.0], [0.5, 0.02]];
-    let found = mesh(nodes, vec![vec![0, 1, 2]]).faults(Allowed::default());
+    let found = mesh(nodes, vec![vec![0, 1, 2]]).faults(Exemptions::default());
     assert_eq!(found.len(), 1);
     assert_eq!(found[0].severity, crate::error::Severity::Warning);
     assert!(

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::finding::{Allowed, Finding};
+use super::finding::{Exemptions, Finding};
 use super::parts::DisjointSets;
 use super::sides::{Side, Sides};
 use crate::error::Diagnostic;
@@ -14,7 +14,7 @@ const NEAR: f64 = 1e-3;
 const INSIDE: f64 = 1e-2;
 
 /// Doubled and hanging nodes.
-pub fn faults(sides: &Sides, allowed: Allowed) -> Vec<Diagnostic> {
+pub fn faults(sides: &Sides, allowed: Exemptions) -> Vec<Diagnostic> {
     let boundary = Boundary::new(sides);
     let (mut doubled, mut hanging) = (Vec::new(), boundary.both_corner_and_middle());
     for node in boundary.shortest.keys() {

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::raw::{Raw, Step, read_text};
+use super::unreadable::Unreadable;
 use super::{frd, gmsh, pvd, vtk};
 use crate::mesh::cells::Mesh;
 use crate::units::{self, Dimension};
@@ -15,6 +16,12 @@ pub struct ImportFault {
     reason: String,
     /// What to do, where it is not to give another file.
     pub remedy: Option<String>,
+}
+
+impl From<Unreadable> for ImportFault {
+    fn from(fault: Unreadable) -> Self {
+        fault.to_string().into()
+    }
 }
 
 impl From<String> for ImportFault {
@@ -126,7 +133,7 @@ pub fn import_series(
     Ok(read_series(path, unit, array)?)
 }
 
-fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, String> {
+fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, Unreadable> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
@@ -157,7 +164,7 @@ fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSe
 }
 
 /// The files of a collection as the steps of one series; they must have one mesh.
-fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, String> {
+fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, Unreadable> {
     let mut whole: Option<ImportedSeries> = None;
     for (time, file) in pvd::read(&read_text(path)?)? {
         let name = file.clone();
@@ -166,7 +173,7 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
             .extension()
             .is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
         {
-            return Err(format!("names the collection {name} as one of its files"));
+            return Err(format!("names the collection {name} as one of its files").into());
         }
         let mut part = read_series(&file, unit, array)
             .map_err(|reason| format!("names {name}, which {reason}"))?;
@@ -177,16 +184,16 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
             None => whole = Some(part),
             Some(whole) if whole.mesh.nodes == part.mesh.nodes => whole.steps.extend(part.steps),
             Some(_) => {
-                return Err(format!(
-                    "names {name}, which has another mesh than the first file"
-                ));
+                return Err(
+                    format!("names {name}, which has another mesh than the first file").into(),
+                );
             }
         }
     }
     whole.ok_or_else(|| "names no files".into())
 }
 
-fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSeries, String> {
+fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSeries, Unreadable> {
     let used: BTreeSet<u64> = raw.used();
     let unit_of_values = unit_of(name).unwrap_or(unit);
     let step = |(time, field): &Step| {
@@ -211,7 +218,7 @@ fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSe
     let steps = fields.iter().map(step).collect();
     let mesh = raw.mesh(unit)?;
     if let Some(fault) = mesh.cells_without_sense().first() {
-        return Err(format!("is faulty: {}", fault.message));
+        return Err(format!("is faulty: {}", fault.message).into());
     }
     Ok(ImportedSeries {
         mesh,
@@ -221,7 +228,10 @@ fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSe
 }
 
 /// The array of a name; without one the displacement among arrays of vectors, or the only one.
-fn choose<T>(mut arrays: Vec<(String, T)>, wanted: Option<&str>) -> Result<(String, T), String> {
+fn choose<T>(
+    mut arrays: Vec<(String, T)>,
+    wanted: Option<&str>,
+) -> Result<(String, T), Unreadable> {
     let names: Vec<String> = arrays.iter().map(|(name, _)| name.clone()).collect();
     if names.is_empty() {
         return Err("holds no vectors at its points, and so no displacement".into());

@@ -16,6 +16,7 @@
 use std::collections::HashMap;
 
 use super::raw::Raw;
+use super::unreadable::Unreadable;
 use crate::mesh::cell_shape::CellShape;
 
 /// A file, before a step is chosen.
@@ -64,7 +65,7 @@ struct Reader {
 ///
 /// # Errors
 /// Says what is wrong or cannot be read.
-pub fn read(text: &str) -> Result<Results, String> {
+pub fn read(text: &str) -> Result<Results, Unreadable> {
     let mut reader = Reader {
         results: Results::default(),
         block: Block::Other,
@@ -89,7 +90,7 @@ pub fn read(text: &str) -> Result<Results, String> {
 }
 
 impl Reader {
-    fn line(&mut self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<(), String> {
+    fn line(&mut self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<(), Unreadable> {
         let words: Vec<&str> = line.split_whitespace().collect();
         match (&self.block, words.as_slice()) {
             (_, ["2C" | "3C", .., format]) => {
@@ -142,20 +143,20 @@ impl Reader {
         Ok(())
     }
 
-    fn keep_element(&mut self) -> Result<(), String> {
+    fn keep_element(&mut self) -> Result<(), Unreadable> {
         self.solid |= keep(&mut self.results.raw, self.element.take())?;
         Ok(())
     }
 
-    fn node(&self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<u64, String> {
+    fn node(&self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<u64, Unreadable> {
         let number = line
             .get(3..3 + self.width)
             .and_then(|field| field.trim().parse().ok());
-        number.ok_or_else(|| fault("number of a node"))
+        number.ok_or_else(|| fault("number of a node").into())
     }
 }
 
-fn digits(format: &str) -> Result<usize, String> {
+fn digits(format: &str) -> Result<usize, Unreadable> {
     match format {
         "0" => Ok(5),
         "1" => Ok(10),
@@ -178,7 +179,7 @@ fn numbers(line: &str, width: usize) -> Option<[f64; 3]> {
 }
 
 /// Keeps an element as a cell; says whether it was a solid.
-fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, String> {
+fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, Unreadable> {
     let Some((number, nodes)) = element else {
         return Ok(false);
     };
@@ -186,13 +187,14 @@ fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, Strin
     let Some((_, shape, count)) = kind else {
         return Err(format!(
             "has elements of the kind {number}; a sheet consists of triangles, quadrilaterals, wedges and hexahedra"
-        ));
+        ).into());
     };
     if nodes.len() != *count {
         return Err(format!(
             "has an element of {} nodes where {count} belong",
             nodes.len()
-        ));
+        )
+        .into());
     }
     // The middles of the lower face follow the corners of both faces.
     let (corners, own) = (shape.corners(), shape.nodes());
@@ -205,7 +207,7 @@ fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, Strin
 }
 
 /// Takes the mean displacement of all nodes above each other.
-fn flatten(results: &mut Results) -> Result<(), String> {
+fn flatten(results: &mut Results) -> Result<(), Unreadable> {
     let places = &results.raw.places;
     let key = |place: &[f64; 3]| [place[0] + 0.0, place[1] + 0.0].map(f64::to_bits);
     let mut columns: HashMap<[u64; 2], Vec<u64>> = HashMap::new();

@@ -4,13 +4,14 @@ use std::collections::HashMap;
 use std::str::{FromStr, SplitWhitespace};
 
 use super::raw::{BINARY, Displacements, Raw, Step};
+use super::unreadable::Unreadable;
 use crate::mesh::cell_shape::CellShape;
 
 /// Reads the text of a file.
 ///
 /// # Errors
 /// Says what is wrong or cannot be read.
-pub fn read(text: &str) -> Result<Raw, String> {
+pub fn read(text: &str) -> Result<Raw, Unreadable> {
     let mut format = section(text, "MeshFormat")?;
     let version: f64 = format.next()?;
     if format.next::<i64>()? != 0 {
@@ -20,7 +21,7 @@ pub fn read(text: &str) -> Result<Raw, String> {
     match version {
         v if (2.0..3.0).contains(&v) => version_2(text, &names),
         v if (4.1..5.0).contains(&v) => version_4(text, &names),
-        other => Err(format!("has the format {other}; 2.2 and 4.1 can be read")),
+        other => Err(format!("has the format {other}; 2.2 and 4.1 can be read").into()),
     }
 }
 
@@ -28,7 +29,7 @@ pub fn read(text: &str) -> Result<Raw, String> {
 ///
 /// # Errors
 /// Says what is wrong.
-pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, String> {
+pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, Unreadable> {
     let mut views: Vec<(String, Vec<_>)> = Vec::new();
     for section in text.split("$NodeData").skip(1) {
         let section = section.split("$EndNodeData").next().unwrap_or_default();
@@ -58,7 +59,7 @@ pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, String> {
 }
 
 /// One step of a view after its names; `None` where its values are no vectors.
-fn view_step(words: &mut Words) -> Result<Option<Step>, String> {
+fn view_step(words: &mut Words) -> Result<Option<Step>, Unreadable> {
     let reals: Vec<f64> = (0..words.next::<usize>()?)
         .map(|_| words.next())
         .collect::<Result<_, _>>()?;
@@ -91,32 +92,32 @@ struct Words<'a> {
 }
 
 impl Words<'_> {
-    fn next<T: FromStr>(&mut self) -> Result<T, String> {
+    fn next<T: FromStr>(&mut self) -> Result<T, Unreadable> {
+        let name = self.name;
         let word = self.words.next();
-        word.and_then(|word| word.parse().ok())
-            .ok_or_else(|| match word {
-                None => format!("ends within ${}", self.name),
-                Some(word) => format!("has \"{word}\" in ${}, where a number should be", self.name),
-            })
+        let word = word.ok_or_else(|| format!("ends within ${name}"))?;
+        let number = word.parse().ok();
+        Ok(number.ok_or_else(|| format!("has \"{word}\" in ${name}, where a number should be"))?)
     }
 
-    fn skip(&mut self, count: usize) -> Result<(), String> {
+    fn skip(&mut self, count: usize) -> Result<(), Unreadable> {
         (0..count).try_for_each(|_| self.next::<f64>().map(|_| ()))
     }
 
     /// A whole number; some programs write it with a decimal point.
-    fn whole(&mut self) -> Result<u64, String> {
+    fn whole(&mut self) -> Result<u64, Unreadable> {
         let number: f64 = self.next()?;
         if number < 0.0 || number.fract() != 0.0 {
             return Err(format!(
                 "has {number} in ${}, where a whole number should be",
                 self.name
-            ));
+            )
+            .into());
         }
         Ok(number as u64)
     }
 
-    fn list(&mut self, count: usize) -> Result<Vec<u64>, String> {
+    fn list(&mut self, count: usize) -> Result<Vec<u64>, Unreadable> {
         (0..count).map(|_| self.whole()).collect()
     }
 }
@@ -131,7 +132,7 @@ fn body<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     )
 }
 
-fn section<'a>(text: &'a str, name: &'static str) -> Result<Words<'a>, String> {
+fn section<'a>(text: &'a str, name: &'static str) -> Result<Words<'a>, Unreadable> {
     let body = body(text, name).ok_or_else(|| format!("has no ${name}"))?;
     Ok(Words {
         name,
@@ -139,7 +140,7 @@ fn section<'a>(text: &'a str, name: &'static str) -> Result<Words<'a>, String> {
     })
 }
 
-fn names(text: &str) -> Result<Names, String> {
+fn names(text: &str) -> Result<Names, Unreadable> {
     let Some(body) = body(text, "PhysicalNames") else {
         return Ok(Names::new());
     };
@@ -173,7 +174,7 @@ enum Kind {
     Cell(CellShape),
 }
 
-fn kind(number: i64) -> Result<(Kind, usize), String> {
+fn kind(number: i64) -> Result<(Kind, usize), Unreadable> {
     Ok(match number {
         15 => (Kind::Point, 1),
         1 => (Kind::Line, 2),
@@ -186,7 +187,7 @@ fn kind(number: i64) -> Result<(Kind, usize), String> {
         other => {
             return Err(format!(
                 "has elements of Gmsh's type {other}; triangles with 3 or 6 nodes and quadrilaterals with 4, 8 or 9 can be read"
-            ));
+            ).into());
         }
     })
 }
@@ -213,7 +214,7 @@ impl Raw {
     }
 }
 
-fn version_2(text: &str, names: &Names) -> Result<Raw, String> {
+fn version_2(text: &str, names: &Names) -> Result<Raw, Unreadable> {
     let mut raw = Raw::default();
     let mut words = section(text, "Nodes")?;
     for _ in 0..words.next::<usize>()? {
@@ -240,7 +241,7 @@ fn version_2(text: &str, names: &Names) -> Result<Raw, String> {
     Ok(raw)
 }
 
-fn version_4(text: &str, names: &Names) -> Result<Raw, String> {
+fn version_4(text: &str, names: &Names) -> Result<Raw, Unreadable> {
     let mut raw = Raw::default();
     let groups = entities(text, names)?;
     let mut words = section(text, "Nodes")?;
@@ -276,7 +277,7 @@ fn version_4(text: &str, names: &Names) -> Result<Raw, String> {
 }
 
 /// The names of the physical groups of points and curves, by dimension and number of the entity.
-fn entities(text: &str, names: &Names) -> Result<HashMap<(i64, i64), Vec<String>>, String> {
+fn entities(text: &str, names: &Names) -> Result<HashMap<(i64, i64), Vec<String>>, Unreadable> {
     let mut groups = HashMap::new();
     if body(text, "Entities").is_none() {
         return Ok(groups);

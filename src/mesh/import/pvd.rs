@@ -1,5 +1,6 @@
 //! ParaView's collections of files (`.pvd`).
 
+use super::unreadable::Unreadable;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
@@ -7,7 +8,7 @@ use quick_xml::{Reader, XmlVersion};
 ///
 /// # Errors
 /// Says what is wrong.
-pub fn read(text: &str) -> Result<Vec<(f64, String)>, String> {
+pub fn read(text: &str) -> Result<Vec<(f64, String)>, Unreadable> {
     let mut reader = Reader::from_str(text);
     let mut files = Vec::new();
     loop {
@@ -17,12 +18,12 @@ pub fn read(text: &str) -> Result<Vec<(f64, String)>, String> {
             }
             Ok(Event::Eof) => return Ok(files),
             Ok(_) => {}
-            Err(cause) => return Err(format!("is no XML: {cause}")),
+            Err(cause) => return Err(format!("is no XML: {cause}").into()),
         }
     }
 }
 
-fn data_set(tag: &BytesStart) -> Result<(f64, String), String> {
+fn data_set(tag: &BytesStart) -> Result<(f64, String), Unreadable> {
     let value = |name: &str| {
         let attribute = tag.try_get_attribute(name).ok().flatten();
         let text = attribute.and_then(|attribute| {

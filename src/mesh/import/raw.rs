@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
+use super::unreadable::Unreadable;
 use crate::document::file;
 use crate::mesh::cell_shape::CellShape;
 use crate::mesh::cells::Mesh;
@@ -27,14 +28,14 @@ pub struct Raw {
 }
 
 /// The bytes of a file.
-pub fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, Unreadable> {
     let bytes = file::read_bytes(path, file::MOST_OF_DATA);
-    bytes.map_err(|fault| format!("cannot be read: {fault}"))
+    bytes.map_err(|fault| format!("cannot be read: {fault}").into())
 }
 
 /// The text of a file.
-pub fn read_text(path: &Path) -> Result<String, String> {
-    String::from_utf8(read_bytes(path)?).map_err(|_| BINARY.to_owned())
+pub fn read_text(path: &Path) -> Result<String, Unreadable> {
+    String::from_utf8(read_bytes(path)?).map_err(|_| BINARY.into())
 }
 
 pub const BINARY: &str = "is a binary file; save it as ASCII (Mesh.Binary = 0 in Gmsh) or as .vtu";
@@ -77,7 +78,7 @@ impl Raw {
         }
     }
 
-    pub fn mesh(self, unit: f64) -> Result<Mesh, String> {
+    pub fn mesh(self, unit: f64) -> Result<Mesh, Unreadable> {
         if self.cells.is_empty() {
             return Err("holds no triangles or quadrilaterals".into());
         }
@@ -86,18 +87,19 @@ impl Raw {
         let mut height: Option<f64> = None;
         for name in used {
             let Some([x, y, z]) = self.places.get(&name) else {
-                return Err(format!(
-                    "has a cell with the node {name}, which it does not hold"
-                ));
+                return Err(
+                    format!("has a cell with the node {name}, which it does not hold").into(),
+                );
             };
             if [x, y, z].iter().any(|x| !x.is_finite()) {
-                return Err(format!("has the node {name} at a place that is no number"));
+                return Err(format!("has the node {name} at a place that is no number").into());
             }
             let plane = *height.get_or_insert(*z);
             if (z - plane).abs() > 1e-9 * (x.abs() + y.abs()).max(1e-300) {
                 return Err(format!(
                     "is not flat: the node {name} lies at z = {z}, others at {plane}"
-                ));
+                )
+                .into());
             }
             names.insert(name, nodes.len());
             nodes.push([unit * x, unit * y]);

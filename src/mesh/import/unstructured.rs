@@ -1,6 +1,7 @@
 //! VTK's unstructured grids.
 
 use super::raw::Raw;
+use super::unreadable::Unreadable;
 use crate::mesh::cell_shape::CellShape;
 
 /// Cell arrays in which meshio and Gmsh keep the numbers of physical groups.
@@ -32,7 +33,7 @@ impl UnstructuredGrid {
     ///
     /// # Errors
     /// Says which cells cannot be read.
-    pub fn raw(&self) -> Result<Raw, String> {
+    pub fn raw(&self) -> Result<Raw, Unreadable> {
         let mut raw = Raw::default();
         for (name, place) in (0..).zip(self.points.chunks_exact(3)) {
             raw.places.insert(name, [place[0], place[1], place[2]]);
@@ -58,7 +59,7 @@ impl UnstructuredGrid {
 }
 
 /// The kind of a face by VTK's number.
-fn shape(kind: u8, nodes: usize) -> Result<CellShape, String> {
+fn shape(kind: u8, nodes: usize) -> Result<CellShape, Unreadable> {
     let shape = match (kind, nodes) {
         (5, _) | (69, 3) => CellShape::Triangle3,
         (22, _) | (69, 6) => CellShape::Triangle6,
@@ -69,12 +70,12 @@ fn shape(kind: u8, nodes: usize) -> Result<CellShape, String> {
             return Err(format!(
                 "has cells of VTK's kind {kind} with {nodes} nodes; triangles of three and six nodes and \
                  quadrilaterals of four, eight and nine can be read"
-            ));
+            ).into());
         }
     };
     if nodes != shape.nodes() {
         let belong = shape.nodes();
-        return Err(format!("has a cell of {nodes} nodes where {belong} belong"));
+        return Err(format!("has a cell of {nodes} nodes where {belong} belong").into());
     }
     Ok(shape)
 }

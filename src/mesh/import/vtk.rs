@@ -8,6 +8,7 @@ use vtkio::model::{
 };
 
 use super::raw::{Raw, read_bytes};
+use super::unreadable::Unreadable;
 use super::unstructured::{Arrays, CUT_OFF, UnstructuredGrid};
 use super::vtu;
 
@@ -15,7 +16,7 @@ use super::vtu;
 ///
 /// # Errors
 /// Says what is wrong or cannot be read.
-pub fn read(path: &Path) -> Result<Raw, String> {
+pub fn read(path: &Path) -> Result<Raw, Unreadable> {
     grid(path)?.raw()
 }
 
@@ -23,7 +24,7 @@ pub fn read(path: &Path) -> Result<Raw, String> {
 ///
 /// # Errors
 /// Says what is wrong or cannot be read.
-pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), String> {
+pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), Unreadable> {
     let grid = grid(path)?;
     let raw = grid.raw()?;
     let points = raw.places.len();
@@ -33,7 +34,7 @@ pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), String> {
     Ok((raw, arrays.collect()))
 }
 
-fn grid(path: &Path) -> Result<UnstructuredGrid, String> {
+fn grid(path: &Path) -> Result<UnstructuredGrid, Unreadable> {
     let bytes = read_bytes(path)?;
     let is_legacy = bytes.starts_with(b"# vtk DataFile");
     if is_legacy {
@@ -44,13 +45,13 @@ fn grid(path: &Path) -> Result<UnstructuredGrid, String> {
 }
 
 /// A legacy file.
-fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, String> {
+fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
     check_legacy(bytes)?;
     // The library panics on some files that are cut off.
     let parsed = catch_unwind(AssertUnwindSafe(|| Vtk::parse_legacy_be(bytes)));
     let file = match parsed {
         Ok(Ok(file)) => file,
-        Ok(Err(cause)) => return Err(format!("cannot be read as VTK: {cause}")),
+        Ok(Err(cause)) => return Err(format!("cannot be read as VTK: {cause}").into()),
         Err(_) => return Err("cannot be read as VTK: it is cut off or damaged".into()),
     };
     let DataSet::UnstructuredGrid { pieces, .. } = file.data else {
@@ -64,7 +65,7 @@ fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, String> {
 
 /// Refuses legacy files of the version 5, which list their cells in another way, and numbers of points or cells that
 /// the file cannot hold.
-fn check_legacy(bytes: &[u8]) -> Result<(), String> {
+fn check_legacy(bytes: &[u8]) -> Result<(), Unreadable> {
     if bytes.starts_with(b"# vtk DataFile Version 5") {
         return Err(
             "is a legacy VTK file of the version 5; save it as .vtu or in version 4.2".into(),
@@ -89,16 +90,13 @@ fn check_legacy(bytes: &[u8]) -> Result<(), String> {
         // A value takes a byte at least.
         let mut numbers = words.filter_map(|word| word.parse::<u64>().ok());
         if let Some(number) = numbers.find(|number| *number > bytes.len() as u64) {
-            return Err(format!(
-                "says `{}`, and is too short for {number}",
-                line.trim()
-            ));
+            return Err(format!("says `{}`, and is too short for {number}", line.trim()).into());
         }
     }
     Ok(())
 }
 
-fn of_piece(piece: &UnstructuredGridPiece) -> Result<UnstructuredGrid, String> {
+fn of_piece(piece: &UnstructuredGridPiece) -> Result<UnstructuredGrid, Unreadable> {
     let points = numbers(&piece.points).ok_or("has points that are no numbers")?;
     let kinds = piece.cells.types.iter().map(|kind| *kind as u8);
     Ok(UnstructuredGrid {
@@ -127,7 +125,7 @@ fn numbers(buffer: &IOBuffer) -> Option<Vec<f64>> {
 }
 
 /// The nodes of each cell.
-fn cells(vertices: &VertexNumbers) -> Result<Vec<Vec<u64>>, String> {
+fn cells(vertices: &VertexNumbers) -> Result<Vec<Vec<u64>>, Unreadable> {
     let mut cells = Vec::new();
     match vertices {
         VertexNumbers::XML {

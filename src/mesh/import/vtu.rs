@@ -20,6 +20,7 @@ use super::unstructured::{CUT_OFF, UnstructuredGrid};
 
 mod decode;
 
+use super::unreadable::Unreadable;
 use decode::{Header, Numbers, decode_base64, inflate, width};
 
 /// Points and cells that are read at most.
@@ -42,12 +43,12 @@ impl DataArray {
         self.attributes.get(name).map_or("", String::as_str)
     }
 
-    fn components(&self) -> Result<usize, String> {
+    fn components(&self) -> Result<usize, Unreadable> {
         match self.attribute("NumberOfComponents") {
             "" => Ok(1),
             text => text.parse().map_err(|_| {
                 let name = self.attribute("Name");
-                format!("has the array `{name}` with {text} components")
+                format!("has the array `{name}` with {text} components").into()
             }),
         }
     }
@@ -67,7 +68,7 @@ struct Layout {
 ///
 /// # Errors
 /// Says what is wrong or cannot be read.
-pub fn read(bytes: &[u8]) -> Result<UnstructuredGrid, String> {
+pub fn read(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
     let (head, appended) = split_appended(bytes);
     let head = std::str::from_utf8(head).map_err(|_| "is no XML: its head is no text")?;
     let layout = Layout::of(head)?;
@@ -91,7 +92,7 @@ fn split_appended(bytes: &[u8]) -> (&[u8], &[u8]) {
     }
 }
 
-fn attributes(tag: &BytesStart) -> Result<Attributes, String> {
+fn attributes(tag: &BytesStart) -> Result<Attributes, Unreadable> {
     let mut all = Attributes::new();
     for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute.map_err(|cause| format!("is no XML: {cause}"))?;
@@ -103,7 +104,7 @@ fn attributes(tag: &BytesStart) -> Result<Attributes, String> {
 }
 
 impl Layout {
-    fn of(text: &str) -> Result<Self, String> {
+    fn of(text: &str) -> Result<Self, Unreadable> {
         let mut reader = Reader::from_str(text);
         let mut layout = Self::default();
         let (mut part, mut open) = (String::new(), None::<DataArray>);
@@ -132,12 +133,12 @@ impl Layout {
                 Ok(Event::End(_)) => within = within.saturating_sub(1),
                 Ok(Event::Eof) => return Ok(layout),
                 Ok(_) => {}
-                Err(cause) => return Err(format!("is no XML: {cause}")),
+                Err(cause) => return Err(format!("is no XML: {cause}").into()),
             }
         }
     }
 
-    fn enter(&mut self, name: &str, tag: &BytesStart, part: &mut String) -> Result<(), String> {
+    fn enter(&mut self, name: &str, tag: &BytesStart, part: &mut String) -> Result<(), Unreadable> {
         match name {
             "VTKFile" => self.file = attributes(tag)?,
             "Piece" if self.piece.is_some() => {
@@ -155,7 +156,7 @@ impl Layout {
     }
 }
 
-fn encoded(tag: &BytesStart) -> Result<DataArray, String> {
+fn encoded(tag: &BytesStart) -> Result<DataArray, Unreadable> {
     Ok(DataArray {
         attributes: attributes(tag)?,
         text: String::new(),
@@ -175,7 +176,7 @@ struct XmlFile<'a> {
 }
 
 impl<'a> XmlFile<'a> {
-    fn new(layout: &'a Layout, appended: &'a [u8]) -> Result<Self, String> {
+    fn new(layout: &'a Layout, appended: &'a [u8]) -> Result<Self, Unreadable> {
         let file = |name: &str| layout.file.get(name).map_or("", String::as_str);
         if layout.file.is_empty() {
             return Err("cannot be read as VTK: it has no VTKFile".into());
@@ -189,16 +190,17 @@ impl<'a> XmlFile<'a> {
             other => {
                 return Err(format!(
                     "is compressed by {other}; save it without compression or with zlib"
-                ));
+                )
+                .into());
             }
         };
         let piece = layout.piece.as_ref().ok_or("has no piece")?;
-        let count = |name: &str| {
+        let count = |name: &str| -> Result<usize, Unreadable> {
             let number = piece.get(name).and_then(|text| text.trim().parse().ok());
             let number = number.ok_or_else(|| format!("has a piece without {name}"))?;
             match number {
                 0..=MOST => Ok(number),
-                _ => Err(format!("has {name} = {number}; at most {MOST} are read")),
+                _ => Err(format!("has {name} = {number}; at most {MOST} are read").into()),
             }
         };
         let arrays = layout.arrays.iter();
@@ -220,7 +222,7 @@ impl<'a> XmlFile<'a> {
         })
     }
 
-    fn grid(&self) -> Result<UnstructuredGrid, String> {
+    fn grid(&self) -> Result<UnstructuredGrid, Unreadable> {
         let points = self.needed("Points", None)?;
         if points.components()? != 3 {
             return Err("has points without three coordinates".into());
@@ -249,7 +251,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The array of a name in a part, or its only one.
-    fn needed(&self, part: &str, name: Option<&str>) -> Result<&'a DataArray, String> {
+    fn needed(&self, part: &str, name: Option<&str>) -> Result<&'a DataArray, Unreadable> {
         let mut own = self.layout.arrays.iter().filter(|(of, _)| of == part);
         let found = own.find(|(_, array)| name.is_none_or(|name| array.attribute("Name") == name));
         let (_, array) = found.ok_or_else(|| {
@@ -260,7 +262,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The arrays of a part that hold numbers, with the names of their own.
-    fn arrays(&self, part: &str, tuples: usize) -> Result<Vec<(String, Vec<f64>)>, String> {
+    fn arrays(&self, part: &str, tuples: usize) -> Result<Vec<(String, Vec<f64>)>, Unreadable> {
         let own = self.layout.arrays.iter().filter(|(of, _)| of == part);
         let numbers = own.filter(|(_, array)| width(array.attribute("type")).is_some());
         let decode = |(_, array): &(String, DataArray)| {
@@ -278,7 +280,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// So many numbers of an array.
-    fn values(&self, array: &DataArray, count: usize) -> Result<Vec<f64>, String> {
+    fn values(&self, array: &DataArray, count: usize) -> Result<Vec<f64>, Unreadable> {
         let name = array.attribute("Name");
         let named = |reason: String| format!("has the array `{name}`, which {reason}");
         let kind = array.attribute("type");
@@ -289,10 +291,11 @@ impl<'a> XmlFile<'a> {
             let values = values.map_err(|_| named("holds something that is no number".into()))?;
             return match values.len() == count {
                 true => Ok(values),
-                false => Err(named(format!("does not have {count} values"))),
+                false => Err(named(format!("does not have {count} values")).into()),
             };
         }
-        let bytes = self.bytes(array, count * width).map_err(named)?;
+        let bytes = self.bytes(array, count * width);
+        let bytes = bytes.map_err(|fault| named(fault.to_string()))?;
         let numbers = bytes.chunks_exact(width);
         Ok(numbers
             .map(|bytes| self.binary.number(kind, bytes))
@@ -300,11 +303,11 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The bytes of an array, of which there must be so many.
-    fn bytes(&self, array: &DataArray, wanted: usize) -> Result<Vec<u8>, String> {
+    fn bytes(&self, array: &DataArray, wanted: usize) -> Result<Vec<u8>, Unreadable> {
         let stored = match array.attribute("format") {
             "binary" => decode_base64(array.text.as_bytes())?,
             "appended" => self.appended(array)?,
-            other => return Err(format!("is in the format `{other}`")),
+            other => return Err(format!("is in the format `{other}`").into()),
         };
         let mut header = Header {
             numbers: self.binary,
@@ -314,14 +317,14 @@ impl<'a> XmlFile<'a> {
             let size = header.next()?;
             return match header.bytes.get(..wanted) {
                 Some(data) if size == wanted => Ok(data.to_vec()),
-                _ => Err(format!("has {size} bytes where {wanted} belong")),
+                _ => Err(format!("has {size} bytes where {wanted} belong").into()),
             };
         }
         inflate(header, wanted)
     }
 
     /// The bytes of an appended array, with what stands behind them.
-    fn appended(&self, array: &DataArray) -> Result<Vec<u8>, String> {
+    fn appended(&self, array: &DataArray) -> Result<Vec<u8>, Unreadable> {
         let start = array.attribute("offset").parse().ok();
         let start = start.filter(|start: &usize| *start < self.appended.len());
         let start = start.ok_or("begins behind the end of the file")?;

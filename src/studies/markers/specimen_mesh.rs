@@ -6,7 +6,7 @@ use super::request::{MeshSource, Request};
 use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, read_lines};
-use crate::mesh::{Allowed, CellShape, Mesh, Outline, OutlineFault, import};
+use crate::mesh::{CellShape, Exemptions, Mesh, Outline, OutlineFault, import};
 
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
@@ -95,7 +95,7 @@ fn in_outline(request: &Request, path: &Path, field: &MarkerFiles) -> Result<Spe
 
 /// The mesh that the field came on.
 fn of_field(mesh: &Mesh) -> SpecimenMesh {
-    let faults = mesh.faults(Allowed::default()).into_iter();
+    let faults = mesh.faults(Exemptions::default()).into_iter();
     let warnings = faults.map(|fault| Diagnostic {
         severity: Severity::Warning,
         message: format!("the field's own mesh: {}", fault.message),

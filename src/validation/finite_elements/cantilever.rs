@@ -17,13 +17,13 @@ use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::CellShape;
 use crate::problem::Load;
-use crate::validation::case::{Outcome, Prepared, Progress, check, mean, section};
+use crate::validation::case::{Computation, Outcome, Progress, check, mean, section};
 
 const LENGTH: f64 = 100.0;
 const HEIGHT: f64 = 10.0;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let cells = section(root, "mesh", |mesh| mesh.count("cells", 2, 40));
     Box::new(move |progress| compute(cells, progress))
 }

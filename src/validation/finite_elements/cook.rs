@@ -13,7 +13,7 @@ use crate::finite_element::convergence::{Richardson, richardson};
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::problem::Load;
 use crate::validation::case::{
-    Check, Outcome, Prepared, Progress, check, mesh_figure, section, table,
+    Check, Computation, Outcome, Progress, check, mesh_figure, section, table,
 };
 
 /// A dead shear traction in MPa, and how well the elements have to agree under it, in %.
@@ -41,7 +41,7 @@ const SHEARS: [Shear; 3] = [
 ];
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let cells = section(root, "mesh", |mesh| mesh.count("coarsest", 2, 40));
     Box::new(move |progress| compute(cells, progress))
 }

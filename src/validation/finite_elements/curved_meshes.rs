@@ -16,7 +16,7 @@ use crate::mesh::{CellShape, Mesh, Shape};
 use crate::problem::BoundaryProblem;
 use crate::studies::specimen::{self, Specimen};
 use crate::validation::case::{
-    Block, Check, Outcome, Prepared, Progress, check, mesh_figure, number, section, table,
+    Block, Check, Computation, Outcome, Progress, check, mesh_figure, number, section, table,
 };
 
 /// Kinds of cells with curved sides.
@@ -68,7 +68,7 @@ fn half_ring(cells: usize, kind: CellShape) -> Mesh {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let [cells, exact] = section(root, "mesh", |mesh| {
         [mesh.count("cells", 2, 8), mesh.count("exact", 16, 64)]
     });

@@ -14,7 +14,7 @@ use super::{held, misfit, solve, stress};
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
-use crate::validation::case::{Outcome, Prepared, Progress, check, mesh_figure, section};
+use crate::validation::case::{Computation, Outcome, Progress, check, mesh_figure, section};
 
 /// Hole diameter over width, and the concentration: Kirsch's, then Howland's.
 #[expect(clippy::approx_constant, reason = "3.14 is Howland's value")]
@@ -35,7 +35,7 @@ const LENGTH: f64 = 160.0;
 const STRAIN: f64 = 1e-6;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let cells = section(root, "mesh", |mesh| mesh.count("cells", 4, 100));
     Box::new(move |progress| compute(cells, progress))
 }

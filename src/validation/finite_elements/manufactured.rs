@@ -15,7 +15,9 @@ use crate::mesh::{CellShape, GAUSS_5, Mesh};
 use crate::problem::{BoundaryProblem, Support};
 use crate::results::{Axis, Line, LineChart, PALETTE, Stroke};
 use crate::solve::State;
-use crate::validation::case::{Check, Figure, Outcome, Prepared, Progress, check, line, section};
+use crate::validation::case::{
+    Check, Computation, Figure, Outcome, Progress, check, line, section,
+};
 
 /// For messages.
 const NAME: &str = "manufactured solution";
@@ -24,7 +26,7 @@ const NAME: &str = "manufactured solution";
 const SIDE: f64 = 10.0;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let cells = section(root, "mesh", |mesh| mesh.count("coarsest", 2, 32));
     let amplitude = section(root, "field", |field| {
         field.number("amplitude", Bound::Within(1e-3, 0.1))

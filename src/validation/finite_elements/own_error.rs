@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::document::Section;
 use crate::error::Error;
 use crate::mesh::CellShape;
-use crate::validation::case::{Outcome, Prepared, Progress, section};
+use crate::validation::case::{Computation, Outcome, Progress, section};
 use refinement::Refinement;
 
 mod graded;
@@ -22,7 +22,7 @@ struct Settings {
 }
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let settings = Settings {
         smooth: section(root, "smooth", |smooth| smooth.count("cells", 8, 64)),
         plate: section(root, "plate", |plate| plate.count("coarsest", 4, 20)),

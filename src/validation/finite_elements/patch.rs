@@ -9,12 +9,12 @@ use crate::material::curve::Mode;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Support};
 use crate::solve::assembly::derivative_errors;
-use crate::validation::case::{Check, Outcome, Prepared, Progress, check, section};
+use crate::validation::case::{Check, Computation, Outcome, Progress, check, section};
 
 const SIZE: [f64; 2] = [60.0, 40.0];
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let cells = section(root, "mesh", |mesh| mesh.count_pair("cells", 2, 60));
     let cells = cells.unwrap_or([2, 2]);
     let stretch = section(root, "load", |load| {

@@ -19,7 +19,7 @@ use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::problem::Load;
 use crate::solve::State;
 use crate::validation::case::{
-    Check, Outcome, Prepared, Progress, check, largest, mean, mesh_figure, section,
+    Check, Computation, Outcome, Progress, check, largest, mean, mesh_figure, section,
 };
 
 mod one_dimension;
@@ -33,7 +33,7 @@ const OUTER: f64 = 20.0;
 const LARGE_PRESSURE: f64 = 0.12;
 
 /// Reads a study of this case.
-pub fn prepare(root: &Section, _folder: &Path) -> Prepared {
+pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let cells = section(root, "mesh", |mesh| mesh.count("cells", 4, 100));
     Box::new(move |progress| compute(cells, progress))
 }

@@ -2,6 +2,7 @@
 
 use std::io::Read;
 
+use super::super::unreadable::Unreadable;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
@@ -50,7 +51,7 @@ pub struct Header<'a> {
 }
 
 impl Header<'_> {
-    pub fn next(&mut self) -> Result<usize, String> {
+    pub fn next(&mut self) -> Result<usize, Unreadable> {
         let (kind, width) = match self.numbers.wide_header {
             true => ("UInt64", 8),
             false => ("UInt32", 4),
@@ -62,7 +63,7 @@ impl Header<'_> {
 }
 
 /// The data of compressed blocks, of which there must be so many bytes.
-pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, String> {
+pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, Unreadable> {
     let (blocks, size, last) = (header.next()?, header.next()?, header.next()?);
     let full = if last == 0 {
         blocks
@@ -72,11 +73,9 @@ pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, String> {
     let total = full.checked_mul(size).and_then(|sum| sum.checked_add(last));
     // A block holds at least a byte, but for an array without values.
     if total != Some(wanted) || blocks > wanted.max(1) {
-        return Err(format!(
-            "does not have the {wanted} bytes that belong to it"
-        ));
+        return Err(format!("does not have the {wanted} bytes that belong to it").into());
     }
-    let sizes: Result<Vec<usize>, String> = (0..blocks).map(|_| header.next()).collect();
+    let sizes: Result<Vec<usize>, Unreadable> = (0..blocks).map(|_| header.next()).collect();
     let (mut data, mut rest) = (Vec::new(), header.bytes);
     for size in sizes? {
         let (block, behind) = rest.split_at_checked(size).ok_or("is cut off")?;
@@ -92,14 +91,12 @@ pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, String> {
     }
     match data.len() == wanted {
         true => Ok(data),
-        false => Err(format!(
-            "does not have the {wanted} bytes that belong to it"
-        )),
+        false => Err(format!("does not have the {wanted} bytes that belong to it").into()),
     }
 }
 
 /// Bytes from base64, in which white space may stand and several parts with their own padding may follow one another.
-pub fn decode_base64(text: &[u8]) -> Result<Vec<u8>, String> {
+pub fn decode_base64(text: &[u8]) -> Result<Vec<u8>, Unreadable> {
     // What follows appended data is XML again.
     let end = text.iter().position(|byte| *byte == b'<');
     let own = text[..end.unwrap_or(text.len())].iter().copied();

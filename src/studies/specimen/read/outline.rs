@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::document::{Bound, Section};
 use crate::error::Severity;
-use crate::mesh::{Allowed, CellShape, Mesh, MeshReading, Shape, import};
+use crate::mesh::{CellShape, Exemptions, Mesh, MeshReading, Shape, import};
 use crate::studies::specimen::problem::{MESH, Outline};
 use crate::units::Dimension;
 
@@ -56,7 +56,7 @@ pub fn read_outline(
 }
 
 /// The mesh of a file; `None` where it cannot be used, with the faults recorded.
-fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
+fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Exemptions)> {
     let file = section.text("file");
     let unit = section.unit("file_unit", Dimension::Length);
     let merge_nodes = section
@@ -66,9 +66,9 @@ fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Allowed)> {
         true => section.texts("allowed"),
         false => Vec::new(),
     };
-    let allowed = Allowed::of_names(names.iter().map(String::as_str));
+    let allowed = Exemptions::of_names(names.iter().map(String::as_str));
     if let Err(unknown) = &allowed {
-        let hint = format!("one of {}", Allowed::NAMES.join(", "));
+        let hint = format!("one of {}", Exemptions::NAMES.join(", "));
         section.fault("allowed", &unknown.to_string(), &hint);
     }
     if file.is_empty() {
