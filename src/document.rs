@@ -11,7 +11,7 @@ use toml::de::DeTable;
 
 use crate::budget::Budget;
 use crate::error::{Diagnostic, Error, Severity, Source};
-use crate::units::SIZES;
+use crate::units::{SIZES, on_the_end};
 
 mod comments;
 mod decimals;
@@ -188,6 +188,14 @@ pub enum Bound {
 impl Bound {
     /// The size of a thing, in mm.
     pub const SIZE: Self = Self::Range(SIZES[0], SIZES[1], "greater than zero, from 1 nm to 1 km");
+
+    /// A value, or the end of the bound that a conversion of units has rounded it away from.
+    fn on_the_end(self, value: f64) -> f64 {
+        match self {
+            Self::Within(low, high) | Self::Range(low, high, _) => on_the_end(value, [low, high]),
+            Self::Any | Self::Positive | Self::NonNegative => value,
+        }
+    }
 
     fn violation(self, value: f64) -> Option<String> {
         let (holds, wanted) = match self {

@@ -10,7 +10,7 @@ mod ranges;
 mod remedy;
 
 pub use linear::{Linear, LinearFault, parse_linear_length};
-pub use ranges::SIZES;
+pub use ranges::{SIZES, on_the_end};
 pub use remedy::bare_ratio;
 
 /// The kind of a physical quantity.
@@ -263,10 +263,8 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
 }
 
 fn admitted(value: f64, dimension: Dimension) -> Result<f64, QuantityFault> {
-    match dimension.admits(value) {
-        true => Ok(value),
-        false => Err(QuantityFault::OutOfRange(dimension)),
-    }
+    let admitted = dimension.admitted(value);
+    admitted.ok_or(QuantityFault::OutOfRange(dimension))
 }
 
 /// The factor from a unit by its name alone, such as `"kPa"`, to the internal unit of `dimension`; a ratio may be

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -123,10 +123,16 @@ fn manifest(folder: &Path) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-fn partial(folder: &Path) -> bool {
+/// A folder of files that are not in place yet.
+fn first_partial(folder: &Path) -> Option<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names = entries.map(|entry| entry.file_name().into_string().unwrap());
-    names.any(|name| name.starts_with(PARTIAL))
+    let is_partial = |name: &str| name.starts_with(PARTIAL);
+    let mut partial = entries.filter(|entry| is_partial(entry.file_name().to_str().unwrap()));
+    partial.next().map(|entry| entry.path())
+}
+
+fn partial(folder: &Path) -> bool {
+    first_partial(folder).is_some()
 }
 
 /// Every file that a collection or the manifest names is there.
@@ -154,41 +160,115 @@ fn wait_for(what: impl Fn() -> bool) {
     }
 }
 
+/// What the folder of a run that ends here holds: whether its files are all in place. Where they are, they are one of the
+/// whole sets and those that the manifest lists; where they are not, those on their way and those in place are.
+#[track_caller]
+fn assert_nothing_is_lost(folder: &Path, sets: &[(&str, BTreeMap<String, Vec<u8>>)]) -> bool {
+    let manifest = manifest(folder);
+    let mut left = results(folder);
+    let Some(moving) = manifest["moving"].as_object() else {
+        assert_eq!(manifest["complete"], true);
+        let listed = manifest["files"].as_object().unwrap().keys();
+        let there = files(folder);
+        let there = there.keys().filter(|name| *name != MANIFEST);
+        assert!(listed.eq(there), "the manifest lists what is there");
+        assert!(
+            sets.iter().any(|(_, set)| *set == left),
+            "{:?}",
+            left.keys()
+        );
+        return true;
+    };
+    let aside = folder.join(moving["from"].as_str().unwrap());
+    for stale in moving["stale"].as_array().unwrap() {
+        left.remove(stale.as_str().unwrap());
+    }
+    left.extend(results(&aside));
+    assert!(
+        sets.iter().any(|(_, set)| *set == left),
+        "{:?}",
+        left.keys()
+    );
+    false
+}
+
+/// Lets a process go on for a moment, a short one or one of a millisecond; false once it has ended.
+fn goes_on(child: &mut Child, short: bool) -> bool {
+    let (id, pause) = (child.id(), if short { "" } else { "sleep 0.001;" });
+    let script = format!(
+        "kill -CONT {id}; {pause} kill -STOP {id}; until ps -o state= -p {id} | grep -q '[TZ]'; do :; done"
+    );
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script]).stderr(Stdio::null());
+    shell.status().unwrap();
+    child.try_wait().unwrap().is_none()
+}
+
 #[test]
 fn a_run_killed_at_any_moment_leaves_the_old_results_or_the_new_ones() {
     let place = workplace();
     let (folder, output) = (place.path(), &place.path().join("o"));
-    let mut whole = Vec::new();
-    let mut longest = Duration::ZERO;
-    for study in ["b", "a"] {
-        let start = Instant::now();
+    let sets = ["b", "a"].map(|study| {
         run(folder, &format!("run {study}.toml --output o"));
-        longest = longest.max(start.elapsed());
-        whole.push((study, results(output)));
-    }
-    assert_ne!(whole[0].1.len(), whole[1].1.len());
+        (study, results(output))
+    });
+    assert_ne!(sets[0].1.len(), sets[1].1.len());
+    let mut on_their_way = 0;
     for moment in 0..30 {
-        let (new, _) = whole[moment % 2];
+        let (new, _) = sets[moment % 2];
         let mut child = start(folder, &format!("run {new}.toml --output o"));
-        // Two thirds of the moments fall into the last tenth, when files are written and moved.
-        let share = match moment {
-            0..10 => 0.09 * moment as f64,
-            _ => 0.9 + 0.01 * (moment - 10) as f64,
-        };
-        std::thread::sleep(longest.mul_f64(share));
+        // The first of the moments pass while it computes and writes; the others while it moves its files into place.
+        let written =
+            || first_partial(output).is_some_and(|aside| aside.join("report.md").exists());
+        let mut steps = 8 * moment;
+        while steps > 0 && goes_on(&mut child, written()) {
+            on_their_way += usize::from(!assert_nothing_is_lost(output, &sets));
+            steps -= usize::from(moment < 10 || written());
+        }
         let _ = child.kill();
         child.wait().unwrap();
-        assert_whole(output);
-        let left = results(output);
-        let is_one = whole.iter().any(|(_, results)| *results == left);
-        let moving = manifest(output)["moving"].is_object();
-        assert!(is_one || moving, "moment {moment}: {:?}", left.keys());
+        assert_nothing_is_lost(output, &sets);
     }
-    for (study, results_of) in &whole {
+    assert!(
+        on_their_way > 0,
+        "no moment fell between the first file and the last"
+    );
+    for (study, set) in &sets {
         run(folder, &format!("run {study}.toml --output o"));
-        assert_eq!(results(output), *results_of);
-        assert_whole(output);
+        assert_eq!(results(output), *set);
+        assert!(assert_nothing_is_lost(output, &sets));
         assert!(!partial(output), "leftovers are swept");
+    }
+}
+
+/// A fit on a disk that takes the card, but not the picture.
+#[test]
+fn a_fit_is_written_as_a_whole_or_not_at_all() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("f"));
+    let data = common::root().join("materials/data");
+    let fit = |of: &str| {
+        let data = data.join(of);
+        format!(
+            "materials fit {} --law yeoh --name gel --output f",
+            data.display()
+        )
+    };
+    run(folder, &fit("pva_10_uniaxial.csv"));
+    let before = files(output);
+    assert_eq!(before.len(), 4, "{:?}", before.keys());
+    let other = fit("treloar_1944_uniaxial.csv");
+    let ended = shell(
+        folder,
+        &format!("trap '' XFSZ; ulimit -f 24; \"$G\" {other}"),
+    );
+    assert_ends(&ended, 4, "cannot write f/gel.png");
+    assert_eq!(files(output), before);
+    run(folder, &other);
+    let after = files(output);
+    for ending in ["toml", "json", "png"] {
+        let name = format!("gel.{ending}");
+        assert_ne!(after[&name], before[&name], "{name}");
     }
 }
 
@@ -222,12 +302,7 @@ fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
     assert_eq!(whole.len(), 4 * 5 + 2 + 1 + 10, "{:?}", whole.keys());
     fs::remove_dir_all(output).unwrap();
 
-    let first = |of: &str| {
-        let entries = fs::read_dir(output).into_iter().flatten().flatten();
-        let mut folders =
-            entries.filter(|entry| entry.file_name().to_str().unwrap().starts_with(PARTIAL));
-        folders.next().map(|partial| partial.path().join(of))
-    };
+    let first = |of: &str| first_partial(output).map(|partial| partial.join(of));
     let is_done = |frame: &str| first(&format!(".parts/{frame}")).is_some_and(|part| part.exists());
     let kill_after = |frame: &str| {
         let mut child = start(folder, CORRECT);

@@ -3,10 +3,12 @@
 use std::fs;
 use std::sync::Arc;
 
+use gelbench::budget::Budget;
 use gelbench::material::NeoHooke;
 use gelbench::mesh::{CellShape, Mesh, MeshReading, Shape, import};
 use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
+use gelbench::validation::case_of;
 
 mod common;
 
@@ -348,4 +350,42 @@ fn the_same_mesh_in_other_numbers_places_and_units_has_the_same_force() {
         other.name_boundary("moved", |[x, _]| (x - 6.0).abs() < 1e-9);
         same("as .vtu", force(&other, way), expected);
     }
+}
+
+/// What is computed of a mesh of eight squares where so many cells are allowed, and what is warned of.
+fn within(cells: f64) -> (String, Vec<String>) {
+    let folder = folder_with("");
+    fs::write(
+        folder.path().join("strip.msh"),
+        MeshFile::squares([4, 2]).msh(),
+    )
+    .unwrap();
+    let text = study("");
+    let case = case_of("small.toml", &text).unwrap().unwrap();
+    let budget = Budget {
+        cells,
+        ..Budget::USUAL
+    };
+    let ready = case.read(&folder.path().join("small.toml"), &text, budget);
+    let results = ready.unwrap().compute(&|_| ()).unwrap();
+    (format!("{:?}", results.report()), results.read_warnings)
+}
+
+#[test]
+fn a_mesh_that_cannot_be_halved_twice_is_halved_less_and_that_is_told() {
+    let (report, warnings) = within(128.0);
+    assert!(report.contains("on 128 cells, the finest of three meshes"));
+    assert_eq!(warnings, [""; 0]);
+    let (report, warnings) = within(127.0);
+    assert!(report.contains("on 32 cells, the finer of two meshes"));
+    assert!(
+        warnings[0].contains("needs about 128 cells, and 127 are allowed: they are on two meshes"),
+        "{warnings:?}"
+    );
+    let (report, warnings) = within(8.0);
+    assert!(report.contains("on 8 cells") && !report.contains("meshes,"));
+    assert!(
+        warnings[0].contains("they are on this mesh alone"),
+        "{warnings:?}"
+    );
 }

@@ -98,7 +98,7 @@ pub fn not_for_other_codes(case: &Kind) -> Error {
 fn shape(title: &str, specimen: &Specimen, options: &Options) -> Result<InputFile, Error> {
     let mesh = match (specimen.refinement, options.level) {
         (_, Level::Fine) => specimen::finest_mesh(specimen)?,
-        (None, level) => specimen.outline.reference_meshes()[level as usize].clone(),
+        (None, level) => specimen.outline.reference_mesh(level as usize),
         (Some(_), _) => {
             let message = "a study with `adaptive = true` has one mesh, the refined one";
             return Err(Error::input(message, "leave out --mesh"));

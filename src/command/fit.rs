@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 
-use super::fit_message;
 use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
+use super::{fit_message, interrupt};
 use crate::calibration::{
     self, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, TestData, Weighting,
 };
@@ -16,7 +16,7 @@ use crate::material::Card;
 use crate::material::card::FitRecord;
 use crate::material::parameters::StressMeasure;
 use crate::material::registry::{CARDS, DATA, LAWS, Law};
-use crate::output;
+use crate::output::{self, ResultFolder};
 use crate::results::{fit_json, fit_picture};
 
 #[derive(Args)]
@@ -173,36 +173,68 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     drop(progress);
     let first = arguments.data[0].file_stem().unwrap_or_default();
     let usual = || format!("{}-{}", first.to_string_lossy(), fit.law.name);
-    let stem = arguments.name.unwrap_or_else(usual);
-    if Path::new(&stem).file_name().is_none() {
+    let name = arguments.name.unwrap_or_else(usual);
+    let place = arguments.output.join(&name);
+    let Some(stem) = Path::new(&name).file_name().and(place.file_name()) else {
         return Err(Error::input(
-            format!("--name \"{stem}\" names no file"),
+            format!("--name \"{name}\" names no file"),
             "such as --name my-gel",
         ));
-    }
-    let target = |ending: &str| arguments.output.join(format!("{stem}.{ending}"));
-    let card = target("toml");
-    guard(&card, &[target("png"), target("json")])?;
-    let folder = card.parent().unwrap_or(Path::new("."));
-    let relative = |path: &PathBuf| relative(path, folder);
-    let provenance = Provenance {
-        files: arguments.data.iter().map(relative).collect(),
+    };
+    let stem = stem.to_string_lossy();
+    let folder = place.parent().unwrap_or(Path::new("."));
+    let written = Written {
+        fit: &fit,
+        tests: &tests,
+        data: &arguments.data,
         reading,
     };
-    let text = calibration::card_text(&fit, &tests, &provenance);
-    let json = format!("{:#}\n", fit_json(&fit, &tests));
-    output::save(&target("json"), json.as_bytes())?;
-    output::save(&card, text.as_bytes())?;
-    match output::png(&fit_picture(&fit, &tests)) {
-        Ok(picture) => drop(output::save(&target("png"), &picture)?),
-        Err(fault) => warn(&[Diagnostic::warning("", format!("no picture: {fault}"))]),
-    }
+    let warning = written.into_folder(folder, &stem)?;
+    warn(warning.as_slice());
+    let card = folder.join(format!("{stem}.toml"));
     let card = card.display();
     print(&format!(
         "{}\nwritten: {card} with .png and .json; use it in a study as material.card = \"{card}\"\n",
         fit_message::fit(&fit, &tests)
     ))?;
     Ok(0)
+}
+
+/// What is written of a fit.
+struct Written<'a> {
+    fit: &'a Fit,
+    tests: &'a [TestData],
+    data: &'a [PathBuf],
+    reading: Statements,
+}
+
+impl Written<'_> {
+    /// Writes card, figures and picture, all of them or none; returns a warning where the picture cannot be drawn.
+    fn into_folder(self, folder: &Path, stem: &str) -> Result<Option<Diagnostic>, Error> {
+        let [card, json, png] = ["toml", "json", "png"].map(|ending| format!("{stem}.{ending}"));
+        guard(
+            &folder.join(&card),
+            &[&png, &json].map(|name| folder.join(name)),
+        )?;
+        let inputs: Vec<&Path> = self.data.iter().map(PathBuf::as_path).collect();
+        let mut results = ResultFolder::open(folder, &format!("materials fit {stem}"), &inputs)?;
+        interrupt::guard(&results);
+        let provenance = Provenance {
+            files: self
+                .data
+                .iter()
+                .map(|path| relative(path, folder))
+                .collect(),
+            reading: self.reading,
+        };
+        let text = calibration::card_text(self.fit, self.tests, &provenance);
+        results.add(&card, text.as_bytes())?;
+        let figures = format!("{:#}\n", fit_json(self.fit, self.tests));
+        results.add(&json, figures.as_bytes())?;
+        let drawn = output::write_picture(&mut results, &png, &fit_picture(self.fit, self.tests))?;
+        results.finish()?;
+        Ok(drawn.err())
+    }
 }
 
 /// The first of the ranked fits that is stable over the data, else the first.

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::keys::{self, plain_path};
 use super::{Faults, Key, Presence, Takes};
-use crate::budget::Need;
+use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Source, suggestion};
 
 mod plain;
@@ -149,7 +149,7 @@ impl<'a> Section<'a> {
     /// Records a fault at the place of `key` where what it asks for is too much; `smaller` says what to change. Whether it is
     /// not.
     pub fn affords(&self, key: &'static str, need: Need, smaller: &str) -> bool {
-        let excess = self.faults.budget.afford(need).err();
+        let excess = self.excess(need);
         // An estimate from a value that has a fault is none.
         if excess.as_ref().is_some_and(|excess| excess.needed.is_nan()) && !self.faults.none() {
             return false;
@@ -158,6 +158,11 @@ impl<'a> Section<'a> {
             self.fault(key, &excess.to_string(), &excess.remedy(smaller));
         }
         excess.is_none()
+    }
+
+    /// What of a need is too much, if anything.
+    pub fn excess(&self, need: Need) -> Option<Excess> {
+        self.faults.budget.afford(need).err()
     }
 
     /// Records a warning at the place of `key`.

@@ -1,6 +1,6 @@
 //! Points of the plane: boxes, areas, distances.
 
-use crate::units::SIZES;
+use crate::units::{SIZES, on_the_end};
 
 /// Lower left and upper right corner of the box around points.
 pub fn bounding_box(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
@@ -40,7 +40,8 @@ pub fn check_size(points: impl IntoIterator<Item = [f64; 2]>) -> Result<(), OutO
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     let [least, most] = SIZES;
     // What is no number is out of size too.
-    let sized = span[0].max(span[1]) >= least && reach <= most;
+    let sized =
+        on_the_end(span[0].max(span[1]), SIZES) >= least && on_the_end(reach, SIZES) <= most;
     sized.then_some(()).ok_or(OutOfSize { span, reach })
 }
 

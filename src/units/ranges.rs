@@ -5,6 +5,16 @@ use super::Dimension;
 /// From 1 nm to 1 km: how long a thing may be, in mm.
 pub const SIZES: [f64; 2] = [1e-6, 1e6];
 
+/// A number, or the end of a range where only the rounding of a conversion lies between them: ends are inside.
+///
+/// ```text
+/// 1e-6 kg/m³ · 1e-12 = 9.999…e-19 tonne/mm³   →   1e-18
+/// ```
+pub fn on_the_end(value: f64, ends: [f64; 2]) -> f64 {
+    let near = |end: &f64| (value - end).abs() <= 4.0 * f64::EPSILON * end.abs();
+    ends.into_iter().find(near).unwrap_or(value)
+}
+
 impl Dimension {
     /// The least and the largest magnitude that a quantity other than zero may have, in the internal unit.
     ///
@@ -38,9 +48,43 @@ impl Dimension {
         }
     }
 
-    /// Whether a quantity in the internal unit is zero or of a possible magnitude.
-    pub fn admits(self, value: f64) -> bool {
-        let [least, most] = self.range();
-        value == 0.0 || (least..=most).contains(&value.abs())
+    /// A quantity in the internal unit where it is zero or of a possible magnitude.
+    pub fn admitted(self, value: f64) -> Option<f64> {
+        let ends = self.range();
+        let [least, most] = ends;
+        let size = on_the_end(value.abs(), ends);
+        let possible = size == 0.0 || (least..=most).contains(&size);
+        possible.then(|| size.copysign(value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::parse;
+
+    #[test]
+    fn ends_of_ranges_are_inside_in_every_unit() {
+        for (text, dimension, end) in [
+            ("1e-6 kg/m³", Dimension::Density, 1e-18),
+            ("1e9 kg/m³", Dimension::Density, 1e-3),
+            ("1e-6 nm", Dimension::Length, 1e-12),
+            ("1 km", Dimension::Length, 1e6),
+            ("-1e-12 kPa", Dimension::Stress, -1e-15),
+            ("1e-9 ms", Dimension::Time, 1e-12),
+            ("1e-98 %", Dimension::Ratio, 1e-100),
+        ] {
+            assert_eq!(parse(text, dimension), Ok(end), "{text}");
+        }
+        for text in ["9.999999e-7 kg/m³", "1.000001e9 kg/m³"] {
+            assert!(parse(text, Dimension::Density).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn only_rounding_is_taken_for_an_end() {
+        assert_eq!(on_the_end(0.1 + 0.2, [0.0, 0.3]), 0.3);
+        assert_eq!(on_the_end(1.0 + 1e-14, [0.0, 1.0]), 1.0 + 1e-14);
+        assert_eq!(on_the_end(5e-324, [0.0, 1.0]), 5e-324);
     }
 }

@@ -20,13 +20,12 @@ pub(super) fn quantity(value: &DeValue<'_>, dimension: Dimension) -> Result<f64,
             (format!("\"{text}\" {fault}"), hint)
         }),
         other => match plain_number(other) {
-            Some(number) if dimension == Dimension::Ratio => match dimension.admits(number) {
-                true => Ok(number),
-                false => {
+            Some(number) if dimension == Dimension::Ratio => {
+                dimension.admitted(number).ok_or_else(|| {
                     let fault = QuantityFault::OutOfRange(dimension);
-                    Err((fault.to_string(), fault.remedy("", dimension)))
-                }
-            },
+                    (fault.to_string(), fault.remedy("", dimension))
+                })
+            }
             Some(number) => {
                 let text = number.to_string();
                 let hint = QuantityFault::MissingUnit.remedy(&text, dimension);

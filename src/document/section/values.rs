@@ -277,6 +277,7 @@ impl<'a> Section<'a> {
     }
 
     fn bounded(&self, key: &'static str, value: Value<'a>, number: f64, bound: Bound) -> f64 {
+        let number = bound.on_the_end(number);
         if let Some(wanted) = bound.violation(number) {
             self.fault_at(
                 key,

@@ -10,7 +10,7 @@ use crate::studies::sections::Tolerances;
 
 mod outline;
 
-pub use outline::Outline;
+pub use outline::{HALVINGS, Outline};
 
 /// The shape that is read from a file.
 pub const MESH: &str = "mesh";
@@ -78,6 +78,7 @@ impl Specimen {
                 mesh: Box::new(mesh),
                 element,
                 polygons: false,
+                halvings: HALVINGS,
             },
         }
     }

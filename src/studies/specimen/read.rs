@@ -63,8 +63,8 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         "take fewer",
     );
     let tolerances = Tolerances::read(&root.section("tolerances"), false);
-    let (card, name, outline) = (card?, name?, outline?);
-    if !fits(section, &outline) || !affords(section, &outline, factors.len(), refinement) {
+    let (card, name, mut outline) = (card?, name?, outline?);
+    if !fits(section, &outline) || !affords(section, &mut outline, factors.len(), refinement) {
         return None;
     }
     let mesh = outline.coarse();
@@ -125,22 +125,39 @@ fn fits(section: &Section, outline: &Outline) -> bool {
     fits.is_ok()
 }
 
-/// Whether the meshes are not too large; that they are is recorded.
+/// Whether the meshes are not too large; that they are is recorded. Finite elements on the mesh of a file are halved less often
+/// where that helps, which is a warning.
 fn affords(
     section: &Section,
-    outline: &Outline,
-    factors: usize,
+    outline: &mut Outline,
+    states: usize,
     refinement: Option<Refinement>,
 ) -> bool {
     let (key, smaller) = match (refinement, outline.is_shape()) {
-        (Some(_), _) => ("shape", "take fewer `most_cells` or load factors"),
+        (Some(_), _) => ("shape", "take fewer cells, `most_cells` or load factors"),
         (None, true) => ("cells", "take fewer, or fewer load factors"),
         (None, false) => (
             "file",
-            "take a coarser mesh: it is refined twice, for its own error",
+            "take a coarser mesh, or elements of the first degree",
         ),
     };
-    section.affords(key, outline.need(factors, refinement), smaller)
+    let whole = section.excess(outline.need(states, refinement));
+    let too_much = |outline: &Outline| section.excess(outline.need(states, None)).is_some();
+    while refinement.is_none() && too_much(outline) && outline.halve_less() {}
+    let affords = section.affords(key, outline.need(states, refinement), smaller);
+    if let Some(excess) = whole.filter(|_| affords) {
+        let meshes = match outline.halvings() {
+            0 => {
+                "on this mesh alone, and neither their displacement nor curves that its edges stand for have an error of their own"
+            }
+            _ => "on two meshes instead of three",
+        };
+        let message = format!(
+            "halved twice, for the finite elements' own error, it {excess}: they are {meshes}"
+        );
+        section.warning(key, &message, &excess.remedy("take a coarser mesh"));
+    }
+    affords
 }
 
 fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refinement> {

@@ -6,6 +6,9 @@ use crate::results::number;
 
 use super::Refinement;
 
+/// How often the cells of the finite elements are halved: three meshes tell their own error.
+pub const HALVINGS: usize = 2;
+
 /// What is meshed, and how.
 pub enum Outline {
     /// A shape by its measures: cells across, cells of the lattice, finite elements.
@@ -15,11 +18,13 @@ pub enum Outline {
         lattice: CellShape,
         element: CellShape,
     },
-    /// The mesh of a file, the finite elements on it, and whether straight edges are meant where they turn as a curve's.
+    /// The mesh of a file, the finite elements on it, whether straight edges are meant where they turn as a curve's, and how
+    /// often the finite elements' cells are halved, up to [`HALVINGS`].
     File {
         mesh: Box<Mesh>,
         element: CellShape,
         polygons: bool,
+        halvings: usize,
     },
 }
 
@@ -43,7 +48,7 @@ impl Outline {
         }
     }
 
-    /// What so many states on the finest of the finite elements' meshes will use; none where local refinement decides.
+    /// What so many states on the finest of the finite elements' meshes will use.
     pub fn need(&self, states: usize, refinement: Option<Refinement>) -> Need {
         let (Self::Shape { element, .. } | Self::File { element, .. }) = self;
         let cells = match self {
@@ -57,10 +62,27 @@ impl Outline {
                 let halves = if element.is_triangle() { 2.0 } else { 1.0 };
                 halves * shape.cell_count(4.0 * *cells as f64 / coarser)
             }
-            Self::File { mesh, .. } => 16.0 * mesh.cell_count() as f64,
+            Self::File { mesh, halvings, .. } => {
+                mesh.cell_count() as f64 * 4_f64.powi(*halvings as i32)
+            }
         };
-        let cells = refinement.map_or(cells, |goal| goal.most_cells as f64);
+        let cells = refinement.map_or(cells, |goal| self.first_cells().max(goal.most_cells as f64));
         Need::of_states(2.0 * nodes_per_cell(*element) * cells, states as f64).on_cells(cells)
+    }
+
+    /// About how many triangles local refinement begins with on the mesh of a file.
+    fn first_cells(&self) -> f64 {
+        match self {
+            Self::File { mesh, .. } => {
+                let halves = if mesh.shape(0).is_triangle() {
+                    1.0
+                } else {
+                    2.0
+                };
+                halves * mesh.cell_count() as f64
+            }
+            Self::Shape { .. } => 0.0,
+        }
     }
 
     /// Whether it is a shape by its measures, and no file's.
@@ -128,18 +150,39 @@ impl Outline {
         }
     }
 
-    /// The meshes of the levels 0, 1 and 2.
-    pub fn reference_meshes(&self) -> [Mesh; 3] {
-        [0, 1, 2].map(|level| self.reference_mesh(level))
+    /// The meshes of all levels, from coarse to fine.
+    pub fn reference_meshes(&self) -> Vec<Mesh> {
+        let levels = 0..=self.halvings();
+        levels.map(|level| self.reference_mesh(level)).collect()
     }
 
-    /// The middle one of the three meshes of a file's specimen with its edges on the curves that they stand for, see
-    /// [`Mesh::rounded`], and the whole change to those curves over the change to this mesh.
+    /// How often the cells of the finite elements are halved.
+    pub fn halvings(&self) -> usize {
+        match self {
+            Self::Shape { .. } => HALVINGS,
+            Self::File { halvings, .. } => *halvings,
+        }
+    }
+
+    /// Takes finite elements whose cells are halved once less; false where they are not halved, or are those of a shape, which
+    /// may be given fewer cells.
+    pub fn halve_less(&mut self) -> bool {
+        match self {
+            Self::File { halvings, .. } if *halvings > 0 => {
+                *halvings -= 1;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// A file's mesh, halved once, with its edges on the curves that they stand for, see [`Mesh::rounded`], and the whole
+    /// change to those curves over the change to this mesh; `None` where there are none, or its cells are not halved.
     pub fn rounded_mesh(&self) -> Option<(Mesh, f64)> {
         let Self::File { mesh, polygons, .. } = self else {
             return None;
         };
-        if *polygons && mesh.degree() == 1 {
+        if self.halvings() == 0 || *polygons && mesh.degree() == 1 {
             return None;
         }
         // What is left between a curve and chords falls with h², between a curve and parabolas with h⁴.

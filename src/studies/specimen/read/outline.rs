@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::document::{Bound, Section};
 use crate::error::Severity;
 use crate::mesh::{CellShape, Exemptions, Mesh, MeshReading, Shape, import};
-use crate::studies::specimen::problem::{MESH, Outline};
+use crate::studies::specimen::problem::{HALVINGS, MESH, Outline};
 use crate::units::Dimension;
 
 /// Cells across a specimen at most; how many fit into the budget depends on its measures.
@@ -34,6 +34,7 @@ pub fn read_outline(
             mesh: Box::new(mesh),
             element,
             polygons: allowed.polygons,
+            halvings: HALVINGS,
         });
     }
     let shape = read_shape(section, name);

@@ -51,7 +51,17 @@ impl Reference {
             self.finest.mesh.describe(),
         );
         match self.rounds.len() {
-            0 => format!("{elements} elements on {cells}, the finest of three meshes"),
+            0 => {
+                let others = [
+                    "",
+                    ", the finer of two meshes",
+                    ", the finest of three meshes",
+                ];
+                format!(
+                    "{elements} elements on {cells}{}",
+                    others[self.coarser.len()]
+                )
+            }
             rounds => format!(
                 "{elements} elements on {cells}, refined locally in {} rounds",
                 rounds - 1

@@ -39,7 +39,8 @@ impl Reference {
 
     fn halved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Self, Error> {
         let meshes = specimen.outline.reference_meshes();
-        let meshes = meshes.iter().zip(FILES);
+        let files = &FILES[FILES.len() - meshes.len()..];
+        let meshes = meshes.iter().zip(files);
         let solutions = meshes.map(|(mesh, file)| on_mesh(specimen, mesh, file, ends, progress));
         let solutions = solutions.collect::<Result<Vec<_>, _>>()?;
         Self::of_meshes(specimen, solutions, Vec::new(), ends)
@@ -54,10 +55,11 @@ impl Reference {
     ) -> Result<Self, Error> {
         let finest = meshes.pop().expect("a mesh at least");
         let measured = measured(specimen, &finest, ends);
-        let middle = meshes.last().filter(|_| rounds.is_empty());
+        let once_halved = meshes.get(1).or(Some(&finest));
+        let once_halved = once_halved.filter(|_| rounds.is_empty());
         Ok(Self {
             estimates: estimates(specimen, &finest, &measured)?,
-            outline: outline_errors(specimen, &measured, middle)?,
+            outline: outline_errors(specimen, &measured, once_halved)?,
             coarser: meshes.split_off(meshes.len().saturating_sub(2)),
             finest,
             measured,
@@ -133,7 +135,7 @@ pub fn finest(
     if let Some(goal) = specimen.refinement {
         return Ok(Reference::adaptive(specimen, goal, ends, progress)?.finest);
     }
-    let [_, _, mesh] = specimen.outline.reference_meshes();
+    let mesh = specimen.outline.reference_mesh(specimen.outline.halvings());
     on_mesh(specimen, &mesh, FILE, ends, progress)
 }
 
