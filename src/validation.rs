@@ -54,6 +54,7 @@ pub const CASES: &[Kind] = cases! {
     "spring-identification", "examples/spring_identification.toml", slow, spring_identification::prepare;
     "smoothing", "examples/smoothing.toml", slow, smoothing::prepare;
     "measured-fields", "validation/cases/measured_fields.toml", slow, interval_coverage::prepare;
+    "interval-coverage", "validation/cases/interval_coverage.toml", slow, interval_coverage::coverage::prepare;
     specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;
     "motion", "examples/released_plate.toml", slow, motion::prepare;
     "cost", "examples/cost.toml", slow, cost::prepare;

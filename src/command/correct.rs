@@ -101,7 +101,7 @@ pub struct Options {
     /// Standard deviation of the displacement's components, such as "0.1 mm"; estimated where it is not given
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub noise: Option<f64>,
-    /// Weights of markers that are far off
+    /// Weights of markers that are far off; tukey where some are farther off than noise can be
     #[arg(long, value_enum)]
     pub robust: Option<Weights>,
     /// How far the physics holds
@@ -300,9 +300,9 @@ fn conditions(options: &Options) -> Result<Conditions, Error> {
     conditions.edge_gap = options.edge_gap.or(conditions.edge_gap);
     conditions.robust = match options.robust {
         None => conditions.robust,
-        Some(Weights::No) => Robust::No,
-        Some(Weights::Huber) => Robust::Huber,
-        Some(Weights::Tukey) => Robust::Tukey,
+        Some(Weights::No) => Some(Robust::No),
+        Some(Weights::Huber) => Some(Robust::Huber),
+        Some(Weights::Tukey) => Some(Robust::Tukey),
     };
     conditions.physics = match options.physics {
         None => conditions.physics,

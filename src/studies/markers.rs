@@ -19,6 +19,7 @@ mod conditions;
 mod doubts;
 mod figures;
 mod force_signs;
+mod gross_errors;
 mod json;
 mod quantities;
 mod report;
@@ -154,7 +155,9 @@ impl MarkerStudy {
         let law = self.regressed.as_ref();
         let knowledge = self.conditions.knowledge(frame.number, law);
         let found = match &self.coarse {
-            None => estimate(&specimen, &frame.markers, &knowledge),
+            None => self.weighted(knowledge, &|knowledge| {
+                estimate(&specimen, &frame.markers, knowledge)
+            }),
             Some(coarse) => {
                 let markers = frame.markers.iter();
                 let field: Vec<f64> = markers.flat_map(|marker| marker.displacement).collect();

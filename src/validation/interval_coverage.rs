@@ -21,7 +21,10 @@ use inference::{free_edges, modulus};
 use subject::{Data, Disturbance, MIDDLE, PLATE, Subject, unknown_grips};
 use trials::Trials;
 
+pub mod coverage;
+mod coverage_trial;
 mod inference;
+mod noise;
 mod subject;
 mod trial;
 mod trials;

@@ -137,7 +137,12 @@ fn request(file: PathBuf, choices: &mut Choices) -> Request {
         conditions: Conditions {
             edges,
             noise: choices.rarely().then(|| choices.between(0.01, 0.5)),
-            robust: [Robust::No, Robust::Huber, Robust::Tukey][choices.below(3)],
+            robust: [
+                None,
+                Some(Robust::No),
+                Some(Robust::Huber),
+                Some(Robust::Tukey),
+            ][choices.below(4)],
             physics: [Physics::Exact, Physics::Weighted][choices.below(2)],
             unnamed: Unnamed::NAMES[choices.below(Unnamed::NAMES.len())].1,
             forces: force.into_iter().map(|force| (None, force)).collect(),

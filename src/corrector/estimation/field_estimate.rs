@@ -5,13 +5,14 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::knowledge::{EdgeCondition, MeasuredForce};
+use super::robust::Robust;
 use super::verdict::{Answer, Verdict};
 use crate::statistics::Estimate;
 
 /// The field nearest to the markers.
 ///
 /// Standard errors come from the noise of the markers, to first order, and from the mesh's own error: √(s² + e²). Of
-/// displacements, forces and parameters e comes from the same equations on cells half as large, of stress and thickness from the
+/// all of them e comes from the same equations on cells half as large; of a large mesh, that of stress and thickness alone from the
 /// recovered gradient. They hold where the verdict is that the data are explained.
 /// `± reach · standard error` is the 95 % interval.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
@@ -33,6 +34,8 @@ pub struct FieldEstimate {
     pub markers: Vec<Option<MarkerEstimate>>,
     /// Standard deviation of each component of a marker of mean weight in mm.
     pub noise: f64,
+    /// The weights of markers that are far off.
+    pub robust: Robust,
     /// Whether the noise was given; else it is estimated from what is left of the markers.
     pub known_noise: bool,
     /// The scatter of the markers over their stated noise, where they contradict it: the stated noise is scaled then.
@@ -113,8 +116,9 @@ pub const TRADE_WEIGHTED: &str = "equilibrium holds up to smooth forces on the i
 pub struct StressEstimate {
     /// First Piola–Kirchhoff stress P₁₁, P₁₂, P₂₁, P₂₂ in MPa, the transpose of the nominal stress.
     pub first_piola_kirchhoff_stress: [f64; 4],
-    /// Their standard errors in MPa: √(s² + e²) with s of the noise and e = |P(G*) − P(∇u)|, where G* is the recovered
-    /// gradient of the mesh's field u.
+    /// Their standard errors in MPa: √(s² + e²) with s of the noise and e = |P(G) − P(∇u)|, where G is the
+    /// gradient of the field on cells half as large, or the recovered gradient of the mesh's field u where the mesh is too large for
+    /// that.
     pub stress_error: [f64; 4],
     /// Thickness of the deformed sheet in mm.
     pub thickness: f64,

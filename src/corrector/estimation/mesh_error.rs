@@ -4,6 +4,7 @@
 //! d = u_{h/2}(p) − u_h(p)                      at the motion p of the edges that was found
 //! M δp = −AᵀWHd/v − Gᵀd_F/σ                    what the regression makes of d, as if it were in the data
 //! e = d + S δp                                                                            [mm]
+//! G = ∇u_{h/2} + ∇(S δp)                       in the middle of a cell                       [–]
 //! ```
 //!
 //! with A, W, v, G, M of [`super::regression`], S = ∂u/∂p, d_F the same difference of the measured forces. The difference of two
@@ -13,6 +14,7 @@
 use std::collections::BTreeSet;
 
 use nalgebra::DVector;
+use rayon::prelude::*;
 
 use super::knowledge::EdgeCondition;
 use super::linearise::dot;
@@ -39,6 +41,8 @@ pub struct MeshError {
     pub parameters: DVector<f64>,
     /// H e, two numbers a marker.
     pub markers: Vec<f64>,
+    /// G₁₁, G₁₂, G₂₁, G₂₂ of cell after cell.
+    pub gradients: Vec<[f64; 4]>,
     /// Of the force of each body in N, in the order of the bodies.
     pub forces: Vec<[f64; 2]>,
 }
@@ -50,6 +54,21 @@ struct Fine {
     residual: Vec<f64>,
     /// The held unknowns of each edge along each axis.
     held: Vec<[Vec<usize>; 2]>,
+}
+
+impl Fine {
+    /// ∇u_{h/2} in the middle of a cell of the mesh that was refined: of a quadrilateral the mean of its four parts, which meet
+    /// there.
+    fn gradient_amid(&self, coarse: usize) -> [f64; 4] {
+        let first = 4 * coarse;
+        let shape = self.mesh.shape(first);
+        let at = |cell: usize, local| self.mesh.gradient_at(&self.displacement, cell, local);
+        if shape.is_triangle() {
+            return at(first + 3, shape.centre());
+        }
+        let parts = [0, 1, 2, 3].map(|part| at(first + part, shape.natural_nodes()[2]));
+        [0, 1, 2, 3].map(|component| parts.iter().map(|part| part[component] / 4.0).sum())
+    }
 }
 
 impl NearestField<'_> {
@@ -74,14 +93,22 @@ impl NearestField<'_> {
             let whole = values.iter().enumerate();
             whole.map(|(row, value)| value + slopes(row)).collect()
         };
-        let sensitivities = &self.linear.sensitivities;
-        let displacement = along(&difference, &|row| {
-            let columns = sensitivities.iter().zip(change.iter());
-            columns.map(|(column, change)| column[row] * change).sum()
-        });
+        let columns = || self.linear.sensitivities.iter().zip(change.iter());
+        let adapted: Vec<f64> = (0..difference.len())
+            .map(|row| columns().map(|(column, change)| column[row] * change).sum())
+            .collect();
+        let gradient = |cell: usize| {
+            let after = mesh.gradient_at(&adapted, cell, mesh.shape(cell).centre());
+            let fine = fine.gradient_amid(cell);
+            [0, 1, 2, 3].map(|component| fine[component] + after[component])
+        };
         let moved = &self.linear.design * &change;
         Some(MeshError {
-            displacement,
+            displacement: along(&difference, &|row| adapted[row]),
+            gradients: (0..mesh.cell_count())
+                .into_par_iter()
+                .map(gradient)
+                .collect(),
             markers: along(&at_markers, &|row| moved[row]),
             forces,
             parameters: change,

@@ -14,7 +14,7 @@ use super::search::NearestField;
 use super::task::Edge;
 use super::verdict::Answer;
 use crate::error::{Error, SolveFault};
-use crate::finite_element::recovery::{RecoveredGradient, Recovery};
+use crate::finite_element::recovery::Recovery;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::statistics::{chi_squared_limit, normal_reach, student_reach};
 
@@ -31,14 +31,14 @@ impl NearestField<'_> {
     ) -> Result<FieldEstimate, Error> {
         let whiteness = self.whiteness(&judged.sound, own);
         let known_noise = self.observations().known_noise;
-        let robust = self.equations.task.knowledge.robust != Robust::No;
+        let robust = self.equations.task.knowledge.robust;
         let rows = self.linear.design.nrows() as f64;
         let white = (rows - self.fit.effective).max(1.0);
         // Where the data are not explained, what is left would hide a wrong force if it were taken for noise.
         let is_explained = judged.verdict.answer != Answer::NotExplained;
         let before = self.force_checks(own)?;
         let freedom = self.widen(&judged).unwrap_or(white);
-        let reach = match known_noise && !robust && judged.noise.is_none() {
+        let reach = match known_noise && robust == Robust::No && judged.noise.is_none() {
             true => normal_reach(),
             false => student_reach(freedom),
         };
@@ -51,7 +51,7 @@ impl NearestField<'_> {
         };
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(own),
-            cells: self.cells()?,
+            cells: self.cells(own)?,
             forces: self.forces(reach, own)?,
             parameters: self.law_parameters(reach, own),
             holds_mesh_error: own.is_some(),
@@ -63,6 +63,7 @@ impl NearestField<'_> {
             whiteness,
             markers,
             noise: (larger * self.trade.sound / mean).sqrt(),
+            robust,
             known_noise,
             noise_ratio: None,
             effective_parameters: self.fit.effective,
@@ -110,20 +111,29 @@ impl NearestField<'_> {
         unknowns.map(error).collect()
     }
 
-    fn cells(&self) -> Result<Vec<StressEstimate>, Error> {
-        let cells = (0..self.equations.task.specimen.mesh.cell_count()).into_par_iter();
+    fn cells(&self, own: Option<&MeshError>) -> Result<Vec<StressEstimate>, Error> {
+        let mesh = self.equations.task.specimen.mesh;
+        let cells = (0..mesh.cell_count()).into_par_iter();
         let neighbours = self.equations.neighbours(&self.parameters);
-        let recovered = Recovery::new(self.equations.task.specimen.mesh).gradient(&self.field);
-        cells
-            .map(|cell| self.cell(cell, &neighbours, &recovered))
-            .collect()
+        match own {
+            Some(own) => cells
+                .map(|cell| self.cell(cell, &neighbours, own.gradients[cell]))
+                .collect(),
+            None => {
+                let recovered = Recovery::new(mesh).gradient(&self.field);
+                let better = |cell| recovered.at(mesh, cell, mesh.shape(cell).centre());
+                cells
+                    .map(|cell| self.cell(cell, &neighbours, better(cell)))
+                    .collect()
+            }
+        }
     }
 
     fn cell(
         &self,
         cell: usize,
         neighbours: &[Neighbours],
-        recovered: &RecoveredGradient,
+        better: [f64; 4],
     ) -> Result<StressEstimate, Error> {
         let Equations { task, law, .. } = &self.equations;
         let specimen = task.specimen;
@@ -160,10 +170,9 @@ impl NearestField<'_> {
             (0..4).for_each(|component| rows[component][place] += slope[component]);
         }
         let stress = response.first_piola_kirchhoff_stress;
-        let better = Gradient::from(recovered.at(mesh, cell, centre));
-        // Where the recovered gradient turns the cell inside out, all of the stress is in doubt.
+        // Where the better gradient turns the cell inside out, all of the stress is in doubt.
         let (stress_off, thickness_off) =
-            Kinematics::new(&better).map_or((stress, thickness), |better| {
+            Kinematics::new(&Gradient::from(better)).map_or((stress, thickness), |better| {
                 let thinner = specimen.thickness * law.thickness_stretch(&better) - thickness;
                 (law.stress(&better).1 - stress, thinner)
             });

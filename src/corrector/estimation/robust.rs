@@ -17,10 +17,12 @@
 //! P. J. Huber, Robust Statistics (1981), section 7.6; P. J. Rousseeuw, A. M. Leroy, Robust Regression and Outlier
 //! Detection (1987)
 
+use serde::{Deserialize, Serialize};
+
 use crate::statistics::robust_deviation;
 
 /// How markers that are far off are weighted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
 pub enum Robust {
     /// As all others.
     #[default]

@@ -25,8 +25,9 @@ pub struct Conditions {
     pub edges: EdgesByName,
     /// Standard deviation of each component of the displacement in mm.
     pub noise: Option<f64>,
-    /// How markers that are far off are weighted.
-    pub robust: Robust,
+    /// How markers that are far off are weighted; where nothing is said, by Tukey's weights if some are farther off than noise
+    /// can be.
+    pub robust: Option<Robust>,
     /// Whether equilibrium holds exactly.
     pub physics: Physics,
     /// What is assumed of outer edges that are not named.
@@ -182,7 +183,7 @@ impl Conditions {
             edges: self.edges.clone(),
             unnamed: self.unnamed,
             noise: self.noise,
-            robust: self.robust,
+            robust: self.robust.unwrap_or_default(),
             physics: self.physics,
             law: law
                 .filter(|_| !forces.is_empty() || self.forces.is_empty())
@@ -214,7 +215,7 @@ fn read(root: &Section) -> Conditions {
             Some(root.quantity("edge_gap", Dimension::Length, Bound::NonNegative));
     }
     if root.has("robust") {
-        conditions.robust = root.choice("robust", &Robust::NAMES).unwrap_or_default();
+        conditions.robust = root.choice("robust", &Robust::NAMES);
     }
     if root.has("physics") {
         conditions.physics = root.choice("physics", &Physics::NAMES).unwrap_or_default();

@@ -3,13 +3,12 @@
 //! A doubt stands next to the figures and makes the command end with exit code 1.
 
 use super::MarkerStudy;
+use super::gross_errors::has_many;
+use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
 use crate::statistics::Estimate;
-
-/// More outliers than this share of the markers are no outliers.
-const MANY: f64 = 0.1;
 
 impl MarkerStudy {
     /// What makes the figures of the frames doubtful, of all of them first.
@@ -56,7 +55,7 @@ fn widen(estimate: &mut Estimate, by: f64) {
 fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Vec<Diagnostic> {
     let doubts = [
         noise(estimate),
-        outliers(estimate),
+        many_outliers(estimate),
         edges(estimate),
         not_explained(estimate),
     ];
@@ -83,11 +82,9 @@ fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
     ))
 }
 
-fn outliers(estimate: &FieldEstimate) -> Option<Doubt> {
-    let markers = estimate.markers.iter().flatten();
-    let count = markers.clone().count();
-    let off = markers.filter(|marker| marker.outlier).count();
-    (off as f64 > MANY * count as f64).then(|| {
+fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
+    has_many(estimate).then(|| {
+        let (off, count) = (outliers(estimate), used(estimate));
         (
             format!("{off} of {count} markers are outliers, which is no noise"),
             "look at the conditions, the law, and the noise if it is stated; --physics weighted, or look at vtk/markers.pvd \

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::report::{largest_correction, largest_error, left, outliers, used};
 use super::verdict;
-use crate::corrector::estimation::{EdgeCondition, FieldEstimate};
+use crate::corrector::estimation::{EdgeCondition, FieldEstimate, Robust};
 use crate::markers::Frame;
 use crate::results::Step;
 use crate::statistics::Estimate;
@@ -65,6 +65,7 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
         "time": frame.time,
         "markers": used(estimate),
         "outliers": outliers(estimate),
+        "weights": Robust::NAMES.iter().find(|(_, one)| *one == estimate.robust).map(|(name, _)| name),
         "noise_mm": estimate.noise,
         "noise_is_given": estimate.known_noise,
         "left_mm": left(estimate),

@@ -2,6 +2,7 @@
 
 use super::verdict;
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
+use crate::markers::Frame;
 use crate::results::Block;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
@@ -41,6 +42,9 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 largest_correction(estimate)
             ),
         };
+    }
+    for told in gross_errors(field, estimates) {
+        text += &format!("{told}\n");
     }
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
@@ -82,6 +86,16 @@ fn interval(found: &Estimate, explained: bool, digits: usize) -> String {
         (false, true) => " (no interval: not explained)".to_owned(),
         _ => String::new(),
     }
+}
+
+/// What is said of gross errors, frame by frame.
+fn gross_errors(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
+    let frames = field.series.frames.iter().zip(estimates);
+    let told = |(frame, estimate): (&Frame, &FieldEstimate)| {
+        let told = field.of_gross_errors(estimate)?;
+        Some(format!("frame {}: {told}", frame.number))
+    };
+    frames.filter_map(told).collect()
 }
 
 /// How many markers lie on the mesh.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::truth::{Markers, Truth};
 use crate::corrector::estimation::{EdgeCondition, FieldEstimate, Knowledge, Specimen, estimate};
 use crate::error::Error;
+use crate::markers::Marker;
 use crate::mesh::{CellShape, Grid, Mesh, Shape};
 use crate::validation::plate::Plate;
 
@@ -89,7 +90,7 @@ impl Subject {
         Self::new(
             data,
             "strip with a hole",
-            mesh(2 * across + 3),
+            mesh(5 * across + 3),
             mesh(across),
         )
     }
@@ -104,6 +105,22 @@ impl Subject {
             mesh,
             thickness: problem.thickness,
         })
+    }
+
+    /// The same with markers that end half a spacing inside of the edges.
+    pub fn with_markers_inside(mut self, counts: [usize; 2]) -> Self {
+        self.places = self.truth.places_inside(counts);
+        self
+    }
+
+    /// The places of the markers.
+    pub fn places(&self) -> &[[f64; 2]] {
+        &self.places
+    }
+
+    /// Markers without noise.
+    pub fn exact_markers(&self) -> Vec<Marker> {
+        self.truth.markers(&self.places, 0.0, 0.0, 0).markers
     }
 
     /// Disturbed markers.

@@ -135,7 +135,8 @@ fn displacement_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 
     100.0 * covered.count() as f64 / found.displacement.len() as f64
 }
 
-fn is_away(truth: &Truth, place: [f64; 2]) -> bool {
+/// Whether a place is farther than a fifth of the width from all corners.
+pub fn is_away(truth: &Truth, place: [f64; 2]) -> bool {
     let [low, high] = truth.mesh.bounding_box();
     let far = AWAY * (high[1] - low[1]);
     let x = [low[0], high[0]].into_iter();

@@ -87,9 +87,18 @@ impl Truth {
 
     /// The places of a grid of markers over the specimen; those in a hole are left out.
     pub fn places(&self, counts: [usize; 2]) -> Vec<[f64; 2]> {
+        self.grid(counts, &|index, count| index / (count - 1.0))
+    }
+
+    /// The same, half a spacing inside of the specimen's box.
+    pub fn places_inside(&self, counts: [usize; 2]) -> Vec<[f64; 2]> {
+        self.grid(counts, &|index, count| (index + 0.5) / count)
+    }
+
+    fn grid(&self, counts: [usize; 2], share: &dyn Fn(f64, f64) -> f64) -> Vec<[f64; 2]> {
         let [low, high] = self.mesh.bounding_box();
         let line = |axis: usize, index: usize| {
-            let share = index as f64 / (counts[axis] - 1) as f64;
+            let share = share(index as f64, counts[axis] as f64);
             low[axis] + share * (high[axis] - low[axis])
         };
         let grid = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j)));
