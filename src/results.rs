@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 
 use crate::error::Error;
 
+mod array;
 mod block;
 mod chart;
 mod check;
@@ -20,20 +21,29 @@ mod json;
 mod material;
 mod report;
 mod series;
+mod sheet_arrays;
+mod sheet_figures;
+mod state;
+mod surface;
 pub mod wrinkling;
 
+pub use array::{Array, Components};
 pub use block::{Block, Content, Figure};
 pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke};
 pub use check::{Check, Wanted, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};
-pub use drawing::{Drawing, mesh_outlines};
-pub use fields::{Animation, Colours, FieldCell, FieldFigure, Frame, Panel};
+pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};
+pub use fields::{Animation, FieldFigure, Frame, Panel, Values};
 pub use fit::{fit_json, fit_picture};
-pub use grid::{Array, Grid, GridCell, GridSeries, NamedGrid, Sheet};
+pub use grid::{Grid, GridCell, GridSeries, NamedGrid};
 pub use identification::{identification_json, identification_picture};
 pub use material::Material;
 pub use report::{claims, pictures};
 pub use series::{Series, csv};
+pub use sheet_arrays::Sheet;
+pub use sheet_figures::{SheetField, sheet_figures};
+pub use state::{LocalState, cell_states, nodal_states};
+pub use surface::Surface;
 
 /// What the publication claims, and what came out here.
 #[derive(Clone, Debug, PartialEq)]

@@ -84,7 +84,11 @@ fn the_same_study_gives_the_same_bytes() {
             compared += 1;
         }
     }
-    assert_eq!(compared, 7 + 8 + 1, "pictures, VTK files and the manifest");
+    assert_eq!(
+        compared,
+        9 + 8 + 1 + 1,
+        "pictures, VTK files, a view of them and the manifest"
+    );
     let without_times = |output: &str| {
         let report = fs::read_to_string(folder.path().join(output).join("report.md")).unwrap();
         report.split("## Times").next().unwrap().to_owned()
@@ -101,6 +105,8 @@ fn pictures_and_vtk_files_are_what_they_claim() {
         "material",
         "plates_001",
         "error_001",
+        "von_mises_001",
+        "largest_principal_stress_001",
         "errors",
         "force",
         "residuals",
@@ -113,7 +119,7 @@ fn pictures_and_vtk_files_are_what_they_claim() {
         );
     }
     let page = fs::read_to_string(output.join("report.html")).unwrap();
-    assert_eq!(page.matches("data:image/png;base64,").count(), 7);
+    assert_eq!(page.matches("data:image/png;base64,").count(), 9);
     for model in ["mass_spring", "springs", "corrected", "finite_element"] {
         let collection = fs::read_to_string(output.join(format!("vtk/{model}.pvd"))).unwrap();
         assert!(collection.contains(&format!(

@@ -5,6 +5,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use rayon::prelude::*;
+
 use super::folder::{ResultFolder, refuse_file, refuse_inputs};
 use super::html::html;
 use super::markdown::markdown;
@@ -26,6 +28,10 @@ pub fn write(
     let outcome = &results.outcome;
     let mut grids = outcome.grids.iter();
     grids.try_for_each(|series| write_grids(folder, series))?;
+    let timed = |series: &GridSeries| series.grids.iter().any(|grid| grid.time.is_some());
+    if outcome.grids.iter().any(timed) {
+        folder.add("vtk/view.py", vtk::VIEW.as_bytes())?;
+    }
     for (name, content) in &outcome.files {
         if let Content::Text(text) = content {
             folder.add(name, text.as_bytes())?;
@@ -57,10 +63,17 @@ pub fn write_picture(
     name: &str,
     drawing: &Drawing,
 ) -> Result<Drawn, Error> {
-    let drawn = png(drawing).map_err(|fault| {
+    add_picture(folder, name, draw(name, drawing))
+}
+
+fn draw(name: &str, drawing: &Drawing) -> Drawn {
+    png(drawing).map_err(|fault| {
         Diagnostic::warning("", format!("the picture {name} cannot be drawn: {fault}"))
             .hint("the numbers are complete; the files in vtk/ show the same in ParaView")
-    });
+    })
+}
+
+fn add_picture(folder: &mut ResultFolder, name: &str, drawn: Drawn) -> Result<Drawn, Error> {
     if let Ok(picture) = &drawn {
         folder.add(name, picture)?;
     }
@@ -68,9 +81,12 @@ pub fn write_picture(
 }
 
 fn write_pictures(folder: &mut ResultFolder, figures: &[Figure]) -> Result<Vec<Drawn>, Error> {
-    let figures = figures.iter();
-    figures
-        .map(|figure| write_picture(folder, &figure.name, &figure.drawing))
+    let drawn = figures.par_iter();
+    let drawn = drawn.map(|figure| draw(&figure.name, &figure.drawing));
+    let drawn: Vec<Drawn> = drawn.collect();
+    let named = figures.iter().zip(drawn);
+    named
+        .map(|(figure, drawn)| add_picture(folder, &figure.name, drawn))
         .collect()
 }
 

@@ -10,8 +10,14 @@ use crate::results::Drawing;
 
 mod animation;
 mod canvas;
+mod colours;
+mod encode;
 mod fields;
+mod layout;
 mod lines;
+mod numbers;
+mod outlines;
+mod paint;
 mod thin;
 
 /// Why a picture could not be drawn.
@@ -31,7 +37,7 @@ pub fn png(drawing: &Drawing) -> Result<Vec<u8>, PictureFault> {
         Drawing::Charts(charts) => lines::stacked(charts),
         Drawing::Field(figure) => figure.png(),
         Drawing::Animation(animation) => animation.png(),
-        Drawing::Outlines(title, cells) => fields::outlines(title, cells),
+        Drawing::Mesh(figure) => figure.png(),
     }));
     match drawn {
         Ok(drawn) => drawn.map_err(|fault| PictureFault(fault.to_string())),

@@ -8,7 +8,10 @@ use vtkio::model::{
 };
 
 use crate::mesh::CellShape;
-use crate::results::{Array, Grid, GridCell, GridSeries};
+use crate::results::{Array, Components, Grid, GridCell, GridSeries};
+
+/// A program for ParaView that shows the models of the folder that it is in, side by side.
+pub const VIEW: &str = include_str!("view.py");
 
 /// The files of a series, one after the other: `NAME_001.vtu` and so on, and `NAME.pvd` where its grids have times.
 pub fn files(series: &GridSeries) -> impl Iterator<Item = (String, Vec<u8>)> {
@@ -44,7 +47,42 @@ pub fn grid(grid: &Grid) -> Vec<u8> {
     let mut bytes = Vec::new();
     file.write_xml(&mut bytes)
         .expect("a grid with matching arrays can be written to memory");
-    bytes
+    with_component_names(&bytes, grid)
+}
+
+/// The file with the names of the components, which vtkio does not write.
+fn with_component_names(file: &[u8], grid: &Grid) -> Vec<u8> {
+    let file = String::from_utf8_lossy(file);
+    let arrays = || grid.at_points.iter().chain(&grid.in_cells);
+    let named = |head: &str| {
+        let name = head.split("Name=\"").nth(1)?.split('"').next()?;
+        arrays().find(|array| array.name == name)
+    };
+    let mut whole = String::with_capacity(file.len() + 4096);
+    let mut parts = file.split("<DataArray ");
+    whole += parts.next().unwrap_or_default();
+    for part in parts {
+        let (head, rest) = part.split_once('>').unwrap_or((part, ""));
+        whole += "<DataArray ";
+        whole += head.trim_end_matches('/');
+        let names = named(head).map_or(&[][..], |array| names(array.components));
+        for (index, name) in names.iter().enumerate() {
+            whole += &format!(" ComponentName{index}=\"{name}\"");
+        }
+        whole += if head.ends_with('/') { "/>" } else { ">" };
+        whole += rest;
+    }
+    whole.into_bytes()
+}
+
+fn names(components: Components) -> &'static [&'static str] {
+    match components {
+        Components::Scalar => &[],
+        Components::Vector => &["X", "Y", "Z"],
+        Components::Tensor => &["XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"],
+        Components::Symmetric => &["XX", "YY", "ZZ", "XY", "YZ", "XZ"],
+        Components::Stretches => &["larger", "smaller", "thickness"],
+    }
 }
 
 fn cells(grid: &Grid) -> Cells {
@@ -77,22 +115,32 @@ fn kind(cell: GridCell) -> CellType {
 /// Vectors and tensors in the plane become those of space.
 fn attribute(array: &Array) -> Attribute {
     let values = &array.values;
-    let scalars = ElementType::Scalars {
-        num_comp: 1,
-        lookup_table: None,
-    };
+    let fours = values.chunks_exact(4);
     let (elem, data) = match array.components {
-        1 => (scalars, values.clone()),
-        2 => {
+        Components::Scalar => {
+            let lookup_table = None;
+            let num_comp = 1;
+            (
+                ElementType::Scalars {
+                    num_comp,
+                    lookup_table,
+                },
+                values.clone(),
+            )
+        }
+        Components::Vector => {
             let planar = values.chunks_exact(2);
             let whole = planar.flat_map(|v| [v[0], v[1], 0.0]);
             (ElementType::Vectors, whole.collect())
         }
-        3 => (ElementType::Vectors, values.clone()),
-        _ => {
-            let planar = values.chunks_exact(4);
-            let whole = planar.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, 0.0]);
+        Components::Stretches => (ElementType::Generic(3), values.clone()),
+        Components::Tensor => {
+            let whole = fours.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, 0.0]);
             (ElementType::Tensors, whole.collect())
+        }
+        Components::Symmetric => {
+            let whole = fours.flat_map(|t| [t[0], t[1], t[2], t[3], 0.0, 0.0]);
+            (ElementType::Generic(6), whole.collect())
         }
     };
     Attribute::DataArray(DataArray {
@@ -139,6 +187,28 @@ pub fn collection(grids: &[(f64, String)]) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn symmetric_tensors_have_six_named_components() {
+        let stress = Array::symmetric_tensors("stress_MPa", [[1.0, 2.0, 3.0, 4.0]]);
+        let grid = Grid::scattered(&[[1.0, 2.0]], &[0.5, 0.0]).with([stress]);
+        let text = String::from_utf8(super::grid(&grid)).unwrap();
+        let heads: Vec<_> = text.split("<DataArray ").skip(1).collect();
+        let stress = heads
+            .iter()
+            .find(|head| head.contains("stress_MPa"))
+            .unwrap();
+        let names = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+        for (index, name) in names.iter().enumerate() {
+            assert!(
+                stress.contains(&format!(" ComponentName{index}=\"{name}\"")),
+                "{stress}"
+            );
+        }
+        assert!(stress.contains("NumberOfComponents=\"6\""), "{stress}");
+        let vtk = Vtk::parse_xml(text.as_bytes()).unwrap();
+        assert!(matches!(vtk.data, DataSet::UnstructuredGrid { .. }));
+    }
 
     #[test]
     fn files_of_a_motion_have_stable_names_and_a_collection_of_their_times() {

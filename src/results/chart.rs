@@ -62,6 +62,8 @@ pub enum Stroke {
     Marked,
     /// A line.
     Solid,
+    /// A line that lies on itself again and again.
+    Thin,
     /// A broken line.
     Dashed,
     /// Markers alone.

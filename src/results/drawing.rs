@@ -1,7 +1,8 @@
 //! Drawings as data: charts, fields, fields that move, outlines.
 
+use super::surface::edge_lines;
 use super::{Animation, FieldFigure, LineChart};
-use crate::mesh::Mesh;
+use crate::mesh::{Group, Mesh};
 
 /// What a picture shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,8 +13,28 @@ pub enum Drawing {
     Field(FieldFigure),
     /// Fields that move.
     Animation(Animation),
-    /// A heading, and the outlines of cells, each a closed line, in mm.
-    Outlines(String, Vec<Vec<[f64; 2]>>),
+    /// A mesh.
+    Mesh(MeshFigure),
+}
+
+/// A mesh at rest by its lines, in mm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFigure {
+    /// Heading.
+    pub title: String,
+    /// The outlines of the cells, each a closed line.
+    pub cells: Vec<Vec<[f64; 2]>>,
+    /// The groups that have names.
+    pub groups: Vec<NamedLines>,
+}
+
+/// A group of a mesh: lines along its edges, or points, which are lines of one place twice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedLines {
+    /// Its name.
+    pub name: String,
+    /// Its lines in mm.
+    pub lines: Vec<Vec<[f64; 2]>>,
 }
 
 impl From<LineChart> for Drawing {
@@ -29,29 +50,39 @@ impl From<FieldFigure> for Drawing {
     }
 }
 
-/// A mesh; curved edges are drawn through their middles.
+/// A mesh with its named groups; curved edges are drawn through their middles.
 pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
-    let outline = |cell: usize| {
-        let nodes = mesh.cell(cell);
-        let shape = mesh.shape(cell);
-        let mut places = Vec::new();
-        for edge in shape.edges() {
-            let along = [0, 1, 2, 3].map(|i| f64::from(i) / 4.0);
-            let [from, to] = [edge[0], edge[1]].map(|node| shape.natural_nodes()[node]);
-            for share in along {
-                let local = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
-                let values = shape.values(local);
-                places.push([0, 1].map(|axis| {
-                    let shares = nodes.iter().zip(&values);
-                    shares
-                        .map(|(node, value)| value * mesh.nodes[*node][axis])
-                        .sum()
-                }));
-            }
-        }
-        places.extend(places.first().copied());
-        places
-    };
-    let cells = (0..mesh.cell_count()).map(outline).collect();
-    Drawing::Outlines(title.to_owned(), cells)
+    let cells = 0..mesh.cell_count();
+    let groups = mesh.groups().iter().map(|(name, group)| NamedLines {
+        name: name.clone(),
+        lines: match group.edges.is_empty() {
+            false => edge_lines(&group.edges, &mesh.nodes),
+            true => points(group, mesh),
+        },
+    });
+    Drawing::Mesh(MeshFigure {
+        title: title.to_owned(),
+        cells: cells.map(|cell| cell_outline(mesh, cell)).collect(),
+        groups: groups.collect(),
+    })
+}
+
+fn cell_outline(mesh: &Mesh, cell: usize) -> Vec<[f64; 2]> {
+    let nodes = mesh.cell(cell);
+    let edges = mesh.shape(cell).edges();
+    let edges = edges
+        .iter()
+        .map(|edge| edge.iter().map(|node| nodes[*node]).collect());
+    let edges: Vec<Vec<usize>> = edges.collect();
+    let mut places: Vec<[f64; 2]> = Vec::new();
+    for line in edge_lines(&edges, &mesh.nodes) {
+        places.extend(&line[..line.len() - 1]);
+    }
+    places.extend(places.first().copied());
+    places
+}
+
+fn points(group: &Group, mesh: &Mesh) -> Vec<Vec<[f64; 2]>> {
+    let nodes = group.nodes.iter();
+    nodes.map(|node| vec![mesh.nodes[*node]; 2]).collect()
 }

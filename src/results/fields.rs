@@ -1,19 +1,27 @@
 //! Fields on deformed meshes as data, and the meshes themselves.
 
-use super::Scale;
+use super::{Scale, Surface};
 use crate::finite_element::error_estimate::EnergyError;
 use crate::mesh::Mesh;
 
-/// A cell: its corners in mm and its value.
-pub type FieldCell = ([[f64; 2]; 4], f64);
+/// The values of a field on a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// At its points: the field is interpolated between them.
+    AtPoints(Vec<f64>),
+    /// In its cells: each has one colour.
+    InCells(Vec<f64>),
+}
 
 /// One plate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Its name.
     pub label: String,
-    /// Its cells.
-    pub cells: Vec<FieldCell>,
+    /// Its deformed surface.
+    pub surface: Surface,
+    /// The field on it; no number is shown in grey.
+    pub values: Values,
 }
 
 impl Panel {
@@ -24,9 +32,11 @@ impl Panel {
         displacement: &[f64],
         value: &dyn Fn(usize) -> f64,
     ) -> Self {
-        let label = label.into();
-        let cells = cells(mesh, displacement, value);
-        Self { label, cells }
+        Self {
+            label: label.into(),
+            surface: Surface::new(mesh, displacement),
+            values: Values::AtPoints(Surface::values(mesh, value)),
+        }
     }
 
     /// A field with a value in each cell of a deformed mesh.
@@ -36,9 +46,21 @@ impl Panel {
         displacement: &[f64],
         value: &dyn Fn(usize) -> f64,
     ) -> Self {
-        let label = label.into();
-        let cells = deformed(mesh, displacement, value);
-        Self { label, cells }
+        Self {
+            label: label.into(),
+            surface: Surface::new(mesh, displacement),
+            values: Values::InCells((0..mesh.cell_count()).map(value).collect()),
+        }
+    }
+
+    /// Quadrilaterals with their values.
+    pub fn quadrilaterals(label: impl Into<String>, cells: &[([[f64; 2]; 4], f64)]) -> Self {
+        let corners: Vec<_> = cells.iter().map(|cell| cell.0).collect();
+        Self {
+            label: label.into(),
+            surface: Surface::quadrilaterals(&corners),
+            values: Values::InCells(cells.iter().map(|cell| cell.1).collect()),
+        }
     }
 
     /// The distance of a displacement field from another one at the same nodes.
@@ -46,18 +68,19 @@ impl Panel {
         let along = |node: usize, axis: usize| u[2 * node + axis] - v[2 * node + axis];
         Self::at_nodes(label, mesh, u, &|node| along(node, 0).hypot(along(node, 1)))
     }
+
+    /// The values at the corners of each triangle.
+    pub fn corners(&self) -> impl Iterator<Item = [f64; 3]> {
+        let triangles = self.surface.triangles.iter().zip(&self.surface.cells);
+        triangles.map(|(triangle, cell)| match &self.values {
+            Values::AtPoints(values) => triangle.map(|point| values[point as usize]),
+            Values::InCells(values) => [values[*cell as usize]; 3],
+        })
+    }
 }
 
-/// Which colours a field is drawn in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Colours {
-    /// Dark to light: magnitudes.
-    Sequential,
-    /// Blue over white to red: values of both signs; the range is made symmetric.
-    Diverging,
-}
-
-/// Plates above each other, in true proportions, on one colour scale.
+/// Plates above each other, in true proportions, on one colour scale: dark to light, or blue over white at zero to red
+/// where the values have both signs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldFigure {
     /// Heading.
@@ -66,14 +89,12 @@ pub struct FieldFigure {
     pub quantity: String,
     /// How the values lie on the colour bar.
     pub scale: Scale,
-    /// The colours.
-    pub colours: Colours,
     /// The plates.
     pub panels: Vec<Panel>,
 }
 
 impl FieldFigure {
-    /// Magnitudes on an even scale.
+    /// On an even scale.
     pub fn new(
         title: impl Into<String>,
         quantity: impl Into<String>,
@@ -83,7 +104,6 @@ impl FieldFigure {
             title: title.into(),
             quantity: quantity.into(),
             scale: Scale::Linear,
-            colours: Colours::Sequential,
             panels: panels.into_iter().collect(),
         }
     }
@@ -111,13 +131,6 @@ impl FieldFigure {
         let scale = Scale::Logarithmic;
         Self { scale, ..self }
     }
-
-    /// In colours for values of both signs.
-    #[must_use]
-    pub fn diverging(self) -> Self {
-        let colours = Colours::Diverging;
-        Self { colours, ..self }
-    }
 }
 
 /// One picture of an animation.
@@ -136,33 +149,8 @@ pub struct Animation {
     pub title: String,
     /// What the colours show, with its unit.
     pub quantity: String,
-    /// The colours.
-    pub colours: Colours,
     /// The pictures in order.
     pub frames: Vec<Frame>,
     /// How long each is shown, in ms.
     pub milliseconds: u16,
-}
-
-/// Deformed cells with the mean of their corners' values.
-fn cells(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec<FieldCell> {
-    let mean = |cell: usize| {
-        let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
-        let sum: f64 = corners.iter().map(|node| value(*node)).sum();
-        sum / corners.len() as f64
-    };
-    deformed(mesh, displacement, &mean)
-}
-
-/// Deformed cells with their values.
-fn deformed(mesh: &Mesh, displacement: &[f64], value: &dyn Fn(usize) -> f64) -> Vec<FieldCell> {
-    let place =
-        |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + displacement[2 * node + axis]);
-    let cell = |cell: usize| {
-        // A triangle is a quadrilateral whose last two corners are one.
-        let last = mesh.shape(cell).corners() - 1;
-        let corners: [usize; 4] = std::array::from_fn(|corner| mesh.cell(cell)[corner.min(last)]);
-        (corners.map(place), value(cell))
-    };
-    (0..mesh.cell_count()).map(cell).collect()
 }

@@ -74,7 +74,7 @@ pub fn warning<'a>(
     (!told.is_empty()).then(|| {
         format!(
             "Warning: part of the sheet is under compression, where a thin sheet wrinkles and the plane solution \
-             carries stress that it would lose: {} of the area (array `wrinkling_1` of the finite elements' VTK \
+             carries stress that it would lose: {} of the area (array `wrinkling` of the finite elements' VTK \
              files).",
             told.join(", ")
         )
@@ -82,7 +82,7 @@ pub fn warning<'a>(
 }
 
 /// The principal values of a plane stress with the components 11, 12, 22, the larger first.
-fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
+pub(super) fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
     let (mean, radius) = (0.5 * (s11 + s22), (0.5 * (s11 - s22)).hypot(s12));
     [mean + radius, mean - radius]
 }

@@ -33,7 +33,13 @@ const DOORS: &[(&str, &[&str])] = &[
     ("vtkio::", &["src/output/vtk.rs", "src/mesh/import/vtk.rs"]),
     ("plotters::", &["src/output/picture"]),
     ("resvg::", &["src/output/picture"]),
-    ("png::", &["src/output/picture/animation.rs"]),
+    (
+        "png::",
+        &[
+            "src/output/picture/animation.rs",
+            "src/output/picture/encode.rs",
+        ],
+    ),
     ("maud::", &["src/output/html.rs"]),
     ("clap::", &["src/command"]),
     ("miette::", &["src/command"]),

@@ -1,13 +1,14 @@
 //! Fields that move, as an animated PNG: every browser plays it, and other programs show its first picture.
 
-use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Writer};
+use plotters::coord::Shift;
+use plotters::prelude::{DrawingArea, SVGBackend};
+use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Filter, Writer};
 use resvg::tiny_skia::Pixmap;
 
-use super::canvas::{DrawResult, Painter, rasterise};
+use super::canvas::{DrawResult, rasterise};
+use super::encode::{Part, colours, whole};
+use super::paint::Painter;
 use crate::results::{Animation, FieldFigure, Panel, Scale};
-
-/// A part of a picture: left, top, width, height in pixels.
-type Part = [u32; 4];
 
 impl Animation {
     /// The animation as an APNG that plays again and again; of every picture only the part that moves is stored.
@@ -18,9 +19,10 @@ impl Animation {
         let pictures = self.frames.iter().map(|frame| {
             let title = format!("{}, t = {:.3} s", self.title, frame.time);
             let figure = self.figure(title, frame.panels.clone());
-            let paint = |painter: &mut Painter| figure.paint(painter, &layout, range);
-            let size = figure.size(&layout);
-            rasterise(size, 1.0, |area| figure.draw(area, &layout, range), paint)
+            let paint = |painter: &mut Painter| figure.paint(painter, &layout, &range);
+            let draw =
+                |area: &DrawingArea<SVGBackend<'_>, Shift>| figure.draw(area, &layout, &range);
+            rasterise(figure.size(&layout), 1.0, paint, draw)
         });
         self.encode(pictures)
     }
@@ -30,7 +32,6 @@ impl Animation {
             title,
             quantity: self.quantity.clone(),
             scale: Scale::Linear,
-            colours: self.colours,
             panels,
         }
     }
@@ -45,14 +46,14 @@ impl Animation {
         let mut encoder = Encoder::new(&mut bytes, shown.width(), shown.height());
         encoder.set_color(ColorType::Rgb);
         encoder.set_depth(BitDepth::Eight);
-        encoder.set_compression(Compression::High);
+        encoder.set_compression(Compression::Balanced);
+        encoder.set_filter(Filter::NoFilter);
         encoder.set_animated(count, 0)?;
         encoder.set_frame_delay(self.milliseconds, 1000)?;
         encoder.set_blend_op(BlendOp::Source)?;
         encoder.set_dispose_op(DisposeOp::None)?;
         let mut writer = encoder.write_header()?;
-        let whole = [0, 0, shown.width(), shown.height()];
-        writer.write_image_data(&colours(&shown, whole))?;
+        writer.write_image_data(&colours(&shown, whole(&shown)))?;
         for picture in pictures {
             let picture = picture?;
             put(&mut writer, &picture, changed(&shown, &picture))?;
@@ -74,18 +75,6 @@ fn put(
     writer.set_frame_dimension(width, height)?;
     writer.set_frame_position(left, top)?;
     writer.write_image_data(&colours(picture, part))
-}
-
-/// Red, green and blue of a part; pictures are opaque.
-fn colours(picture: &Pixmap, [left, top, width, height]: Part) -> Vec<u8> {
-    let line = |y: u32| {
-        let start = 4 * (y * picture.width() + left) as usize;
-        &picture.data()[start..start + 4 * width as usize]
-    };
-    let pixels = (top..top + height).flat_map(|y| line(y).chunks_exact(4));
-    pixels
-        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
-        .collect()
 }
 
 /// The smallest part that holds all differences; one pixel where there are none.
@@ -112,25 +101,20 @@ fn changed(before: &Pixmap, after: &Pixmap) -> Part {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Colours, Frame};
+    use crate::results::Frame;
 
     fn animation() -> Animation {
         let frame = |step: u32| {
             let x = f64::from(step);
             let corners = [[x, 0.0], [x + 10.0, 0.0], [x + 10.0, 5.0], [x, 5.0]];
-            let label = "a square".to_owned();
             Frame {
                 time: 0.1 * x,
-                panels: vec![Panel {
-                    label,
-                    cells: vec![(corners, x)],
-                }],
+                panels: vec![Panel::quadrilaterals("a square", &[(corners, x)])],
             }
         };
         Animation {
             title: "Test".into(),
             quantity: "x [mm]".into(),
-            colours: Colours::Sequential,
             frames: (0..4).map(frame).collect(),
             milliseconds: 40,
         }

@@ -2,9 +2,12 @@
 
 use std::sync::{Arc, LazyLock};
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
 use resvg::{tiny_skia, usvg};
 
+use super::encode::encode;
+use super::paint::Painter;
 use crate::results::Scale;
 
 /// Units of the drawing for each point of the design. plotters rounds to whole units: they must be small.
@@ -36,34 +39,31 @@ static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// Draws on a white area of `size` points, then paints what is too much to be drawn, and returns a PNG.
+/// Paints on a white area of `size` points what is too much to be drawn, draws above it, and returns a PNG.
 pub(super) fn render(
     size: (u32, u32),
-    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> DrawResult<()>,
     paint: impl FnOnce(&mut Painter<'_>),
+    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, Shift>) -> DrawResult<()>,
 ) -> DrawResult<Vec<u8>> {
-    Ok(rasterise(size, PIXELS, draw, paint)?.encode_png()?)
+    Ok(encode(&rasterise(size, PIXELS, paint, draw)?)?)
 }
 
-/// Draws on a white area of `size` points with so many pixels a point, then paints.
+/// Paints on a white area of `size` points with so many pixels a point, then draws above it.
 pub(super) fn rasterise(
     size: (u32, u32),
     pixels_per_point: f32,
-    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, plotters::coord::Shift>) -> DrawResult<()>,
     paint: impl FnOnce(&mut Painter<'_>),
+    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, Shift>) -> DrawResult<()>,
 ) -> DrawResult<tiny_skia::Pixmap> {
     let fonts = Arc::clone(&FONTS);
     let mut svg = String::new();
     {
         let area =
             SVGBackend::with_string(&mut svg, (FINE * size.0, FINE * size.1)).into_drawing_area();
-        area.fill(&WHITE)?;
         draw(&area)?;
         area.present()?;
     }
     svg.retain(in_xml);
-    // Neighbouring cells share their edges: without this, a pale seam would show between them.
-    let svg = svg.replace("<polygon ", "<polygon shape-rendering=\"crispEdges\" ");
     let options = usvg::Options {
         fontdb: fonts,
         ..usvg::Options::default()
@@ -72,72 +72,20 @@ pub(super) fn rasterise(
     let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
     let image = tiny_skia::Pixmap::new(pixels(size.0), pixels(size.1));
     let mut image = image.ok_or_else(|| format!("it would have {} × {} points", size.0, size.1))?;
-    let scale = pixels_per_point / FINE as f32;
-    let transform = tiny_skia::Transform::from_scale(scale, scale);
-    resvg::render(&tree, transform, &mut image.as_mut());
+    image.fill(tiny_skia::Color::WHITE);
     paint(&mut Painter {
         image: &mut image,
         pixels_per_point,
     });
+    let scale = pixels_per_point / FINE as f32;
+    let transform = tiny_skia::Transform::from_scale(scale, scale);
+    resvg::render(&tree, transform, &mut image.as_mut());
     Ok(image)
 }
 
 /// Whether XML can hold a character.
 fn in_xml(character: char) -> bool {
     matches!(character, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..)
-}
-
-/// Paints straight into the pixels: the drawing library takes a hundred times as long and as much memory for a cell, and
-/// refuses a million of them.
-pub(super) struct Painter<'a> {
-    image: &'a mut tiny_skia::Pixmap,
-    pixels_per_point: f32,
-}
-
-impl Painter<'_> {
-    /// Fills a polygon at places in points.
-    pub(super) fn fill(&mut self, places: &[[f64; 2]], colour: RGBColor) {
-        if let Some(path) = self.path(places) {
-            let rule = tiny_skia::FillRule::Winding;
-            let whole = tiny_skia::Transform::identity();
-            self.image
-                .fill_path(&path, &paint_of(colour), rule, whole, None);
-        }
-    }
-
-    /// Draws a hairline through places in points.
-    pub(super) fn line(&mut self, places: &[[f64; 2]]) {
-        if let Some(path) = self.path(places) {
-            let hairline = tiny_skia::Stroke {
-                width: 0.0,
-                ..tiny_skia::Stroke::default()
-            };
-            let whole = tiny_skia::Transform::identity();
-            self.image
-                .stroke_path(&path, &paint_of(INK), &hairline, whole, None);
-        }
-    }
-
-    fn path(&self, places: &[[f64; 2]]) -> Option<tiny_skia::Path> {
-        let mut path = tiny_skia::PathBuilder::with_capacity(places.len() + 1, places.len());
-        for (index, place) in places.iter().enumerate() {
-            let [x, y] = place.map(|points| points as f32 * self.pixels_per_point);
-            match index {
-                0 => path.move_to(x, y),
-                _ => path.line_to(x, y),
-            }
-        }
-        path.finish()
-    }
-}
-
-fn paint_of(colour: RGBColor) -> tiny_skia::Paint<'static> {
-    let mut paint = tiny_skia::Paint {
-        anti_alias: false,
-        ..tiny_skia::Paint::default()
-    };
-    paint.set_color_rgba8(colour.0, colour.1, colour.2, 255);
-    paint
 }
 
 /// Points of the design in units of the drawing.
@@ -191,6 +139,14 @@ impl Scale {
             Self::Logarithmic => value.log10(),
         };
         position.is_finite().then_some(position)
+    }
+
+    /// The value at a position.
+    pub(super) fn value(self, position: f64) -> f64 {
+        match self {
+            Self::Linear | Self::Interval => position,
+            Self::Logarithmic => 10f64.powf(position),
+        }
     }
 
     pub(super) fn label(self, position: f64) -> String {

@@ -4,7 +4,8 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::canvas::{DrawResult, FINE, INK, PALE, bold, render, stroke, text, units};
+use super::canvas::{DrawResult, FINE, INK, PALE, bold, power_of_ten, render, stroke, text, units};
+use super::numbers::common_exponent;
 use super::thin;
 use crate::results::{Line, LineChart, Scale, Stroke};
 
@@ -25,7 +26,36 @@ pub fn stacked(charts: &[(LineChart, u32)]) -> DrawResult<Vec<u8>> {
         }
         Ok(())
     };
-    render((WIDTH, height), draw, |_| ())
+    render((WIDTH, height), |_| (), draw)
+}
+
+/// The power of ten that the numbers of an axis have in common: of none but very large and very small ones.
+fn power(scale: Scale, [low, high]: [f64; 2]) -> i32 {
+    let largest = low.abs().max(high.abs());
+    match scale {
+        Scale::Linear | Scale::Interval if !(1e-3..1e6).contains(&largest) => {
+            common_exponent(largest)
+        }
+        Scale::Linear | Scale::Interval | Scale::Logarithmic => 0,
+    }
+}
+
+/// The powers of ten at the ends of the axes.
+fn draw_powers(
+    area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
+    powers: [i32; 2],
+) -> DrawResult<()> {
+    let (_, height) = area.dim_in_pixel();
+    let right = units((WIDTH - LEGEND_WIDTH) as i32 - 14);
+    let places = [(right, height as i32 - units(22)), (units(84), units(40))];
+    let style = text(13).pos(Pos::new(HPos::Right, VPos::Center));
+    for (power, place) in powers.into_iter().zip(places) {
+        if power != 0 {
+            let words = format!("×{}", power_of_ten(f64::from(power)));
+            area.draw(&Text::new(words, place, style.clone()))?;
+        }
+    }
+    Ok(())
 }
 
 impl LineChart {
@@ -66,9 +96,15 @@ impl LineChart {
                 Scale::Linear | Scale::Interval => 7,
                 Scale::Logarithmic => decades(bottom, top).min(12),
             });
-        mesh.x_label_formatter(&|x| self.x.scale.label(*x))
-            .y_label_formatter(&|y| self.y.scale.label(*y))
+        let powers = [
+            power(self.x.scale, [left, right]),
+            power(self.y.scale, [bottom, top]),
+        ];
+        let units_of = powers.map(|power| 10f64.powi(power));
+        mesh.x_label_formatter(&|x| self.x.scale.label(*x / units_of[0]))
+            .y_label_formatter(&|y| self.y.scale.label(*y / units_of[1]))
             .draw()?;
+        draw_powers(area, powers)?;
         for line in &self.lines {
             self.draw_line(&mut chart, line)?;
         }
@@ -81,10 +117,12 @@ impl LineChart {
         let points: Vec<_> = line.points.iter().filter_map(position).collect();
         let points = match line.stroke {
             Stroke::Points | Stroke::Marked => thin::scattered(points),
-            Stroke::Solid | Stroke::Dashed | Stroke::Filled => thin::connected(points),
+            Stroke::Solid | Stroke::Thin | Stroke::Dashed | Stroke::Filled => {
+                thin::connected(points)
+            }
         };
         let colour = line.rgb();
-        let pen = stroke(colour, 2);
+        let pen = line.pen();
         if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
             let radius = units(if points.len() > 60 { 2 } else { 4 });
             let marker = |point: &(f64, f64)| Circle::new(*point, radius, colour.filled());
@@ -99,7 +137,7 @@ impl LineChart {
             Stroke::Filled => {
                 chart.draw_series([Polygon::new(points, line.pale().filled())])?;
             }
-            Stroke::Solid | Stroke::Marked => {
+            Stroke::Solid | Stroke::Thin | Stroke::Marked => {
                 chart.draw_series(LineSeries::new(points, pen))?;
             }
         }
@@ -115,7 +153,7 @@ impl LineChart {
         let mut y = units(62);
         for line in self.lines.iter().filter(|line| !line.label.is_empty()) {
             let colour = line.rgb();
-            let pen = stroke(colour, 2);
+            let pen = line.pen();
             let sample = [(left, y), (right, y)];
             match line.stroke {
                 Stroke::Dashed => {
@@ -128,7 +166,9 @@ impl LineChart {
                     let corners = [(left, y - units(7)), (right, y + units(7))];
                     area.draw(&Rectangle::new(corners, line.pale().filled()))?;
                 }
-                Stroke::Solid | Stroke::Marked => area.draw(&PathElement::new(sample, pen))?,
+                Stroke::Solid | Stroke::Thin | Stroke::Marked => {
+                    area.draw(&PathElement::new(sample, pen))?
+                }
             }
             if matches!(line.stroke, Stroke::Marked | Stroke::Points) {
                 area.draw(&Circle::new((units(19), y), units(4), colour.filled()))?;
@@ -156,6 +196,11 @@ impl Line {
     fn rgb(&self) -> RGBColor {
         let [red, green, blue] = self.colour;
         RGBColor(red, green, blue)
+    }
+
+    fn pen(&self) -> ShapeStyle {
+        let width = if self.stroke == Stroke::Thin { 1 } else { 2 };
+        stroke(self.rgb(), width)
     }
 
     /// The colour on white, as an area has it.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::results::{Animation, Colours, FieldFigure, Panel};
+use crate::results::{Animation, FieldFigure, Panel};
 
 fn squares(count: usize) -> Vec<([[f64; 2]; 4], f64)> {
     let square = |i: usize| {
@@ -11,16 +11,7 @@ fn squares(count: usize) -> Vec<([[f64; 2]; 4], f64)> {
 }
 
 fn field(title: &str, cells: Vec<([[f64; 2]; 4], f64)>) -> Drawing {
-    let label = "a\u{1}b".to_owned();
-    FieldFigure::new(title, "x [mm]", [Panel { label, cells }]).into()
-}
-
-/// The share of pixels that are neither white nor ink.
-fn coloured(png: &[u8]) -> f64 {
-    let image = resvg::tiny_skia::Pixmap::decode_png(png).unwrap();
-    let pixels = image.pixels();
-    let is_coloured = |p: &&resvg::tiny_skia::PremultipliedColorU8| p.red().abs_diff(p.blue()) > 20;
-    pixels.iter().filter(is_coloured).count() as f64 / pixels.len() as f64
+    FieldFigure::new(title, "x [mm]", [Panel::quadrilaterals("a\u{1}b", &cells)]).into()
 }
 
 #[test]
@@ -29,19 +20,10 @@ fn characters_that_xml_cannot_hold_are_left_out_of_pictures() {
 }
 
 #[test]
-fn a_field_of_many_cells_is_painted_as_one_of_few_is_drawn() {
-    let few = png(&field("few", squares(20_000))).unwrap();
-    let many = png(&field("many", squares(21_000))).unwrap();
-    let (few, many) = (coloured(&few), coloured(&many));
-    assert!(few > 0.05 && (few - many).abs() < 0.02, "{few} {many}");
-}
-
-#[test]
 fn a_picture_that_cannot_be_drawn_is_a_fault_and_no_panic() {
     let still = Animation {
         title: "still".into(),
         quantity: "x [mm]".into(),
-        colours: Colours::Sequential,
         frames: Vec::new(),
         milliseconds: 40,
     };

@@ -3,7 +3,7 @@
 use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::mesh::Mesh;
-use crate::results::{Drawing, FieldCell, FieldFigure, Figure, Panel, mesh_outlines};
+use crate::results::{Drawing, FieldFigure, Figure, Panel, mesh_outlines};
 use crate::studies::markers::MarkerStudy;
 
 use super::quantities::{misfits, nominal_stress, residuals};
@@ -61,7 +61,7 @@ impl Pictures<'_> {
         let name = ["x", "y"][axis];
         let panel = Panel::at_nodes(&self.at, self.mesh, u, &|node| u[2 * node + axis]);
         let quantity = format!("u{name} [mm]");
-        let figure = FieldFigure::new("Corrected displacement", quantity, [panel]).diverging();
+        let figure = FieldFigure::new("Corrected displacement", quantity, [panel]);
         let caption = format!("The corrected displacement along {name}.");
         Figure::new(format!("displacement_{name}.png"), caption, figure)
     }
@@ -79,9 +79,8 @@ impl Pictures<'_> {
     }
 
     /// A value of each marker where it was measured.
-    fn at_markers(&self, title: &str, quantity: &str, cells: Vec<FieldCell>) -> FieldFigure {
-        let label = self.at.clone();
-        FieldFigure::new(title, quantity, [Panel { label, cells }])
+    fn at_markers(&self, title: &str, quantity: &str, cells: Vec<Square>) -> FieldFigure {
+        FieldFigure::new(title, quantity, [Panel::quadrilaterals(&self.at, &cells)])
     }
 
     fn uncertainty(&self, frame: &Frame) -> [Figure; 4] {
@@ -159,8 +158,11 @@ fn largest(components: [f64; 4]) -> f64 {
 /// The residual that has the lightest colour.
 const LARGEST_RESIDUAL: f64 = 5.0;
 
+/// The corners of a square and its value.
+type Square = ([[f64; 2]; 4], f64);
+
 /// A square for every marker with a value where it was measured.
-fn marker_squares(frame: &Frame, values: impl Iterator<Item = f64>) -> Vec<FieldCell> {
+fn marker_squares(frame: &Frame, values: impl Iterator<Item = f64>) -> Vec<Square> {
     let places = || frame.markers.iter().map(|marker| marker.place);
     let limit =
         |axis: usize, pick: fn(f64, f64) -> f64| places().map(|place| place[axis]).reduce(pick);

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::quantities::{nominal, nominal_stress, residuals};
 use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
+use crate::results::cell_states;
 use crate::studies::markers::MarkerStudy;
 
 /// A row of a table; a number that is none leaves its field empty.
@@ -47,7 +48,7 @@ pub fn nodes(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
     text
 }
 
-/// Stress and thickness in the middle of the cells.
+/// Stress, thickness and strain in the middle of the cells.
 pub fn cells(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
     let mut text = String::from("cell,X_mm,Y_mm");
     let error = error(estimate);
@@ -56,12 +57,22 @@ pub fn cells(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
             let _ = write!(text, ",nominal_stress_{component}{of}_MPa");
         }
     }
-    let _ = writeln!(text, ",thickness_mm,thickness_{error}_mm");
-    for (index, cell) in estimate.cells.iter().enumerate() {
+    let _ = write!(text, ",thickness_mm,thickness_{error}_mm");
+    for (of, unit) in [("cauchy_stress", "_MPa"), ("green_lagrange_strain", "")] {
+        for component in ["xx", "yy", "zz", "xy"] {
+            let _ = write!(text, ",{of}_{component}{unit}");
+        }
+    }
+    text.push('\n');
+    let law = field.law(estimate);
+    let states = cell_states(&*law, &field.mesh, &estimate.displacement);
+    for (index, (cell, state)) in estimate.cells.iter().zip(states).enumerate() {
         let mut values = field.mesh.centre(index).to_vec();
         values.extend(nominal_stress(cell));
         values.extend(nominal(cell.stress_error));
         values.extend([cell.thickness, cell.thickness_error]);
+        values.extend(state.cauchy);
+        values.extend(state.green_lagrange);
         row(&mut text, &[index], &values);
     }
     text

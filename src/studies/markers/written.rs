@@ -187,9 +187,9 @@ fn markers(frame: &Frame, estimate: &FieldEstimate) -> Grid {
     Grid::scattered(&places, &measured).with([
         Array::vectors("residual_mm", differences),
         Array::vectors("mean_residual_of_neighbours_mm", misfit),
-        of("standardised_residual_1", |left| left.standardised),
-        of("trust_1", |left| left.trust),
-        of("outlier_1", |left| left.outlier),
-        Array::scalars("number_1", numbers),
+        of("standardised_residual", |left| left.standardised),
+        of("trust", |left| left.trust),
+        of("outlier", |left| left.outlier),
+        Array::scalars("number", numbers),
     ])
 }

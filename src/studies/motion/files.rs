@@ -6,8 +6,8 @@ use super::solution::ModelMotion;
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::Mesh;
 use crate::results::{
-    Animation, Array, Axis, Colours, Content, Drawing, FieldFigure, Figure, Frame, Grid,
-    GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv,
+    Animation, Array, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
+    LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number,
 };
 
 /// How a model's lines are drawn.
@@ -55,8 +55,8 @@ pub fn figures(
 ) -> Vec<Figure> {
     let [springs, elements] = models;
     let last = springs.history.instants.len() - 1;
-    let plates = speeds(&shown(models, corrected), last);
-    let plates = FieldFigure::new("Plates at the last instant", "speed [mm/s]", plates);
+    let plates = displaced(&shown(models, corrected), last);
+    let plates = FieldFigure::new("Plates at the last instant", ALONG, plates);
     let mut figures = vec![
         Figure::new(
             "motion_probes.png",
@@ -70,7 +70,7 @@ pub fn figures(
         ),
         Figure::new(
             "motion_plates.png",
-            "The plates at the last instant, with the size of their velocity.",
+            "The plates at the last instant, with their displacement along the plate.",
             plates,
         ),
     ];
@@ -84,15 +84,40 @@ pub fn figures(
         ));
     }
     figures.extend(plate.probes.first().map(|probe| {
-        let phase = lines(models, |model, now| {
-            [&now.displacement, &now.velocity].map(|field| model.at(field, probe)[0])
-        });
-        let title = format!("Phase of the probe `{}`", probe.name);
-        let caption = "Velocity over displacement of the first probe along the plate.";
-        let chart = chart(&title, "displacement [mm]", "velocity [mm/s]", phase);
-        Figure::new("motion_phase.png", caption, chart)
+        let caption = "Velocity over displacement of the first probe along the plate, springs above, finite elements below; \
+                       later parts of the motion are darker.";
+        let charts = pair(phase(springs, probe), phase(elements, probe));
+        Figure::new("motion_phase.png", caption, charts)
     }));
     figures
+}
+
+/// Velocity over displacement of a probe, part of the motion after part.
+fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
+    const SHADES: [[u8; 3]; 4] = [[253, 174, 107], [230, 109, 59], [166, 54, 3], [60, 20, 0]];
+    let points = model
+        .points(|now| [&now.displacement, &now.velocity].map(|field| model.at(field, probe)[0]));
+    let times = model.history.times();
+    let length = points.len().div_ceil(SHADES.len()).max(2);
+    let starts = (0..points.len().saturating_sub(1)).step_by(length);
+    let lines = starts.zip(SHADES).map(|(start, colour)| {
+        // Each part begins where the one before ends.
+        let end = (start + length).min(points.len() - 1);
+        let label = format!("{} – {} s", number(times[start]), number(times[end]));
+        Line::new(
+            label,
+            points[start..=end].iter().copied(),
+            colour,
+            Stroke::Thin,
+        )
+    });
+    let title = format!("Phase of the probe {}, {}", probe.name, model.name);
+    chart(
+        &title,
+        "displacement [mm]",
+        "velocity [mm/s]",
+        lines.collect(),
+    )
 }
 
 fn probes(
@@ -184,16 +209,19 @@ fn shown<'a>(models: &'a [ModelMotion; 2], corrected: &'a CorrectedMotion) -> Ve
     all
 }
 
-/// The plates at an instant, with the size of their velocity.
-fn speeds(plates: &[PlateMotion], instant: usize) -> Vec<Panel> {
+/// What the pictures of the plates show.
+const ALONG: &str = "displacement along the plate [mm]";
+
+/// The plates at an instant, with their displacement along x.
+fn displaced(plates: &[PlateMotion], instant: usize) -> Vec<Panel> {
     let panel = |plate: &PlateMotion| {
-        let [displacement, velocity] = *plate.motion.get(instant)?;
-        let speed = |node: usize| velocity[2 * node].hypot(velocity[2 * node + 1]);
+        let [displacement, _] = *plate.motion.get(instant)?;
+        let along = |node: usize| displacement[2 * node];
         Some(Panel::at_nodes(
             plate.name,
             plate.mesh,
             displacement,
-            &speed,
+            &along,
         ))
     };
     plates.iter().filter_map(panel).collect()
@@ -210,12 +238,11 @@ pub fn animation(models: &[ModelMotion; 2], corrected: &CorrectedMotion) -> Anim
     let instants = (0..count.unwrap_or(0)).step_by(every);
     let frame = |instant: usize| Frame {
         time: times[instant],
-        panels: speeds(&plates, instant),
+        panels: displaced(&plates, instant),
     };
     Animation {
         title: "Plates in motion".into(),
-        quantity: "speed [mm/s]".into(),
-        colours: Colours::Sequential,
+        quantity: ALONG.into(),
         frames: instants.map(frame).collect(),
         milliseconds: MILLISECONDS,
     }

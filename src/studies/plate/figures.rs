@@ -6,7 +6,8 @@ use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::results::{
-    Axis, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, material_chart,
+    Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, SheetField, Stroke,
+    material_chart, sheet_figures,
 };
 use crate::solve::State;
 
@@ -23,11 +24,13 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
         let at = ClampedPlate::describe_step(*stretch);
         all.extend(step_figures(results, step, &at));
     }
+    all.extend(stress_figures(study, results));
     let caption = "Deviation from the finite elements over stretch.";
     all.push(Figure::new("errors.png", caption, errors(results)));
-    let caption = "Grip force over stretch.";
+    let caption = "Grip force over stretch, and how far it is from the finite elements'.";
     all.push(Figure::new("force.png", caption, force(results)));
-    let caption = "Residual over iteration, at the last stretch with a solution.";
+    let caption = "Residual of springs and finite elements, and correction of the corrected field, over iteration at the last \
+                   stretch with a solution.";
     all.push(Figure::new("residuals.png", caption, residuals(results)));
     all.extend(estimated_error(results).map(|figure| {
         let caption = "Estimated error of every finite element at the last stretch, in % of the solution's energy norm.";
@@ -65,20 +68,40 @@ fn step_figures(results: &Results, step: usize, at: &str) -> Vec<Figure> {
         .collect()
 }
 
-fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
+/// Stresses at the last stretch that most models have reached.
+fn stress_figures(study: &Study, results: &Results) -> Vec<Figure> {
+    let count = |step: &usize| deformed(results, *step).len();
+    let Some(step) = (0..results.comparison.len()).max_by_key(count) else {
+        return Vec::new();
+    };
+    let at = ClampedPlate::describe_step(results.comparison[step].stretch);
+    let fields = [SheetField::VonMises, SheetField::LargestPrincipalStress];
+    let models = deformed(results, step);
+    let file = |name: &str| format!("{name}_{:03}.png", step + 1);
+    sheet_figures(&fields, &*study.problem.law, &models, &at, &file)
+}
+
+/// The models that have a solution at a stretch, with their names and meshes.
+fn deformed(results: &Results, step: usize) -> Vec<(String, &Mesh, &[f64])> {
     let labels = [
         MODELS[0].to_owned(),
         MODELS[1].to_owned(),
         format!("{} ({})", MODELS[2], results.finest().model.describe()),
     ];
     let meshes = labels.into_iter().zip(results.meshes());
-    let panel = |((label, mesh), solution): ((String, &Mesh), Option<&State>)| {
-        let u = &solution?.displacement;
-        Some(Panel::at_nodes(label, mesh, u, &|node| u[2 * node + 1]))
+    let models = meshes.zip(results.models(step));
+    models
+        .filter_map(|((label, mesh), state)| Some((label, mesh, &state?.displacement[..])))
+        .collect()
+}
+
+fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
+    let panel = |(label, mesh, u): (String, &Mesh, &[f64])| {
+        Panel::at_nodes(label, mesh, u, &|node| u[2 * node + 1])
     };
-    let panels = meshes.zip(results.models(step)).filter_map(panel);
+    let panels = deformed(results, step).into_iter().map(panel);
     let quantity = "transverse displacement [mm]";
-    FieldFigure::new(format!("Plate at {at}"), quantity, panels).diverging()
+    FieldFigure::new(format!("Plate at {at}"), quantity, panels)
 }
 
 fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
@@ -155,7 +178,7 @@ fn with_points(lines: impl IntoIterator<Item = Line>, fewest: usize) -> Vec<Line
     lines.filter(|line| line.points.len() >= fewest).collect()
 }
 
-fn force(results: &Results) -> LineChart {
+fn force(results: &Results) -> Drawing {
     let line = |(model, colour, stroke): (usize, _, _)| {
         let steps = 0..results.comparison.len();
         let solutions =
@@ -173,29 +196,63 @@ fn force(results: &Results) -> LineChart {
         (0, MASS_SPRING, Stroke::Marked),
         (1, CORRECTED, Stroke::Points),
     ];
-    LineChart::new(
+    let forces = LineChart::new(
         "Grip force",
         Axis::linear("stretch of the plate [%]"),
         Axis::linear("force [N]"),
         with_points(lines.map(line), 2),
+    );
+    let differences = force_differences(results);
+    match differences.lines.is_empty() {
+        true => forces.into(),
+        false => Drawing::Charts(vec![(forces, 400), (differences, 320)]),
+    }
+}
+
+/// How far the force of springs and corrected field is from the finite elements'.
+fn force_differences(results: &Results) -> LineChart {
+    let line = |(model, colour): (usize, _)| {
+        let point = |step: usize| {
+            let measures = results.measures(step);
+            let [own, reference] = [measures[model]?.force, measures[2]?.force];
+            let stretch = 100.0 * results.comparison[step].stretch;
+            Some([stretch, 100.0 * ((own - reference) / reference).abs()])
+        };
+        let points = (0..results.comparison.len()).filter_map(point);
+        Line::new(MODELS[model], points, colour, Stroke::Marked)
+    };
+    let lines = [(0, MASS_SPRING), (1, CORRECTED)].map(line);
+    LineChart::new(
+        "Difference of the grip force from the finite elements'",
+        Axis::linear("stretch of the plate [%]"),
+        Axis::logarithmic("size of the difference [%]"),
+        with_points(lines, 1),
     )
 }
 
-/// The residuals of the models that have a solution at the last stretch that one of them has reached.
-fn residuals(results: &Results) -> LineChart {
+/// How the models that have a solution at the last stretch that one of them has reached have come to it: the residuals of
+/// those that look for an equilibrium of forces, and the corrections of the corrected field, which is another quantity.
+fn residuals(results: &Results) -> Drawing {
     let last = results.last_step().unwrap_or_default();
-    let colours = [MASS_SPRING, CORRECTED, FINITE_ELEMENT];
-    let models = MODELS.into_iter().zip(colours).zip(results.models(last));
-    let line = |((label, colour), solution): ((&str, _), Option<&State>)| {
-        let residuals = solution?.convergence.residuals.iter().enumerate();
-        let points = residuals.map(|(i, r)| [i as f64, *r]);
-        Some(Line::new(label, points, colour, Stroke::Marked))
+    let line = |(model, colour): (usize, _)| {
+        let solution = results.models(last)[model]?;
+        let residuals = solution.convergence.residuals.iter().enumerate();
+        let points = residuals.map(|(iteration, size)| [iteration as f64, *size]);
+        Some(Line::new(MODELS[model], points, colour, Stroke::Marked))
     };
     let at = ClampedPlate::describe_step(results.comparison[last].stretch);
-    LineChart::new(
-        format!("Residual at {at}"),
-        Axis::linear("iteration"),
-        Axis::logarithmic("relative residual [–]"),
-        models.filter_map(line).collect(),
-    )
+    let chart = |title: &str, quantity: &str, lines: &[(usize, [u8; 3])]| {
+        let lines = lines.iter().copied().filter_map(line);
+        let lines = with_points(lines, 1);
+        let y = Axis::logarithmic(quantity);
+        let title = format!("{title} at {at}");
+        let chart = LineChart::new(title, Axis::linear("iteration"), y, lines);
+        (!chart.lines.is_empty()).then_some((chart, 340))
+    };
+    let forces = [(0, MASS_SPRING), (2, FINITE_ELEMENT)];
+    let charts = [
+        chart("Residual forces", "relative residual [–]", &forces),
+        chart("Corrections", "relative correction [–]", &[(1, CORRECTED)]),
+    ];
+    Drawing::Charts(charts.into_iter().flatten().collect())
 }

@@ -4,7 +4,10 @@ use super::problem::Specimen;
 use super::results::models::Models;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::results::{Array, FieldFigure, Figure, Grid, GridSeries, Panel, mesh_outlines};
+use crate::results::{
+    Array, Axis, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, PALETTE, Panel,
+    SheetField, Stroke, mesh_outlines, sheet_figures,
+};
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
 fn shown(models: &Models) -> Option<usize> {
@@ -41,6 +44,18 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
     let caption = format!("{title}, on one colour scale.");
     let displacement = FieldFigure::new(title, "displacement [mm]", fields(3).map(size));
     let mut figures = vec![figure("displacement", caption, displacement.into())];
+    let stresses = [SheetField::VonMises, SheetField::LargestPrincipalStress];
+    let deformed: Vec<_> = fields(3)
+        .map(|(name, mesh, u)| (name.to_owned(), mesh, u))
+        .collect();
+    let file = |field: &str| format!("{}_{field}.png", specimen.name);
+    figures.extend(sheet_figures(
+        &stresses,
+        specimen.sheet().law,
+        &deformed,
+        &at,
+        &file,
+    ));
     let compared = expected.get(step).filter(|_| fields(2).next().is_some());
     if let Some(v) = compared {
         // Springs and corrected springs.
@@ -50,6 +65,10 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
         let distance = FieldFigure::new(title, "distance [mm]", distances).logarithmic();
         figures.push(figure("error", caption, distance.into()));
     }
+    figures.extend(forces(specimen, models).map(|drawing| {
+        let caption = "Forces of the supports over the load factor: of each group along the axis of its larger force.";
+        figure("forces", caption.into(), drawing)
+    }));
     figures.push(mesh);
     figures.extend(estimated_error(models, step, &at).map(|drawing| {
         let caption = format!(
@@ -58,6 +77,53 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
         figure("estimated_error", caption, drawing.into())
     }));
     figures
+}
+
+/// Forces below this share of the largest are those of supports that carry nothing.
+const NO_FORCE: f64 = 1e-6;
+
+/// The forces of all groups that carry one, over the load factor; `None` where there is none.
+fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
+    const COLOURS: [[u8; 3]; 3] = [PALETTE[1], PALETTE[0], [30, 30, 30]];
+    const STROKES: [Stroke; 3] = [Stroke::Marked, Stroke::Points, Stroke::Solid];
+    let named = &models.named();
+    let points = |model: usize, group: usize, axis: usize| {
+        let steps = specimen.factors.iter().enumerate();
+        let force = steps.filter_map(move |(step, factor)| {
+            let groups = named[model].solution.groups(step)?;
+            Some([*factor, groups[group].force[axis]])
+        });
+        // Without a load, every sheet is at rest.
+        [[0.0; 2]].into_iter().chain(force).collect::<Vec<_>>()
+    };
+    let largest = |group: usize, axis: usize| {
+        let all = (0..3).flat_map(|model| points(model, group, axis));
+        all.fold(0.0, |most: f64, point| most.max(point[1].abs()))
+    };
+    let groups = specimen.groups();
+    let axes: Vec<(usize, f64)> = (0..groups.len())
+        .map(|group| [largest(group, 0), largest(group, 1)])
+        .map(|[x, y]| if y > x { (1, y) } else { (0, x) })
+        .collect();
+    let most = axes
+        .iter()
+        .fold(0.0, |most: f64, (_, force)| most.max(*force));
+    let carrying = axes.into_iter().enumerate();
+    let carrying = carrying.filter(|(_, (_, force))| *force > NO_FORCE * most);
+    let chart = |(group, (axis, _)): (usize, (usize, f64))| {
+        let line = |model: usize| {
+            let points = points(model, group, axis);
+            (points.len() > 1)
+                .then(|| Line::new(named[model].name, points, COLOURS[model], STROKES[model]))
+        };
+        let y = format!("force along {} [N]", ["x", "y"][axis]);
+        let lines = [2, 0, 1].into_iter().filter_map(line).collect();
+        let x = Axis::linear("load factor [–]");
+        let title = format!("Force of {}", groups[group]);
+        (LineChart::new(title, x, Axis::linear(&y), lines), 340)
+    };
+    let charts: Vec<_> = carrying.map(chart).collect();
+    (!charts.is_empty()).then_some(Drawing::Charts(charts))
 }
 
 fn estimated_error(models: &Models, step: usize, at: &str) -> Option<FieldFigure> {

@@ -1,0 +1,253 @@
+//! Which colours a field has: the range of the colour bar, and a colour for each share of it.
+
+use plotters::prelude::*;
+
+use crate::results::{Panel, Scale, Values};
+
+/// What share of the area may lie beyond each end of the colour bar.
+const BEYOND: f64 = 0.01;
+
+/// Values beyond are shown as such if they reach so far, in lengths of the colour bar; else the bar is made longer.
+const FAR: f64 = 0.15;
+
+/// The most decades of a logarithmic colour bar: below lie single nodes that happen to be exact.
+const DECADES: f64 = 6.0;
+
+/// A field counts as one of both signs if the smaller side is at least so large a part of the larger one.
+const SIGNED: f64 = 0.02;
+
+/// Colours of a table.
+const COLOURS: usize = 256;
+
+/// ColorBrewer's `RdBu`, blue first: readable with every colour vision.
+const BLUE_TO_RED: [RGBColor; 11] = [
+    RGBColor(5, 48, 97),
+    RGBColor(33, 102, 172),
+    RGBColor(67, 147, 195),
+    RGBColor(146, 197, 222),
+    RGBColor(209, 229, 240),
+    RGBColor(247, 247, 247),
+    RGBColor(253, 219, 199),
+    RGBColor(244, 165, 130),
+    RGBColor(214, 96, 77),
+    RGBColor(178, 24, 43),
+    RGBColor(103, 0, 31),
+];
+
+/// The positions at the ends of the colour bar, and what lies beyond them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    pub low: f64,
+    pub high: f64,
+    /// The smallest value where it lies below the bar.
+    pub below: Option<f64>,
+    /// The largest value where it lies above the bar.
+    pub above: Option<f64>,
+    /// Whether the values have both signs, so that zero is in the middle.
+    pub is_signed: bool,
+}
+
+impl Range {
+    /// The range of all panels.
+    pub fn of<'a>(panels: impl Iterator<Item = &'a Panel> + Clone, scale: Scale) -> Self {
+        let values = panels.clone().flat_map(|panel| match &panel.values {
+            Values::AtPoints(values) | Values::InCells(values) => values.iter().copied(),
+        });
+        let [least, most] = extremes(values.filter(|value| value.is_finite()));
+        let shares = panels.flat_map(|panel| {
+            let means = panel
+                .corners()
+                .map(|corners| corners.iter().sum::<f64>() / 3.0);
+            means.zip(areas(panel))
+        });
+        let known = shares.filter_map(|(mean, area)| Some((scale.position(mean)?, area)));
+        let Some([low, high]) = middle(known.collect()) else {
+            let is_signed = false;
+            return Self {
+                low: 0.0,
+                high: 1.0,
+                below: None,
+                above: None,
+                is_signed,
+            };
+        };
+        match scale {
+            Scale::Logarithmic => Self::logarithmic([low, high], [least, most]),
+            Scale::Linear | Scale::Interval => Self::even([low, high], [least, most]),
+        }
+    }
+
+    fn even([low, high]: [f64; 2], [least, most]: [f64; 2]) -> Self {
+        let far = FAR * (high - low);
+        let is_local = high - low < 1e-3 * (most - least);
+        let mut low = if low - least > far && !is_local {
+            low
+        } else {
+            least
+        };
+        let mut high = if most - high > far && !is_local {
+            high
+        } else {
+            most
+        };
+        let is_signed = low < 0.0 && high > 0.0 && (-low).min(high) > SIGNED * (-low).max(high);
+        if is_signed {
+            high = high.max(-low);
+            low = -high;
+        }
+        if high - low <= 1e-6 * high.abs().max(low.abs()) {
+            let margin = if high == 0.0 { 0.5 } else { 0.1 * high.abs() };
+            (low, high) = (low - margin, high + margin);
+        }
+        let margin = 1e-9 * (high - low);
+        Self {
+            low,
+            high,
+            below: (least < low - margin).then_some(least),
+            above: (most > high + margin).then_some(most),
+            is_signed,
+        }
+    }
+
+    fn logarithmic([low, high]: [f64; 2], [least, most]: [f64; 2]) -> Self {
+        let top = most.log10();
+        let bottom = if least > 0.0 {
+            least.log10()
+        } else {
+            f64::NEG_INFINITY
+        };
+        let low = if low - bottom > FAR * (high - low) {
+            low
+        } else {
+            bottom
+        };
+        let low = low.max(top - DECADES);
+        let (low, high) = match top - low > 1e-6 {
+            true => (low, top),
+            false => (low - 0.5, top + 0.5),
+        };
+        Self {
+            low,
+            high,
+            below: (bottom < low - 1e-9).then_some(least),
+            above: None,
+            is_signed: false,
+        }
+    }
+
+    /// Where a position lies on the bar: 0 at its lower end, 1 at its upper one.
+    pub fn share(&self, position: f64) -> f64 {
+        (position - self.low) / (self.high - self.low)
+    }
+
+    /// The colours from the lower to the upper end of the bar.
+    pub fn colours(&self) -> Vec<RGBColor> {
+        let share = |index: usize| (index as f32 + 0.5) / COLOURS as f32;
+        let diverging = DerivedColorMap::new(&BLUE_TO_RED);
+        let colour = |index: usize| match self.is_signed {
+            true => diverging.get_color(share(index)),
+            false => ViridisRGB.get_color(share(index)),
+        };
+        (0..COLOURS).map(colour).collect()
+    }
+}
+
+fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY];
+    values.fold(start, |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
+}
+
+/// The positions with all but a small share of the area between them.
+fn middle(mut parts: Vec<(f64, f64)>) -> Option<[f64; 2]> {
+    parts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let whole: f64 = parts.iter().map(|(_, area)| area).sum();
+    let mut passed = 0.0;
+    let mut first_beyond = |share: f64| {
+        let mut rest = parts.iter();
+        passed = 0.0;
+        let found = rest.find(|(_, area)| {
+            passed += area;
+            passed > share * whole
+        });
+        found.or(parts.last()).map(|(position, _)| *position)
+    };
+    Some([first_beyond(BEYOND)?, first_beyond(1.0 - BEYOND)?])
+}
+
+fn areas(panel: &Panel) -> impl Iterator<Item = f64> {
+    let surface = &panel.surface;
+    surface.triangles.iter().map(|triangle| {
+        let [a, b, c] = triangle.map(|point| surface.points[point as usize]);
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn range(values: impl Iterator<Item = f64>, scale: Scale) -> Range {
+        let cells: Vec<_> = values
+            .enumerate()
+            .map(|(i, value)| {
+                let x = i as f64;
+                ([[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]], value)
+            })
+            .collect();
+        Range::of([Panel::quadrilaterals("", &cells)].iter(), scale)
+    }
+
+    #[test]
+    fn a_peak_in_a_small_part_of_the_area_is_beyond_the_bar_and_marked() {
+        let peak = |i: i32| {
+            if i == 500 {
+                50.0
+            } else {
+                f64::from(i) / 1000.0
+            }
+        };
+        let found = range((0..1000).map(peak), Scale::Linear);
+        assert!((found.high - 0.99).abs() < 2e-3, "{found:?}");
+        assert_eq!(
+            (found.above, found.below, found.low),
+            (Some(50.0), None, 0.0)
+        );
+        let without = range((0..1000).map(|i| f64::from(i) / 999.0), Scale::Linear);
+        assert_eq!((without.high, without.above), (1.0, None));
+    }
+
+    #[test]
+    fn zero_is_in_the_middle_where_the_values_have_both_signs() {
+        let found = range((-30..=99).map(f64::from), Scale::Linear);
+        assert_eq!(
+            (found.low, found.high, found.is_signed),
+            (-99.0, 99.0, true)
+        );
+        let found = range((-1..=99).map(f64::from), Scale::Linear);
+        assert_eq!((found.low, found.is_signed), (-1.0, false));
+    }
+
+    #[test]
+    fn a_logarithmic_bar_marks_what_it_does_not_reach() {
+        let found = range(
+            (0..400).map(|i| 10f64.powf(f64::from(i) / -50.0)),
+            Scale::Logarithmic,
+        );
+        assert_eq!((found.low, found.high), (-6.0, 0.0));
+        assert!(found.below.is_some_and(|least| least < 1e-7));
+        let found = range([0.0, 1.0, 10.0].into_iter(), Scale::Logarithmic);
+        assert_eq!((found.low, found.high, found.below), (0.0, 1.0, Some(0.0)));
+    }
+
+    #[test]
+    fn a_field_of_one_value_or_none_has_a_range() {
+        let found = range([2.0; 3].into_iter(), Scale::Linear);
+        assert!((found.low, found.high) == (1.8, 2.2) && found.above.is_none());
+        assert_eq!(range([0.0; 3].into_iter(), Scale::Linear).high, 0.5);
+        for scale in [Scale::Linear, Scale::Logarithmic] {
+            assert_eq!(range([f64::NAN; 3].into_iter(), scale).high, 1.0);
+        }
+    }
+}

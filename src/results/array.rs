@@ -1,0 +1,116 @@
+//! Named numbers of grids.
+
+use crate::finite_element::error_estimate::EnergyError;
+
+/// What belongs to one point or cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Components {
+    /// One number.
+    Scalar,
+    /// x, y of a vector in the plane.
+    Vector,
+    /// 11, 12, 21, 22 of a tensor in the plane.
+    Tensor,
+    /// 11, 22, 33, 12 of a symmetric tensor without shear across the plane.
+    Symmetric,
+    /// The larger and the smaller principal stretch in the plane, and that of the thickness.
+    Stretches,
+}
+
+impl Components {
+    /// How many numbers there are.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Vector => 2,
+            Self::Stretches => 3,
+            Self::Tensor | Self::Symmetric => 4,
+        }
+    }
+}
+
+/// Named numbers at the points or in the cells of a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Array {
+    /// Its name with the unit.
+    pub name: &'static str,
+    /// Its values.
+    pub values: Vec<f64>,
+    /// What belongs to one point or cell.
+    pub components: Components,
+}
+
+impl Array {
+    /// One number each.
+    pub fn scalars(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        Self::new(name, Components::Scalar, values)
+    }
+
+    /// Vectors in the plane.
+    pub fn vectors(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        Self::new(name, Components::Vector, values)
+    }
+
+    /// Tensors in the plane: 11, 12, 21, 22.
+    pub fn tensors(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+        Self::new(name, Components::Tensor, values)
+    }
+
+    /// Symmetric tensors: 11, 22, 33, 12.
+    pub fn symmetric_tensors(
+        name: &'static str,
+        values: impl IntoIterator<Item = [f64; 4]>,
+    ) -> Self {
+        let values = values.into_iter().flatten();
+        Self::new(name, Components::Symmetric, values)
+    }
+
+    /// The larger and the smaller stretch in the plane, and that of the thickness.
+    pub fn stretches(name: &'static str, values: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        let values = values.into_iter().flatten();
+        Self::new(name, Components::Stretches, values)
+    }
+
+    fn new(
+        name: &'static str,
+        components: Components,
+        values: impl IntoIterator<Item = f64>,
+    ) -> Self {
+        Self {
+            name,
+            values: values.into_iter().collect(),
+            components,
+        }
+    }
+
+    /// The difference of a displacement field from the finite elements' at the same nodes.
+    pub fn to_finite_elements(displacement: &[f64], reference: &[f64]) -> Self {
+        let pairs = displacement.iter().zip(reference);
+        Self::vectors(
+            "difference_to_finite_elements_mm",
+            pairs.map(|(u, v)| u - v),
+        )
+    }
+
+    /// An imported displacement field, and the difference of another from it.
+    pub fn imported(displacement: &[f64], imported: &[f64]) -> [Self; 2] {
+        let pairs = displacement.iter().zip(imported);
+        [
+            Self::vectors("imported_displacement_mm", imported.iter().copied()),
+            Self::vectors("difference_to_imported_mm", pairs.map(|(u, v)| u - v)),
+        ]
+    }
+
+    /// The estimated error in each cell, η_c/‖u_h‖: the root of the sum of their squares is the error of the field in %.
+    pub fn estimated_error(error: &EnergyError) -> Self {
+        Self::scalars(
+            "estimated_error_percent_of_energy_norm",
+            error.cell_percents(),
+        )
+    }
+
+    /// A displacement field.
+    pub fn displacement(values: &[f64]) -> Self {
+        Self::vectors("displacement_mm", values.iter().copied())
+    }
+}

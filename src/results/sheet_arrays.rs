@@ -1,0 +1,77 @@
+//! Stress, strain and what belongs to them as arrays of a grid.
+
+use super::Array;
+use super::state::{LocalState, cell_states, nodal_states};
+use super::wrinkling::Wrinkling;
+use crate::material::HyperelasticLaw;
+use crate::mesh::Mesh;
+
+/// What the stresses of a sheet follow from.
+#[derive(Clone, Copy)]
+pub struct Sheet<'a> {
+    /// The material.
+    pub law: &'a dyn HyperelasticLaw,
+    /// Thickness in mm.
+    pub thickness: f64,
+}
+
+/// What follows from the mean of the displacement gradients that the cells around each node have there.
+pub fn nodal(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
+    let states = nodal_states(law, mesh, displacement);
+    let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states.iter().map(value));
+    let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
+        Array::symmetric_tensors(name, states.iter().map(value))
+    };
+    [
+        tensors("cauchy_stress_at_nodes_MPa", |state| state.cauchy),
+        of("von_mises_stress_at_nodes_MPa", LocalState::von_mises),
+        of("largest_principal_cauchy_stress_at_nodes_MPa", |state| {
+            state.principal_cauchy()[0]
+        }),
+        tensors("green_lagrange_strain_at_nodes", |state| {
+            state.green_lagrange
+        }),
+        of(
+            "largest_principal_green_lagrange_strain_at_nodes",
+            LocalState::largest_principal_strain,
+        ),
+    ]
+}
+
+/// What follows from the displacement gradients in the centres of the cells. The nominal stress is Pᵀ: its first index is the
+/// reference direction.
+pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 12] {
+    let states = cell_states(sheet.law, mesh, displacement);
+    let states = || states.iter();
+    let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states().map(value));
+    let nominal = states().flat_map(|state| {
+        let [p11, p12, p21, p22] = state.first_piola_kirchhoff;
+        [p11, p21, p12, p22]
+    });
+    let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
+        Array::symmetric_tensors(name, states().map(value))
+    };
+    let wrinkling = Wrinkling::new(sheet.law, mesh, displacement);
+    let compressed = wrinkling.compressed.iter();
+    let compressed = compressed.map(|is| f64::from(u8::from(*is)));
+    let thickness = states().map(|state| sheet.thickness * state.stretches[2]);
+    [
+        Array::tensors("nominal_stress_MPa", nominal),
+        tensors("cauchy_stress_MPa", |state| state.cauchy),
+        of("von_mises_stress_MPa", LocalState::von_mises),
+        of("largest_principal_cauchy_stress_MPa", |state| {
+            state.principal_cauchy()[0]
+        }),
+        Array::scalars("smallest_principal_cauchy_stress_MPa", wrinkling.smallest),
+        Array::scalars("wrinkling", compressed),
+        tensors("green_lagrange_strain", |state| state.green_lagrange),
+        of(
+            "largest_principal_green_lagrange_strain",
+            LocalState::largest_principal_strain,
+        ),
+        Array::stretches("principal_stretches", states().map(|state| state.stretches)),
+        of("first_invariant_I1", |state| 3.0 + state.i1_minus_3),
+        Array::scalars("thickness_mm", thickness),
+        of("energy_density_mJ_per_mm3", |state| state.energy),
+    ]
+}

@@ -1,0 +1,84 @@
+//! Pictures of stress and strain, of several models side by side.
+
+use super::{FieldFigure, Figure, LocalState, Panel, nodal_states};
+use crate::document::name_of;
+use crate::material::HyperelasticLaw;
+use crate::mesh::Mesh;
+
+/// A quantity of a sheet that follows from its displacement field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SheetField {
+    /// Von Mises' equivalent Cauchy stress.
+    VonMises,
+    /// The larger principal Cauchy stress in the plane.
+    LargestPrincipalStress,
+    /// The larger principal Green–Lagrange strain in the plane.
+    LargestPrincipalStrain,
+    /// The thickness stretch λ₃.
+    ThicknessStretch,
+}
+
+impl SheetField {
+    /// All of them by the names that studies and files use.
+    pub const NAMES: [(&'static str, Self); 4] = [
+        ("von-mises", Self::VonMises),
+        ("largest-principal-stress", Self::LargestPrincipalStress),
+        ("largest-principal-strain", Self::LargestPrincipalStrain),
+        ("thickness-stretch", Self::ThicknessStretch),
+    ];
+
+    /// What a picture calls it, and its unit.
+    fn title(self) -> (&'static str, &'static str) {
+        match self {
+            Self::VonMises => ("Von Mises stress", "von Mises stress [MPa]"),
+            Self::LargestPrincipalStress => {
+                ("Largest principal Cauchy stress", "in the plane [MPa]")
+            }
+            Self::LargestPrincipalStrain => (
+                "Largest principal Green–Lagrange strain",
+                "in the plane [–]",
+            ),
+            Self::ThicknessStretch => ("Thickness stretch", "λ₃ [–]"),
+        }
+    }
+
+    fn value(self, state: &LocalState) -> f64 {
+        match self {
+            Self::VonMises => state.von_mises(),
+            Self::LargestPrincipalStress => state.principal_cauchy()[0],
+            Self::LargestPrincipalStrain => state.largest_principal_strain(),
+            Self::ThicknessStretch => state.stretches[2],
+        }
+    }
+}
+
+/// One picture for each field: the models side by side, each with its name, mesh and displacements. `file` makes the name of
+/// a file from that of a field, and `at` says where on the path they are.
+pub fn sheet_figures(
+    fields: &[SheetField],
+    law: &dyn HyperelasticLaw,
+    models: &[(String, &Mesh, &[f64])],
+    at: &str,
+    file: &dyn Fn(&str) -> String,
+) -> Vec<Figure> {
+    let states: Vec<Vec<LocalState>> = models
+        .iter()
+        .map(|(_, mesh, u)| nodal_states(law, mesh, u))
+        .collect();
+    let figure = |field: &SheetField| {
+        let panel = |((label, mesh, u), states): (&(String, &Mesh, &[f64]), &Vec<LocalState>)| {
+            Panel::at_nodes(label, mesh, u, &|node| field.value(&states[node]))
+        };
+        let (title, quantity) = field.title();
+        let panels = models.iter().zip(&states).map(panel);
+        let drawing = FieldFigure::new(format!("{title} at {at}"), quantity, panels);
+        let caption = format!(
+            "{title} at {at}, at the nodes from the mean of what the cells around them have there. An arrow at the end of the \
+             colours: single places, as at corners, reach beyond."
+        );
+        let name = name_of(&SheetField::NAMES, *field).replace('-', "_");
+        Figure::new(file(&name), caption, drawing)
+    };
+    let fields = fields.iter().filter(|_| !models.is_empty());
+    fields.map(figure).collect()
+}

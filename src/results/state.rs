@@ -1,0 +1,189 @@
+//! Stress and strain of a sheet at its nodes and in its cells.
+
+use nalgebra::Vector4;
+
+use super::wrinkling::principal;
+use crate::material::HyperelasticLaw;
+use crate::material::sheet::Kinematics;
+use crate::mesh::Mesh;
+
+/// What the material says of a displacement gradient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalState {
+    /// First Piola–Kirchhoff stress in MPa: components 11, 12, 21, 22.
+    pub first_piola_kirchhoff: [f64; 4],
+    /// Cauchy stress in MPa: components 11, 22, 33, 12.
+    pub cauchy: [f64; 4],
+    /// Green–Lagrange strain E = ½ (FᵀF − 1): components 11, 22, 33, 12.
+    pub green_lagrange: [f64; 4],
+    /// Principal stretches in the plane, the larger first, and that of the thickness.
+    pub stretches: [f64; 3],
+    /// I₁ − 3.
+    pub i1_minus_3: f64,
+    /// Energy per reference volume in mJ/mm³.
+    pub energy: f64,
+}
+
+impl LocalState {
+    /// Of a displacement gradient H₁₁, H₁₂, H₂₁, H₂₂; no numbers where it turns the sheet inside out.
+    pub fn of(law: &dyn HyperelasticLaw, gradient: [f64; 4]) -> Self {
+        // A cell may fold between the points where a solution is held to be sound.
+        let Ok(kinematics) = Kinematics::new(&Vector4::from(gradient)) else {
+            return Self::unknown();
+        };
+        let (energy, p) = law.stress(&kinematics);
+        let [s11, s12, s22] = law.cauchy_stress(&kinematics, &p);
+        let [c11, c12, c22] = kinematics.stretch_change;
+        let thickness = law.thickness_stretch(&kinematics);
+        let [larger, smaller] = kinematics.principal_stretches();
+        Self {
+            first_piola_kirchhoff: p.into(),
+            cauchy: [s11, s22, law.thickness_stress(&kinematics), s12],
+            green_lagrange: [c11, c22, thickness * thickness - 1.0, c12].map(|c| 0.5 * c),
+            stretches: [larger, smaller, thickness],
+            i1_minus_3: kinematics.invariants.i1_minus_3,
+            energy,
+        }
+    }
+
+    fn unknown() -> Self {
+        Self {
+            first_piola_kirchhoff: [f64::NAN; 4],
+            cauchy: [f64::NAN; 4],
+            green_lagrange: [f64::NAN; 4],
+            stretches: [f64::NAN; 3],
+            i1_minus_3: f64::NAN,
+            energy: f64::NAN,
+        }
+    }
+
+    /// Von Mises' equivalent stress √(3/2 s : s) of the Cauchy stress with its deviator s, in MPa.
+    pub fn von_mises(&self) -> f64 {
+        let [s11, s22, s33, s12] = self.cauchy;
+        let differences = (s11 - s22).powi(2) + (s22 - s33).powi(2) + (s33 - s11).powi(2);
+        (0.5 * differences + 3.0 * s12 * s12).sqrt()
+    }
+
+    /// The principal Cauchy stresses in the plane in MPa, the larger first.
+    pub fn principal_cauchy(&self) -> [f64; 2] {
+        let [s11, s22, _, s12] = self.cauchy;
+        principal([s11, s12, s22])
+    }
+
+    /// The largest principal Green–Lagrange strain in the plane.
+    pub fn largest_principal_strain(&self) -> f64 {
+        let [e11, e22, _, e12] = self.green_lagrange;
+        principal([e11, e12, e22])[0]
+    }
+}
+
+/// The states in the centres of the cells.
+pub fn cell_states(
+    law: &dyn HyperelasticLaw,
+    mesh: &Mesh,
+    displacement: &[f64],
+) -> Vec<LocalState> {
+    let state = |cell: usize| {
+        let centre = mesh.shape(cell).centre();
+        LocalState::of(law, mesh.gradient_at(displacement, cell, centre))
+    };
+    (0..mesh.cell_count()).map(state).collect()
+}
+
+/// The states at the nodes: those of the mean of the displacement gradients that the cells around a node have there.
+pub fn nodal_states(
+    law: &dyn HyperelasticLaw,
+    mesh: &Mesh,
+    displacement: &[f64],
+) -> Vec<LocalState> {
+    let mut sums = vec![([0.0; 4], 0.0); mesh.nodes.len()];
+    for cell in 0..mesh.cell_count() {
+        let locals = mesh.shape(cell).natural_nodes();
+        for (node, local) in mesh.cell(cell).iter().zip(locals) {
+            let (sum, count) = &mut sums[*node];
+            let gradient = mesh.gradient_at(displacement, cell, *local);
+            if gradient.iter().all(|part| part.is_finite()) {
+                *count += 1.0;
+                for (sum, part) in sum.iter_mut().zip(gradient) {
+                    *sum += part;
+                }
+            }
+        }
+    }
+    let state = |(sum, count): &([f64; 4], f64)| LocalState::of(law, sum.map(|sum| sum / count));
+    sums.iter().map(state).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::NeoHooke;
+    use crate::mesh::{CellShape, Shape};
+
+    const LAW: NeoHooke = NeoHooke { c10: 0.5 };
+
+    #[test]
+    fn uniaxial_tension_has_its_stress_and_strain_at_every_node_and_in_every_cell() {
+        let (along, across) = (1.44_f64, 1.0 / 1.2);
+        // σ = 2 C₁₀ (λ² − 1/λ), which is both the largest and the equivalent stress.
+        let stress = along * along - 1.0 / along;
+        for (name, kind) in CellShape::NAMES {
+            let mesh = Shape::Strip { size: [3.0, 1.0] }.mesh(2, kind);
+            let moved = mesh.nodes.iter();
+            let u: Vec<f64> = moved
+                .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
+                .collect();
+            let [nodal, cells] = [nodal_states, cell_states].map(|of| of(&LAW, &mesh, &u));
+            assert_eq!(
+                (nodal.len(), cells.len()),
+                (mesh.nodes.len(), mesh.cell_count())
+            );
+            for state in nodal.iter().chain(&cells) {
+                let found = [
+                    state.von_mises(),
+                    state.principal_cauchy()[0],
+                    state.cauchy[0],
+                ];
+                assert!(
+                    found.iter().all(|s| (s - stress).abs() < 1e-12),
+                    "{name} {found:?}"
+                );
+                let strain = 0.5 * (along * along - 1.0);
+                assert!((state.largest_principal_strain() - strain).abs() < 1e-12);
+                assert!((state.green_lagrange[2] - 0.5 * (1.0 / along - 1.0)).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn simple_shear_has_its_equivalent_stress() {
+        // σ₁₁ = μ γ², σ₁₂ = μ γ with μ = 2 C₁₀.
+        let state = LocalState::of(&LAW, [0.0, 0.4, 0.0, 0.0]);
+        let expected = (0.16_f64.powi(2) + 3.0 * 0.16).sqrt();
+        assert!((state.von_mises() - expected).abs() < 1e-12, "{state:?}");
+        let [larger, smaller] = state.principal_cauchy();
+        assert!((larger + smaller - 0.16).abs() < 1e-12 && (larger * smaller + 0.16).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_mean_at_a_node_is_exact_in_the_middle_of_equal_cells() {
+        let mesh = Mesh::plate([4.0, 4.0], [4, 4], CellShape::Quad4);
+        let u: Vec<f64> = mesh
+            .nodes
+            .iter()
+            .flat_map(|[x, _]| [0.02 * x * x, 0.0])
+            .collect();
+        let states = nodal_states(&LAW, &mesh, &u);
+        let inside = mesh.nodes.iter().zip(&states);
+        for ([x, _], state) in inside.filter(|([x, _], _)| *x > 0.5 && *x < 3.5) {
+            let stretch = 1.0 + 0.04 * x;
+            assert!((state.green_lagrange[0] - 0.5 * (stretch * stretch - 1.0)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_is_inside_out_has_no_numbers() {
+        let state = LocalState::of(&LAW, [-2.0, 0.0, 0.0, 0.0]);
+        assert!(state.von_mises().is_nan() && state.largest_principal_strain().is_nan());
+    }
+}
