@@ -167,6 +167,7 @@ mod tests {
             linear(0.19444, 0.19446),
             ["0.194440", "0.194445", "0.194450", "0.194455", "0.194460"]
         );
+        assert_eq!(linear(5.0, 5.000_02)[1], "5.000005");
         assert_eq!(linear(0.0, 3.1e-8), ["0", "1", "2", "3"]);
         let (_, numbers) = ticks([0.0, 3.1e-8], Scale::Linear);
         assert_eq!(numbers.power().as_deref(), Some("×10⁻⁸"));

@@ -7,7 +7,7 @@ use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::Mesh;
 use crate::results::{
     Animation, Array, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
-    LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number,
+    LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv,
 };
 
 /// How a model's lines are drawn.
@@ -103,7 +103,8 @@ fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     let lines = starts.zip(SHADES).map(|(start, colour)| {
         // Each part begins where the one before ends.
         let end = (start + length).min(points.len() - 1);
-        let label = format!("{} – {} s", number(times[start]), number(times[end]));
+        let milliseconds = [start, end].map(|instant| 1e3 * times[instant]);
+        let label = format!("{:.1} – {:.1} ms", milliseconds[0], milliseconds[1]);
         Line::new(
             label,
             points[start..=end].iter().copied(),
