@@ -7,7 +7,7 @@ use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::Mesh;
 use crate::results::{
     Animation, Array, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
-    LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv,
+    LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number,
 };
 
 /// How a model's lines are drawn.
@@ -92,6 +92,15 @@ pub fn figures(
     figures
 }
 
+/// A time without trailing zeros.
+fn brief(time: f64) -> String {
+    let text = number(time);
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
 /// Velocity over displacement of a probe, part of the motion after part.
 fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     const SHADES: [[u8; 3]; 4] = [[253, 174, 107], [230, 109, 59], [166, 54, 3], [60, 20, 0]];
@@ -103,8 +112,8 @@ fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     let lines = starts.zip(SHADES).map(|(start, colour)| {
         // Each part begins where the one before ends.
         let end = (start + length).min(points.len() - 1);
-        let milliseconds = [start, end].map(|instant| 1e3 * times[instant]);
-        let label = format!("{:.1} – {:.1} ms", milliseconds[0], milliseconds[1]);
+        let [from, to] = [start, end].map(|instant| brief(times[instant]));
+        let label = format!("{from} – {to} s");
         Line::new(
             label,
             points[start..=end].iter().copied(),
