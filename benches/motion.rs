@@ -131,6 +131,7 @@ fn measure(problem: &ClampedPlate, model: &Model, tolerance: f64) -> Result<(), 
             spectral_radius: 0.5,
             tolerance,
         },
+        most_steps: gelbench::budget::Budget::USUAL.steps,
     };
     let clock = RefCell::new(vec![Instant::now()]);
     let told = |_| clock.borrow_mut().push(Instant::now());

@@ -181,6 +181,16 @@ pub enum SolveFault {
         /// The tolerance that was asked for.
         tolerance: f64,
     },
+    /// A motion whose steps are so short that they are too many.
+    #[error("about {needed:.1e} steps of at most {longest:.1e} s, and {allowed:.1e} are allowed")]
+    TooManySteps {
+        /// Steps to the end.
+        needed: f64,
+        /// The longest step in s that is stable, or follows the motion.
+        longest: f64,
+        /// The steps that are allowed.
+        allowed: f64,
+    },
     /// A motion that gains energy from nowhere, however short its steps.
     #[error(
         "the motion explodes after {time:.6} s, and steps down to {step:.1e} s do not avoid it"
@@ -222,6 +232,9 @@ impl SolveFault {
             }
             Self::Explodes { .. } => {
                 "look at the supports and loads at that time; take shorter steps or generalised-α"
+            }
+            Self::TooManySteps { .. } => {
+                "take a shorter duration, longer steps, softer springs or less damping, or say --allow-large"
             }
             Self::NotFinite(_) => "look at the material's parameters and the load",
         }

@@ -4,6 +4,10 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
+use gelbench::budget::Budget;
+use gelbench::markers::ReadSettings;
+use gelbench::mesh::CellShape;
+use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request};
 use tempfile::TempDir;
 
 mod common;
@@ -90,6 +94,49 @@ fn too_large_studies_are_refused_with_key_estimate_and_remedy() {
             assert!(said.contains(part), "{part}: {said}");
         }
     }
+}
+
+#[test]
+fn a_motion_that_turns_out_to_take_too_many_steps_ends_at_once() {
+    let stiff = "\n[mass_spring.stiffness]\nkind = \"polynomial\"\ncoefficients = [\"1e9 MPa\"]\n";
+    let text = study("released_plate.toml", &[]) + stiff;
+    let said = told(("s.toml", &text), &["run", "s.toml"], 3);
+    for part in ["steps of at most", "1.0e7 are allowed", "softer springs"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+#[test]
+fn more_markers_than_memory_holds_are_refused_with_estimate_and_remedy() {
+    let correct = |bytes: f64| {
+        let request = Request {
+            files: vec![root().join("examples/measured_plate.csv")],
+            reading: ReadSettings::default(),
+            material: "pva-10".into(),
+            thickness: 2.0,
+            mesh: MeshSource::Data,
+            cell_size: Some(20.0),
+            shape: CellShape::Triangle3,
+            holes: false,
+            conditions: Conditions::default(),
+            budget: Budget {
+                bytes,
+                ..Budget::USUAL
+            },
+        };
+        MarkerStudy::prepare(request)
+            .err()
+            .map(|fault| fault.to_string())
+    };
+    let said = correct(1e6).unwrap();
+    for part in [
+        "a field of ",
+        " markers needs about 2,",
+        "take every other marker",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert_eq!(correct(8e6), None);
 }
 
 #[test]

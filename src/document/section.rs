@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::keys::{self, plain_path};
 use super::{Faults, Key, Presence, Takes};
-use crate::budget::{Excess, Need};
+use crate::budget::{Budget, Excess, Need};
 use crate::error::{Diagnostic, Source, suggestion};
 
 mod plain;
@@ -158,6 +158,11 @@ impl<'a> Section<'a> {
             self.fault(key, &excess.to_string(), &excess.remedy(smaller));
         }
         excess.is_none()
+    }
+
+    /// What may be asked for.
+    pub fn budget(&self) -> Budget {
+        self.faults.budget
     }
 
     /// What of a need is too much, if anything.

@@ -85,6 +85,7 @@ fn settled(integrator: Integrator, h: f64) -> Vec<Instant> {
         interval: h,
         step: Step::AtMost(h),
         integrator,
+        most_steps: crate::budget::Budget::USUAL.steps,
     };
     let instants = run(&motion, settings).instants;
     let last = instants.len() - 1;
@@ -200,6 +201,7 @@ fn every(integrator: Integrator, duration: f64, interval: f64, step: f64) -> Tim
         interval,
         step: Step::AtMost(step),
         integrator,
+        most_steps: crate::budget::Budget::USUAL.steps,
     }
 }
 

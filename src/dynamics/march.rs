@@ -44,6 +44,8 @@ pub struct TimeSettings {
     pub step: Step,
     /// How it is taken.
     pub integrator: Integrator,
+    /// How many steps may be taken.
+    pub most_steps: f64,
 }
 
 /// The end of a motion before its time.
@@ -88,7 +90,7 @@ pub fn follow(
     progress: &dyn Fn(f64),
 ) -> Result<History, MotionEnd> {
     let mut march = March::new(motion, settings);
-    let outcome = march.run(settings, progress);
+    let outcome = march.run(progress);
     let history = march.history;
     match outcome {
         Ok(()) => Ok(history),
@@ -108,6 +110,7 @@ struct March<'a> {
     held: Vec<bool>,
     pace: Pace,
     history: History,
+    settings: TimeSettings,
 }
 
 /// Where a run of steps ends.
@@ -214,16 +217,17 @@ impl<'a> March<'a> {
             held: motion.held(0.0),
             pace: Pace::new(settings.step),
             history: History::default(),
+            settings,
         }
     }
 
-    fn run(&mut self, settings: TimeSettings, progress: &dyn Fn(f64)) -> Result<(), SolveFault> {
+    fn run(&mut self, progress: &dyn Fn(f64)) -> Result<(), SolveFault> {
         let motion = self.motion;
         let mut at = motion.begin()?;
         self.history.instants.push(motion.instant(&at));
         self.stepper.prepare(motion, &self.held)?;
         self.pace.total = at.energy.total();
-        for stop in stops(motion, settings) {
+        for stop in stops(motion, self.settings) {
             let now = motion.held(at.time);
             if now != self.held {
                 self.held = now;
@@ -279,7 +283,22 @@ impl<'a> March<'a> {
                 .unwrap_or(f64::INFINITY),
             false => self.pace.wanted,
         };
+        self.afford(at.time, limit)?;
         Ok(self.pace.within(limit))
+    }
+
+    /// A fault where steps that are as long as they may be are too many to the end.
+    fn afford(&self, time: f64, longest: f64) -> Result<(), SolveFault> {
+        let rest = self.settings.duration - time;
+        let needed = self.history.steps as f64 + rest / longest;
+        match needed <= self.settings.most_steps {
+            true => Ok(()),
+            false => Err(SolveFault::TooManySteps {
+                needed,
+                longest,
+                allowed: self.settings.most_steps,
+            }),
+        }
     }
 
     /// A run of equal steps; a fault where the energy goes astray.

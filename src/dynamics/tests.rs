@@ -39,6 +39,7 @@ fn settings(integrator: Integrator, duration: f64, step: f64) -> TimeSettings {
         interval: step,
         step: Step::AtMost(step),
         integrator,
+        most_steps: crate::budget::Budget::USUAL.steps,
     }
 }
 
@@ -142,6 +143,7 @@ fn a_step_that_explodes_is_halved_and_the_automatic_one_is_stable() {
         interval,
         step,
         integrator: VERLET,
+        most_steps: crate::budget::Budget::USUAL.steps,
     };
     let halved = run(&body, with(Step::AtMost(0.4), 0.5));
     assert!(halved.halved > 0);
@@ -170,6 +172,7 @@ fn the_automatic_step_follows_a_tangent_that_grows() {
             interval: 0.1,
             step: Step::Automatic,
             integrator: VERLET,
+            most_steps: crate::budget::Budget::USUAL.steps,
         },
     );
     assert!(history.energy_error() < 0.2, "{}", history.energy_error());
@@ -201,6 +204,7 @@ fn a_support_that_shakes_and_lets_go_does_work() {
                 interval: 0.05,
                 step: Step::AtMost(1e-3),
                 integrator,
+                most_steps: crate::budget::Budget::USUAL.steps,
             },
         );
         let at = |time: f64| {
@@ -292,6 +296,7 @@ fn the_energy_of_an_undamped_plate_stays_for_ten_thousand_steps() {
                     interval: 100.0 * step,
                     step: Step::AtMost(step),
                     integrator,
+                    most_steps: crate::budget::Budget::USUAL.steps,
                 },
             );
             assert_eq!(history.steps, 10_000);

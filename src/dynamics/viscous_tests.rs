@@ -174,6 +174,7 @@ fn a_plate_that_is_stretched_at_once_relaxes_as_in_closed_form() {
                     interval: 0.25,
                     step: Step::AtMost(0.25),
                     integrator: alpha(0.5),
+                    most_steps: crate::budget::Budget::USUAL.steps,
                 },
             );
             let force = history.support_force(1, 0);
@@ -242,6 +243,7 @@ fn loss(
             interval: period,
             step: Step::AtMost(period / 400.0),
             integrator: alpha(0.8),
+            most_steps: crate::budget::Budget::USUAL.steps,
         },
     );
     let spent = |instant: usize| history.instants[instant].energy.viscous_work;

@@ -14,7 +14,7 @@ pub fn irregular(size: usize, seed: usize) -> Vec<f64> {
 }
 
 /// The largest eigenvalue of a symmetric operator by Lanczos' method: the largest Ritz value with its error bound, not
-/// below the eigenvalue; not a number where the operator is not finite.
+/// below the eigenvalue; not a number where the operator is not finite, and zero where it has no rows.
 ///
 /// # References
 /// B. N. Parlett, The Symmetric Eigenvalue Problem, SIAM (1998), § 13.2, doi:10.1137/1.9781611971163
@@ -40,6 +40,9 @@ pub fn largest_eigenvalue(size: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> f6
         last = std::mem::replace(&mut now, next);
     }
     let count = diagonal.len();
+    if count == 0 {
+        return 0.0;
+    }
     let tridiagonal = DMatrix::from_fn(count, count, |i, j| match i.abs_diff(j) {
         0 => diagonal[i],
         1 => beside[i.min(j)],

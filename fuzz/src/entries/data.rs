@@ -25,9 +25,9 @@ use super::{Became, with_file};
 
 /// What a correction of the campaign may ask for.
 const SMALL: Budget = Budget {
-    cells: 800.0,
+    cells: 300.0,
     instants: 4.0,
-    unknowns: 4000.0,
+    unknowns: 1500.0,
     ..Budget::USUAL
 };
 
@@ -56,7 +56,7 @@ pub fn correct(bytes: &[u8]) -> Became {
                     written::results(&field, &estimates, ("markers".into(), String::new()), 0.0);
                 Became::Complete
             }
-            Err(Error::Solve { .. }) => Became::Complete,
+            Err(Error::Solve { .. }) => Became::Unsolved,
             Err(fault) => {
                 if std::env::var_os("GELBENCH_FUZZ_SHOW").is_some() {
                     eprintln!("{text}\n{fault}");
@@ -126,7 +126,7 @@ fn request(file: PathBuf, choices: &mut Choices) -> Request {
         material: material.to_owned(),
         thickness: choices.between(0.5, 2.0),
         mesh: MeshSource::Data,
-        cell_size: choices.maybe().then(|| choices.between(4.0, 20.0)),
+        cell_size: (!choices.rarely()).then(|| choices.between(4.0, 16.0)),
         shape: [
             CellShape::Triangle6,
             CellShape::Triangle3,
@@ -172,7 +172,7 @@ pub fn fit(bytes: &[u8]) -> Became {
             let _ = (fit_json(&found, &tests), fit_picture(&found, &tests));
             Became::Complete
         }
-        Err(Error::Solve { .. }) => Became::Complete,
+        Err(Error::Solve { .. }) => Became::Unsolved,
         Err(_) => Became::Refused,
     }
 }
@@ -231,7 +231,7 @@ pub fn identify(bytes: &[u8]) -> Became {
             let _ = law_text(&found, &recording, "spring.csv");
             Became::Complete
         }
-        Err(Error::Solve { .. }) => Became::Complete,
+        Err(Error::Solve { .. }) => Became::Unsolved,
         Err(_) => Became::Refused,
     }
 }

@@ -12,8 +12,10 @@ mod studies;
 /// What became of an input that did no harm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Became {
-    /// It was refused with a message, or ended with one.
+    /// It was refused with a message.
     Refused,
+    /// It was computed up to where there is no solution, and ended with a message.
+    Unsolved,
     /// It was read, and computed, to the end.
     Complete,
 }

@@ -210,6 +210,7 @@ fn a_plate_moves_as_by_the_average_acceleration() {
             spectral_radius: 1.0,
             tolerance: 1e-13,
         },
+        most_steps: crate::budget::Budget::USUAL.steps,
     };
     let history = follow(&body, settings, &|_| ())
         .map_err(|end| end.fault)
@@ -273,6 +274,7 @@ fn a_motion_under_a_force_that_changes_in_time_is_that_of_newmarks_method() {
             spectral_radius: 1.0,
             tolerance: 1e-13,
         },
+        most_steps: crate::budget::Budget::USUAL.steps,
     };
     let expected = follow(&body, settings, &|_| ())
         .map_err(|end| end.fault)

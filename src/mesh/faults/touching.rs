@@ -75,16 +75,14 @@ impl<'a> Boundary<'a> {
             squares: HashMap::new(),
             all,
         };
-        let mut sum = 0.0;
         for side in &boundary.all {
             let length = boundary.length(*side);
-            sum += length;
             for node in side.ends().into_iter().chain(side.middle) {
                 let known = boundary.shortest.entry(node).or_insert(length);
                 *known = known.min(length);
             }
         }
-        boundary.step = (sum / boundary.all.len().max(1) as f64).max(f64::MIN_POSITIVE);
+        boundary.step = boundary.usual_extent();
         for (index, side) in boundary.all.iter().enumerate() {
             let [low, high] = boundary.around(*side).map(|place| boundary.square(place));
             for i in low[0]..=high[0] {
@@ -94,6 +92,19 @@ impl<'a> Boundary<'a> {
             }
         }
         boundary
+    }
+
+    /// The mean extent of the sides' boxes, but not so much shorter than the longest one that this would cover more squares
+    /// than there are sides.
+    fn usual_extent(&self) -> f64 {
+        let extent = |side: &Side| {
+            let [low, high] = self.around(*side);
+            (high[0] - low[0]).max(high[1] - low[1])
+        };
+        let count = self.all.len().max(1) as f64;
+        let mean = self.all.iter().map(extent).sum::<f64>() / count;
+        let longest = self.all.iter().map(extent).fold(0.0, f64::max);
+        mean.max(longest / count.sqrt()).max(f64::MIN_POSITIVE)
     }
 
     fn node(&self, node: usize) -> [f64; 2] {

@@ -51,6 +51,13 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
         ));
     }
     let frames = field.series.frames.len();
+    let markers = field.series.places().len();
+    affords(
+        request,
+        need_of_markers(markers as f64, frames),
+        &format!("a field of {markers} markers"),
+        "take every other marker, or fewer frames",
+    )?;
     let whole = |mesh: &Mesh, place: &str| {
         let need = need(mesh.cell_count() as f64, mesh.nodes.len() as f64, frames);
         affords(
@@ -204,6 +211,16 @@ fn need(cells: f64, nodes: f64, frames: usize) -> Need {
         instants,
         unknowns,
         bytes: unknowns * (BYTES_OF_AN_UNKNOWN + 200.0 * instants),
+        ..Need::default()
+    }
+}
+
+/// What so many frames of so many markers will use, with what is written of them: as measured with 60,000 and a million.
+fn need_of_markers(markers: f64, frames: usize) -> Need {
+    let instants = frames as f64;
+    Need {
+        instants,
+        bytes: markers * (6500.0 + 200.0 * instants),
         ..Need::default()
     }
 }

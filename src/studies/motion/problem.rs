@@ -99,6 +99,7 @@ impl MovingPlate {
             interval,
             step,
             integrator,
+            ..
         } = self.time;
         let (element, fine) = self.element;
         let cells = |cells: [usize; 2]| cells[0] as f64 * cells[1] as f64;

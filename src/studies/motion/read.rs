@@ -253,5 +253,6 @@ fn read_time(section: &Section) -> Option<TimeSettings> {
         interval,
         step,
         integrator: integrator?,
+        most_steps: section.budget().steps,
     })
 }

@@ -191,6 +191,7 @@ impl Body<'_> {
                 spectral_radius: 1.0,
                 tolerance: 1e-9,
             },
+            most_steps: crate::budget::Budget::USUAL.steps,
         };
         let history = follow(&self.motion, settings, &|_| ()).map_err(|end| fault(end.fault))?;
         let instants = history.instants.into_iter();

@@ -79,6 +79,7 @@ impl Run {
             interval: self.every as f64 * self.step,
             step: Step::AtMost(self.step * (1.0 + 1e-9)),
             integrator: self.integrator,
+            most_steps: crate::budget::Budget::USUAL.steps,
         };
         follow(motion, settings, &|_| ()).map_err(|end| fault(&end.describe(), end.fault))
     }
