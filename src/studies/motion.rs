@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use crate::budget::Budget;
 use crate::document::Section;
 use crate::dynamics::{Dashpots, SheetViscosity, Viscosity};
-use crate::error::Error;
+use crate::error::{Diagnostic, Error};
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::results::Outcome;
-use crate::studies::{Computation, Progress};
+use crate::studies::{Computation, Kind, Progress};
 
 mod corrected;
 mod files;
@@ -19,7 +20,25 @@ mod read;
 mod solution;
 mod statement;
 
-use problem::MovingPlate;
+pub use problem::MovingPlate;
+
+/// The `kind` of these studies.
+pub const KIND: &str = "motion";
+
+/// A motion's study: its title, the plate that moves, and what deserves attention.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn load(
+    case: &Kind,
+    file: &Path,
+    text: &str,
+    budget: Budget,
+) -> Result<(String, MovingPlate, Vec<Diagnostic>), Error> {
+    let read = case.read_with(file, text, budget, read::read)?;
+    let plate = read.made.expect("a study without faults has a plate");
+    Ok((read.title, plate, read.warnings))
+}
 
 /// Reads a study of this kind.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
@@ -29,7 +48,12 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
     })
 }
 
-fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error> {
+/// Moves the plate by springs and finite elements, and corrects the springs; its material may be that of
+/// [`MovingPlate::with_card`].
+///
+/// # Errors
+/// [`Error::Solve`] where a model has no solution.
+pub fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error> {
     let springs = MassSpring::new(&plate.problem, plate.cells, plate.lattice)
         .with_spring_law(plate.springs.clone());
     let dashpots = Dashpots::new(&springs, &plate.dashpots);

@@ -48,7 +48,11 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
     })
 }
 
-fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
+/// Solves the three models of a specimen; its material may be that of [`Specimen::with_card`].
+///
+/// # Errors
+/// [`Error::Solve`] where no model has an equilibrium at all.
+pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
     let mut ends = Vec::new();
     let mut models = Models::solve(specimen, &mut ends, progress)?;
     if models.reference.may_be_finer(specimen) && outcome::is_open(specimen, &models) {

@@ -87,6 +87,14 @@ pub struct MovingPlate {
 }
 
 impl MovingPlate {
+    /// The plate of another material, such as one made by [`Card::of_law`]; density and viscosity stay those of the study.
+    #[must_use]
+    pub fn with_card(mut self, card: Card) -> Self {
+        self.problem.law = std::sync::Arc::clone(&card.law);
+        self.card = card;
+        self
+    }
+
     /// What its motion will use. With the wave speed c at rest and cells of the side a, velocity Verlet takes steps of about
     /// half of the longest stable one, which is shorter in a stretched or damped plate:
     ///
