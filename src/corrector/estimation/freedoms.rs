@@ -51,23 +51,13 @@ impl NearestField<'_> {
         Ok(columns)
     }
 
-    /// 1, x, y, x², xy, y² of a place, from −1 to 1 over the specimen.
-    fn shapes(&self, place: [f64; 2]) -> [f64; 6] {
-        let [low, high] = self.equations.task.specimen.mesh.bounding_box();
-        let [x, y] = [0, 1].map(|axis| {
-            let size = (high[axis] - low[axis]).max(f64::MIN_POSITIVE);
-            2.0 * (place[axis] - low[axis]) / size - 1.0
-        });
-        [1.0, x, y, x * x, x * y, y * y]
-    }
-
     /// Forces along x and along y with smooth densities.
     fn smooth_forces(&self) -> Vec<Vec<f64>> {
         let mesh = self.equations.task.specimen.mesh;
-        let areas = nodal_areas(mesh);
+        let (areas, whole) = (nodal_areas(mesh), mesh.bounding_box());
         let mut forces = vec![vec![0.0; self.field.len()]; 12];
         for (node, place) in mesh.nodes.iter().enumerate() {
-            for (shape, value) in self.shapes(*place).into_iter().enumerate() {
+            for (shape, value) in shapes(*place, whole).into_iter().enumerate() {
                 for axis in [0, 1] {
                     forces[6 * axis + shape][2 * node + axis] = areas[node] * value;
                 }
@@ -78,9 +68,10 @@ impl NearestField<'_> {
 
     fn varied_stiffness(&self) -> Vec<Vec<f64>> {
         let law = &self.equations.law;
+        let whole = self.equations.task.specimen.mesh.bounding_box();
         self.stresses(5, &|place, kinematics| {
             let stress = law.stress(kinematics).1;
-            let shapes = self.shapes(place);
+            let shapes = shapes(place, whole);
             shapes[1..].iter().map(|shape| stress * *shape).collect()
         })
     }
@@ -154,4 +145,13 @@ impl NearestField<'_> {
         }
         forces
     }
+}
+
+/// 1, x, y, x², xy, y² of a place, from −1 to 1 between the lower left and the upper right corner of the specimen.
+fn shapes(place: [f64; 2], [low, high]: [[f64; 2]; 2]) -> [f64; 6] {
+    let [x, y] = [0, 1].map(|axis| {
+        let size = (high[axis] - low[axis]).max(f64::MIN_POSITIVE);
+        2.0 * (place[axis] - low[axis]) / size - 1.0
+    });
+    [1.0, x, y, x * x, x * y, y * y]
 }
