@@ -22,7 +22,7 @@
 use nalgebra::DVector;
 
 use crate::error::Error;
-use crate::statistics::{BSpline, Ends};
+use crate::statistics::{BSpline, Ends, extremes};
 use band::reach;
 use joint::{Joint, JointEquations, State};
 use penalty::{Exponents, PenalisedFit};
@@ -131,12 +131,7 @@ fn begin<'a>(
         }
     };
     let orders = [0, 1, 2].map(|order| SplineValues::new(&spline, times, order));
-    let range = |order: usize| {
-        let values = (0..times.len()).map(|i| orders[order].value(i, &motion));
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-            [low.min(value), high.max(value)]
-        })
-    };
+    let range = |order: usize| extremes((0..times.len()).map(|i| orders[order].value(i, &motion)));
     let arguments = [
         range(0),
         range(usize::from(settings.argument == Argument::Rate)),

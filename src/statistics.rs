@@ -15,6 +15,15 @@ pub use correlation::{Correlation, Decay, Sites, Whitening};
 pub use neighbours::nearest;
 pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
+/// The least and the largest of some values; infinities the wrong way round where there are none.
+pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY];
+    let values = values.into_iter();
+    values.fold(start, |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
+}
+
 /// An estimated value with its uncertainty, in the unit of the value.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Estimate {

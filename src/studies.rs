@@ -78,6 +78,19 @@ impl Kind {
         })
     }
 
+    /// What `read` makes of a study without faults, with its title and what deserves attention.
+    fn load<T>(
+        &self,
+        file: &Path,
+        text: &str,
+        budget: Budget,
+        read: fn(&Section, &Path) -> Option<T>,
+    ) -> Result<(String, T, Vec<Diagnostic>), Error> {
+        let read = self.read_with(file, text, budget, read)?;
+        let made = read.made.expect("a study without faults can be computed");
+        Ok((read.title, made, read.warnings))
+    }
+
     /// The keys that are asked for when a text is read.
     pub fn keys(&self, text: &str) -> Vec<Key> {
         let faults = Faults::default();

@@ -56,7 +56,7 @@ pub const CASES: &[Kind] = cases! {
     "measured-fields", "validation/cases/measured_fields.toml", slow, interval_coverage::prepare;
     "interval-coverage", "validation/cases/interval_coverage.toml", slow, interval_coverage::coverage::prepare;
     specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;
-    "motion", "examples/released_plate.toml", slow, motion::prepare;
+    motion::KIND, "examples/released_plate.toml", slow, motion::prepare;
     "cost", "examples/cost.toml", slow, cost::prepare;
     "correction-matrix", "validation/correction_matrix.toml", quick, correction_matrix::prepare;
     "other-codes", "validation/other_codes.toml", slow, other_codes::prepare;

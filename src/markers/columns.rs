@@ -6,6 +6,7 @@
 
 use crate::document::{Column, Table, plain_name};
 use crate::error::{Diagnostic, Error, nearest, suggestion};
+use crate::statistics::extremes;
 use crate::units::{self, Dimension};
 
 /// Names that a column may have.
@@ -202,10 +203,7 @@ pub fn check_flat(
     const FLAT: f64 = 0.01;
     let range = |column: usize| {
         let values = table.rows.iter().map(|(row, _)| row[column]);
-        let finite = values.filter(|value| value.is_finite());
-        finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        })
+        extremes(values.filter(|value| value.is_finite()))
     };
     let span = |column: usize| range(column)[1] - range(column)[0];
     let largest = |column: usize| range(column)[1].max(-range(column)[0]);

@@ -87,6 +87,7 @@ impl ResultFolder {
         let mut before = manifest.read();
         if let Some(moving) = before.moving.take_if(|moving| moving.is_sound()) {
             moving.settle(path, &inputs)?;
+            moving.forget_stale(&mut before.files);
             manifest.write(&before.files, None)?;
         }
         let kept = identity.map(|identity| format!("{PARTIAL}{identity}"));
@@ -219,9 +220,7 @@ impl ResultFolder {
         // From here on the next run could finish it.
         *settled = true;
         let written = moving.settle(&self.path, &self.inputs)?;
-        moving.stale.iter().for_each(|name| {
-            files.remove(name);
-        });
+        moving.forget_stale(&mut files);
         self.manifest.write(&files, None)?;
         let _ = fs::remove_dir_all(partial);
         Ok(written)

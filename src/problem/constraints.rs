@@ -6,6 +6,7 @@ use super::boundary_conditions::{Drive, Support};
 use super::groups::{named, refused};
 use crate::error::Diagnostic;
 use crate::mesh::{Group, Mesh};
+use crate::statistics::extremes;
 
 /// How a held unknown moves.
 #[derive(Clone, Copy)]
@@ -150,9 +151,7 @@ fn motion(support: &Support, node: [f64; 2], axis: usize) -> Option<Motion> {
 fn normal(mesh: &Mesh, group: &Group) -> Result<usize, SupportMisfit> {
     let extent = |axis: usize| {
         let places = group.nodes.iter().map(|node| mesh.nodes[*node][axis]);
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
+        let [low, high] = extremes(places);
         high - low
     };
     let extents = [extent(0), extent(1)];

@@ -42,6 +42,7 @@ pub fn nodal(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> [A
 /// reference direction.
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 12] {
     let states = cell_states(sheet.law, mesh, displacement);
+    let wrinkling = Wrinkling::of_cells(sheet.law, mesh, &states);
     let states = || states.iter();
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states().map(value));
     let nominal = states().flat_map(|state| {
@@ -51,7 +52,6 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 12] 
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
         Array::symmetric_tensors(name, states().map(value))
     };
-    let wrinkling = Wrinkling::new(sheet.law, mesh, displacement);
     let compressed = wrinkling.compressed.iter();
     let compressed = compressed.map(|is| f64::from(u8::from(*is)));
     let thickness = states().map(|state| sheet.thickness * state.stretches[2]);

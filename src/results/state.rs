@@ -2,7 +2,6 @@
 
 use nalgebra::Vector4;
 
-use super::wrinkling::principal;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
 use crate::mesh::Mesh;
@@ -75,6 +74,12 @@ impl LocalState {
         let [e11, e22, _, e12] = self.green_lagrange;
         principal([e11, e12, e22])[0]
     }
+}
+
+/// The principal values of a plane tensor with the components 11, 12, 22, the larger first.
+fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
+    let (mean, radius) = (0.5 * (s11 + s22), (0.5 * (s11 - s22)).hypot(s12));
+    [mean + radius, mean - radius]
 }
 
 /// The states in the centres of the cells.

@@ -1,8 +1,6 @@
 //! Where a sheet is under compression, which it cannot bear: it would wrinkle or buckle out of its plane.
 
-use nalgebra::Vector4;
-
-use crate::material::sheet::Kinematics;
+use super::state::{LocalState, cell_states};
 use crate::material::{HyperelasticLaw, PlaneState};
 use crate::mesh::Mesh;
 
@@ -22,18 +20,14 @@ pub struct Wrinkling {
 }
 
 impl Wrinkling {
-    /// The compression of a displacement field; a cell that is folded at its centre has no stress and no say.
+    /// The compression of a displacement field.
     pub fn new(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Self {
-        let stresses = |cell: usize| {
-            let gradient = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
-            // A cell may fold between the points where a solution is held to be sound.
-            let Ok(kinematics) = Kinematics::new(&Vector4::from(gradient)) else {
-                return [f64::NAN; 2];
-            };
-            let (_, p) = law.stress(&kinematics);
-            principal(law.cauchy_stress(&kinematics, &p))
-        };
-        let stresses: Vec<[f64; 2]> = (0..mesh.cell_count()).map(stresses).collect();
+        Self::of_cells(law, mesh, &cell_states(law, mesh, displacement))
+    }
+
+    /// The compression of the states in the cells; a cell that is folded at its centre has no stress and no say.
+    pub fn of_cells(law: &dyn HyperelasticLaw, mesh: &Mesh, states: &[LocalState]) -> Self {
+        let stresses: Vec<[f64; 2]> = states.iter().map(LocalState::principal_cauchy).collect();
         let areas: Vec<f64> = (0..mesh.cell_count())
             .map(|cell| area(mesh, cell))
             .collect();
@@ -79,12 +73,6 @@ pub fn warning<'a>(
             told.join(", ")
         )
     })
-}
-
-/// The principal values of a plane stress with the components 11, 12, 22, the larger first.
-pub(super) fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
-    let (mean, radius) = (0.5 * (s11 + s22), (0.5 * (s11 - s22)).hypot(s12));
-    [mean + radius, mean - radius]
 }
 
 fn area(mesh: &Mesh, cell: usize) -> f64 {

@@ -1,6 +1,7 @@
 //! Nested dissection by coordinates: an order of elimination that keeps the factors of large meshes sparse.
 
 use super::pattern::SymmetricPattern;
+use crate::statistics::extremes;
 
 /// Vertices of a part that is not divided any more.
 const LEAF: usize = 9;
@@ -100,10 +101,8 @@ impl Graph {
         }
         let extent = |axis: usize| {
             let places = vertices.iter().map(|vertex| self.places[*vertex][axis]);
-            let limits = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| {
-                [low.min(place), high.max(place)]
-            });
-            limits[1] - limits[0]
+            let [low, high] = extremes(places);
+            high - low
         };
         let axis = usize::from(extent(1) > extent(0));
         let place = |vertex: usize| self.places[vertex][axis];

@@ -35,9 +35,7 @@ pub fn load(
     text: &str,
     budget: Budget,
 ) -> Result<(String, MovingPlate, Vec<Diagnostic>), Error> {
-    let read = case.read_with(file, text, budget, read::read)?;
-    let plate = read.made.expect("a study without faults has a plate");
-    Ok((read.title, plate, read.warnings))
+    case.load(file, text, budget, read::read)
 }
 
 /// Reads a study of this kind.

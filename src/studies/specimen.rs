@@ -35,9 +35,7 @@ pub fn load(
     text: &str,
     budget: Budget,
 ) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
-    let read = case.read_with(file, text, budget, read::read)?;
-    let specimen = read.made.expect("a study without faults has a specimen");
-    Ok((read.title, specimen, read.warnings))
+    case.load(file, text, budget, read::read)
 }
 
 /// Reads a study of this kind.

@@ -18,7 +18,7 @@ use crate::results::{Axis, LineChart, Stroke};
 use crate::studies::sections;
 use crate::units::Dimension;
 use inference::{free_edges, modulus};
-use subject::{Data, Disturbance, MIDDLE, PLATE, Subject, unknown_grips};
+use subject::{Data, Disturbance, MIDDLE, PLATE, Subject, first_parameter, unknown_grips};
 use trials::Trials;
 
 pub mod coverage;
@@ -49,23 +49,13 @@ struct Settings {
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
     let card = sections::read_card(&root.section("plate"), folder);
-    let law = card.and_then(|card| {
-        let first = card.parameters.first().map(|parameter| parameter.key);
-        RegressedLaw::of_card(&card, &first.into_iter().collect::<Vec<_>>()).ok()
-    });
+    let law = card.as_ref().and_then(first_parameter);
     let plate = Plate::read(root, folder);
-    let radius = section(root, "hole", |hole| {
-        hole.quantity("radius", Dimension::Length, Bound::Positive)
-    });
     let settings = section(root, "data", |section| {
         let ratio = |key| section.quantity(key, Dimension::Ratio, Bound::Positive);
         let seeds = |key| section.count(key, 1, 10_000) as u64;
         Settings {
-            data: Data {
-                plate,
-                radius,
-                markers: section.count_pair("markers", 3, 400).unwrap_or([3, 3]),
-            },
+            data: Data::read(plate, root, section),
             noise: read_noise(section),
             seeds: seeds("seeds"),
             outliers: ratio("outliers"),

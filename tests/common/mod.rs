@@ -35,6 +35,12 @@ pub fn number(value: &Value, path: &[&str]) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
+/// The report of `correct` in a folder.
+pub fn report_of_correction(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join("output/correct/report.json")).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }

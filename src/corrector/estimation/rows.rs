@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::mesh_error::MeshError;
 use super::regression::{Fit, Trade};
 use super::search::NearestField;
-use crate::statistics::{Sites, chi_squared_limit, nearest};
+use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
 
 /// Fewer markers tell nothing of each other.
 const FEWEST: usize = 30;
@@ -58,10 +58,7 @@ impl Rows {
         };
         let places: Vec<[f64; 2]> = chosen.iter().map(|row| observations.places[*row]).collect();
         let extent = [0, 1].map(|axis| {
-            let values = places.iter().map(|place| place[axis]);
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
+            let [low, high] = extremes(places.iter().map(|place| place[axis]));
             (high - low).max(f64::MIN_POSITIVE)
         });
         Some(Self {

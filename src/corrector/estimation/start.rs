@@ -5,7 +5,7 @@ use rand::seq::index::sample;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::statistics::robust_deviation;
+use crate::statistics::{extremes, robust_deviation};
 
 /// The largest degree.
 pub const DEGREE: usize = 3;
@@ -156,12 +156,7 @@ impl Polynomial {
 
 /// The middle of the box around places, and half its longer side (twice).
 fn frame(places: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let limits = [0, 1].map(|axis| {
-        let values = places.iter().map(|place| place[axis]);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        })
-    });
+    let limits = [0, 1].map(|axis| extremes(places.iter().map(|place| place[axis])));
     let size = limits
         .iter()
         .fold(0.0_f64, |size, [low, high]| size.max(0.5 * (high - low)));

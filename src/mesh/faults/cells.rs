@@ -7,6 +7,7 @@ use crate::error::Diagnostic;
 use crate::mesh::cell_shape::CellShape;
 use crate::mesh::cells::Mesh;
 use crate::mesh::geometry::determinant;
+use crate::statistics::extremes;
 
 /// A Jacobian over the square of a cell's size that is none.
 const NOTHING: f64 = 1e-9;
@@ -30,9 +31,7 @@ pub fn without_sense(mesh: &Mesh) -> Vec<Diagnostic> {
         let jacobians = samples
             .iter()
             .map(|derivatives| determinant(&mesh.map(cell, derivatives)));
-        let (low, high) = jacobians.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), j| {
-            (low.min(j), high.max(j))
-        });
+        let [low, high] = extremes(jacobians);
         let [from, to] = mesh.cell_box(cell);
         let nothing = NOTHING * ((to[0] - from[0]).powi(2) + (to[1] - from[1]).powi(2));
         if low.abs().max(high.abs()) <= nothing {

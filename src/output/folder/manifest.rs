@@ -66,6 +66,11 @@ impl Moving {
         Ok(placed)
     }
 
+    /// Takes the stale files off a list.
+    pub fn forget_stale(&self, files: &mut BTreeMap<String, String>) {
+        files.retain(|name, _| !self.stale.contains(name));
+    }
+
     /// Whether it comes from a folder that a run has made for it.
     pub fn is_sound(&self) -> bool {
         self.from.starts_with(PARTIAL) && Path::new(&self.from).components().count() == 1

@@ -169,7 +169,10 @@ fn a_set_that_was_killed_while_it_moved_is_finished_by_the_next_run() {
     drop(ResultFolder::open(path, "compare", &[]).unwrap());
     assert_eq!(names(path), [MANIFEST, "a.md", "b.md"]);
     assert_eq!(fs::read_to_string(path.join("b.md")).unwrap(), "2");
-    assert!(Locked::open(path).unwrap().read().complete);
+    let settled = Locked::open(path).unwrap().read();
+    assert!(settled.complete);
+    let listed: Vec<&String> = settled.files.keys().collect();
+    assert_eq!(listed, ["a.md", "b.md"]);
 }
 
 #[test]

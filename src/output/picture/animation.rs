@@ -2,11 +2,11 @@
 
 use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, SVGBackend};
-use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Filter, Writer};
+use png::{BlendOp, DisposeOp, Writer};
 use resvg::tiny_skia::Pixmap;
 
 use super::canvas::{DrawResult, rasterise};
-use super::encode::{Part, colours, whole};
+use super::encode::{Part, colours, encoder, whole};
 use super::paint::Painter;
 use crate::results::{Animation, FieldFigure, Panel, Scale};
 
@@ -43,11 +43,7 @@ impl Animation {
         let mut bytes = Vec::new();
         let mut shown = pictures.next().ok_or("it has no frames")??;
         let count = u32::try_from(self.frames.len()).unwrap_or(u32::MAX);
-        let mut encoder = Encoder::new(&mut bytes, shown.width(), shown.height());
-        encoder.set_color(ColorType::Rgb);
-        encoder.set_depth(BitDepth::Eight);
-        encoder.set_compression(Compression::Balanced);
-        encoder.set_filter(Filter::NoFilter);
+        let mut encoder = encoder(&mut bytes, &shown);
         encoder.set_animated(count, 0)?;
         encoder.set_frame_delay(self.milliseconds, 1000)?;
         encoder.set_blend_op(BlendOp::Source)?;

@@ -9,6 +9,7 @@ use resvg::{tiny_skia, usvg};
 use super::encode::encode;
 use super::paint::Painter;
 use crate::results::Scale;
+use crate::statistics::extremes;
 
 /// Units of the drawing for each point of the design. plotters rounds to whole units: they must be small.
 pub(super) const FINE: u32 = 8;
@@ -161,9 +162,7 @@ impl Scale {
 
     /// Limits that hold all positions: whole decades, or a little more than the values take.
     pub(super) fn limits(self, positions: impl Iterator<Item = f64>) -> (f64, f64) {
-        let (low, high) = positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
-            (low.min(p), high.max(p))
-        });
+        let [low, high] = extremes(positions);
         if low > high {
             return (0.0, 1.0);
         }

@@ -3,6 +3,7 @@
 use plotters::prelude::*;
 
 use crate::results::{Panel, Scale, Values};
+use crate::statistics::extremes;
 
 /// What share of the area may lie beyond each end of the colour bar.
 const BEYOND: f64 = 0.01;
@@ -150,13 +151,6 @@ impl Range {
         };
         (0..COLOURS).map(colour).collect()
     }
-}
-
-fn extremes(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let start = [f64::INFINITY, f64::NEG_INFINITY];
-    values.fold(start, |[low, high], value| {
-        [low.min(value), high.max(value)]
-    })
 }
 
 /// The positions with all but a small share of the area between them.

@@ -6,6 +6,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::canvas::{DrawResult, FINE, INK, bold, stroke, text};
 use super::numbers::{Numbers, round_positions};
+use crate::mesh::geometry::bounding_box;
 
 pub(super) const WIDTH: f64 = 960.0;
 pub(super) const LEFT: f64 = 56.0;
@@ -27,13 +28,7 @@ pub(super) struct Layout {
 impl Layout {
     /// The layout that shows all places.
     pub fn of(places: impl Iterator<Item = [f64; 2]>) -> Self {
-        let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        let (low, high) = places.fold(start, |(low, high), place| {
-            let both = |pick: fn(f64, f64) -> f64, limit: [f64; 2]| {
-                [pick(limit[0], place[0]), pick(limit[1], place[1])]
-            };
-            (both(f64::min, low), both(f64::max, high))
-        });
+        let [low, high] = bounding_box(places);
         Self {
             low,
             high,

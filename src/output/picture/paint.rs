@@ -5,6 +5,8 @@ use resvg::tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform,
 };
 
+use crate::statistics::extremes;
+
 /// Paints into a picture at places in points.
 pub(super) struct Painter<'a> {
     pub image: &'a mut Pixmap,
@@ -40,8 +42,8 @@ impl Painter<'_> {
         let [to_b, to_c] = [values[1] - values[0], values[2] - values[0]];
         let along_x = (to_b * (c[1] - a[1]) - to_c * (b[1] - a[1])) / double;
         let along_y = (to_c * (b[0] - a[0]) - to_b * (c[0] - a[0])) / double;
-        let [top, bottom] = ends([a[1], b[1], c[1]]);
-        for row in centres([top, bottom], self.image.height()) {
+        let rows = extremes([a[1], b[1], c[1]]);
+        for row in centres(rows, self.image.height()) {
             let y = row as f64 + 0.5;
             let Some(span) = span([a, b, c], y) else {
                 continue;
@@ -100,13 +102,6 @@ fn colour(table: &[RGBColor], share: f64) -> RGBColor {
     }
 }
 
-fn ends(values: [f64; 3]) -> [f64; 2] {
-    [
-        values.into_iter().fold(f64::INFINITY, f64::min),
-        values.into_iter().fold(f64::NEG_INFINITY, f64::max),
-    ]
-}
-
 /// The pixels of a line of `count` whose centres lie between two places; neighbours share those on their common edge.
 fn centres([from, to]: [f64; 2], count: u32) -> std::ops::Range<u32> {
     const ROUNDING: f64 = 1e-6;
@@ -141,16 +136,24 @@ mod tests {
 
     const TABLE: [RGBColor; 2] = [RGBColor(10, 20, 30), RGBColor(200, 100, 0)];
 
+    /// A picture of 20 points on each side.
+    fn painted(pixels_per_point: f32, paint: impl FnOnce(&mut Painter)) -> Pixmap {
+        let size = (20.0 * pixels_per_point) as u32;
+        let mut image = Pixmap::new(size, size).unwrap();
+        paint(&mut Painter {
+            image: &mut image,
+            pixels_per_point,
+        });
+        image
+    }
+
     #[test]
     fn two_triangles_fill_a_square_without_a_gap_and_shade_it_in_halves() {
-        let mut image = Pixmap::new(40, 40).unwrap();
-        let mut painter = Painter {
-            image: &mut image,
-            pixels_per_point: 2.0,
-        };
         let [a, b, c, d] = [[1.3, 1.3], [18.4, 1.3], [18.4, 18.4], [1.3, 18.4]];
-        painter.shade([a, b, c], [0.0, 5.0, 5.0], &|value| value / 5.0, &TABLE);
-        painter.shade([a, c, d], [0.0, 5.0, 0.0], &|value| value / 5.0, &TABLE);
+        let image = painted(2.0, |painter| {
+            painter.shade([a, b, c], [0.0, 5.0, 5.0], &|value| value / 5.0, &TABLE);
+            painter.shade([a, c, d], [0.0, 5.0, 0.0], &|value| value / 5.0, &TABLE);
+        });
         let at = |x: u32, y: u32| image.pixel(x, y).unwrap();
         let inside = (3..=36).flat_map(|x| (3..=36).map(move |y| (x, y)));
         for (x, y) in inside {
@@ -165,19 +168,16 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_grey_and_what_has_no_area_or_place_is_left_out() {
-        let mut image = Pixmap::new(20, 20).unwrap();
-        let mut painter = Painter {
-            image: &mut image,
-            pixels_per_point: 1.0,
-        };
         let corners = [[0.0, 0.0], [20.0, 0.0], [0.0, 20.0]];
-        let mut shade = |corners, first: f64| {
-            painter.shade(corners, [first, 0.0, 0.0], &|value| value, &TABLE);
-        };
-        shade(corners, f64::NAN);
-        shade([[9.0, 9.0]; 3], 0.0);
-        shade([[f64::NAN; 2]; 3], 0.0);
-        shade([[-90.0, -9.0], [-5.0, 3.0], [90.0, -2.0]], 0.0);
+        let image = painted(1.0, |painter| {
+            let mut shade = |corners, first: f64| {
+                painter.shade(corners, [first, 0.0, 0.0], &|value| value, &TABLE);
+            };
+            shade(corners, f64::NAN);
+            shade([[9.0, 9.0]; 3], 0.0);
+            shade([[f64::NAN; 2]; 3], 0.0);
+            shade([[-90.0, -9.0], [-5.0, 3.0], [90.0, -2.0]], 0.0);
+        });
         let pixel = image.pixel(5, 5).unwrap();
         assert_eq!((pixel.red(), pixel.green()), (UNKNOWN.0, UNKNOWN.1));
     }

@@ -19,29 +19,35 @@ const MOST: f64 = 0.1;
 const CHANCE: f64 = 1e-3;
 
 impl MarkerStudy {
-    /// The estimate with the weights that are said, else with Tukey's where there are gross errors.
+    /// The estimate with the weights that are said, else with Tukey's where there are gross errors; these may also keep an estimate
+    /// without such weights from being found.
     pub(super) fn weighted(
         &self,
         knowledge: Knowledge,
         solve: &dyn Fn(&Knowledge) -> Result<FieldEstimate, Error>,
     ) -> Result<FieldEstimate, Error> {
-        let found = solve(&knowledge)?;
-        if self.conditions.robust.is_some() || !has_gross_errors(&found) {
-            return Ok(found);
+        let found = solve(&knowledge);
+        let in_doubt = match &found {
+            Ok(found) => has_gross_errors(found),
+            Err(fault) => matches!(fault, Error::Solve { .. }),
+        };
+        if self.conditions.robust.is_some() || !in_doubt {
+            return found;
         }
         let robust = Knowledge {
             robust: Robust::Tukey,
             ..knowledge
         };
-        let without = solve(&robust).ok().filter(|found| !has_many(found));
-        Ok(without.unwrap_or(found))
+        let without = solve(&robust).ok();
+        let without = without.filter(|found| has_gross_errors(found) && !has_many(found));
+        without.map_or(found, Ok)
     }
 
     /// What is said of gross errors that were found without being asked for.
     pub(super) fn of_gross_errors(&self, estimate: &FieldEstimate) -> Option<String> {
         (self.conditions.robust.is_none() && estimate.robust == Robust::Tukey).then(|| {
             format!(
-                "{} of {} markers are farther off than noise can be: markers have less say the farther they are off, by Tukey's weights \
+                "{} of {} markers are outliers, some farther off than noise can be: markers have less say the farther they are off, by Tukey's weights \
                  (robust = \"no\" gives them the say of all others)",
                 outliers(estimate),
                 used(estimate)

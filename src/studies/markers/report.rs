@@ -2,7 +2,6 @@
 
 use super::verdict;
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
-use crate::markers::Frame;
 use crate::results::Block;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
@@ -43,9 +42,7 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
             ),
         };
     }
-    for told in gross_errors(field, estimates) {
-        text += &format!("{told}\n");
-    }
+    gross_errors(field, estimates).for_each(|told| text += &format!("{told}\n"));
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
             let interval = interval(found, estimate.is_explained(), 6);
@@ -89,13 +86,12 @@ fn interval(found: &Estimate, explained: bool, digits: usize) -> String {
 }
 
 /// What is said of gross errors, frame by frame.
-fn gross_errors(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
+fn gross_errors(field: &MarkerStudy, estimates: &[FieldEstimate]) -> impl Iterator<Item = String> {
     let frames = field.series.frames.iter().zip(estimates);
-    let told = |(frame, estimate): (&Frame, &FieldEstimate)| {
+    frames.filter_map(|(frame, estimate)| {
         let told = field.of_gross_errors(estimate)?;
         Some(format!("frame {}: {told}", frame.number))
-    };
-    frames.filter_map(told).collect()
+    })
 }
 
 /// How many markers lie on the mesh.
@@ -167,6 +163,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         frames,
         Block::paragraph(explanation),
     ];
+    blocks.extend(gross_errors(field, estimates).map(Block::paragraph));
     if field.coarse.is_none() {
         blocks.extend(verdict::blocks(field, estimates));
     }

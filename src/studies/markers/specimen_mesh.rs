@@ -7,6 +7,7 @@ use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::markers::{MarkerFiles, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, OutlineFault, import};
+use crate::statistics::extremes;
 
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
@@ -171,10 +172,7 @@ fn made(request: &Request, outline: &Outline, spacing: f64, frames: usize) -> Re
     let cell_area = 3f64.sqrt() / 4.0;
     let smallest = |cells: f64| (outline.area() / (cells * cell_area)).sqrt();
     let extent = |axis: usize| {
-        let values = outline.outer.iter().map(|point| point[axis]);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
+        let [low, high] = extremes(outline.outer.iter().map(|point| point[axis]));
         high - low
     };
     let across = extent(0).min(extent(1));

@@ -40,8 +40,7 @@ pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
 /// [`Error::Solve`] when it must be solved and has no solution.
 pub fn finest_mesh(specimen: &Specimen) -> Result<Mesh, Error> {
     if specimen.refinement.is_none() {
-        let outline = &specimen.outline;
-        return Ok(outline.reference_mesh(outline.halvings()));
+        return Ok(specimen.outline.finest_mesh());
     }
     let mut ends = Vec::new();
     let finest = refine::finest(specimen, &mut ends, &|_| ())?;

@@ -8,10 +8,10 @@ use rayon::prelude::*;
 
 use super::coverage_trial::{CoverageTrial, Shares};
 use super::noise::CorrelatedDraws;
-use super::subject::{Data, Subject, unknown_grips};
+use super::subject::{Data, Subject, first_parameter, unknown_grips};
 use super::trials::AIM;
 use crate::corrector::estimation::{
-    EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, RegressedLaw, Specimen, estimate,
+    EdgeCondition, FieldEstimate, Knowledge, RegressedLaw, Specimen, estimate,
 };
 use crate::document::{Bound, Section};
 use crate::error::Error;
@@ -50,29 +50,23 @@ struct Settings {
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, folder: &Path) -> Computation {
-    let first = |card: Card| {
-        let key = card.parameters.first().map(|parameter| parameter.key);
-        RegressedLaw::of_card(&card, &key.into_iter().collect::<Vec<_>>()).ok()
-    };
-    let law = sections::read_card(&root.section("plate"), folder).and_then(first);
+    let law = sections::read_card(&root.section("plate"), folder)
+        .as_ref()
+        .and_then(first_parameter);
     let plate = Plate::read(root, folder);
-    let radius = section(root, "hole", |hole| {
-        hole.quantity("radius", Dimension::Length, Bound::Positive)
-    });
     let settings = section(root, "data", |section| {
         let ratio = |key| section.quantity(key, Dimension::Ratio, Bound::Positive);
         Settings {
-            data: Data {
-                plate,
-                radius,
-                markers: section.count_pair("markers", 3, 400).unwrap_or([3, 3]),
-            },
+            data: Data::read(plate, root, section),
             noise: read_noise(section).first().copied().unwrap_or_default(),
             seeds: section.count("seeds", 1, 10_000) as u64,
             force_deviation: ratio("force_deviation"),
             wrong_thickness: ratio("wrong_thickness"),
             law,
-            wrong_law: Card::load(WRONG_LAW, folder).ok().and_then(first),
+            wrong_law: Card::load(WRONG_LAW, folder)
+                .ok()
+                .as_ref()
+                .and_then(first_parameter),
         }
     });
     Box::new(move |progress| compute(&settings, progress))
@@ -174,7 +168,8 @@ impl Settings {
     ) -> Result<CoverageTrial, Error> {
         let mut markers = subject.exact_markers();
         draws.disturb(&mut markers, self.noise, seed);
-        let force = self.force(subject.truth.force, seed);
+        let draw = normal_numbers_of_stream(seed, 7).next().unwrap_or(0.0);
+        let force = subject.measured_force(self.force_deviation, draw);
         let with_force = |law: Option<&RegressedLaw>| Knowledge {
             forces: vec![force.clone()],
             law: law.cloned(),
@@ -207,18 +202,6 @@ impl Settings {
             Wrong::Edge => self.with_wrong_edge(specimen, markers)?,
         };
         Ok(CoverageTrial::verdict(&found))
-    }
-
-    /// A measured force, the truth's with its error.
-    fn force(&self, truth: f64, seed: u64) -> MeasuredForce {
-        let deviation = self.force_deviation * truth;
-        let draw = normal_numbers_of_stream(seed, 7).next().unwrap_or(0.0);
-        MeasuredForce {
-            edge: "right".into(),
-            axis: 0,
-            force: truth + deviation * draw,
-            standard_deviation: deviation,
-        }
     }
 
     /// The plate as if it ended at a rigid grip before its end: it is narrower there than at its grips, so that this line across it has

@@ -4,9 +4,7 @@ use rayon::prelude::*;
 
 use super::subject::{Disturbance, MIDDLE, Subject, unknown_grips};
 use super::trials::AIM;
-use crate::corrector::estimation::{
-    EdgeCondition, Knowledge, MeasuredForce, RegressedLaw, Unnamed,
-};
+use crate::corrector::estimation::{EdgeCondition, Knowledge, RegressedLaw, Unnamed};
 use crate::error::Error;
 use crate::validation::case::{Check, check, mean, normal_numbers_of_stream, share};
 
@@ -47,18 +45,11 @@ pub fn modulus(
     seeds: u64,
 ) -> Result<[Check; 2], Error> {
     let truth = law.start()[0];
-    let deviation = relative_deviation * subject.truth.force;
     let estimate = |seed: u64| -> Result<Estimate, Error> {
         let data = subject.data(Disturbance::noise(MIDDLE), seed);
         let draw = normal_numbers_of_stream(seed, 1).next().unwrap_or(0.0);
-        let force = MeasuredForce {
-            edge: "right".into(),
-            axis: 0,
-            force: subject.truth.force + deviation * draw,
-            standard_deviation: deviation,
-        };
         let knowledge = Knowledge {
-            forces: vec![force],
+            forces: vec![subject.measured_force(relative_deviation, draw)],
             law: Some(law.scaled(1.3)),
             ..unknown_grips()
         };

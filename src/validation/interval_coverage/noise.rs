@@ -3,7 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::markers::Marker;
-use crate::validation::case::normal_numbers_of_stream;
+use crate::statistics::nearest;
+use crate::validation::case::{mean, normal_numbers_of_stream};
 
 /// What makes noise of white numbers.
 pub struct CorrelatedDraws {
@@ -18,11 +19,8 @@ impl CorrelatedDraws {
             let [a, b]: [[f64; 2]; 2] = [places[i], places[j]];
             (a[0] - b[0]).hypot(a[1] - b[1])
         };
-        let nearest = |i: usize| {
-            let others = (0..places.len()).filter(|j| *j != i);
-            others.map(|j| distance(i, j)).fold(f64::INFINITY, f64::min)
-        };
-        let spacing = (0..places.len()).map(nearest).sum::<f64>() / places.len() as f64;
+        let nearest = nearest(places, 1).into_iter().enumerate();
+        let spacing = mean(nearest.map(|(i, others)| distance(i, others[0])));
         let root = length.and_then(|length| {
             let correlation = |i: usize, j: usize| (-distance(i, j) / (length * spacing)).exp();
             let all = DMatrix::from_fn(places.len(), places.len(), correlation);

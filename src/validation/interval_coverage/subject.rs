@@ -3,10 +3,16 @@
 use std::sync::Arc;
 
 use super::truth::{Markers, Truth};
-use crate::corrector::estimation::{EdgeCondition, FieldEstimate, Knowledge, Specimen, estimate};
+use crate::corrector::estimation::{
+    EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, RegressedLaw, Specimen, estimate,
+};
+use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::markers::Marker;
+use crate::material::Card;
 use crate::mesh::{CellShape, Grid, Mesh, Shape};
+use crate::units::Dimension;
+use crate::validation::case::section;
 use crate::validation::plate::Plate;
 
 /// The noise at which stress, gross errors and modulus are looked at, in mm.
@@ -23,6 +29,25 @@ pub struct Data {
     pub radius: f64,
     /// Markers along and across.
     pub markers: [usize; 2],
+}
+
+impl Data {
+    /// The plate of a study, and what its sections `hole` and `data` say.
+    pub fn read(plate: Plate, root: &Section, data: &Section) -> Self {
+        Self {
+            plate,
+            radius: section(root, "hole", |hole| {
+                hole.quantity("radius", Dimension::Length, Bound::Positive)
+            }),
+            markers: data.count_pair("markers", 3, 400).unwrap_or([3, 3]),
+        }
+    }
+}
+
+/// The law of a card, whose first parameter is to be found.
+pub fn first_parameter(card: &Card) -> Option<RegressedLaw> {
+    let first = card.parameters.first().map(|parameter| parameter.key);
+    RegressedLaw::of_card(card, &first.into_iter().collect::<Vec<_>>()).ok()
 }
 
 /// What separates data from the truth.
@@ -127,6 +152,17 @@ impl Subject {
     pub fn data(&self, disturbance: Disturbance, seed: u64) -> Markers {
         let Disturbance { noise, outliers } = disturbance;
         self.truth.markers(&self.places, noise, outliers, seed)
+    }
+
+    /// The truth's force on the right grip, so many standard deviations off; these are a share of it.
+    pub fn measured_force(&self, relative_deviation: f64, off: f64) -> MeasuredForce {
+        let deviation = relative_deviation * self.truth.force;
+        MeasuredForce {
+            edge: "right".into(),
+            axis: 0,
+            force: self.truth.force + deviation * off,
+            standard_deviation: deviation,
+        }
     }
 
     /// The field estimated from markers.

@@ -156,6 +156,11 @@ impl Outline {
         levels.map(|level| self.reference_mesh(level)).collect()
     }
 
+    /// The mesh of the finest level.
+    pub fn finest_mesh(&self) -> Mesh {
+        self.reference_mesh(self.halvings())
+    }
+
     /// How often the cells of the finite elements are halved.
     pub fn halvings(&self) -> usize {
         match self {

@@ -135,7 +135,7 @@ pub fn finest(
     if let Some(goal) = specimen.refinement {
         return Ok(Reference::adaptive(specimen, goal, ends, progress)?.finest);
     }
-    let mesh = specimen.outline.reference_mesh(specimen.outline.halvings());
+    let mesh = specimen.outline.finest_mesh();
     on_mesh(specimen, &mesh, FILE, ends, progress)
 }
 

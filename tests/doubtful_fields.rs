@@ -1,0 +1,264 @@
+//! Measured displacements that leave something open or contradict what is said: what is told, and which intervals hold.
+
+use std::fs;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use serde_json::Value;
+use tempfile::TempDir;
+
+mod common;
+
+use common::{gelbench, number, report_of_correction as report, root, words};
+
+/// Frame 2 of the example's markers, those that `keep` holds of.
+fn second_frame(keep: impl Fn([f64; 2]) -> bool) -> String {
+    let text = fs::read_to_string(root().join("examples/measured_plate.csv")).unwrap();
+    let mut kept = String::from("x [mm],y [mm],ux [mm],uy [mm]\n");
+    for line in text.lines().filter(|line| line.starts_with("2,")) {
+        let place: Vec<f64> = line
+            .split(',')
+            .skip(1)
+            .take(2)
+            .map(|x| x.parse().unwrap())
+            .collect();
+        if keep([place[0], place[1]]) {
+            kept += &format!("{}\n", &line[2..]);
+        }
+    }
+    kept
+}
+
+/// Corrects markers of the plate with rigid grips and free long edges; what is printed and the report.
+fn corrected(text: &str, more: &[&str], code: i32) -> (String, Value) {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("plate.csv"), text).unwrap();
+    let thickness = if more.contains(&"--thickness") {
+        vec![]
+    } else {
+        vec!["--thickness", "2 mm"]
+    };
+    let usual = ["correct", "plate.csv", "--material", "pva-10"];
+    let robust = if more.contains(&"--robust") {
+        vec![]
+    } else {
+        vec!["--robust", "tukey"]
+    };
+    let edges = ["--rigid", "left,right", "--free", "top,bottom"];
+    let arguments = [&usual[..], &thickness[..], &robust[..], &edges[..], more].concat();
+    let done = gelbench(folder.path(), &arguments).code(code);
+    let printed = words(&done.get_output().stdout) + &words(&done.get_output().stderr);
+    (printed, report(folder.path()))
+}
+
+/// Corrects markers of the plate of whose grips nothing is known, with free long edges.
+fn loosely_corrected(text: &str, more: &[&str]) -> (String, Value) {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("plate.csv"), text).unwrap();
+    let loose = "[[edges]]\nnames = [\"left\", \"right\"]\ncondition = \"unknown\"\n\
+                 [[edges]]\nnames = [\"top\", \"bottom\"]\ncondition = \"free\"\n";
+    fs::write(folder.path().join("loose.toml"), loose).unwrap();
+    let usual = [
+        "correct",
+        "plate.csv",
+        "--material",
+        "pva-10",
+        "--thickness",
+        "2 mm",
+    ];
+    let arguments = [&usual[..], &["--robust", "tukey"], more].concat();
+    let done = gelbench(folder.path(), &arguments).code(0);
+    (words(&done.get_output().stdout), report(folder.path()))
+}
+
+/// The exit code where the data are not explained.
+const NOT_EXPLAINED: i32 = 5;
+
+/// The force on the right edge along x with its interval.
+fn right_force(report: &Value) -> [f64; 3] {
+    let forces = report["steps"][0]["corrected"]["forces"]
+        .as_array()
+        .unwrap();
+    let force = forces
+        .iter()
+        .find(|force| force["edge"] == "right")
+        .unwrap();
+    let end = |index: usize| force["x_N"]["interval"][index].as_f64().unwrap();
+    [number(force, &["x_N", "value"]), end(0), end(1)]
+}
+
+/// The plate's force in frame 2 in N, by converged finite elements.
+const FORCE: f64 = 12.875;
+
+#[test]
+fn markers_that_end_inside_the_edge_leave_the_force_open() {
+    let inner = second_frame(|[x, y]| (1.0..149.0).contains(&x) && (1.0..49.0).contains(&y));
+    // The outermost markers are no grips then: that they moved as rigid ones is contradicted.
+    let (printed, found) = corrected(&inner, &[], NOT_EXPLAINED);
+    assert!(
+        printed.contains("the data contradict what is said of right, left")
+            || printed.contains("the data contradict what is said of left, right"),
+        "{printed}"
+    );
+    assert!(
+        printed.contains("the specimen's edge is not known"),
+        "{printed}"
+    );
+    // No interval says more than is known.
+    let frame = &found["steps"][0]["corrected"];
+    for force in frame["forces"].as_array().unwrap() {
+        assert!(force["x_N"]["value"].is_number() && force["x_N"]["interval"].is_null());
+    }
+    assert!(printed.contains("no interval: not explained"), "{printed}");
+    // Grips that are not said to be rigid: the interval holds an edge that is nobody's knowledge.
+    let loose = ["--study", "loose.toml"];
+    let (_, found) = loosely_corrected(&inner, &loose);
+    let [force, low, high] = right_force(&found);
+    assert!(
+        force < 0.85 * FORCE && low < force && high > FORCE,
+        "{force} {low} {high}"
+    );
+    // Said, the force is right and sure.
+    let (_, found) = corrected(&inner, &["--edge-gap", "5 mm"], 0);
+    let [force, low, high] = right_force(&found);
+    assert!((force / FORCE - 1.0).abs() < 0.01, "{force}");
+    assert!(
+        low < FORCE && high > FORCE && high - low < 0.03 * FORCE,
+        "{low} {high}"
+    );
+}
+
+#[test]
+fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
+    let gap = ["--edge-gap", "0 mm"];
+    let whole = second_frame(|_| true);
+    let (printed, found) = corrected(&whole, &gap, 0);
+    assert!(!printed.contains("doubtful"), "{printed}");
+    assert!(
+        printed.contains("verdict, frame 1: explained\n"),
+        "{printed}"
+    );
+    assert!(number(&found, &["balance", "worst"]) < 1e-9);
+    let [_, low, high] = right_force(&found);
+    assert!(low < FORCE && high > FORCE, "{low} {high}");
+    let cut = second_frame(|[x, _]| x < 101.0);
+    for (text, more, told, code) in [
+        (
+            &whole,
+            vec!["--force", "right x 6.4 N ± 0.1 N"],
+            "contradicts the field's",
+            NOT_EXPLAINED,
+        ),
+        (
+            &whole,
+            vec!["--thickness", "1 mm", "--force", "right x 12.9 N ± 0.1 N"],
+            "contradicts the field's",
+            NOT_EXPLAINED,
+        ),
+        (
+            &whole,
+            vec!["--noise", "0.0005 mm"],
+            "times as much as their stated noise, more than chance allows: it is scaled",
+            1,
+        ),
+        (
+            &cut,
+            vec![],
+            "the data contradict what is said of",
+            NOT_EXPLAINED,
+        ),
+    ] {
+        let (printed, found) = corrected(text, &[&gap[..], &more].concat(), code);
+        assert!(
+            printed.contains("doubtful") && printed.contains(told),
+            "{more:?}: {printed}"
+        );
+        let doubts = found["doubts"].as_array().unwrap();
+        let beside = |doubt: &Value| doubt.as_str().unwrap().contains(told);
+        assert!(doubts.iter().any(beside), "{doubts:?}");
+        if code == 1 {
+            // The scaled noise has intervals that hold.
+            let [_, low, high] = right_force(&found);
+            assert!(low < FORCE && high > FORCE, "{low} {high}");
+        } else {
+            assert!(printed.contains("not explained by this law, thickness and conditions"));
+        }
+    }
+}
+
+#[test]
+fn noise_that_correlates_is_told_and_held_by_the_intervals() {
+    let text = second_frame(|_| true);
+    let mut lines: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split(',').map(|x| x.parse().ok()).collect())
+        .collect();
+    // Means of white noise over squares of three by three markers.
+    let mut random = ChaCha8Rng::seed_from_u64(21);
+    let white: Vec<f64> = (0..2 * 33 * 13)
+        .map(|_| StandardNormal.sample(&mut random))
+        .collect();
+    for line in &mut lines {
+        let [i, j] = [line[0], line[1]].map(|x| (x / 5.0).round() as usize);
+        for axis in 0..2 {
+            let around = (0..9).map(|k| white[2 * (13 * (i + k / 3) + j + k % 3) + axis]);
+            line[2 + axis] += 0.5 * around.sum::<f64>() / 3.0;
+        }
+    }
+    let rows = lines
+        .iter()
+        .map(|line| format!("{},{},{},{}\n", line[0], line[1], line[2], line[3]));
+    let table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned() + &rows.collect::<String>();
+    let (printed, found) = corrected(&table, &["--edge-gap", "0 mm"], 0);
+    assert!(
+        printed.contains("explained with correlated noise"),
+        "{printed}"
+    );
+    let length = number(
+        &found["steps"][0]["corrected"],
+        &["verdict", "correlation_length_mm"],
+    );
+    assert!((4.0..20.0).contains(&length), "{length}");
+    let [_, low, high] = right_force(&found);
+    assert!(
+        low < FORCE && high > FORCE && high - low > 0.01 * FORCE,
+        "{low} {high}"
+    );
+}
+
+#[test]
+fn half_of_the_markers_lost_gives_no_interval_that_lies() {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let kept: Vec<bool> = (0..341).map(|_| random.random::<f64>() < 0.5).collect();
+    let index = |[x, y]: [f64; 2]| 11 * (x / 5.0).round() as usize + (y / 5.0).round() as usize;
+    let half = second_frame(|place| kept[index(place)]);
+    // The outline cuts corners of the specimen there: its sides are not free.
+    let (printed, found) = corrected(&half, &[], NOT_EXPLAINED);
+    assert!(
+        printed.contains("the outline of the markers is uncertain"),
+        "{printed}"
+    );
+    assert!(printed.contains("no interval: not explained"), "{printed}");
+    assert_eq!(
+        found["steps"][0]["corrected"]["forces"][0]["x_N"]["interval"],
+        Value::Null
+    );
+    // Where lost markers still have rows, their places are the outline.
+    let mut rows = second_frame(|_| true);
+    rows = rows
+        .lines()
+        .enumerate()
+        .map(|(line, row)| match row.split(',').collect::<Vec<_>>()[..] {
+            [x, y, ..] if line > 0 && !kept[line - 1] => format!("{x},{y},,\n"),
+            _ => format!("{row}\n"),
+        })
+        .collect();
+    let (_, found) = corrected(&rows, &["--edge-gap", "0 mm"], 0);
+    let [_, low, high] = right_force(&found);
+    assert!(
+        low < FORCE && high > FORCE && high - low < 0.03 * FORCE,
+        "{low} {high}"
+    );
+}
