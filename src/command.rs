@@ -21,8 +21,9 @@ use crate::error::Diagnostic;
 use crate::output;
 use crate::output::ResultFolder;
 use crate::results::{Check, End, Results};
-use crate::studies::name;
+use crate::studies::{self, name};
 use crate::validation;
+use journal::FolderJournal;
 use large::Large;
 use progress::Progress;
 use reference::FileKind;
@@ -37,6 +38,7 @@ mod fit_message;
 mod identify;
 mod identity;
 mod interrupt;
+mod journal;
 mod large;
 mod materials;
 mod message;
@@ -226,26 +228,32 @@ fn perform(command: Command) -> u8 {
 
 /// Computes a study of any kind and writes what it finds.
 fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
-    let ready = validation::read(path, budget)?;
-    warn(&ready.warnings);
+    let mut ready = validation::read(path, budget)?;
     let usual = || Path::new("output").join(name(path));
     let folder = folder.or_else(|| ready.folder.clone());
     let folder = folder.unwrap_or_else(usual);
-    let mut results_folder = ResultFolder::open(&folder, "run", &[path])?;
+    let identity = identity::of(&format!("{path:?} {budget:?}"));
+    let results_folder = ResultFolder::resume(&folder, "run", &[path], &identity)?;
     interrupt::guard(&results_folder);
+    let journal = FolderJournal::open(results_folder);
+    ready.warnings.extend(journal.told());
+    warn(&ready.warnings);
     let progress = Progress::of(ready.progress_steps as u64);
     let counted = ready.progress_steps > 0;
     let with_report = ready.report;
-    let results = ready.compute(&|what| {
+    let told = |what: &str| {
         progress.tell(what);
         if counted {
             progress.advance();
         }
-    })?;
+    };
+    let results = ready.compute(studies::Progress::to(&told).kept_by(&journal))?;
+    let (mut results_folder, fault) = journal.close();
     progress.tell("files");
     let warnings = output::write(&results, with_report, &mut results_folder)?;
     drop(progress);
     warn(&warnings);
+    warn(&fault.into_iter().collect::<Vec<_>>());
     let files = results_folder.finish()?;
     conclude(
         &[results],
@@ -270,7 +278,8 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     for case in chosen {
         let told = |what: &str| progress.tell(&format!("{}: {what}", case.kind));
         told("begins");
-        cases.push(validation::compute_or_fail(case, &told)?);
+        let told = studies::Progress::to(&told);
+        cases.push(validation::compute_or_fail(case, told)?);
         progress.advance();
     }
     let (blocks, figures) = validation::report::report("Validation of gelbench", &cases);

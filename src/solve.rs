@@ -6,6 +6,7 @@ pub mod assembly;
 mod connectivity;
 pub mod dissection;
 mod ending;
+mod journal;
 pub mod krylov;
 mod loading;
 pub mod newton;
@@ -19,6 +20,7 @@ pub mod vector;
 
 pub use assembly::Assembly;
 pub use connectivity::Connectivity;
+pub use journal::{Attendance, Journal, Milestone};
 pub use loading::{Loading, State};
 pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};

@@ -8,6 +8,7 @@ use crate::budget::Budget;
 use crate::document::{Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error};
 use crate::results::{Outcome, Results};
+use crate::solve::{Attendance, Journal};
 
 pub mod markers;
 pub mod motion;
@@ -16,8 +17,51 @@ pub mod plate;
 pub mod sections;
 pub mod specimen;
 
-/// Reports what is being done.
-pub type Progress<'a> = &'a dyn Fn(&str);
+/// Whom a computation tells what it does, and where it keeps what it has found.
+#[derive(Clone, Copy)]
+pub struct Progress<'a> {
+    told: &'a dyn Fn(&str),
+    journal: Option<&'a dyn Journal>,
+}
+
+impl<'a> Progress<'a> {
+    /// One that is told.
+    pub fn to(told: &'a dyn Fn(&str)) -> Self {
+        Self {
+            told,
+            journal: None,
+        }
+    }
+
+    /// One that is told nothing.
+    pub fn silent() -> Self {
+        Self::to(&|_| ())
+    }
+
+    /// The same with a journal: a computation that was broken off goes on with the equilibria that it holds.
+    pub fn kept_by(self, journal: &'a dyn Journal) -> Self {
+        Self {
+            journal: Some(journal),
+            ..self
+        }
+    }
+
+    /// Says what is being done.
+    pub fn tell(&self, what: &str) {
+        (self.told)(what);
+    }
+
+    /// For a path whose load factors are told by `reached`.
+    pub fn along<'b>(&self, reached: &'b dyn Fn(f64)) -> Attendance<'b>
+    where
+        'a: 'b,
+    {
+        Attendance {
+            reached,
+            journal: self.journal,
+        }
+    }
+}
 
 /// A study that has been read, ready to be computed.
 pub struct PreparedStudy {

@@ -8,6 +8,7 @@ use gelbench::material::NeoHooke;
 use gelbench::mesh::{CellShape, Mesh, MeshReading, Shape, import};
 use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
+use gelbench::studies::Progress;
 use gelbench::validation::case_of;
 
 mod common;
@@ -367,7 +368,7 @@ fn within(cells: f64) -> (String, Vec<String>) {
         ..Budget::USUAL
     };
     let ready = case.read(&folder.path().join("small.toml"), &text, budget);
-    let results = ready.unwrap().compute(&|_| ()).unwrap();
+    let results = ready.unwrap().compute(Progress::silent()).unwrap();
     (format!("{:?}", results.report()), results.read_warnings)
 }
 

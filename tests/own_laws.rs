@@ -5,7 +5,7 @@ use std::path::Path;
 use gelbench::budget::Budget;
 use gelbench::material::Card;
 use gelbench::results::Outcome;
-use gelbench::studies::{motion, specimen};
+use gelbench::studies::{Progress, motion, specimen};
 use gelbench::validation::case_of;
 
 mod common;
@@ -14,21 +14,21 @@ mod common;
 fn computed(text: &str, own: Option<Card>) -> Outcome {
     let file = Path::new("study.toml");
     let case = case_of("study.toml", text).unwrap().unwrap();
-    let (budget, silent) = (Budget::default(), |_: &str| ());
+    let budget = Budget::default();
     if case.kind == specimen::KIND {
         let (_, strip, _) = specimen::load(case, file, text, budget).unwrap();
         let strip = match own {
             Some(card) => strip.with_card(card),
             None => strip,
         };
-        return specimen::compute(&strip, &silent).unwrap();
+        return specimen::compute(&strip, Progress::silent()).unwrap();
     }
     let (_, plate, _) = motion::load(case, file, text, budget).unwrap();
     let plate = match own {
         Some(card) => plate.with_card(card),
         None => plate,
     };
-    motion::compute(&plate, &silent).unwrap()
+    motion::compute(&plate, Progress::silent()).unwrap()
 }
 
 #[test]

@@ -21,7 +21,7 @@ use crate::results::{Array, Block, Grid, GridSeries, Sheet};
 use crate::studies::plate::Study;
 use crate::studies::plate::results::run;
 use crate::studies::sections;
-use crate::studies::{Kind, specimen};
+use crate::studies::{self, Kind, specimen};
 use crate::units::{self, Dimension};
 use crate::validation;
 
@@ -132,15 +132,16 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
     let text = sections::read_text(path)?;
     let progress = Progress::of(0);
     let told = |what: &str| progress.tell(what);
+    let told = studies::Progress::to(&told);
     let compared = match validation::case_of(&path.display().to_string(), &text)? {
-        None => plate(options, text, &told)?,
-        Some(case) if case.kind == specimen::KIND => shape(options, case, &text, &told)?,
+        None => plate(options, text, told)?,
+        Some(case) if case.kind == specimen::KIND => shape(options, case, &text, told)?,
         Some(case) => return Err(not_for_other_codes(case)),
     };
     Ok(compared)
 }
 
-fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Comparison, Error> {
+fn plate(options: &Options, text: String, told: studies::Progress) -> Result<Comparison, Error> {
     let study = Study::of_file(&options.study, text, options.large.budget())?;
     warn(&study.warnings);
     let problem = &study.problem;
@@ -160,7 +161,7 @@ fn plate(options: &Options, text: String, told: &dyn Fn(&str)) -> Result<Compari
         factor,
         imported,
         sites,
-        fields: run::fields(study, factor, &|model, _| told(model))?,
+        fields: run::fields(study, factor, told)?,
     })
 }
 
@@ -168,7 +169,7 @@ fn shape(
     options: &Options,
     case: &Kind,
     text: &str,
-    told: &dyn Fn(&str),
+    told: studies::Progress,
 ) -> Result<Comparison, Error> {
     let (title, specimen, warnings) =
         specimen::load(case, &options.study, text, options.large.budget())?;

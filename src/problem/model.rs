@@ -8,7 +8,7 @@ use super::ties::TiedPotential;
 use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::solve::{
-    Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
+    Attendance, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
 };
 
 /// Names an element or the end of a path.
@@ -132,6 +132,19 @@ impl<'a> Model<'a> {
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<State>, PathEnd> {
+        self.attended(factors, settings, Attendance::told(progress))
+    }
+
+    /// The same, where equilibria may be kept, and taken from where they were.
+    ///
+    /// # Errors
+    /// As [`Model::solve`].
+    pub fn attended(
+        &self,
+        factors: &[f64],
+        settings: NewtonSettings,
+        attendance: Attendance,
+    ) -> Result<Vec<State>, PathEnd> {
         if let (Some(free), Some(factor)) =
             (self.free_motions().into_iter().next(), factors.first())
         {
@@ -142,7 +155,7 @@ impl<'a> Model<'a> {
                 last: None,
             });
         }
-        follow(self, factors, settings, progress)
+        follow(self, factors, settings, attendance)
     }
 
     /// The state at the last of some load factors.

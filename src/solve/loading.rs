@@ -1,5 +1,7 @@
 //! A system whose supports and loads follow one load factor, and its equilibria.
 
+use serde::{Deserialize, Serialize};
+
 use super::newton::Convergence;
 use super::potential::Potential;
 
@@ -27,7 +29,7 @@ pub trait Loading {
 }
 
 /// An equilibrium at one load factor.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct State {
     /// The load factor.
     pub factor: f64,

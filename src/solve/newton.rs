@@ -1,5 +1,7 @@
 //! Newton's method for the minimum of a potential, with a line search that keeps every element admissible.
 
+use serde::{Deserialize, Serialize};
+
 use super::assembly::Assembly;
 use super::potential::{Inadmissible, Potential};
 use super::tangent::{Describe, Tangent, inverted};
@@ -25,7 +27,7 @@ impl Default for NewtonSettings {
 }
 
 /// How a solution was reached.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Convergence {
     /// Relative residual before each iteration and after the last.
     pub residuals: Vec<f64>,

@@ -1,6 +1,7 @@
 //! Equilibria along a path of load factors.
 
 use super::ending::diagnose;
+use super::journal::{Attendance, Journal, Milestone};
 use super::loading::{Loading, State};
 use super::newton::{Newton, NewtonSettings};
 use super::potential::Potential;
@@ -49,7 +50,8 @@ const SHORTEST_FROM_REST: f64 = 1.0 / 1_048_576.0;
 const EASY: usize = 6;
 
 /// Solves all load factors, one after the other. One that cannot be reached from the one before in one go
-/// is approached by shorter steps: halved where they fail, doubled after easy ones.
+/// is approached by shorter steps: halved where they fail, doubled after easy ones. Those that a journal has kept are not
+/// solved again.
 ///
 /// # Errors
 /// [`PathEnd`] with the load factor at which no equilibrium was found and the states before it.
@@ -57,21 +59,36 @@ pub fn follow(
     loading: &dyn Loading,
     factors: &[f64],
     settings: NewtonSettings,
-    progress: &dyn Fn(f64),
+    attendance: Attendance,
 ) -> Result<Vec<State>, PathEnd> {
-    let mut states: Vec<State> = Vec::new();
     let Some(&first) = factors.first() else {
-        return Ok(states);
+        return Ok(Vec::new());
     };
+    let kept = attendance.journal.map_or_else(Vec::new, Journal::begin);
     let mut path = Path::new(loading, settings, first).map_err(|fault| PathEnd {
         factor: first,
         fault,
         states: Vec::new(),
         last: None,
     })?;
-    for &factor in factors {
+    if let Some(last) = kept.last() {
+        path.step = last.step;
+    }
+    let mut states: Vec<State> = kept.into_iter().map(|kept| kept.state).collect();
+    states
+        .iter()
+        .for_each(|state| (attendance.reached)(state.factor));
+    for &factor in &factors[states.len()..] {
         match path.reach(states.last(), factor) {
-            Ok(state) => states.push(state),
+            Ok(state) => {
+                if let Some(journal) = attendance.journal {
+                    journal.keep(Milestone {
+                        state: state.clone(),
+                        step: path.step,
+                    });
+                }
+                states.push(state);
+            }
             Err((fault, last)) => {
                 return Err(PathEnd {
                     factor,
@@ -81,7 +98,7 @@ pub fn follow(
                 });
             }
         }
-        progress(factor);
+        (attendance.reached)(factor);
     }
     Ok(states)
 }
@@ -315,7 +332,7 @@ mod tests {
     #[test]
     fn steps_are_halved_where_they_must_and_grow_again() {
         let point = Point { energy: cautious };
-        let states = follow(&point, &[10.0, 20.0], NEWTON, &|_| ()).unwrap();
+        let states = follow(&point, &[10.0, 20.0], NEWTON, Attendance::told(&|_| ())).unwrap();
         assert_eq!(states.len(), 2);
         assert!((states[1].displacement[0] - 20.0).abs() < 1e-12);
         // 10/64 four times, then doubled from step to step; without growth 64 steps.
@@ -330,7 +347,7 @@ mod tests {
             cautious(-u, -s).map(|[energy, force, stiffness]| [energy, -force, stiffness])
         };
         let point = Point { energy: mirrored };
-        let states = follow(&point, &[-10.0, -20.0], NEWTON, &|_| ()).unwrap();
+        let states = follow(&point, &[-10.0, -20.0], NEWTON, Attendance::told(&|_| ())).unwrap();
         assert!((states[1].displacement[0] + 20.0).abs() < 1e-12);
         let steps = states[0].load_steps;
         assert!(steps > 6 && steps < 16, "{steps}");
@@ -342,7 +359,7 @@ mod tests {
         let point = Point {
             energy: |u, _| Some([0.5 * u * u - u.powi(3) / 6.0, u - 0.5 * u * u, 1.0 - u]),
         };
-        let end = follow(&point, &[1000.0], NEWTON, &|_| ()).unwrap_err();
+        let end = follow(&point, &[1000.0], NEWTON, Attendance::told(&|_| ())).unwrap_err();
         let reached = end.reached();
         assert!(reached <= 0.5 && reached > 0.5 - 2e-3, "{reached}");
         assert!(
@@ -358,7 +375,7 @@ mod tests {
         let point = Point {
             energy: |u, _| Some([0.5 * u * u - u.powi(3) / 6.0, u - 0.5 * u * u, 1.0 - u]),
         };
-        let end = follow(&point, &[0.25, 0.7], NEWTON, &|_| ()).unwrap_err();
+        let end = follow(&point, &[0.25, 0.7], NEWTON, Attendance::told(&|_| ())).unwrap_err();
         assert_eq!(end.states.len(), 1);
         let last = end.last.clone().expect("an equilibrium beyond 0.25");
         assert!(

@@ -59,18 +59,18 @@ pub fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error
         DashpotLaw::Material(material) => !material.is_none(),
         DashpotLaw::Viscosity { .. } => true,
     };
-    progress("mass-spring");
+    progress.tell("mass-spring");
     let dashpots = damped.then_some(&dashpots as &dyn Viscosity);
     let model = springs.model(&plate.problem);
     let springs_moved = plate.moved(["mass-spring", "mass_spring"], &model, dashpots)?;
-    progress("finite elements");
+    progress.tell("finite elements");
     let (element, cells) = plate.element;
     let elements = FiniteElements::new(&plate.problem, cells, element);
     let sheet = SheetViscosity::new(elements.energy(), &plate.viscosity);
     let sheet = (!plate.viscosity.is_none()).then_some(&sheet as &dyn Viscosity);
     let model = elements.model(&plate.problem);
     let elements_moved = plate.moved(["finite elements", "finite_element"], &model, sheet)?;
-    progress("corrector");
+    progress.tell("corrector");
     let corrected = plate.corrected(&springs_moved)?;
     Ok(outcome::outcome(
         plate,

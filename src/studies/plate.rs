@@ -4,7 +4,6 @@ use std::path::Path;
 
 use crate::budget::Budget;
 use crate::error::Error;
-use crate::problem::ClampedPlate;
 use crate::results::{Material, Outcome};
 use crate::studies::{PreparedStudy, Progress};
 
@@ -43,13 +42,7 @@ pub fn prepare(path: &Path, text: String, budget: Budget) -> Result<PreparedStud
         progress_steps: run::progress_steps(&study),
         about: study.describe(),
         computation: Box::new(move |progress: Progress| {
-            let told = |model: &str, stretch: f64| {
-                progress(&format!(
-                    "{model}, {}",
-                    ClampedPlate::describe_step(stretch)
-                ));
-            };
-            let results = run::run(&study, &told)?;
+            let results = run::run(&study, progress)?;
             Ok(outcome(&study, &results))
         }),
     })

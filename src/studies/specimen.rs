@@ -54,7 +54,7 @@ pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error
     let mut ends = Vec::new();
     let mut models = Models::solve(specimen, &mut ends, progress)?;
     if models.reference.may_be_finer(specimen) && outcome::is_open(specimen, &models) {
-        progress("finer finite elements");
+        progress.tell("finer finite elements");
         models.reference = models.reference.finer(specimen, &mut ends, progress)?;
     }
     if models.reached() == 0 && ends.iter().all(End::is_empty) {

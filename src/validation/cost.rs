@@ -77,7 +77,7 @@ impl<'a> Bench<'a> {
         name: &'static str,
         work: impl Fn() -> Result<Vec<f64>, Error>,
     ) -> Result<Way, Error> {
-        (self.progress)(name);
+        self.progress.tell(name);
         let (mut seconds, mut field) = (f64::INFINITY, Vec::new());
         for _ in 0..self.repetitions {
             let start = Instant::now();

@@ -54,7 +54,7 @@ impl Plates {
     fn compute(&self, progress: Progress) -> Vec<Found> {
         let mut found = Vec::new();
         for (law, material) in samples::all() {
-            progress(law);
+            progress.tell(law);
             let pairs = self.sizes.iter();
             let pairs = pairs.flat_map(|size| self.cells.iter().map(|cells| (*size, *cells)));
             let plate = |(size, cells)| Plate {

@@ -78,7 +78,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
         Subject::strip(&settings.data)?,
     ] {
         for noise in &settings.noise {
-            progress(&format!("{}, noise of {noise} mm", subject.name));
+            progress.tell(&format!("{}, noise of {noise} mm", subject.name));
             let trials = Trials::new(
                 &subject,
                 Disturbance::noise(*noise),
@@ -97,13 +97,13 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
             outliers: settings.outliers,
         };
         for robust in [Robust::Huber, Robust::Tukey] {
-            progress(&format!("{}, gross errors, {robust:?}", subject.name));
+            progress.tell(&format!("{}, gross errors, {robust:?}", subject.name));
             let trials = Trials::new(&subject, gross, robust, settings.seeds)?;
             outcome.checks.extend(trials.outlier_checks(robust));
         }
         infer(&settings.inference, &subject, progress, &mut outcome)?;
     }
-    progress("100,000 nodes");
+    progress.tell("100,000 nodes");
     outcome.times.push(large(&settings.data)?);
     outcome.blocks = vec![Block::paragraph(EXPLANATION), table(trials::HEAD, rows)];
     outcome.figures.push(picture(&plates));
@@ -123,12 +123,12 @@ fn infer(
     progress: Progress,
     outcome: &mut Outcome,
 ) -> Result<(), Error> {
-    progress(&format!("{}, unnamed edges", subject.name));
+    progress.tell(&format!("{}, unnamed edges", subject.name));
     outcome
         .checks
         .push(free_edges(subject, inference.edge_seeds)?);
     if let Some(law) = &inference.law {
-        progress(&format!("{}, modulus", subject.name));
+        progress.tell(&format!("{}, modulus", subject.name));
         let (deviation, seeds) = (inference.force_deviation, inference.modulus_seeds);
         outcome
             .checks

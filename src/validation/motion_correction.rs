@@ -55,11 +55,11 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
 
 fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
-    progress("released plate");
+    progress.tell("released plate");
     settings
         .release
         .compare(&settings.plate, progress, &mut outcome)?;
-    progress("recorded motion");
+    progress.tell("recorded motion");
     settings
         .recording
         .compare(&settings.plate, progress, &mut outcome)?;

@@ -68,7 +68,7 @@ fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
     for (model, rows) in published(finest) {
         let (along, across) = (model.along, model.along / 3);
         let (material, element) = (model.material, model.element);
-        progress(&format!("{material}, {element}, {along} × {across} cells"));
+        progress.tell(&format!("{material}, {element}, {along} × {across} cells"));
         let solved = Solved::new(&material, along, &element)?;
         for row in rows {
             let Some(found) = solved.at(row.stretch) else {
@@ -102,7 +102,7 @@ fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
 
 /// Richardson's extrapolation of Q2 elements on three meshes compared with the published converged values.
 fn converged(material: &str, finest: usize, progress: Progress) -> Result<[Check; 2], Error> {
-    progress(&format!("{material}, converged"));
+    progress.tell(&format!("{material}, converged"));
     let meshes = [finest / 4, finest / 2, finest].map(|along| Solved::new(material, along, "Q2"));
     let [coarse, middle, fine] = meshes;
     let meshes = [coarse?, middle?, fine?];

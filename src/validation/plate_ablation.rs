@@ -29,7 +29,7 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
 }
 
 fn compute(plate: &Plate, disturbance: Disturbance, progress: Progress) -> Result<Outcome, Error> {
-    progress("reference");
+    progress.tell("reference");
     let fields = Fields::new(plate)?;
     let mut outcome = Outcome::default();
     known_conditions::compare(&fields, progress, &mut outcome)?;

@@ -57,7 +57,7 @@ struct Fields<'a> {
 
 fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     let plate = &settings.plate;
-    progress("reference");
+    progress.tell("reference");
     let lattice = plate.lattice();
     let fields = Fields {
         settings,
@@ -230,7 +230,7 @@ impl Fields<'_> {
 
     /// Noisy fields of all seeds, corrected.
     fn noisy(&self, noise: f64, grips: Grips, progress: Progress) -> Result<Summary, Error> {
-        progress(&format!("noise of {noise} mm, {grips}"));
+        progress.tell(&format!("noise of {noise} mm, {grips}"));
         let seeds = (0..self.settings.seeds).into_par_iter();
         let pairs = seeds.map(|seed| self.one_seed(noise, grips, seed));
         let pairs = pairs.collect::<Result<Vec<_>, Error>>()?;

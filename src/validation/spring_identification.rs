@@ -59,7 +59,7 @@ type Trial = [Vec<Place>; 2];
 const TRUTH: [fn(f64) -> f64; 2] = [Sample::stiffness, Sample::damping];
 
 fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
-    progress("trials");
+    progress.tell("trials");
     let places = places(&settings);
     let seeds: Vec<u64> = (0..settings.trials as u64).collect();
     let one = |seed: &u64| -> Result<Trial, Error> {

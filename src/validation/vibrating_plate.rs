@@ -38,13 +38,13 @@ pub fn prepare(root: &Section, _folder: &Path) -> Computation {
 
 fn compute(cells: &[usize], progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
-    progress("spring");
+    progress.tell("spring");
     outcome.checks.extend(spring::checks()?);
-    progress("energy");
+    progress.tell("energy");
     outcome.checks.extend(energy()?);
-    progress("frequency");
+    progress.tell("frequency");
     frequency::compare(cells, &mut outcome)?;
-    progress("relaxation");
+    progress.tell("relaxation");
     outcome.checks.push(relaxation()?);
     Ok(outcome)
 }

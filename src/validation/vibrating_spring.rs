@@ -107,12 +107,12 @@ impl Settings {
 fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, SolveFault> {
     let mut outcome = Outcome::default();
     drawn_motion(settings, &mut outcome)?;
-    progress("known stiffness");
+    progress.tell("known stiffness");
     outcome.checks.extend(known_stiffness(settings)?);
-    progress("unknown stiffness");
+    progress.tell("unknown stiffness");
     let (undamped, order) = (settings.motion, settings.order);
     let free = unknown_constants(settings, &undamped, order, &["k"], &mut outcome)?;
-    progress("unknown stiffness and damping");
+    progress.tell("unknown stiffness and damping");
     let damped = Motion {
         damping: settings.damping,
         ..undamped

@@ -11,6 +11,7 @@ use tempfile::TempDir;
 
 pub mod exports;
 pub mod mesh_files;
+pub mod process;
 pub mod schema;
 
 pub fn gelbench(folder: &Path, arguments: &[&str]) -> Assert {

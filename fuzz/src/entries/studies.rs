@@ -6,7 +6,7 @@ use std::path::Path;
 use gelbench::budget::Budget;
 use gelbench::error::Error;
 use gelbench::material::registry::CARDS;
-use gelbench::studies::plate;
+use gelbench::studies::{Progress, plate};
 use gelbench::validation::case_of;
 
 use super::Became;
@@ -40,7 +40,7 @@ fn compute(text: &str) -> Became {
         Ok(None) => plate::prepare(file, text.to_owned(), SMALL),
         Err(fault) => Err(fault),
     };
-    let computed = read.and_then(|ready| ready.compute(&|_| ()));
+    let computed = read.and_then(|ready| ready.compute(Progress::silent()));
     match computed {
         Ok(results) => {
             let _ = results.passed();

@@ -12,7 +12,7 @@ use crate::error::{Error, SolveFault};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
 use crate::solve::{
-    Assembly, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow,
+    Assembly, Attendance, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow,
 };
 
 /// The residual that Newton's method leaves, relative to the largest reaction.
@@ -140,7 +140,7 @@ impl Climb<'_> {
             energy: &energy,
             stretch,
         };
-        let state = follow(&loading, &[1.0], NEWTON, &|_| ())?.remove(0);
+        let state = follow(&loading, &[1.0], NEWTON, Attendance::told(&|_| ()))?.remove(0);
         let field = Field::of_nodes(grid, &state.displacement);
         let residual = state.convergence.residuals.last();
         Ok(Equilibrium {

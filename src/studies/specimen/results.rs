@@ -24,7 +24,7 @@ use reference::Reference;
 /// [`Error::Solve`] when they have no solution.
 pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
     let mut ends = Vec::new();
-    let reference = Reference::solve(specimen, &mut ends, &|_| ())?;
+    let reference = Reference::solve(specimen, &mut ends, Progress::silent())?;
     if let Some(end) = ends.pop() {
         return Err(end.error());
     }
@@ -43,7 +43,7 @@ pub fn finest_mesh(specimen: &Specimen) -> Result<Mesh, Error> {
         return Ok(specimen.outline.finest_mesh());
     }
     let mut ends = Vec::new();
-    let finest = refine::finest(specimen, &mut ends, &|_| ())?;
+    let finest = refine::finest(specimen, &mut ends, Progress::silent())?;
     ends.pop().map_or(Ok(finest.mesh), |end| Err(end.error()))
 }
 
@@ -60,7 +60,7 @@ pub fn fields(
     specimen.factors.retain(|before| *before < factor);
     specimen.factors.push(factor);
     let mut ends = Vec::new();
-    progress("finite elements");
+    progress.tell("finite elements");
     let elements = refine::finest(&specimen, &mut ends, progress)?;
     let OnLattice {
         uncorrected,

@@ -32,7 +32,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     let elements = CellShape::NAMES.into_iter();
     for (name, shape) in elements.filter(|(_, shape)| shape.degree() > 1) {
-        progress(name);
+        progress.tell(name);
         let what = format!("{name}: deflection over the beam's");
         let deflection = check(what, "–", deflection(shape, cells)?);
         outcome

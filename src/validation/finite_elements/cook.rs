@@ -52,7 +52,7 @@ fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     for shear in SHEARS {
         let mut found = Vec::new();
         for (name, shape) in CellShape::NAMES {
-            progress(name);
+            progress.tell(name);
             found.push(Deflection::new(name, shape, coarsest, shear.traction)?);
         }
         found.sort_by_key(|deflection| !deflection.is_reference());

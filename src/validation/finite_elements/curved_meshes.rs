@@ -79,7 +79,7 @@ fn compute(cells: usize, exact: usize, progress: Progress) -> Result<Outcome, Er
     let mut outcome = Outcome::default();
     let mut rows = Vec::new();
     for body in bodies() {
-        progress(body.name);
+        progress.tell(body.name);
         let truth = truth(&body, exact)?;
         for kind in KINDS {
             for cells in [cells, 2 * cells] {

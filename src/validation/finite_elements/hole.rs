@@ -43,7 +43,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Computation {
 fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     for (ratio, expected) in HOWLAND {
-        progress(&format!("diameter/width {ratio}"));
+        progress.tell(&format!("diameter/width {ratio}"));
         let mesh = quarter(ratio * HALF, cells, CellShape::Quad9);
         let what = format!("stress concentration at diameter/width {ratio}");
         let found = check(what, "–", concentration(&mesh, ratio * HALF)?);

@@ -91,7 +91,7 @@ fn compute(coarsest: usize, amplitude: f64, progress: Progress) -> Result<Outcom
     let mut outcome = Outcome::default();
     let mut lines = Vec::new();
     for ((name, shape), colour) in CellShape::NAMES.into_iter().zip(PALETTE) {
-        progress(name);
+        progress.tell(name);
         let convergence = Convergence::new(name, shape, coarsest, amplitude)?;
         outcome.checks.extend(convergence.checks());
         lines.extend(convergence.lines(colour));

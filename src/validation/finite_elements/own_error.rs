@@ -38,7 +38,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     let mut forces = Vec::new();
     for (name, shape) in CellShape::NAMES {
-        progress(name);
+        progress.tell(name);
         outcome
             .checks
             .extend(smooth::checks(name, shape, settings.smooth)?);
@@ -48,7 +48,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     }
     outcome.blocks.extend(smooth::force_table(&forces));
     let exact = graded::compare(settings.plate, &mut outcome, progress)?;
-    progress("local refinement");
+    progress.tell("local refinement");
     settings.refinement.compare(exact, &mut outcome)?;
     Ok(outcome)
 }

@@ -26,7 +26,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Computation {
 fn compute(cells: [usize; 2], stretch: f64, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     for (name, shape) in CellShape::NAMES {
-        progress(name);
+        progress.tell(name);
         outcome
             .checks
             .extend(element_checks(name, shape, cells, stretch)?);

@@ -45,7 +45,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     let squares = (OUTER * OUTER + INNER * INNER) / (OUTER * OUTER - INNER * INNER);
     let exact = pressure * INNER / modulus * (squares + 0.5);
     for (name, shape) in CellShape::NAMES {
-        progress(name);
+        progress.tell(name);
         let mesh = quarter(cells, shape);
         let found = inflate(&mesh, pressure, 1)?[0];
         let what = format!("{name}: inner displacement over Lamé's");

@@ -98,7 +98,7 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     let mut rows = Vec::new();
     for (length, name, wrong) in [white].into_iter().chain(correlated).chain(wrong) {
-        progress(&name);
+        progress.tell(&name);
         let subject = if wrong == Wrong::Edge { &plate } else { &strip };
         let draws = CorrelatedDraws::new(subject.places(), length);
         let trial = |seed: u64| settings.trial(subject, (&draws, seed), wrong);

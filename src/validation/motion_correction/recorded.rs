@@ -66,7 +66,7 @@ impl Recording {
         };
         let (exact, guess) = (bodies.exact(steps)?, bodies.springs.integrate(steps)?);
         let equation = bodies.equation(steps.step)?;
-        progress("seeds");
+        progress.tell("seeds");
         let one = |seed: u64| -> Result<Deviation, Error> {
             let data = self.disturbed(&exact, &bodies.scheme, seed);
             let found = equation.smooth(&data, &guess, self.instants, SMOOTHING);

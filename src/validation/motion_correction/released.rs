@@ -75,13 +75,13 @@ impl Release {
             every: STRIDE,
             finer: 1,
         };
-        progress("finite elements");
+        progress.tell("finite elements");
         let exact = bodies.exact(Steps { finer: 2, ..coarse })?;
         let every_step = Steps { every: 1, ..coarse };
         let coarse = bodies.exact(coarse)?;
-        progress("springs");
+        progress.tell("springs");
         let springs = bodies.springs.integrate(every_step)?;
-        progress("corrector");
+        progress.tell("corrector");
         let windows = WindowSettings {
             steps: self.window,
             tolerance: 1e-9,

@@ -136,7 +136,7 @@ impl Correction {
 pub fn compare(fields: &Fields, progress: Progress, outcome: &mut Outcome) -> Result<(), Error> {
     let mut corrections = Vec::new();
     for ablation in ABLATIONS {
-        progress(&format!("known: {}", ablation.name));
+        progress.tell(&format!("known: {}", ablation.name));
         corrections.push(Correction::new(ablation, fields)?);
     }
     let checks = corrections.iter().flat_map(Correction::checks);

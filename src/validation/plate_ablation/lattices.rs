@@ -69,7 +69,7 @@ pub fn compare(
     let mut rows = Vec::new();
     let mut worst = 0.0_f64;
     for (name, variant) in Variant::ALL {
-        progress(name);
+        progress.tell(name);
         let lattice = variant.lattice(fields, disturbance);
         let field = fields.plate.solve(&lattice)?.displacement;
         let corrected = fields.correct(&field, KnownConditions::ALL)?;

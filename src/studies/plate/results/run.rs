@@ -12,19 +12,17 @@ use crate::error::Error;
 use crate::finite_element::recovery::Recovery;
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
-use crate::problem::{Measures, Model, Solution};
+use crate::problem::{ClampedPlate, Measures, Model, Solution};
 use crate::solve::{NewtonSettings, State};
+use crate::studies::Progress;
 use crate::studies::plate::problem::Study;
-
-/// Is told each model and stretch that is done.
-type Progress<'a> = &'a dyn Fn(&str, f64);
 
 /// How many times [`run`] reports progress for a study.
 pub fn progress_steps(study: &Study) -> usize {
     5 * study.problem.stretches.len()
 }
 
-/// Computes a study. `progress` is told each model and stretch that is done. A model that ends early leaves the others
+/// Computes a study. Each model and stretch that is done is told. A model that ends early leaves the others
 /// their way: the results hold what there is, and why there is no more.
 ///
 /// # Errors
@@ -104,8 +102,9 @@ impl Run<'_> {
     /// Solves a model at the study's stretches, as far as there are solutions.
     fn solve(&mut self, name: &'static str, model: &Model, settings: NewtonSettings) -> Solution {
         let states = self.timed(name, |run| {
-            let told = |stretch: f64| (run.progress)(name, stretch);
-            let states = model.solve(&run.study.problem.stretches, settings, &told);
+            let told = |stretch: f64| tell(run.progress, name, stretch);
+            let attendance = run.progress.along(&told);
+            let states = model.attended(&run.study.problem.stretches, settings, attendance);
             states.unwrap_or_else(|end| {
                 run.ends.push(model.error(&end));
                 end.states
@@ -131,7 +130,7 @@ impl Run<'_> {
                 Some(climb) => corrector.climb(climb, &data, *stretch),
                 None => corrector.correct(&data, *stretch, KnownConditions::ALL),
             };
-            (self.progress)("corrector", *stretch);
+            tell(self.progress, "corrector", *stretch);
             corrected.map_err(|end| self.ends.push(end)).ok()
         };
         let stretches = plate.stretches.iter().enumerate();
@@ -144,6 +143,12 @@ impl Run<'_> {
         self.times.push((what, start.elapsed().as_secs_f64()));
         result
     }
+}
+
+/// Says that a model is solved at a stretch.
+fn tell(progress: Progress, model: &str, stretch: f64) {
+    let step = ClampedPlate::describe_step(stretch);
+    progress.tell(&format!("{model}, {step}"));
 }
 
 /// The fields of all models of a plate at a stretch: finite elements on the finest mesh, springs, corrected springs.

@@ -56,8 +56,8 @@ pub fn solve(
     ends: &mut Vec<End>,
     progress: Progress,
 ) -> Solution {
-    let told = |factor: f64| progress(&format!("{}, load factor {factor} solved", model.name));
-    let states = model.solve(&specimen.factors, NEWTON, &told);
+    let told = |factor: f64| progress.tell(&format!("{}, load factor {factor} solved", model.name));
+    let states = model.attended(&specimen.factors, NEWTON, progress.along(&told));
     let states = states.unwrap_or_else(|end| {
         ends.push(End::of_path(specimen, model, file, &end));
         end.states
@@ -73,7 +73,7 @@ impl OnLattice {
         progress: Progress,
     ) -> Result<Self, Error> {
         let problem = &specimen.problem;
-        progress("mass-spring");
+        progress.tell("mass-spring");
         let lattice = specimen.outline.lattice();
         let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
         let lattice = &springs.mesh;
@@ -84,10 +84,10 @@ impl OnLattice {
         let uncorrected = solve(specimen, &model, "mass_spring", ends, progress);
         drop(model);
 
-        progress("corrector");
+        progress.tell("corrector");
         let energy = problem.finite_elements(lattice);
         let model = specimen.on(lattice, &energy)?.named("corrector");
-        let (states, starts) = Corrections::new(specimen, &model).all(&uncorrected, ends);
+        let (states, starts) = Corrections::new(specimen, &model, progress).all(&uncorrected, ends);
         let corrected = Solution::new(&model, &specimen.groups(), states);
         drop(model);
         Ok(Self {
@@ -103,15 +103,17 @@ impl OnLattice {
 struct Corrections<'a> {
     specimen: &'a Specimen,
     model: &'a Model<'a>,
+    progress: Progress<'a>,
     /// The equilibria of the lattice's cells by load steps from rest, once they are wanted.
     steps: Option<Result<Vec<State>, PathEnd>>,
 }
 
 impl<'a> Corrections<'a> {
-    fn new(specimen: &'a Specimen, model: &'a Model<'a>) -> Self {
+    fn new(specimen: &'a Specimen, model: &'a Model<'a>, progress: Progress<'a>) -> Self {
         Self {
             specimen,
             model,
+            progress,
             steps: None,
         }
     }
@@ -162,7 +164,7 @@ impl<'a> Corrections<'a> {
         let factors = &specimen.factors;
         let steps = self
             .steps
-            .get_or_insert_with(|| model.solve(factors, NEWTON, &|_| ()));
+            .get_or_insert_with(|| model.attended(factors, NEWTON, self.progress.along(&|_| ())));
         let reached = match steps {
             Ok(states) => &states[step],
             Err(end) => match end.states.get(step) {

@@ -36,7 +36,7 @@ impl Models {
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
-        progress("finite elements");
+        progress.tell("finite elements");
         let reference = Reference::solve(specimen, ends, progress)?;
         let on_lattice = OnLattice::solve(specimen, ends, progress)?;
         Ok(Self {

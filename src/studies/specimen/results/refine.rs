@@ -43,7 +43,7 @@ impl Reference {
         let meshes = meshes.iter().zip(files);
         let solutions = meshes.map(|(mesh, file)| on_mesh(specimen, mesh, file, ends, progress));
         let solutions = solutions.collect::<Result<Vec<_>, _>>()?;
-        Self::of_meshes(specimen, solutions, Vec::new(), ends)
+        Self::of_meshes(specimen, solutions, Vec::new(), ends, progress)
     }
 
     /// The reference on the last of some meshes.
@@ -52,6 +52,7 @@ impl Reference {
         mut meshes: Vec<Solution>,
         rounds: Vec<Round>,
         ends: &[End],
+        progress: Progress,
     ) -> Result<Self, Error> {
         let finest = meshes.pop().expect("a mesh at least");
         let measured = measured(specimen, &finest, ends);
@@ -59,7 +60,7 @@ impl Reference {
         let once_halved = once_halved.filter(|_| rounds.is_empty());
         Ok(Self {
             estimates: estimates(specimen, &finest, &measured)?,
-            outline: outline_errors(specimen, &measured, once_halved)?,
+            outline: outline_errors(specimen, &measured, once_halved, progress)?,
             coarser: meshes.split_off(meshes.len().saturating_sub(2)),
             finest,
             measured,
@@ -89,7 +90,7 @@ impl Reference {
         let finer = on_mesh(specimen, &mesh, FILE, ends, progress)?;
         let mut meshes = self.coarser.split_off(self.coarser.len() - 1);
         meshes.extend([self.finest, finer]);
-        Self::of_meshes(specimen, meshes, Vec::new(), ends)
+        Self::of_meshes(specimen, meshes, Vec::new(), ends, progress)
     }
 
     fn adaptive(
@@ -120,7 +121,7 @@ impl Reference {
             let next = (!done).then(finer);
             match next.filter(|next| next.cell_count() <= goal.most_cells) {
                 Some(next) => triangles = next,
-                None => return Self::of_meshes(specimen, meshes, rounds, ends),
+                None => return Self::of_meshes(specimen, meshes, rounds, ends, progress),
             }
         }
     }
@@ -186,13 +187,14 @@ fn outline_errors(
     specimen: &Specimen,
     what: &Measured,
     middle: Option<&Solution>,
+    progress: Progress,
 ) -> Result<Option<Vec<f64>>, Error> {
     let Some((rounded, whole)) = specimen.outline.rounded_mesh() else {
         return Ok(None);
     };
     // Where a path ends is told of the meshes whose results are given.
     let mut untold = Vec::new();
-    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, FILE, &mut untold, &|_| ());
+    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, FILE, &mut untold, progress);
     let rounded = on(&rounded)?;
     let halved;
     let middle = match middle {

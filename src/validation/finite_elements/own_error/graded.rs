@@ -50,7 +50,7 @@ const SERIES: [(Element, f64); 4] = [
 pub fn compare(coarsest: usize, outcome: &mut Outcome, progress: Progress) -> Result<Exact, Error> {
     let mut series = Vec::new();
     for (element, grading) in SERIES {
-        progress(&format!("plate, {}, grading {grading}", element.name()));
+        progress.tell(&format!("plate, {}, grading {grading}", element.name()));
         series.push(Series::new(coarsest, element, grading)?);
     }
     let exact = Exact {

@@ -1,0 +1,103 @@
+//! Equilibria that a run keeps in its folder, for the same run after an interruption.
+
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use crate::error::{Diagnostic, Error};
+use crate::output::ResultFolder;
+use crate::solve::{Journal, Milestone};
+
+/// How much work a kill may undo, but for the load factor that is being solved: what is found within it is not worth a file.
+const WORTH_A_FILE: Duration = Duration::from_secs(2);
+
+/// Equilibria with the number of their path.
+type Found = Vec<(usize, Milestone)>;
+
+/// The equilibria of a run, path by path in the order in which it follows them, which is the same on every run.
+pub struct FolderJournal {
+    folder: RefCell<ResultFolder>,
+    /// What a run before has found, by the number of the path.
+    before: RefCell<BTreeMap<usize, Vec<Milestone>>>,
+    /// How many equilibria that were.
+    count: usize,
+    /// How many paths were begun.
+    paths: Cell<usize>,
+    /// What is not written yet.
+    found: RefCell<Found>,
+    /// How many parts are written.
+    parts: Cell<usize>,
+    written: Cell<Instant>,
+    /// Why a part could not be written.
+    fault: RefCell<Option<Error>>,
+}
+
+impl FolderJournal {
+    /// Reads what a run before has left in a folder.
+    pub fn open(mut folder: ResultFolder) -> Self {
+        let mut before: BTreeMap<usize, Vec<Milestone>> = BTreeMap::new();
+        let mut parts = 0;
+        while let Some(found) = folder.kept::<Found>(&parts.to_string()) {
+            for (path, milestone) in found {
+                before.entry(path).or_default().push(milestone);
+            }
+            parts += 1;
+        }
+        Self {
+            folder: RefCell::new(folder),
+            count: before.values().map(Vec::len).sum(),
+            before: RefCell::new(before),
+            paths: Cell::new(0),
+            found: RefCell::default(),
+            parts: Cell::new(parts),
+            written: Cell::new(Instant::now()),
+            fault: RefCell::new(None),
+        }
+    }
+
+    /// What deserves to be told of a run that goes on.
+    pub fn told(&self) -> Option<Diagnostic> {
+        let message = format!(
+            "it goes on from {} equilibria that the same run had found before it was broken off; the times are those of the rest",
+            self.count
+        );
+        (self.count > 0).then(|| Diagnostic::warning("", message))
+    }
+
+    /// The folder, for the results, and a word where equilibria could not be kept.
+    pub fn close(self) -> (ResultFolder, Option<Diagnostic>) {
+        let told = |fault| {
+            let message = format!("equilibria could not be kept for a run that goes on: {fault}");
+            Diagnostic::warning("", message)
+        };
+        (self.folder.into_inner(), self.fault.into_inner().map(told))
+    }
+
+    /// Writes what is not written yet, unless that has failed before.
+    fn write(&self) {
+        let (part, found) = (self.parts.get(), self.found.take());
+        if self.fault.borrow().is_some() {
+            return;
+        }
+        let kept = self.folder.borrow_mut().keep(&part.to_string(), &found);
+        self.fault.replace(kept.err());
+        self.parts.set(part + 1);
+        self.written.set(Instant::now());
+    }
+}
+
+impl Journal for FolderJournal {
+    fn begin(&self) -> Vec<Milestone> {
+        let path = self.paths.get();
+        self.paths.set(path + 1);
+        self.before.borrow_mut().remove(&path).unwrap_or_default()
+    }
+
+    fn keep(&self, milestone: Milestone) {
+        let path = self.paths.get() - 1;
+        self.found.borrow_mut().push((path, milestone));
+        if self.written.get().elapsed() >= WORTH_A_FILE {
+            self.write();
+        }
+    }
+}

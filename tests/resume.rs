@@ -1,0 +1,195 @@
+//! Long work that was broken off goes on where it was, and its results are the same bytes.
+#![cfg(unix)]
+
+use std::cell::{Cell, RefCell};
+use std::fs;
+use std::path::Path;
+
+use gelbench::budget::Budget;
+use gelbench::solve::{Journal, Milestone};
+use gelbench::studies::Progress;
+use gelbench::validation;
+
+mod common;
+
+use common::process::*;
+
+/// Equilibria of all paths in the order in which they were found.
+#[derive(Default)]
+struct Notes {
+    before: RefCell<Vec<(usize, Milestone)>>,
+    paths: Cell<usize>,
+    found: RefCell<Vec<(usize, Milestone)>>,
+}
+
+impl Journal for Notes {
+    fn begin(&self) -> Vec<Milestone> {
+        let path = self.paths.replace(self.paths.get() + 1);
+        let mut before = self.before.borrow_mut();
+        let own = before.extract_if(.., |(of, _)| *of == path);
+        own.map(|(_, milestone)| milestone).collect()
+    }
+
+    fn keep(&self, milestone: Milestone) {
+        self.found
+            .borrow_mut()
+            .push((self.paths.get() - 1, milestone));
+    }
+}
+
+/// What a study finds, but for times, and what it has kept.
+fn computed(study: &Path, before: &[(usize, Milestone)]) -> (String, Vec<(usize, Milestone)>) {
+    let notes = Notes {
+        before: RefCell::new(before.to_vec()),
+        ..Notes::default()
+    };
+    let ready = validation::read(study, Budget::default()).unwrap();
+    let mut outcome = ready
+        .compute(Progress::silent().kept_by(&notes))
+        .unwrap()
+        .outcome;
+    outcome.times.clear();
+    outcome.blocks.clear();
+    assert!(
+        notes.before.borrow().is_empty(),
+        "all that was kept is taken"
+    );
+    (format!("{outcome:?}"), notes.found.into_inner())
+}
+
+/// Plates with steps that are cut, specimens with springs that end early, forces, refinement, outlines of files.
+const STUDIES: [(&str, &str); 4] = [
+    (
+        "plate",
+        "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\ncells = [6, 2]\n[material]\ncard = \"pva-10\"\n[load]\n\
+      stretches = [\"10 %\", \"90 %\", \"95 %\"]\n[finite_element]\ncells = [4, 4]\n[output]\nplots = false\n",
+    ),
+    (
+        "hole",
+        "kind = \"specimen\"\n[material]\ncard = \"pva-10\"\n[specimen]\nshape = \"strip with a hole\"\n\
+      length = \"40 mm\"\nwidth = \"20 mm\"\ndiameter = \"8 mm\"\nthickness = \"1 mm\"\ncells = 2\n[[support]]\n\
+      group = \"left\"\nkind = \"clamp\"\n[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"20 mm\"\n\
+      y = \"0 mm\"\n[path]\nfactors = [0.5, 1]\nmeasured_group = \"right\"\n",
+    ),
+    (
+        "refined",
+        "kind = \"specimen\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"dog bone\"\nthickness = \"1 mm\"\n\
+      cells = 2\n[finite_element]\nelement = \"T2\"\nadaptive = true\nerror = \"1 %\"\n[[support]]\ngroup = \"left\"\n\
+      kind = \"clamp\"\n[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"10 mm\"\ny = \"0 mm\"\n[path]\n\
+      factors = [0.5, 1]\nmeasured_group = \"right\"\n",
+    ),
+    (
+        "pushed",
+        "kind = \"specimen\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"strip\"\nlength = \"40 mm\"\n\
+      width = \"10 mm\"\nthickness = \"1 mm\"\ncells = 2\n[[support]]\ngroup = \"left\"\nkind = \"clamp\"\n[[support]]\n\
+      group = \"right\"\nkind = \"grip\"\nforce_x = \"0.2 N\"\n[path]\nfactors = [0.5, 1]\nmeasured_group = \"right\"\n",
+    ),
+];
+
+#[test]
+fn a_computation_goes_on_from_any_equilibrium_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in STUDIES {
+        let study = folder.path().join(format!("{name}.toml"));
+        fs::write(&study, text).unwrap();
+        let (whole, found) = computed(&study, &[]);
+        assert!(found.len() >= 6, "{name}: {}", found.len());
+        for kept in 0..=found.len() {
+            let (gone_on, rest) = computed(&study, &found[..kept]);
+            assert_eq!(rest, found[kept..], "{name}, {kept} kept");
+            assert!(gone_on == whole, "{name}, {kept} kept");
+        }
+    }
+}
+
+/// A plate whose finite elements take some seconds.
+const LONG: &str = "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\ncells = [6, 2]\n[material]\ncard = \"pva-10\"\n[load]\n\
+    stretches = [\"5 %\", \"10 %\", \"15 %\", \"20 %\", \"25 %\", \"30 %\"]\n[finite_element]\ncells = [40, 40]\n\
+    [output]\nplots = false\n";
+
+#[test]
+fn a_run_goes_on_where_it_was_broken_off() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("l"));
+    fs::write(folder.join("long.toml"), LONG).unwrap();
+    let command = "run long.toml --output l";
+    run(folder, command);
+    let whole = results(output);
+    fs::remove_dir_all(output).unwrap();
+    let kept = || first_partial(output).is_some_and(|partial| partial.join(".parts/0").exists());
+    for interrupt in [true, false] {
+        let mut child = start(folder, command);
+        wait_for(kept);
+        if interrupt {
+            shell(folder, &format!("kill -INT {}", child.id()));
+            let ended = child.wait_with_output().unwrap();
+            assert_ends(&ended, 130, "the same command goes on from here");
+        } else {
+            child.kill().unwrap();
+            child.wait().unwrap();
+        }
+        assert!(kept());
+        let ended = run(folder, command);
+        assert!(told(&ended).contains("goes on from"), "{}", told(&ended));
+        assert_eq!(results(output), whole);
+        assert!(!partial(output));
+    }
+    // Another study is another run.
+    let mut child = start(folder, command);
+    wait_for(kept);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    fs::write(folder.join("long.toml"), LONG.replace("30 %", "31 %")).unwrap();
+    let ended = run(folder, command);
+    assert!(!told(&ended).contains("goes on from"), "{}", told(&ended));
+    assert_ne!(results(output), whole);
+}
+
+#[test]
+fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
+    let place = workplace();
+    let (folder, output) = (place.path(), &place.path().join("c"));
+    run(folder, CORRECT);
+    let whole = results(output);
+    assert_eq!(whole.len(), 4 * 5 + 2 + 1 + 10, "{:?}", whole.keys());
+    fs::remove_dir_all(output).unwrap();
+
+    let first = |of: &str| first_partial(output).map(|partial| partial.join(of));
+    let is_done = |frame: &str| first(&format!(".parts/{frame}")).is_some_and(|part| part.exists());
+    let kill_after = |frame: &str| {
+        let mut child = start(folder, CORRECT);
+        wait_for(|| is_done(frame));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    };
+    kill_after("2");
+    let made = |path: &Path| fs::metadata(path).unwrap().modified().unwrap();
+    let early = made(&first("nodes_001.csv").unwrap());
+    run(folder, CORRECT);
+    assert_eq!(
+        made(&output.join("nodes_001.csv")),
+        early,
+        "the first frame is not done again"
+    );
+    assert_eq!(results(output), whole);
+    assert!(!partial(output));
+
+    // Other markers are another correction.
+    kill_after("2");
+    let changed = markers(4).replacen("0.0100", "0.0150", 1);
+    fs::write(folder.join("m.csv"), changed).unwrap();
+    run(folder, CORRECT);
+    assert_ne!(results(output)["nodes_001.csv"], whole["nodes_001.csv"]);
+    assert_ne!(results(output)["markers_001.csv"], whole["markers_001.csv"]);
+    assert!(!partial(output));
+
+    let child = start(folder, &CORRECT.replace("c.csv", "m.csv"));
+    wait_for(|| is_done("1"));
+    shell(folder, &format!("kill -INT {}", child.id()));
+    assert_ends(
+        &child.wait_with_output().unwrap(),
+        130,
+        "the same command goes on from here",
+    );
+    assert!(is_done("1"));
+}
