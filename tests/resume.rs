@@ -66,14 +66,14 @@ const STUDIES: [(&str, &str); 4] = [
     ),
     (
         "hole",
-        "kind = \"specimen\"\n[material]\ncard = \"pva-10\"\n[specimen]\nshape = \"strip with a hole\"\n\
-      length = \"40 mm\"\nwidth = \"20 mm\"\ndiameter = \"8 mm\"\nthickness = \"1 mm\"\ncells = 2\n[[support]]\n\
+        "kind = \"specimen\"\n[material]\ncard = \"pva-10\"\n[specimen]\nshape = \"strip-with-hole\"\n\
+      length = \"40 mm\"\nwidth = \"20 mm\"\nhole_diameter = \"8 mm\"\nthickness = \"1 mm\"\ncells = 2\n[[support]]\n\
       group = \"left\"\nkind = \"clamp\"\n[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"20 mm\"\n\
       y = \"0 mm\"\n[path]\nfactors = [0.5, 1]\nmeasured_group = \"right\"\n",
     ),
     (
         "refined",
-        "kind = \"specimen\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"dog bone\"\nthickness = \"1 mm\"\n\
+        "kind = \"specimen\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"dog-bone\"\nlength = \"90 mm\"\nwidth = \"30 mm\"\nnarrow_length = \"30 mm\"\nnarrow_width = \"15 mm\"\nshoulder_length = \"15 mm\"\nthickness = \"1 mm\"\n\
       cells = 2\n[finite_element]\nelement = \"T2\"\nadaptive = true\nerror = \"1 %\"\n[[support]]\ngroup = \"left\"\n\
       kind = \"clamp\"\n[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"10 mm\"\ny = \"0 mm\"\n[path]\n\
       factors = [0.5, 1]\nmeasured_group = \"right\"\n",
@@ -82,7 +82,7 @@ const STUDIES: [(&str, &str); 4] = [
         "pushed",
         "kind = \"specimen\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"strip\"\nlength = \"40 mm\"\n\
       width = \"10 mm\"\nthickness = \"1 mm\"\ncells = 2\n[[support]]\ngroup = \"left\"\nkind = \"clamp\"\n[[support]]\n\
-      group = \"right\"\nkind = \"grip\"\nforce_x = \"0.2 N\"\n[path]\nfactors = [0.5, 1]\nmeasured_group = \"right\"\n",
+      group = \"right\"\nkind = \"grip\"\nx_force = \"0.2 N\"\ny = \"0 mm\"\n[path]\nfactors = [0.5, 1]\nmeasured_group = \"right\"\n",
     ),
 ];
 
@@ -102,7 +102,7 @@ fn a_computation_goes_on_from_any_equilibrium_to_the_same_bits() {
     }
 }
 
-/// A plate whose finite elements take some seconds.
+/// A plate whose finite elements take a second or more.
 const LONG: &str = "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\ncells = [6, 2]\n[material]\ncard = \"pva-10\"\n[load]\n\
     stretches = [\"5 %\", \"10 %\", \"15 %\", \"20 %\", \"25 %\", \"30 %\"]\n[finite_element]\ncells = [40, 40]\n\
     [output]\nplots = false\n";
@@ -117,9 +117,17 @@ fn a_run_goes_on_where_it_was_broken_off() {
     let whole = results(output);
     fs::remove_dir_all(output).unwrap();
     let kept = || first_partial(output).is_some_and(|partial| partial.join(".parts/0").exists());
-    for interrupt in [true, false] {
-        let mut child = start(folder, command);
+    // A run keeps nothing within its first two seconds: it sleeps through them.
+    let started = || {
+        let child = start(folder, command);
+        let id = child.id();
+        wait_for(|| partial(output));
+        shell(folder, &format!("kill -STOP {id}; sleep 2; kill -CONT {id}"));
         wait_for(kept);
+        child
+    };
+    for interrupt in [true, false] {
+        let mut child = started();
         if interrupt {
             shell(folder, &format!("kill -INT {}", child.id()));
             let ended = child.wait_with_output().unwrap();
@@ -135,8 +143,7 @@ fn a_run_goes_on_where_it_was_broken_off() {
         assert!(!partial(output));
     }
     // Another study is another run.
-    let mut child = start(folder, command);
-    wait_for(kept);
+    let mut child = started();
     child.kill().unwrap();
     child.wait().unwrap();
     fs::write(folder.join("long.toml"), LONG.replace("30 %", "31 %")).unwrap();
