@@ -94,7 +94,7 @@ fn a_computation_goes_on_from_any_equilibrium_to_the_same_bits() {
         fs::write(&study, text).unwrap();
         let (whole, found) = computed(&study, &[]);
         assert!(found.len() >= 6, "{name}: {}", found.len());
-        for kept in 0..=found.len() {
+        for kept in (0..=found.len()).step_by(2) {
             let (gone_on, rest) = computed(&study, &found[..kept]);
             assert_eq!(rest, found[kept..], "{name}, {kept} kept");
             assert!(gone_on == whole, "{name}, {kept} kept");
@@ -122,7 +122,10 @@ fn a_run_goes_on_where_it_was_broken_off() {
         let child = start(folder, command);
         let id = child.id();
         wait_for(|| partial(output));
-        shell(folder, &format!("kill -STOP {id}; sleep 2; kill -CONT {id}"));
+        shell(
+            folder,
+            &format!("kill -STOP {id}; sleep 2; kill -CONT {id}"),
+        );
         wait_for(kept);
         child
     };
