@@ -57,19 +57,19 @@ fn computed(study: &Path, before: &[(usize, Milestone)]) -> (String, Vec<(usize,
     (format!("{outcome:?}"), notes.found.into_inner())
 }
 
-/// Plates with steps that are cut, specimens with springs that end early, forces, refinement, outlines of files.
+/// A plate far stretched, a hole under shear, local refinement, and a force whose steps are cut.
 const STUDIES: [(&str, &str); 4] = [
     (
         "plate",
         "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\ncells = [6, 2]\n[material]\ncard = \"pva-10\"\n[load]\n\
-      stretches = [\"10 %\", \"90 %\", \"95 %\"]\n[finite_element]\ncells = [4, 4]\n[output]\nplots = false\n",
+      stretches = [\"400 %\", \"500 %\", \"520 %\"]\n[finite_element]\ncells = [4, 4]\n[output]\nplots = false\n",
     ),
     (
         "hole",
         "kind = \"specimen\"\n[material]\ncard = \"pva-10\"\n[specimen]\nshape = \"strip-with-hole\"\n\
       length = \"40 mm\"\nwidth = \"20 mm\"\nhole_diameter = \"8 mm\"\nthickness = \"1 mm\"\ncells = 2\n[[support]]\n\
-      group = \"left\"\nkind = \"clamp\"\n[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"20 mm\"\n\
-      y = \"0 mm\"\n[path]\nfactors = [0.5, 1]\nmeasured_group = \"right\"\n",
+      group = \"left\"\nkind = \"clamp\"\n[[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"60 mm\"\n\
+      y = \"40 mm\"\n[path]\nfactors = [0.5, 1]\nmeasured_group = \"right\"\n",
     ),
     (
         "refined",
@@ -80,9 +80,9 @@ const STUDIES: [(&str, &str); 4] = [
     ),
     (
         "pushed",
-        "kind = \"specimen\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"strip\"\nlength = \"40 mm\"\n\
+        "kind = \"specimen\"\n[material]\ncard = \"pva-10\"\n[specimen]\nshape = \"strip\"\nlength = \"40 mm\"\n\
       width = \"10 mm\"\nthickness = \"1 mm\"\ncells = 2\n[[support]]\ngroup = \"left\"\nkind = \"clamp\"\n[[support]]\n\
-      group = \"right\"\nkind = \"grip\"\nx_force = \"0.2 N\"\ny = \"0 mm\"\n[path]\nfactors = [0.5, 1]\nmeasured_group = \"right\"\n",
+      group = \"right\"\nkind = \"grip\"\nx_force = \"80 N\"\ny = \"40 mm\"\n[path]\nfactors = [0.1, 0.2, 1]\nmeasured_group = \"right\"\n",
     ),
 ];
 
