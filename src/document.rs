@@ -13,8 +13,10 @@ use crate::budget::Budget;
 use crate::error::{Diagnostic, Error, Severity, Source};
 use crate::units::{SIZES, on_the_end};
 
+mod columns;
 mod comments;
 mod decimals;
+mod encoding;
 mod explore;
 pub mod file;
 mod head;
@@ -26,12 +28,14 @@ mod syntax;
 mod table;
 mod text;
 
+pub use columns::{Column, plain_name};
 pub use comments::comments;
+pub use encoding::TextEncoding;
 pub use explore::{FoundKey, explore};
 pub use head::{Faulty, Head, Statements};
 pub use keys::{Key, Presence, Takes};
 pub use section::Section;
-pub use table::{Column, Table, plain_name};
+pub use table::Table;
 pub use text::read_text;
 
 /// A parsed TOML file.

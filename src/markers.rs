@@ -1,24 +1,29 @@
 //! Displacements that were measured, or computed elsewhere, at scattered points of a flat specimen.
 //!
 //! ```text
-//! .csv, DICe, muDIC ─table──┐
-//! Ncorr            ─matrices┼─rows─▶ MarkerSeries { frames of markers } (and the mesh that they came on)
+//! .csv, .txt, .dat   ─table─┐
+//! Ncorr           ─matrices─┼─rows─▶ MarkerSeries { frames of markers } (and the mesh that they came on)
 //! .vtu .msh .frd … ─on_mesh─┘
 //! ```
 //!
 //! All lengths are in mm. A marker that was not found in a frame is absent from it.
 
+mod chosen;
 pub mod columns;
 mod frames;
+mod layouts;
 mod matrices;
 mod on_mesh;
 mod plausible;
 mod read;
 mod rows;
 mod table;
+mod understood;
 
+pub use chosen::{ChosenColumns, Role};
 pub use frames::{Frame, Marker, MarkerSeries};
 pub use plausible::{MarkersOnMesh, check_thickness, place_on, unit_ratio};
 pub use read::{MarkerFiles, read};
 pub use rows::ReadSettings;
 pub use table::read_lines;
+pub use understood::{ColumnTaken, Understood};

@@ -279,6 +279,12 @@ pub fn factor(unit: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     }
 }
 
+/// Whether a unit is one of any dimension.
+pub fn is_known(unit: &str) -> bool {
+    let found = parse(&format!("1 {unit}"), Dimension::Length);
+    !matches!(found, Err(QuantityFault::UnknownUnit(_)))
+}
+
 /// Length in bytes of the decimal number at the beginning of `text`.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();

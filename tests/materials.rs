@@ -122,10 +122,10 @@ fn test_data_that_cannot_be_trusted_are_refused_with_line_and_remedy() {
     }
     let mixed = "# test: uniaxial\nstretch [-];nominal_stress [MPa]\n1,1;0.1\n1,2;0.2\n";
     assert!(fit(mixed, &[]).contains("mixed"));
-    fs::write(folder.path().join("b.csv"), b"stretch,\xff\n").unwrap();
+    fs::write(folder.path().join("b.csv"), b"stretch,\0\xff\n").unwrap();
     let arguments = ["materials", "fit", "b.csv", "--all"];
     let refused = gelbench(folder.path(), &arguments).code(2);
-    assert!(words(&refused.get_output().stderr).contains("is not UTF-8"));
+    assert!(words(&refused.get_output().stderr).contains("is no text"));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::identity;
 use super::interrupt;
@@ -13,25 +13,28 @@ use super::terminal::{Outcome, print, warn};
 use crate::corrector::estimation::{
     Answer, EdgeCondition, FieldEstimate, MeasuredForce, Physics, Robust,
 };
-use crate::error::{Diagnostic, Error};
-use crate::markers::ReadSettings;
+use crate::document::TextEncoding;
+use crate::error::Error;
+use crate::markers::{ChosenColumns, ReadSettings};
 use crate::mesh::{CellShape, Exemptions, MeshReading};
 use crate::output::{self, ResultFolder};
 use crate::results::NamedGrid;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
-use crate::studies::markers::{
-    Conditions, MarkerStudy, MeshSource, Request, measured_force, worst_answer,
-};
+use crate::studies::markers::{Conditions, MarkerStudy, MeshSource, Request, worst_answer};
 use crate::studies::name;
 use crate::studies::sections::read_text;
-use crate::units::{self, Dimension};
+
+mod values;
+
+use values::{Cells, Holds, Holes, Places, Weights, YAxis};
+use values::{encoding, force, gap, length, size, unit};
 
 /// What the command line says about a correction.
 #[derive(Args, Debug)]
 #[command(after_help = AFTER_HELP)]
 pub struct Options {
-    /// The field: .csv with x, y, ux, uy; output of DICe or muDIC; two matrices of Ncorr; .vtu, .vtk, .pvd, .msh, .frd.
-    /// Several files are frames
+    /// The field: a table with x, y, ux, uy, or of DICe, muDIC, pyALDIC, VIC, MatchID or GOM; two matrices of Ncorr; .vtu, .vtk,
+    /// .pvd, .msh, .frd. Several files are frames
     #[arg(required = true, value_name = "FIELD")]
     pub fields: Vec<PathBuf>,
     /// The material: name or path of a card
@@ -82,6 +85,19 @@ pub struct Options {
     /// Columns of a table that are passed over; other columns that are not known are refused
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     pub ignore_columns: Vec<String>,
+    /// Columns of a table by what they hold, such as x=x_px,y=y_px,ux=disp_u,uy=disp_v; also standard_deviation, frame, time, id.
+    /// Where places or displacements are named, other columns that are not known are passed over
+    #[arg(long, value_name = "WHAT=COLUMN", value_delimiter = ',')]
+    pub columns: Vec<String>,
+    /// Where the y axis of a table points, if not as the program that wrote it is known to do
+    #[arg(long, value_enum)]
+    pub y_axis: Option<YAxis>,
+    /// What places in a table are, if not as the program that wrote it is known to do
+    #[arg(long, value_enum)]
+    pub places: Option<Places>,
+    /// The encoding of a table, such as latin1, gb18030 or shift_jis, where its bytes do not show it
+    #[arg(long, value_name = "NAME", value_parser = encoding)]
+    pub encoding: Option<TextEncoding>,
     /// The distance of the points of Ncorr's matrices, such as "0.5 mm"
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub grid: Option<f64>,
@@ -112,48 +128,6 @@ pub struct Options {
     pub output: PathBuf,
     #[command(flatten)]
     pub large: Large,
-}
-
-/// Kinds of cells.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Cells {
-    /// Triangles of three nodes
-    Triangle3,
-    /// Triangles of six nodes
-    Triangle6,
-    /// Quadrilaterals of four nodes
-    Quadrilateral4,
-    /// Quadrilaterals of nine nodes
-    Quadrilateral9,
-}
-
-/// What gaps among markers are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Holes {
-    /// Holes of the specimen, where they are much wider than the spacing
-    Found,
-    /// Markers that were lost
-    Closed,
-}
-
-/// Weights of markers that are far off.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Weights {
-    /// As all others
-    No,
-    /// Less the farther they are off
-    Huber,
-    /// Not at all from a distance on
-    Tukey,
-}
-
-/// How far the physics holds.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Holds {
-    /// Equilibrium holds exactly
-    Exact,
-    /// Up to smooth forces that are weighted against the data, for a law that is not exactly right
-    Weighted,
 }
 
 /// Corrects, prints, and writes.
@@ -253,17 +227,27 @@ fn inputs(options: &Options) -> Vec<PathBuf> {
         .collect()
 }
 
+/// How the files of the field are to be understood.
+fn reading(options: &Options) -> Result<ReadSettings, Error> {
+    let columns = ChosenColumns::parse(options.columns.iter().map(String::as_str));
+    Ok(ReadSettings {
+        unit: options.unit,
+        array: options.array.clone(),
+        grid: options.grid,
+        ignored_columns: options.ignore_columns.clone(),
+        columns: columns.map_err(|fault| Error::Input(vec![fault]))?,
+        encoding: options.encoding,
+        downwards: options.y_axis.map(|axis| axis == YAxis::Down),
+        deformed: options.places.map(|places| places == Places::Frame),
+    })
+}
+
 fn request(options: Options) -> Result<Request, Error> {
     Ok(Request {
         conditions: conditions(&options)?,
         mesh: mesh_source(&options),
+        reading: reading(&options)?,
         files: options.fields,
-        reading: ReadSettings {
-            unit: options.unit,
-            array: options.array,
-            grid: options.grid,
-            ignored_columns: options.ignore_columns,
-        },
         material: options.material,
         thickness: options.thickness,
         cell_size: options.cell_size,
@@ -326,71 +310,4 @@ fn mesh_source(options: &Options) -> MeshSource {
         (None, Some(outline)) => MeshSource::Outline(outline.clone()),
         (None, None) => MeshSource::Data,
     }
-}
-
-/// An edge, an axis, a force and its standard deviation.
-fn force(text: &str) -> Result<MeasuredForce, Diagnostic> {
-    let refuse = |reason: String| {
-        Diagnostic::error("", reason)
-            .hint("write edge, axis and force, as in \"right x 1.2 N ± 0.02 N\"")
-    };
-    let words: Vec<&str> = text.splitn(3, ' ').collect();
-    let (edge, axis, values) = match words[..] {
-        [edge, "x", values] => (edge, 0, values),
-        [edge, "y", values] => (edge, 1, values),
-        _ => return Err(refuse("it is no force on an edge".into())),
-    };
-    let newtons = |text: &str| {
-        units::parse(text, Dimension::Force).map_err(|fault| {
-            let hint = fault.remedy(text, Dimension::Force);
-            Diagnostic::error("", format!("it {fault}")).hint(hint)
-        })
-    };
-    let values = values.replace("+-", "±");
-    let (value, deviation) = match values.split_once('±') {
-        None => (&*values, None),
-        Some((value, deviation)) => (value, Some(newtons(deviation)?)),
-    };
-    Ok(measured_force(edge, axis, newtons(value)?, deviation))
-}
-
-/// A length of zero or more in mm.
-fn gap(text: &str) -> Result<f64, Diagnostic> {
-    within(text, |length| length >= 0.0, "it must not be negative")
-}
-
-/// The size of a thing in mm.
-fn size(text: &str) -> Result<f64, Diagnostic> {
-    let [least, most] = units::SIZES;
-    let wanted = "it must be greater than zero, from 1 nm to 1 km";
-    within(text, |size| (least..=most).contains(&size), wanted)
-}
-
-/// A length greater than zero in mm.
-fn length(text: &str) -> Result<f64, Diagnostic> {
-    within(text, |length| length > 0.0, "it must be greater than zero")
-}
-
-fn within(text: &str, holds: impl Fn(f64) -> bool, wanted: &str) -> Result<f64, Diagnostic> {
-    let length = units::parse(text, Dimension::Length).map_err(|fault| {
-        let hint = fault.remedy(text, Dimension::Length);
-        Diagnostic::error("", format!("it {fault}")).hint(hint)
-    })?;
-    match holds(length) {
-        true => Ok(length),
-        false => Err(Diagnostic::error("", wanted).hint("write it as in \"1.5 mm\"")),
-    }
-}
-
-/// The length in mm of a unit, or a length.
-fn unit(text: &str) -> Result<f64, Diagnostic> {
-    units::factor(text, Dimension::Length).or_else(|fault| {
-        let number =
-            text.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first));
-        let hint = fault.remedy(text, Dimension::Length);
-        match number {
-            true => length(text),
-            false => Err(Diagnostic::error("", format!("it {fault}")).hint(hint)),
-        }
-    })
 }

@@ -22,14 +22,39 @@ pub(super) fn plain_text(text: &str) -> String {
     text.split_inclusive('\n').map(remark).collect()
 }
 
-/// The separator of the first line that is no comment.
+/// The separator of the columns: that of the first line that is no comment if it makes as many fields of most lines, else the
+/// first one that most lines have.
 pub(super) fn delimiter(text: &str) -> Option<u8> {
-    let line = text
-        .split(['\n', '\r'])
-        .find(|line| !line.trim().is_empty() && !line.starts_with('#'))?;
-    [b';', b'\t', b',']
-        .into_iter()
-        .find(|delimiter| line.as_bytes().contains(delimiter))
+    const SURVEYED: usize = 1000;
+    const ALL: [u8; 3] = [b';', b'\t', b','];
+    let lines = text.split(['\n', '\r']);
+    let lines = lines.filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let lines: Vec<&str> = lines.take(SURVEYED).collect();
+    let count = |line: &str, delimiter: u8| {
+        let bytes = line.as_bytes().iter();
+        bytes.filter(|byte| **byte == delimiter).count()
+    };
+    let most = |holds: &dyn Fn(&str) -> bool| {
+        2 * lines.iter().filter(|line| holds(line)).count() > lines.len()
+    };
+    let of_first = |delimiter: &u8| count(lines.first().unwrap_or(&""), *delimiter);
+    let first = ALL.into_iter().find(|delimiter| of_first(delimiter) > 0);
+    first
+        .filter(|first| most(&|line| count(line, *first) == of_first(first)))
+        .or_else(|| {
+            let mut all = ALL.into_iter();
+            all.find(|delimiter| most(&|line| count(line, *delimiter) > 0))
+        })
+        .or(first)
+}
+
+/// The place of the remark right above a place, but for empty lines.
+pub(super) fn remark_above(text: &str, below: usize) -> Option<Range<usize>> {
+    let above = text[..below].trim_end();
+    let start = above.rfind('\n').map_or(0, |end| end + 1);
+    above[start..]
+        .starts_with('#')
+        .then_some(start..above.len())
 }
 
 /// The line of a record: csv points to what stands before it, remarks and empty lines too.

@@ -1,42 +1,16 @@
 //! Tables of numbers as laboratories write them: commas, semicolons or tabs, decimal points or commas, a head of
-//! `# key: value` lines, names with units in brackets.
+//! `# key: value` lines or a preamble, names with units in brackets or in a line of their own.
 
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+use super::columns::{Above, Column, unquoted};
 use super::decimals::{Decimals, NotANumber, is_hole};
-use super::lines::{delimiter, is_name, line_at, plain_text};
-use super::{Faults, file, text::read_text};
+use super::encoding::TextEncoding;
+use super::lines::{delimiter, is_name, line_at, plain_text, remark_above};
+use super::{Faults, text::read_data};
 use crate::error::{Diagnostic, Error, Source};
-
-/// A column's name and unit.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Column {
-    /// Its name in lower case, with underscores for spaces; empty where the file names no columns.
-    pub name: String,
-    /// The unit in brackets, if there is one.
-    pub unit: Option<String>,
-}
-
-impl Column {
-    /// Name and unit of `nominal stress [MPa]` or `Stress (kPa)`.
-    fn new(field: &str) -> Self {
-        let (name, unit) = match field.split_once(['[', '(']) {
-            Some((name, unit)) => (name, Some(unit.trim_end_matches([']', ')']))),
-            None => (field, None),
-        };
-        Self {
-            name: plain_name(name),
-            unit: unit.map(|unit| unit.trim().to_owned()),
-        }
-    }
-}
-
-/// A name as columns have it: in lower case, with underscores for spaces.
-pub fn plain_name(name: &str) -> String {
-    name.trim().to_lowercase().replace([' ', '-'], "_")
-}
 
 /// A field that is no number: its row and what is wrong.
 type FieldFault = Option<(usize, NotANumber)>;
@@ -46,12 +20,16 @@ type FieldFault = Option<(usize, NotANumber)>;
 pub struct Table {
     /// The file, for messages.
     pub source: Arc<Source>,
+    /// The encoding in which it was written, where it was read from a file.
+    pub encoding: Option<TextEncoding>,
     /// The columns.
     pub columns: Vec<Column>,
     /// The place of the line that names the columns.
     pub columns_place: Range<usize>,
     /// The rows; each with its place. What is no number is NaN here, and told by [`Self::check_numbers`].
     pub rows: Vec<(Vec<f64>, Range<usize>)>,
+    /// What separates the columns.
+    delimiter: u8,
     /// The first field of each column that is no number.
     faults: Vec<FieldFault>,
     /// The same without fields that say that there is no number: empty ones and NaN.
@@ -60,16 +38,30 @@ pub struct Table {
 
 impl Table {
     /// What a table is, for those who gave something else.
-    pub const HINT: &str =
-        "a table is CSV in UTF-8: a line of names with units and rows of numbers";
+    pub const HINT: &str = "a table is CSV: a line of names with units and rows of numbers";
 
-    /// Reads a file; `hint` says what it should be.
+    /// The lines by which names, units and rows are told apart.
+    const SURVEYED: usize = 1000;
+
+    /// Reads a file in the encoding that its bytes show; `hint` says what it should be.
     ///
     /// # Errors
     /// [`Error::Input`] with file, line and reason.
     pub fn read(path: &Path, hint: &str) -> Result<Self, Error> {
-        let text = read_text(path, file::MOST_OF_DATA, hint)?;
-        Self::parse(&path.display().to_string(), &text)
+        Self::read_as(path, None, hint)
+    }
+
+    /// Reads a file in the `wanted` encoding, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line and reason.
+    pub fn read_as(path: &Path, wanted: Option<TextEncoding>, hint: &str) -> Result<Self, Error> {
+        let (text, encoding) = read_data(path, wanted, hint)?;
+        let table = Self::parse(&path.display().to_string(), &text)?;
+        Ok(Self {
+            encoding: Some(encoding),
+            ..table
+        })
     }
 
     /// Reads a text.
@@ -84,18 +76,20 @@ impl Table {
                 name: name.to_owned(),
                 text: text.clone(),
             }),
+            encoding: None,
+            delimiter: delimiter.unwrap_or(b','),
             columns: Vec::new(),
             columns_place: 0..0,
             rows: Vec::new(),
             faults: Vec::new(),
             nonsense: Vec::new(),
         };
-        let Some(delimiter) = delimiter else {
+        if delimiter.is_none() {
             let hint = "a table has at least two columns, separated by commas, semicolons or tabs";
             return Err(table.refuse(0..0, "there are no columns in this file", hint));
-        };
+        }
         let faults = Faults::default();
-        table.read_records(&text, delimiter, &faults);
+        table.read_records(&text, &faults);
         faults.finish()?;
         match table.rows.is_empty() {
             true => Err(table.refuse(
@@ -107,16 +101,26 @@ impl Table {
         }
     }
 
-    fn read_records(&mut self, text: &str, delimiter: u8, faults: &Faults) {
-        let mut reader = csv::ReaderBuilder::new()
-            .delimiter(delimiter)
+    fn records<'a>(&self, text: &'a str) -> csv::Reader<&'a [u8]> {
+        csv::ReaderBuilder::new()
+            .delimiter(self.delimiter)
             .has_headers(false)
             .flexible(true)
             .comment(Some(b'#'))
             .trim(csv::Trim::All)
-            .from_reader(text.as_bytes());
+            .from_reader(text.as_bytes())
+    }
+
+    fn read_records(&mut self, text: &str, faults: &Faults) {
+        let mut surveyed = self.records(text);
+        let first = surveyed.records().map_while(Result::ok);
+        let first = first.filter(|record| !record.iter().all(str::is_empty));
+        let fields = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
+        let first: Vec<Vec<String>> = first.map(fields).take(Self::SURVEYED).collect();
+        let above = Above::of(&first);
         let mut decimals = Decimals::default();
-        for record in reader.records() {
+        let mut line = 0;
+        for record in self.records(text).records() {
             let record = match record {
                 Ok(record) => record,
                 Err(cause) => {
@@ -127,11 +131,15 @@ impl Table {
                 continue;
             }
             let place = line_at(text, record.position().map_or(0, |at| at.byte() as usize));
-            if self.rows.is_empty() && record.iter().all(is_name) {
-                self.name_columns(&record, place);
-            } else {
+            if Some(line) == above.names {
+                self.columns = record.iter().map(Column::new).collect();
+                self.columns_place = place;
+            } else if Some(line) == above.units {
+                self.add_units(&record);
+            } else if line >= above.first_row {
                 self.add_row(&record, place, &mut decimals, faults);
             }
+            line += 1;
         }
         if decimals.are_ambiguous() {
             let hint = "write 1050 or 1.050 instead of 1,050, whichever is meant";
@@ -140,18 +148,28 @@ impl Table {
         }
     }
 
-    /// The first line of names names the columns, a second one may hold their units.
-    fn name_columns(&mut self, record: &csv::StringRecord, place: Range<usize>) {
-        if self.columns.is_empty() {
-            self.columns = record.iter().map(Column::new).collect();
-            self.columns_place = place;
-            return;
-        }
+    /// The units of a line below the names, for columns that have none.
+    fn add_units(&mut self, record: &csv::StringRecord) {
         for (column, field) in self.columns.iter_mut().zip(record) {
-            let unit = field.trim_matches(['(', ')', '[', ']', ' ']);
+            let unit = unquoted(field).trim_matches(['(', ')', '[', ']', ' ']);
             if column.unit.is_none() && !unit.is_empty() {
                 column.unit = Some(unit.to_owned());
             }
+        }
+    }
+
+    /// Takes names from the remark right above the rows, as some programs write them, if no other line names the columns.
+    pub fn name_by_remark(&mut self) {
+        let unnamed = self.columns.iter().all(|column| column.name.is_empty());
+        let first_row = self.rows.first().map_or(0, |(_, place)| place.start);
+        let Some(place) = remark_above(&self.source.text, first_row).filter(|_| unnamed) else {
+            return;
+        };
+        let remark = self.source.text[place.clone()].trim_start_matches('#');
+        let names: Vec<&str> = remark.split(char::from(self.delimiter)).collect();
+        if names.len() == self.columns.len() && names.iter().all(|name| is_name(name.trim())) {
+            self.columns = names.into_iter().map(Column::new).collect();
+            self.columns_place = place;
         }
     }
 
@@ -175,6 +193,7 @@ impl Table {
         self.faults.resize(count, None);
         self.nonsense.resize(count, None);
         let row = record.iter().enumerate().map(|(column, field)| {
+            let field = unquoted(field);
             decimals.read(field).unwrap_or_else(|reason| {
                 let fault = (self.rows.len(), reason);
                 if !is_hole(field) {

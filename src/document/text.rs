@@ -2,8 +2,37 @@
 
 use std::path::Path;
 
+use super::encoding::{TextEncoding, decode, is_utf16};
 use super::file;
 use crate::error::Error;
+
+/// The text of a file of data in any encoding, or in the `wanted` one; `hint` says what the file should be.
+///
+/// # Errors
+/// [`Error::Input`] when it cannot be read or is no text.
+pub fn read_data(
+    path: &Path,
+    wanted: Option<TextEncoding>,
+    hint: &str,
+) -> Result<(String, TextEncoding), Error> {
+    let bytes = bytes(path, file::MOST_OF_DATA, hint)?;
+    decode(&bytes, wanted).ok_or_else(|| {
+        let name = path.display();
+        match wanted {
+            None => Error::input(format!("{name} is no text"), hint),
+            Some(wanted) => Error::input(
+                format!("{name} is no text in {}", wanted.name()),
+                "leave out --encoding, or name the one in which the file was saved",
+            ),
+        }
+    })
+}
+
+fn bytes(path: &Path, most: u64, hint: &str) -> Result<Vec<u8>, Error> {
+    let name = path.display();
+    file::read_bytes(path, most)
+        .map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))
+}
 
 /// The text of a file of so many bytes at most; `hint` says what it should be.
 ///
@@ -11,8 +40,7 @@ use crate::error::Error;
 /// [`Error::Input`] when it cannot be read or is not UTF-8.
 pub fn read_text(path: &Path, most: u64, hint: &str) -> Result<String, Error> {
     let name = path.display();
-    let bytes = file::read_bytes(path, most)
-        .map_err(|cause| Error::input(format!("cannot read {name}: {cause}"), hint))?;
+    let bytes = bytes(path, most, hint)?;
     if is_utf16(&bytes) {
         let hint = "save it as UTF-8: in Notepad by Save as, Encoding; in PowerShell by `Out-File -Encoding utf8`";
         return Err(Error::input(format!("{name} is written in UTF-16"), hint));
@@ -29,26 +57,6 @@ pub fn read_text(path: &Path, most: u64, hint: &str) -> Result<String, Error> {
         };
         Error::input(format!("{name}: line {line} is not UTF-8 text"), hint)
     })
-}
-
-/// Whether a file begins with the mark of UTF-16, or every other byte of its begin is zero.
-fn is_utf16(bytes: &[u8]) -> bool {
-    let zeros = |from: usize| {
-        let every_other = bytes.iter().skip(from).step_by(2).take(20);
-        bytes.len() >= 4 && every_other.clone().all(|byte| *byte == 0)
-    };
-    let letters = |from: usize| {
-        bytes
-            .iter()
-            .skip(from)
-            .step_by(2)
-            .take(20)
-            .all(|byte| *byte != 0)
-    };
-    bytes.starts_with(b"\xff\xfe")
-        || bytes.starts_with(b"\xfe\xff")
-        || zeros(1) && letters(0)
-        || zeros(0) && letters(1)
 }
 
 #[cfg(test)]

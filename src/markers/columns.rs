@@ -9,7 +9,7 @@ use crate::error::{Diagnostic, Error, nearest, suggestion};
 use crate::statistics::extremes;
 use crate::units::{self, Dimension};
 
-/// Names that a column may have.
+/// Names that a column may have; one that begins with `=` is the name as it is written, with its capitals.
 pub type Names = &'static [&'static str];
 
 /// A column of lengths and its unit in mm.
@@ -35,19 +35,39 @@ pub fn plain(table: &Table, names: Names) -> Option<usize> {
 pub fn find(table: &Table, names: Names) -> Option<(usize, Option<String>)> {
     names.iter().find_map(|name| {
         let mut columns = table.columns.iter().enumerate();
-        columns.find_map(|(index, column)| match column.name.strip_prefix(name)? {
+        columns.find_map(|(index, column)| match after(column, name)? {
             "" => Some((index, column.unit.clone())),
             rest => {
                 let unit = rest.strip_prefix('_')?;
-                (column.unit.is_none() && (millimetres(unit).is_some() || is_pixel(unit)))
-                    .then(|| (index, Some(unit.to_owned())))
+                (column.unit.is_none() && is_length(unit)).then(|| (index, Some(unit.to_owned())))
             }
         })
     })
 }
 
-fn is_pixel(unit: &str) -> bool {
-    ["px", "pixel", "pixels"].contains(&unit)
+/// What stands in a column's name after one of [`Names`].
+fn after<'a>(column: &'a Column, name: &str) -> Option<&'a str> {
+    match name.strip_prefix('=') {
+        Some(written) => column.written.strip_prefix(written),
+        None => column.name.strip_prefix(name),
+    }
+}
+
+/// The unit of a column: in brackets, or at the end of its name.
+pub fn unit_of(table: &Table, index: usize) -> Option<String> {
+    let Column { name, unit, .. } = &table.columns[index];
+    let at_end = || name.rsplit_once('_').map(|(_, end)| end);
+    let at_end = || at_end().filter(|end| is_length(end)).map(str::to_owned);
+    unit.clone().or_else(at_end)
+}
+
+/// Whether a unit is the pixel.
+pub fn is_pixel(unit: &str) -> bool {
+    ["px", "pixel", "pixels"].contains(&&*unit.to_lowercase())
+}
+
+fn is_length(unit: &str) -> bool {
+    millimetres(unit).is_some() || is_pixel(unit)
 }
 
 /// The length of a unit in mm.
@@ -55,36 +75,56 @@ fn millimetres(unit: &str) -> Option<f64> {
     units::factor(unit, Dimension::Length).ok()
 }
 
-/// The unit that the heads of all these columns name, if it is one and the same.
-pub fn common_unit(table: &Table, columns: &[Names]) -> Option<String> {
-    let mut heads = columns.iter().map(|names| find(table, names)?.1);
+/// The unit that all these heads name, if it is one and the same.
+pub fn common_unit<'a>(heads: impl IntoIterator<Item = Option<&'a str>>) -> Option<String> {
+    let mut heads = heads.into_iter();
     let first = heads.next()??;
     heads
-        .all(|head| head.as_ref() == Some(&first))
-        .then_some(first)
+        .all(|head| head == Some(first))
+        .then(|| first.to_owned())
         .filter(|unit| !is_pixel(unit))
 }
 
-/// A column of lengths and its unit: that of its head, else the one that was given.
+/// The first column of one of the names, and its unit.
 ///
 /// # Errors
-/// [`Error::Input`] where there is no such column, or its unit is unknown.
-pub fn length(table: &Table, names: Names, units: Units) -> Result<Length, Error> {
-    let Some((index, unit)) = find(table, names) else {
+/// [`Error::Input`] where there is none, with those that there are.
+pub fn required(table: &Table, names: Names) -> Result<(usize, Option<String>), Error> {
+    find(table, names).ok_or_else(|| {
         let found: Vec<&str> = table.columns.iter().map(|column| &*column.name).collect();
         let found = match found.iter().all(|name| name.is_empty()) {
             true => "the columns have no names".to_owned(),
             false => format!("the file has {}", found.join(", ")),
         };
-        let message = format!("there is no column `{}`: {found}", names[0]);
-        let hint =
-            "name the columns x [mm], y [mm], ux [mm] and uy [mm], with the unit of your own";
-        return Err(table.refuse_columns(message, hint));
-    };
+        let message = format!("there is no column `{}`: {found}", plainly(names));
+        let hint = "name the columns x [mm], y [mm], ux [mm] and uy [mm], with the unit of your own, or say which they are: \
+                    --columns x=NAME,y=NAME,ux=NAME,uy=NAME";
+        table.refuse_columns(message, hint)
+    })
+}
+
+/// The first of some names, for messages.
+pub fn plainly(names: Names) -> &'static str {
+    names
+        .first()
+        .map_or("", |name| name.trim_start_matches('='))
+}
+
+/// A column of lengths and its unit: that of its head, else the one that was given.
+///
+/// # Errors
+/// [`Error::Input`] where its unit is unknown.
+pub fn length(
+    table: &Table,
+    (index, unit): (usize, Option<String>),
+    units: Units,
+) -> Result<Length, Error> {
+    let name = &table.columns[index].written;
     let pixels = unit.as_deref().map_or(units.pixels, is_pixel);
     let known = unit.as_deref().filter(|_| !pixels);
     match (known, units.given) {
         (Some(unit), Some(given)) if units.corrected == Some(unit) => Ok((index, given)),
+        (Some(unit), Some(given)) if !units::is_known(unit) => Ok((index, given)),
         (Some(unit), _) => millimetres(unit).map(|unit| (index, unit)).ok_or_else(|| {
             let known: Vec<_> = Dimension::Length.units().collect();
             let hint = suggestion(unit, &known, "known units:");
@@ -92,11 +132,11 @@ pub fn length(table: &Table, names: Names, units: Units) -> Result<Length, Error
         }),
         (None, Some(unit)) => Ok((index, unit)),
         (None, None) if pixels => Err(table.refuse_columns(
-            format!("the column `{}` is in pixels", names[0]),
+            format!("the column `{name}` is in pixels"),
             "say how long a pixel is, such as --unit \"0.05 mm\"",
         )),
         (None, None) => Err(table.refuse_columns(
-            format!("the column `{}` has no unit", names[0]),
+            format!("the column `{name}` has no unit"),
             "write it in brackets, as in x [mm], or give --unit mm",
         )),
     }
@@ -140,6 +180,16 @@ fn is_ignored(name: &str, ignored: &[String]) -> bool {
     })
 }
 
+/// The columns that are neither used, nor harmless, nor to be passed over by the user's wish.
+pub fn others<'a>(table: &'a Table, used: &[usize], ignored: &[String]) -> Vec<&'a Column> {
+    let columns = table.columns.iter().enumerate();
+    let other = columns.filter(|(index, column)| {
+        let passed = is_ignored(&column.name, ignored) || is_harmless(&column.name);
+        !used.contains(index) && !passed
+    });
+    other.map(|(_, column)| column).collect()
+}
+
 /// Whether every column is used, harmless, or to be passed over by the user's wish.
 ///
 /// # Errors
@@ -150,11 +200,7 @@ pub fn check_all(
     known: &[&str],
     ignored: &[String],
 ) -> Result<(), Error> {
-    let unknown = table.columns.iter().enumerate().filter(|(index, column)| {
-        let passed = is_ignored(&column.name, ignored) || is_harmless(&column.name);
-        !used.contains(index) && !passed
-    });
-    let fault = |(_, column): (usize, &Column)| {
+    let fault = |column: &Column| {
         let name = &column.name;
         let twice = known.contains(&&**name);
         let message = match (name.is_empty(), twice) {
@@ -170,7 +216,10 @@ pub fn check_all(
         );
         table.fault(table.columns_place.clone(), message, &hint)
     };
-    let faults: Vec<Diagnostic> = unknown.map(fault).collect();
+    let faults: Vec<Diagnostic> = others(table, used, ignored)
+        .into_iter()
+        .map(fault)
+        .collect();
     match faults.is_empty() {
         true => Ok(()),
         false => Err(Error::Input(faults)),
@@ -182,9 +231,12 @@ pub const HEIGHT: Names = &["z"];
 /// Displacements out of the plane.
 pub const LIFT: Names = &["uz", "w", "u_z"];
 
+/// Heights and displacements out of the plane.
+pub const OUT_OF_PLANE: [Names; 2] = [HEIGHT, LIFT];
+
 /// The columns out of the plane that are there and not passed over.
-pub fn out_of_plane(table: &Table, ignored: &[String]) -> Vec<usize> {
-    let found = [HEIGHT, LIFT].map(|names| find(table, names).map(|(index, _)| index));
+pub fn out_of_plane(table: &Table, names: [Names; 2], ignored: &[String]) -> Vec<usize> {
+    let found = names.map(|names| find(table, names).map(|(index, _)| index));
     let wanted = |index: &usize| !is_ignored(&table.columns[*index].name, ignored);
     found.into_iter().flatten().filter(wanted).collect()
 }
@@ -198,7 +250,7 @@ pub fn check_flat(
     table: &Table,
     places: [usize; 2],
     displacements: [usize; 2],
-    ignored: &[String],
+    (names, ignored): ([Names; 2], &[String]),
 ) -> Result<(), Error> {
     const FLAT: f64 = 0.01;
     let range = |column: usize| {
@@ -209,9 +261,10 @@ pub fn check_flat(
     let largest = |column: usize| range(column)[1].max(-range(column)[0]);
     let size = places.map(span).into_iter().fold(0.0, f64::max);
     let motion = displacements.map(largest).into_iter().fold(0.0, f64::max);
-    for column in out_of_plane(table, ignored) {
+    for column in out_of_plane(table, names, ignored) {
         let name = &table.columns[column].name;
-        let [off, most, what] = match find(table, LIFT).is_some_and(|(lift, _)| lift == column) {
+        let [off, most, what] = match find(table, names[1]).is_some_and(|(lift, _)| lift == column)
+        {
             true => [largest(column) / motion, largest(column), motion],
             false => [span(column) / size, span(column), size],
         };

@@ -12,6 +12,7 @@
 use std::path::{Path, PathBuf};
 
 use super::rows::{FileRows, ReadSettings, Row};
+use super::understood::Understood;
 use crate::document::Table;
 use crate::error::Error;
 
@@ -78,7 +79,7 @@ pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Erro
             "give --unit mm, or the length of a pixel where Ncorr's units are pixels",
         ));
     };
-    let [u, v] = [matrix(u)?, matrix(v)?];
+    let [u, v] = [matrix(u, reading)?, matrix(v, reading)?];
     let size = |matrix: &Table| [matrix.rows.len(), matrix.columns.len()];
     if size(&u) != size(&v) {
         let [[a, b], [c, d]] = [size(&u), size(&v)];
@@ -109,13 +110,16 @@ pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Erro
     Ok(FileRows {
         rows,
         mesh: None,
-        layout: "Ncorr",
+        understood: Understood {
+            turned_up: true,
+            ..Understood::of("Ncorr")
+        },
         warnings: Vec::new(),
     })
 }
 
-fn matrix(path: &Path) -> Result<Table, Error> {
-    let table = Table::read(path, Table::HINT)?;
+fn matrix(path: &Path, reading: &ReadSettings) -> Result<Table, Error> {
+    let table = Table::read_as(path, reading.encoding, Table::HINT)?;
     table.check_numbers_or_holes(0..table.columns.len(), "a matrix holds numbers, or NaN")?;
     if table.columns.iter().any(|column| !column.name.is_empty()) {
         let hint = "give markers as one table, or matrices of numbers alone";

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::rows::{FileRows, ReadSettings, Row};
+use super::understood::Understood;
 use crate::error::Error;
 use crate::mesh::import_series;
 
@@ -34,7 +35,7 @@ pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     Ok(FileRows {
         rows: rows.collect(),
         mesh: Some(series.mesh),
-        layout: "field on a mesh",
+        understood: Understood::of("field on a mesh"),
         warnings: Vec::new(),
     })
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::frames::MarkerSeries;
 use super::rows::{FileRows, ReadSettings};
+use super::understood::Understood;
 use super::{matrices, on_mesh, plausible, table};
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
@@ -15,8 +16,8 @@ pub struct MarkerFiles {
     pub series: MarkerSeries,
     /// The mesh that the field came on.
     pub mesh: Option<Mesh>,
-    /// The layout of the files.
-    pub layout: &'static str,
+    /// How the files were understood.
+    pub understood: Understood,
     /// What deserves attention.
     pub warnings: Vec<Diagnostic>,
 }
@@ -50,13 +51,13 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
         return Err(Error::input("no field is given", "name a file"));
     };
     let mut warnings = std::mem::take(&mut whole.warnings);
-    let (mesh, layout) = (whole.mesh.clone(), whole.layout);
+    let (mesh, understood) = (whole.mesh.clone(), whole.understood.clone());
     let series = whole.gather(&mut warnings);
     plausible::check(&series, &mut warnings)?;
     Ok(MarkerFiles {
         series,
         mesh,
-        layout,
+        understood,
         warnings,
     })
 }
@@ -71,7 +72,9 @@ fn is_table(path: &Path) -> bool {
 fn append(whole: &mut FileRows, found: FileRows, file: &Path) -> Result<(), Error> {
     let meshes = [&whole.mesh, &found.mesh].map(|mesh| mesh.as_ref().map(|mesh| &mesh.nodes));
     let fault = match () {
-        () if whole.layout != found.layout => "is of another kind than the files before it",
+        () if whole.understood.layout != found.understood.layout => {
+            "is of another kind than the files before it"
+        }
         () if meshes[0] != meshes[1] => "has another mesh than the files before it",
         () => {
             whole.rows.extend(found.rows);

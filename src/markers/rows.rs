@@ -2,7 +2,10 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::chosen::ChosenColumns;
 use super::frames::{Frame, Marker, MarkerSeries};
+use super::understood::Understood;
+use crate::document::TextEncoding;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 
@@ -17,6 +20,14 @@ pub struct ReadSettings {
     pub grid: Option<f64>,
     /// Columns of a table that are passed over.
     pub ignored_columns: Vec<String>,
+    /// Columns of a table that the user names.
+    pub columns: ChosenColumns,
+    /// The encoding of tables, where it is not the one that their bytes show.
+    pub encoding: Option<TextEncoding>,
+    /// Whether the y axis of tables points down, where it is not as their layout says.
+    pub downwards: Option<bool>,
+    /// Whether places in tables are those of the frame, where it is not as their layout says.
+    pub deformed: Option<bool>,
 }
 
 /// A marker of a file, before markers have numbers.
@@ -37,7 +48,7 @@ pub(super) struct Row {
 pub(super) struct FileRows {
     pub rows: Vec<Row>,
     pub mesh: Option<Mesh>,
-    pub layout: &'static str,
+    pub understood: Understood,
     /// What deserves attention.
     pub warnings: Vec<Diagnostic>,
 }

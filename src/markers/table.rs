@@ -1,100 +1,37 @@
-//! Scattered markers from tables: columns with names, and what DICe and muDIC write.
-//!
-//! | layout | known by | place at rest | y axis |
-//! |---|---|---|---|
-//! | columns | `x`, `y`, `ux`, `uy` (or `u`, `v`) | x, y | as it is |
-//! | DICe | `COORDINATE_X`, `DISPLACEMENT_X` | x, y in pixels | downwards, turned up |
-//! | DICe, stereo | `MODEL_COORDINATES_X`, `MODEL_DISPLACEMENT_X` | x, y in the calibration's unit | as it is |
-//! | muDIC | `x`, `y`, `ux`, `uy`, `true_strain_xx` | (x − ux, y − uy) in pixels | downwards, turned up |
+//! Scattered markers from tables: columns with names, and what other programs export, see [`super::layouts`].
 //!
 //! Optional columns: `standard_deviation` (of each component; DICe's `SIGMA`), `frame`, `time`, `id`. A displacement
-//! that is empty or NaN was not found. DICe marks points that it did not find by `SIGMA` = −1 (`MATCH` ≠ 0 in early
-//! versions) and writes lines that begin with `***` first.
-//!
-//! # References
-//! DICe: `DICe_solution_*.txt` among the regression tests of github.com/dicengine/dice, and its maintainers on
-//! SIGMA (issues 123 and 133: in pixels, one number for both directions, −1 where the correlation failed).
-//! muDIC: `exportCSV` in `muDIC/IO/readWriteUtils.py` of github.com/PolymerGuy/muDIC; its `x`, `y` are the places
-//! *in the frame*, so that the displacement is subtracted from them.
+//! that is empty or NaN was not found. DICe and VIC mark points that they did not find by `sigma` = −1 (`MATCH` ≠ 0 in early
+//! versions of DICe, which writes lines that begin with `***` first).
 
 use std::path::Path;
 
-use super::columns::{self, Length, Names, Units, length, plain};
+use super::chosen::{FoundColumns, Role};
+use super::columns::{self, Length, Names, Units, find, length, plain, required};
+use super::layouts::{Layout, NAMED, recognise};
 use super::rows::{FileRows, ReadSettings, Row};
+use super::understood::{ColumnTaken, Understood};
 use crate::document::Table;
 use crate::error::{Diagnostic, Error};
 
-/// Where a layout keeps what.
-struct Layout {
-    name: &'static str,
-    places: [Names; 2],
-    displacements: [Names; 2],
-    deviation: Names,
-    /// Whether the y axis points downwards, as in an image.
-    downwards: bool,
-    /// Whether places are those of the frame, not at rest.
-    deformed: bool,
-    /// Whether lengths are pixels where the head says nothing.
-    pixels: bool,
-}
-
-const COLUMNS: Layout = Layout {
-    name: "columns",
-    places: [&["x"], &["y"]],
-    displacements: [&["ux", "u", "u_x"], &["uy", "v", "u_y"]],
-    deviation: &["standard_deviation", "sigma"],
-    downwards: false,
-    deformed: false,
-    pixels: false,
-};
-
-const DICE: Layout = Layout {
-    name: "DICe",
-    places: [&["coordinate_x"], &["coordinate_y"]],
-    displacements: [&["displacement_x"], &["displacement_y"]],
-    deviation: &["sigma"],
-    downwards: true,
-    deformed: false,
-    pixels: true,
-};
-
-const DICE_STEREO: Layout = Layout {
-    name: "DICe, stereo",
-    places: [&["model_coordinates_x"], &["model_coordinates_y"]],
-    displacements: [&["model_displacement_x"], &["model_displacement_y"]],
-    // SIGMA is in pixels, not in the calibration's unit.
-    deviation: &[],
-    downwards: false,
-    deformed: false,
-    pixels: false,
-};
-
-const MUDIC: Layout = Layout {
-    name: "muDIC",
-    deviation: &[],
-    downwards: true,
-    deformed: true,
-    pixels: true,
-    ..COLUMNS
-};
-
 /// What a file of markers is.
-const HINT: &str = "markers are a table in UTF-8 with the columns x [mm], y [mm], ux [mm], uy [mm]";
+const HINT: &str = "markers are a table with the columns x [mm], y [mm], ux [mm], uy [mm]";
 
 /// Reads the markers of one table.
 ///
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
 pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
-    let table = Table::read(path, HINT)?;
-    let layout = layout(&table);
-    let (columns, warning) = Columns::find(&table, layout, reading)?;
-    let rows = (0..table.rows.len()).map(|row| columns.row(&table, layout, row));
+    let mut table = Table::read_as(path, reading.encoding, HINT)?;
+    table.name_by_remark();
+    let chosen = reading.columns.on(&table)?;
+    let reader = Reader::new(&table, &chosen, reading)?;
+    let rows = (0..table.rows.len()).map(|row| reader.row(row));
     Ok(FileRows {
         rows: rows.collect::<Result<_, _>>()?,
         mesh: None,
-        layout: layout.name,
-        warnings: warning.into_iter().collect(),
+        understood: reader.understood(),
+        warnings: reader.warnings,
     })
 }
 
@@ -109,10 +46,8 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
         given: unit,
         ..Units::default()
     };
-    let [x, y] = [
-        length(&table, &["x"], units)?,
-        length(&table, &["y"], units)?,
-    ];
+    let coordinate = |names: Names| length(&table, required(&table, names)?, units);
+    let [x, y] = [coordinate(&["x"])?, coordinate(&["y"])?];
     let number = plain(&table, &["line"]);
     let read: Vec<usize> = [x.0, y.0].into_iter().chain(number).collect();
     columns::check_all(&table, &read, &["x", "y", "line"], &[])?;
@@ -131,18 +66,17 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
     Ok(lines.into_iter().map(|(_, line)| line).collect())
 }
 
-fn layout(table: &Table) -> &'static Layout {
-    let has = |name: &str| table.columns.iter().any(|column| column.name == name);
-    match () {
-        () if has("model_displacement_x") => &DICE_STEREO,
-        () if has("displacement_x") && has("coordinate_x") => &DICE,
-        () if has("true_strain_xx") && has("ux") => &MUDIC,
-        () => &COLUMNS,
-    }
-}
+/// Columns that are not lengths.
+const FRAME: Names = &["frame", "frame_number", "image"];
+const TIME: Names = &["time", "t"];
+const NAME: Names = &["id", "subset_id", "marker", "point", "node", "node_id"];
 
-/// The columns that are read.
-struct Columns {
+/// A table and the columns that are read.
+struct Reader<'a> {
+    table: &'a Table,
+    layout: &'static str,
+    downwards: bool,
+    deformed: bool,
     places: [Length; 2],
     displacements: [Length; 2],
     deviation: Option<Length>,
@@ -150,107 +84,137 @@ struct Columns {
     time: Option<usize>,
     name: Option<usize>,
     mismatch: Option<usize>,
+    lost: Option<usize>,
+    /// What says the units of lengths that the heads do not say.
+    given: Option<f64>,
+    warnings: Vec<Diagnostic>,
 }
 
-/// Columns that are not lengths.
-const FRAME: Names = &["frame", "frame_number", "image"];
-const TIME: Names = &["time", "t"];
-const NAME: Names = &["id", "subset_id", "marker", "point", "node", "node_id"];
-
-impl Columns {
-    /// The columns, and a word where a given unit corrects those of the file.
-    fn find(
-        table: &Table,
-        layout: &Layout,
-        reading: &ReadSettings,
-    ) -> Result<(Self, Option<Diagnostic>), Error> {
-        let [places, displacements] = [layout.places, layout.displacements];
-        let head = columns::common_unit(table, [places, displacements].as_flattened());
+impl<'a> Reader<'a> {
+    fn new(table: &'a Table, chosen: &FoundColumns, reading: &ReadSettings) -> Result<Self, Error> {
+        let layout = match chosen.any_length() {
+            true => &NAMED,
+            false => recognise(table),
+        };
+        let head = |role: Role, names: Names| match chosen.of(role) {
+            Some(index) => Some((index, columns::unit_of(table, index))),
+            None => find(table, names),
+        };
+        let ([x, y], [ux, uy]) = (layout.places, layout.displacements);
+        let roles = [(Role::X, x), (Role::Y, y), (Role::Ux, ux), (Role::Uy, uy)];
+        let heads = roles.map(|(role, names)| head(role, names));
+        let names = || heads.iter().map(|head| head.as_ref()?.1.as_deref());
+        let common = columns::common_unit(names());
         let units = Units {
             given: reading.unit,
-            corrected: head.as_deref(),
-            pixels: layout.pixels,
+            corrected: common.as_deref(),
+            pixels: layout.pixels
+                || chosen.any_length() && names().flatten().any(columns::is_pixel),
         };
-        let length = |names: Names| length(table, names, units);
-        let has_deviation = columns::find(table, layout.deviation).is_some();
-        let columns = Self {
-            places: [length(places[0])?, length(places[1])?],
-            displacements: [length(displacements[0])?, length(displacements[1])?],
-            deviation: has_deviation
-                .then(|| length(layout.deviation))
+        let of = |index: usize| match &heads[index] {
+            Some(head) => length(table, head.clone(), units),
+            None => required(table, roles[index].1).and_then(|head| length(table, head, units)),
+        };
+        let deviation = head(Role::StandardDeviation, layout.deviation);
+        let plain_column =
+            |role: Role, names: Names| chosen.of(role).or_else(|| plain(table, names));
+        let reader = Self {
+            table,
+            layout: layout.name,
+            downwards: reading.downwards.unwrap_or(layout.downwards),
+            deformed: reading.deformed.unwrap_or(layout.deformed),
+            places: [of(0)?, of(1)?],
+            displacements: [of(2)?, of(3)?],
+            deviation: deviation
+                .map(|head| length(table, head, units))
                 .transpose()?,
-            frame: plain(table, FRAME),
-            time: plain(table, TIME),
-            name: plain(table, NAME),
+            frame: plain_column(Role::Frame, FRAME),
+            time: plain_column(Role::Time, TIME),
+            name: plain_column(Role::Id, NAME),
             mismatch: plain(table, &["match"]),
+            lost: plain(table, layout.lost),
+            given: reading.unit,
+            warnings: columns::correction(table, common.as_deref(), reading.unit)
+                .into_iter()
+                .collect(),
         };
         let hint = "a field of this column is a number, or empty where nothing was found";
-        table.check_numbers_or_holes(columns.read(), hint)?;
-        columns.overlooks_none(table, layout, &reading.ignored_columns)?;
-        let word = columns::correction(table, head.as_deref(), reading.unit);
-        Ok((columns, word))
+        table.check_numbers_or_holes(reader.read(), hint)?;
+        reader.overlooks_none(layout, chosen.any_length(), &reading.ignored_columns)
     }
 
-    /// Refuses columns that nobody reads, and points that leave their plane.
+    /// Refuses columns that nobody reads, and points that leave their plane; where the user names the columns, others are only
+    /// told.
     fn overlooks_none(
-        &self,
-        table: &Table,
+        mut self,
         layout: &Layout,
+        named: bool,
         ignored: &[String],
-    ) -> Result<(), Error> {
+    ) -> Result<Self, Error> {
+        let table = self.table;
         let used = self.read().chain(self.name).chain(self.mismatch);
-        let used = used.chain(columns::out_of_plane(table, ignored));
-        // The same in pixels of one camera.
-        let pixels: Vec<Names> = match layout.name == DICE_STEREO.name {
-            true => [DICE.places, DICE.displacements].concat(),
-            false => Vec::new(),
-        };
-        let used = used.chain(pixels.into_iter().filter_map(|names| plain(table, names)));
-        let lengths = [layout.places, layout.displacements];
-        let lengths = lengths.as_flattened().iter().chain([&layout.deviation]);
-        let others = [FRAME, TIME, NAME, columns::HEIGHT, columns::LIFT];
-        let known = lengths.chain(&others).flat_map(|names| names.first());
-        let known: Vec<&str> = known.copied().collect();
-        columns::check_all(table, &used.collect::<Vec<_>>(), &known, ignored)?;
+        let used = used.chain(columns::out_of_plane(table, layout.out_of_plane, ignored));
+        let harmless = layout.harmless.chunks(1);
+        let harmless = harmless.filter_map(|name| find(table, name).map(|(index, _)| index));
+        let used: Vec<usize> = used.chain(harmless).collect();
+        if named {
+            let others = columns::others(table, &used, ignored);
+            let others: Vec<_> = others.iter().map(|column| &*column.written).collect();
+            if !others.is_empty() {
+                let message = format!("columns that are passed over: {}", others.join(", "));
+                let hint = "--columns names those that are read";
+                self.warnings
+                    .push(Diagnostic::warning("", message).hint(hint));
+            }
+        } else {
+            let lengths = [layout.places, layout.displacements];
+            let lengths = lengths.as_flattened().iter().chain([&layout.deviation]);
+            let others = [FRAME, TIME, NAME].into_iter().chain(layout.out_of_plane);
+            let known = lengths.copied().chain(others).map(columns::plainly);
+            let known: Vec<&str> = known.filter(|name| !name.is_empty()).collect();
+            columns::check_all(table, &used, &known, ignored)?;
+        }
         let columns = |pair: [Length; 2]| pair.map(|(column, _)| column);
         columns::check_flat(
             table,
             columns(self.places),
             columns(self.displacements),
-            ignored,
-        )
+            (layout.out_of_plane, ignored),
+        )?;
+        Ok(self)
     }
 
     /// The columns whose fields are numbers.
     fn read(&self) -> impl Iterator<Item = usize> {
         let lengths = self.places.into_iter().chain(self.displacements);
         let lengths = lengths.chain(self.deviation).map(|(column, _)| column);
-        lengths.chain(self.frame).chain(self.time)
+        let others = [self.frame, self.time, self.lost];
+        lengths.chain(others.into_iter().flatten())
     }
 
-    fn row(&self, table: &Table, layout: &Layout, row: usize) -> Result<Row, Error> {
-        let (values, line) = &table.rows[row];
-        let refuse = |message: &str, hint: &str| table.refuse(line.clone(), message, hint);
-        let up = if layout.downwards { -1.0 } else { 1.0 };
+    fn row(&self, row: usize) -> Result<Row, Error> {
+        let (values, line) = &self.table.rows[row];
+        let refuse = |message: &str, hint: &str| self.table.refuse(line.clone(), message, hint);
+        let up = if self.downwards { -1.0 } else { 1.0 };
         let pair = |[x, y]: [Length; 2]| [values[x.0] * x.1, up * values[y.0] * y.1];
         let (mut place, mut displacement) = (pair(self.places), pair(self.displacements));
-        if layout.deformed && displacement.iter().all(|u| u.is_finite()) {
+        if self.deformed && displacement.iter().all(|u| u.is_finite()) {
             place = [place[0] - displacement[0], place[1] - displacement[1]];
         }
+        let lost = self.lost.is_some_and(|column| values[column] < 0.0);
         let deviation = self.deviation.map(|(column, unit)| values[column] * unit);
-        let negative = deviation.is_some_and(|deviation| deviation < 0.0);
-        if negative && layout.name != DICE.name {
+        if deviation.is_some_and(|deviation| deviation < 0.0) && !lost {
             let hint = "leave it empty where it is not known";
             return Err(refuse("a standard deviation is negative", hint));
         }
-        if negative || self.mismatch.is_some_and(|column| values[column] != 0.0) {
+        if lost || self.mismatch.is_some_and(|column| values[column] != 0.0) {
             displacement = [f64::NAN; 2];
         }
         if place.iter().any(|x| !x.is_finite()) {
             let hint = "give x and y, or leave out the line";
             return Err(refuse("a marker has no place", hint));
         }
-        if layout.deformed && displacement.iter().any(|u| !u.is_finite()) {
+        if self.deformed && displacement.iter().any(|u| !u.is_finite()) {
             // Where it was at rest nobody knows.
             place = [f64::NAN; 2];
         }
@@ -271,6 +235,47 @@ impl Columns {
             displacement,
             standard_deviation: deviation.filter(|deviation| *deviation > 0.0),
         })
+    }
+
+    /// What was taken from which column, and how.
+    fn understood(&self) -> Understood {
+        let [x, y, ux, uy] = [self.places, self.displacements].concat()[..] else {
+            return Understood::of(self.layout);
+        };
+        let lengths = [("x", x), ("y", y), ("ux", ux), ("uy", uy)];
+        let deviation = self.deviation.map(|length| ("standard deviation", length));
+        let lengths = lengths.into_iter().chain(deviation);
+        let of_length =
+            lengths.map(|(holds, (column, unit))| self.taken(holds, column, Some(unit)));
+        let others = [
+            ("frame", self.frame),
+            ("time", self.time),
+            ("id", self.name),
+        ];
+        let others = others
+            .into_iter()
+            .filter_map(|(holds, column)| Some((holds, column?)));
+        let others = others.map(|(holds, column)| self.taken(holds, column, None));
+        Understood {
+            layout: self.layout,
+            encoding: self.table.encoding.map(|encoding| encoding.name()),
+            columns: of_length.chain(others).collect(),
+            turned_up: self.downwards,
+            taken_to_rest: self.deformed,
+        }
+    }
+
+    fn taken(&self, holds: &'static str, column: usize, unit: Option<f64>) -> ColumnTaken {
+        ColumnTaken {
+            holds,
+            head: self.table.columns[column].head(),
+            unit,
+            unit_source: match unit {
+                None => "",
+                Some(_) if unit == self.given => "--unit",
+                Some(_) => "the file",
+            },
+        }
     }
 }
 

@@ -46,7 +46,7 @@ fn render(block: &Block, pictures: &[Drawn]) -> Markup {
         Block::Heading(2, text) => html! { h2 { (text) } },
         Block::Heading(_, text) => html! { h3 { (text) } },
         Block::Paragraph(text) => html! { p { (text) } },
-        Block::Code(code) => html! { pre { (code) } },
+        Block::Code(_, code) => html! { pre { (code) } },
         Block::Figure(index, caption) => html! {
             figure {
                 @match &pictures[*index] {

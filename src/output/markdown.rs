@@ -20,7 +20,7 @@ pub fn markdown(
                 None => format!("![{caption}]({})\n\n*{caption}*\n", figures[*index].name),
                 Some(fault) => format!("{}\n\n*{caption}*\n", escaped(&fault)),
             },
-            Block::Code(code) => fenced(code),
+            Block::Code(language, code) => fenced(language, code),
         };
         text.push('\n');
     }
@@ -37,10 +37,10 @@ fn escaped(text: &str) -> String {
 }
 
 /// A fence longer than any in the text.
-fn fenced(code: &str) -> String {
+fn fenced(language: &str, code: &str) -> String {
     let longest = code.split(|c| c != '`').map(str::len).max().unwrap_or(0);
     let fence = "`".repeat(longest.max(2) + 1);
-    format!("{fence}toml\n{}\n{fence}\n", code.trim_end())
+    format!("{fence}{language}\n{}\n{fence}\n", code.trim_end())
 }
 
 fn table(head: &[String], rows: &[Vec<String>]) -> String {

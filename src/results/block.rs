@@ -13,8 +13,8 @@ pub enum Block {
     Table(Vec<String>, Vec<Vec<String>>),
     /// The picture of this index, with its caption.
     Figure(usize, String),
-    /// Text shown as it is.
-    Code(String),
+    /// Text in a language, such as `toml`, shown as it is.
+    Code(&'static str, String),
 }
 
 impl Block {

@@ -36,13 +36,16 @@ impl Results {
     pub fn study(&self) -> Vec<Block> {
         let mut blocks = Vec::new();
         if !self.text.is_empty() {
-            blocks.extend([Block::heading("Study"), Block::Code(self.text.clone())]);
+            blocks.extend([
+                Block::heading("Study"),
+                Block::Code("toml", self.text.clone()),
+            ]);
         }
         if !self.defaults.is_empty() {
             blocks.push(Block::paragraph(
                 "Settings that the study does not hold, with the defaults that they took:",
             ));
-            blocks.push(Block::Code(self.defaults.join("\n")));
+            blocks.push(Block::Code("toml", self.defaults.join("\n")));
         }
         blocks.extend(paragraphs("Warnings on reading", &self.read_warnings));
         blocks

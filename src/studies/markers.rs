@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::corrector::estimation::{FieldEstimate, RegressedLaw, Specimen, estimate, transfer};
 use crate::error::{Diagnostic, Error};
-use crate::markers::{Frame, MarkerSeries, check_thickness, place_on, read};
+use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
 use crate::material::{Card, HyperelasticLaw};
 use crate::mesh::Mesh;
 
@@ -22,6 +22,7 @@ mod force_signs;
 mod gross_errors;
 mod json;
 mod quantities;
+mod reading;
 mod report;
 mod request;
 mod specimen_mesh;
@@ -50,8 +51,8 @@ pub struct MarkerStudy {
     pub coarse: Option<Mesh>,
     /// The markers on the mesh.
     pub series: MarkerSeries,
-    /// The layout of the files.
-    pub layout: &'static str,
+    /// How the files were understood.
+    pub understood: Understood,
     /// What is known besides.
     pub conditions: Conditions,
     /// The law with parameters that are found with the field, if there are any.
@@ -113,7 +114,7 @@ impl MarkerStudy {
             mesh_origin: origin,
             coarse,
             series: placed.series,
-            layout: field.layout,
+            understood: field.understood,
             conditions: request.conditions,
             regressed,
             warnings: all,

@@ -46,6 +46,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("toml::", &["src/document"]),
     ("spade::", &["src/mesh/triangulate.rs"]),
     ("csv::", &["src/document/table.rs"]),
+    ("encoding_rs::", &["src/document/encoding.rs"]),
     ("statrs::", &["src/statistics.rs"]),
     ("rmpfit::", &["src/calibration/least_squares.rs"]),
     (

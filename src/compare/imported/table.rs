@@ -65,7 +65,9 @@ type Choice = (usize, f64, f64);
 /// # Errors
 /// [`Error::Input`] with what is wrong.
 pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
-    let head = columns::common_unit(table, &LENGTHS);
+    let found = LENGTHS.map(|names| columns::find(table, names));
+    let heads = found.iter().map(|found| found.as_ref()?.1.as_deref());
+    let head = columns::common_unit(heads);
     let units = Units {
         given: settings.unit.or(Some(1.0)),
         corrected: head.as_deref().filter(|_| settings.unit.is_some()),
@@ -73,17 +75,18 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
     };
     let mut lengths = Vec::new();
     for names in LENGTHS {
-        lengths.push(length(table, names, units)?);
+        lengths.push(length(table, columns::required(table, names)?, units)?);
     }
     let choices = choices(table, settings)?;
     let read = lengths.iter().map(|(column, _)| *column);
     let read: Vec<usize> = read.chain(choices.iter().map(|choice| choice.0)).collect();
     table.check_numbers(read.iter().copied(), "every field of a column is a number")?;
     let ignored = &settings.ignored_columns;
-    let flat = columns::out_of_plane(table, ignored);
+    let flat = columns::out_of_plane(table, columns::OUT_OF_PLANE, ignored);
     let used = read.iter().copied().chain(flat).chain(plain(table, NAMES));
     columns::check_all(table, &used.collect::<Vec<_>>(), &KNOWN, ignored)?;
-    columns::check_flat(table, [read[0], read[1]], [read[2], read[3]], ignored)?;
+    let out_of_plane = (columns::OUT_OF_PLANE, &**ignored);
+    columns::check_flat(table, [read[0], read[1]], [read[2], read[3]], out_of_plane)?;
     let rows = chosen(table, &choices)?;
     let pair = |row: &&Vec<f64>, first: usize| {
         [0, 1].map(|axis| {

@@ -86,7 +86,7 @@ SUBSET_ID,COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,SIGMA,GAMMA,BE
 #[test]
 fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
     let found = read_texts(&[("DICe_solution_07.txt", DICE)], &unit(0.5)).unwrap();
-    assert_eq!(found.layout, "DICe");
+    assert_eq!(found.understood.layout, "DICe");
     let with = |deviation, marker| Marker {
         standard_deviation: Some(deviation),
         ..marker
@@ -113,10 +113,75 @@ fn early_versions_of_dice_say_match_and_stereo_has_its_own_columns() {
     let stereo = "COORDINATE_X,COORDINATE_Y,MODEL_COORDINATES_X,MODEL_COORDINATES_Y,DISPLACEMENT_X,DISPLACEMENT_Y,\
                   MODEL_DISPLACEMENT_X,MODEL_DISPLACEMENT_Y,SIGMA\n61,971,5,7,1,1,0.5,0.25,0.02\n";
     let found = read_texts(&[("a.txt", stereo)], &unit(1.0)).unwrap();
-    assert_eq!(found.layout, "DICe, stereo");
+    assert_eq!(found.understood.layout, "DICe, stereo");
     near(
         &found.series.frames[0].markers,
         &[marker(0, [5.0, 7.0], [0.5, 0.25])],
+    );
+}
+
+#[test]
+fn points_that_vic_and_dice_did_not_find_are_lost() {
+    for (head, rows, layout) in [
+        (
+            "X [mm],Y [mm],U [mm],V [mm],exx [1],sigma [pixel]",
+            "1,2,3,4,0,0.02\n2,2,0,0,0,-1\n",
+            "VIC-3D",
+        ),
+        (
+            "COORDINATE_X,COORDINATE_Y,MODEL_COORDINATES_X,MODEL_COORDINATES_Y,DISPLACEMENT_X,DISPLACEMENT_Y,\
+             MODEL_DISPLACEMENT_X,MODEL_DISPLACEMENT_Y,SIGMA",
+            "61,971,1,2,9,9,3,4,0.02\n71,971,2,2,0,0,0,0,-1\n",
+            "DICe, stereo",
+        ),
+    ] {
+        let text = format!("{head}\n{rows}");
+        let found = read_texts(&[("a.csv", &text)], &unit(1.0)).unwrap();
+        assert_eq!(found.understood.layout, layout);
+        near(
+            &found.series.frames[0].markers,
+            &[marker(0, [1.0, 2.0], [3.0, 4.0])],
+        );
+        assert_eq!(found.series.lost, [[2.0, 2.0]]);
+    }
+}
+
+#[test]
+fn a_unit_that_nobody_knows_is_said_by_the_user() {
+    let text = "x（毫米）,y（毫米）,ux（毫米）,uy（毫米）\n1,2,3,4\n5,2,3,4\n";
+    let told = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
+    assert!(
+        told.to_string().contains("`毫米` is no unit of length"),
+        "{told}"
+    );
+    let found = read_texts(&[("a.csv", text)], &unit(2.0)).unwrap();
+    near(
+        &found.series.frames[0].markers[..1],
+        &[marker(0, [2.0, 4.0], [6.0, 8.0])],
+    );
+}
+
+#[test]
+fn tables_that_only_look_like_those_of_a_program_are_read_as_they_are() {
+    for head in [
+        "x [mm],y [mm],u [mm],v [mm],exx,sigma [mm]",
+        "X [mm],Y [mm],Ux [mm],Uy [mm],exx,sigma [mm]",
+    ] {
+        let text = format!("{head}\n1,2,3,4,0,0.5\n");
+        let found = read_texts(&[("a.csv", &text)], &ReadSettings::default()).unwrap();
+        assert_eq!(found.understood.layout, "columns");
+        let first = found.series.frames[0].markers[0];
+        assert_eq!(
+            (first.place, first.standard_deviation),
+            ([1.0, 2.0], Some(0.5))
+        );
+    }
+    let text = "x [mm],y [mm],displacement_x [mm],displacement_y [mm]\n1,2,3,4\n";
+    let told = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
+    assert!(
+        told.to_string()
+            .contains("--columns x=NAME,y=NAME,ux=NAME,uy=NAME"),
+        "{told}"
     );
 }
 
@@ -125,7 +190,7 @@ fn mudic_gives_places_in_the_frame() {
     let text = "id,x,y,ux,uy,true_strain_xx,true_strain_yy,true_strain_xy,eng_strain_xx,eng_strain_yy,eng_strain_xy\n\
                 0,110.0,52.0,10.0,2.0,0,0,0,0,0,0\n1,130.0,52.0,nan,2.0,0,0,0,0,0,0\n";
     let found = read_texts(&[("frame_3.csv", text)], &unit(0.1)).unwrap();
-    assert_eq!(found.layout, "muDIC");
+    assert_eq!(found.understood.layout, "muDIC");
     near(
         &found.series.frames[0].markers,
         &[marker(0, [10.0, -5.0], [1.0, -0.2])],
@@ -141,7 +206,7 @@ fn ncorr_keeps_matrices() {
     };
     let files = [("frame_2_v.csv", v), ("frame_2_u.csv", u)];
     let found = read_texts(&files, &reading).unwrap();
-    assert_eq!(found.layout, "Ncorr");
+    assert_eq!(found.understood.layout, "Ncorr");
     near(
         &found.series.frames[0].markers,
         &[

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::report::{largest_correction, largest_error, left, outliers, used};
 use super::verdict;
 use crate::corrector::estimation::{EdgeCondition, FieldEstimate, Robust};
-use crate::markers::Frame;
+use crate::markers::{Frame, Understood};
 use crate::results::Step;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
@@ -13,7 +13,8 @@ use crate::studies::markers::MarkerStudy;
 /// What was corrected.
 pub fn problem(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Map<String, Value> {
     let all = json!({
-        "layout": field.layout,
+        "layout": field.understood.layout,
+        "reading": reading(&field.understood),
         "thickness_mm": field.thickness,
         "mesh": {
             "origin": field.mesh_origin,
@@ -25,6 +26,23 @@ pub fn problem(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Map<String, 
         "edge_may_lie_farther_out_by_mm": field.unknown_gap,
     });
     all.as_object().cloned().unwrap_or_default()
+}
+
+/// How the files were understood.
+fn reading(understood: &Understood) -> Value {
+    let columns = understood.columns.iter().map(|taken| {
+        json!({
+            "holds": taken.holds,
+            "column": taken.head,
+            "unit_mm": taken.unit,
+        })
+    });
+    json!({
+        "encoding": understood.encoding,
+        "columns": columns.collect::<Vec<_>>(),
+        "y_axis_turned_up": understood.turned_up,
+        "places_taken_to_rest": understood.taken_to_rest,
+    })
 }
 
 /// The figures of one frame.

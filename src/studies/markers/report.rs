@@ -1,6 +1,6 @@
 //! The report of a correction.
 
-use super::verdict;
+use super::{reading, verdict};
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::results::Block;
 use crate::statistics::Estimate;
@@ -10,7 +10,7 @@ use crate::studies::markers::MarkerStudy;
 pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     let mut text = format!(
         "{}; {}; mesh {}: {}\n",
-        field.layout,
+        reading::short(&field.understood),
         field.card.name,
         field.mesh_origin,
         field.mesh.describe()
@@ -152,7 +152,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         Block::paragraph(format!(
             "{} frames, read as {}. Material {} ({}), {} mm thick. Mesh {}: {}.",
             estimates.len(),
-            field.layout,
+            field.understood.layout,
             field.card.name,
             field.card.title,
             field.thickness,
@@ -163,6 +163,8 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         frames,
         Block::paragraph(explanation),
     ];
+    let understood = reading::blocks(&field.understood);
+    blocks.splice(1..1, understood);
     blocks.extend(gross_errors(field, estimates).map(Block::paragraph));
     if field.coarse.is_none() {
         blocks.extend(verdict::blocks(field, estimates));

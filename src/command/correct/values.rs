@@ -1,0 +1,145 @@
+//! What the options of `gelbench correct` may be.
+
+use clap::ValueEnum;
+
+use crate::corrector::estimation::MeasuredForce;
+use crate::document::TextEncoding;
+use crate::error::Diagnostic;
+use crate::studies::markers::measured_force;
+use crate::units::{self, Dimension};
+
+/// Kinds of cells.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Cells {
+    /// Triangles of three nodes
+    Triangle3,
+    /// Triangles of six nodes
+    Triangle6,
+    /// Quadrilaterals of four nodes
+    Quadrilateral4,
+    /// Quadrilaterals of nine nodes
+    Quadrilateral9,
+}
+
+/// Where a y axis points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum YAxis {
+    /// As on paper
+    Up,
+    /// As in an image
+    Down,
+}
+
+/// What the places of markers are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Places {
+    /// Where markers were at rest
+    Rest,
+    /// Where markers are in the frame
+    Frame,
+}
+
+/// What gaps among markers are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Holes {
+    /// Holes of the specimen, where they are much wider than the spacing
+    Found,
+    /// Markers that were lost
+    Closed,
+}
+
+/// Weights of markers that are far off.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Weights {
+    /// As all others
+    No,
+    /// Less the farther they are off
+    Huber,
+    /// Not at all from a distance on
+    Tukey,
+}
+
+/// How far the physics holds.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Holds {
+    /// Equilibrium holds exactly
+    Exact,
+    /// Up to smooth forces that are weighted against the data, for a law that is not exactly right
+    Weighted,
+}
+
+/// An edge, an axis, a force and its standard deviation.
+pub fn force(text: &str) -> Result<MeasuredForce, Diagnostic> {
+    let refuse = |reason: String| {
+        Diagnostic::error("", reason)
+            .hint("write edge, axis and force, as in \"right x 1.2 N ± 0.02 N\"")
+    };
+    let words: Vec<&str> = text.splitn(3, ' ').collect();
+    let (edge, axis, values) = match words[..] {
+        [edge, "x", values] => (edge, 0, values),
+        [edge, "y", values] => (edge, 1, values),
+        _ => return Err(refuse("it is no force on an edge".into())),
+    };
+    let newtons = |text: &str| {
+        units::parse(text, Dimension::Force).map_err(|fault| {
+            let hint = fault.remedy(text, Dimension::Force);
+            Diagnostic::error("", format!("it {fault}")).hint(hint)
+        })
+    };
+    let values = values.replace("+-", "±");
+    let (value, deviation) = match values.split_once('±') {
+        None => (&*values, None),
+        Some((value, deviation)) => (value, Some(newtons(deviation)?)),
+    };
+    Ok(measured_force(edge, axis, newtons(value)?, deviation))
+}
+
+/// A length of zero or more in mm.
+pub fn gap(text: &str) -> Result<f64, Diagnostic> {
+    within(text, |length| length >= 0.0, "it must not be negative")
+}
+
+/// The size of a thing in mm.
+pub fn size(text: &str) -> Result<f64, Diagnostic> {
+    let [least, most] = units::SIZES;
+    let wanted = "it must be greater than zero, from 1 nm to 1 km";
+    within(text, |size| (least..=most).contains(&size), wanted)
+}
+
+/// A length greater than zero in mm.
+pub fn length(text: &str) -> Result<f64, Diagnostic> {
+    within(text, |length| length > 0.0, "it must be greater than zero")
+}
+
+fn within(text: &str, holds: impl Fn(f64) -> bool, wanted: &str) -> Result<f64, Diagnostic> {
+    let length = units::parse(text, Dimension::Length).map_err(|fault| {
+        let hint = fault.remedy(text, Dimension::Length);
+        Diagnostic::error("", format!("it {fault}")).hint(hint)
+    })?;
+    match holds(length) {
+        true => Ok(length),
+        false => Err(Diagnostic::error("", wanted).hint("write it as in \"1.5 mm\"")),
+    }
+}
+
+/// An encoding by its name.
+pub fn encoding(text: &str) -> Result<TextEncoding, Diagnostic> {
+    TextEncoding::of_name(text).ok_or_else(|| {
+        Diagnostic::error("", "it is no encoding that is known").hint(
+            "such as utf-8, utf-16le, utf-16be, latin1, windows-1252, gb18030, big5, shift_jis or euc-kr",
+        )
+    })
+}
+
+/// The length in mm of a unit, or a length.
+pub fn unit(text: &str) -> Result<f64, Diagnostic> {
+    units::factor(text, Dimension::Length).or_else(|fault| {
+        let number =
+            text.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first));
+        let hint = fault.remedy(text, Dimension::Length);
+        match number {
+            true => length(text),
+            false => Err(Diagnostic::error("", format!("it {fault}")).hint(hint)),
+        }
+    })
+}

@@ -1,0 +1,185 @@
+//! The columns of a table, and the lines above its rows that name them.
+
+use super::lines::is_name;
+use crate::units;
+
+/// A column's name and unit.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Column {
+    /// Its name in lower case, with underscores for spaces; empty where the file names no columns.
+    pub name: String,
+    /// The unit in brackets, if there is one.
+    pub unit: Option<String>,
+    /// Its name as it is written, without the unit.
+    pub written: String,
+}
+
+impl Column {
+    /// Name and unit of `nominal stress [MPa]` or `Stress (kPa)`.
+    pub(super) fn new(field: &str) -> Self {
+        let field = unquoted(field);
+        let (name, unit) = match field.split_once(['[', '(', '（', '［']) {
+            Some((name, unit)) => (name, Some(unit.trim_end_matches([']', ')', '）', '］']))),
+            None => (field, None),
+        };
+        Self {
+            name: plain_name(name),
+            unit: unit.map(|unit| unit.trim().to_owned()),
+            written: name.trim().to_owned(),
+        }
+    }
+
+    /// Name and unit as they are written.
+    pub fn head(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{} [{unit}]", self.written),
+            None => self.written.clone(),
+        }
+    }
+}
+
+/// A name as columns have it: in lower case, with underscores for spaces.
+pub fn plain_name(name: &str) -> String {
+    name.trim().to_lowercase().replace([' ', '-'], "_")
+}
+
+/// A field without the quotation marks that stand behind a space.
+pub(super) fn unquoted(field: &str) -> &str {
+    field.trim().trim_matches('"').trim()
+}
+
+/// The lines that stand above the rows, by their places among the lines that are not empty.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(super) struct Above {
+    /// The line that names the columns.
+    pub names: Option<usize>,
+    /// The line that holds their units.
+    pub units: Option<usize>,
+    /// The first row.
+    pub first_row: usize,
+}
+
+impl Above {
+    /// Looks through the first lines of a file, split into fields.
+    ///
+    /// Names are as many as the fields of most lines. What stands before them is a preamble; a line of names below them holds units,
+    /// unless the first line is a title over groups of columns: one with empty or repeated fields.
+    pub fn of(lines: &[Vec<String>]) -> Self {
+        let width = most_frequent(lines.iter().map(Vec::len));
+        let is_head = |line: &Vec<String>| line.iter().all(|field| is_name(unquoted(field)));
+        let of_width = |line: &Vec<String>| Some(line.len()) == width;
+        let Some(names) = lines
+            .iter()
+            .position(|line| of_width(line) && is_head(line))
+            .filter(|names| !lines[..*names].iter().any(of_width))
+        else {
+            let heads = lines.iter().take_while(|line| is_head(line)).count();
+            return Self {
+                names: (heads > 0).then_some(0),
+                units: (heads > 1).then_some(1),
+                first_row: heads,
+            };
+        };
+        let below = lines[names..].iter();
+        let heads = below.take_while(|line| of_width(line) && is_head(line));
+        let mut heads: Vec<_> = heads.collect();
+        let below = lines.get(names + heads.len());
+        heads.extend(below.filter(|line| of_width(line) && is_units(line)));
+        let title = heads.len() > 1 && is_title(heads[0]) && !is_title(heads[1]);
+        let skipped = usize::from(title);
+        Self {
+            names: Some(names + skipped),
+            units: (heads.len() > 1 + skipped).then_some(names + skipped + 1),
+            first_row: names + heads.len(),
+        }
+    }
+}
+
+/// The value that stands most often, the first of those that stand equally often.
+fn most_frequent(values: impl Iterator<Item = usize>) -> Option<usize> {
+    let mut counted: Vec<(usize, usize)> = Vec::new();
+    for value in values {
+        match counted.iter_mut().find(|(known, _)| *known == value) {
+            Some((_, count)) => *count += 1,
+            None => counted.push((value, 1)),
+        }
+    }
+    let most = counted.iter().map(|(_, count)| *count).max()?;
+    let first = counted.into_iter().find(|(_, count)| *count == most);
+    first.map(|(value, _)| value)
+}
+
+/// Whether a line stands over groups of columns: fields are empty or repeat each other, and they are no units.
+fn is_title(line: &[String]) -> bool {
+    let fields: Vec<&str> = line.iter().map(|field| unquoted(field)).collect();
+    let repeats = |(index, field): (usize, &&str)| fields[..index].contains(field);
+    let repeated = fields.iter().enumerate().any(repeats);
+    repeated && !fields.iter().all(|field| is_unit(field))
+}
+
+/// Whether a field may stand in a line of units.
+fn is_unit(field: &str) -> bool {
+    let plain = field.trim_matches(['(', ')', '[', ']', ' ']);
+    const OTHER: [&str; 6] = ["", "-", "1", "px", "pixel", "pixels"];
+    let bracketed = plain.len() < field.len();
+    bracketed || OTHER.contains(&&*plain.to_lowercase()) || units::is_known(plain)
+}
+
+/// Whether a line holds units, some of which are 1, and hence may look like a row.
+fn is_units(line: &[String]) -> bool {
+    let fields: Vec<&str> = line.iter().map(|field| unquoted(field)).collect();
+    let named = fields
+        .iter()
+        .any(|field| is_name(field) && !field.is_empty());
+    named && fields.iter().all(|field| is_unit(field))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn above(text: &str) -> Above {
+        let split = |line: &str| line.split(';').map(str::to_owned).collect();
+        Above::of(&text.lines().map(split).collect::<Vec<_>>())
+    }
+
+    fn expected(names: usize, units: Option<usize>, first_row: usize) -> Above {
+        Above {
+            names: Some(names),
+            units,
+            first_row,
+        }
+    }
+
+    #[test]
+    fn names_units_titles_and_preambles_are_told_apart() {
+        for (text, found) in [
+            ("x;y;u\n1;2;3\n4;5;6", expected(0, None, 1)),
+            ("x;y;u\nmm;mm;mm\n1;2;3\n4;5;6", expected(0, Some(1), 2)),
+            ("x;y;e\nmm;mm;1\n1;2;3\n4;5;6", expected(0, Some(1), 2)),
+            ("Project 7\nx;y;u\n1;2;3\n4;5;6", expected(1, None, 2)),
+            (
+                "Date;4.5.2024\nStage\nx;y;u\n[mm];[mm];\n1;2;3\n4;5;6",
+                expected(2, Some(3), 4),
+            ),
+            ("L0;L0;L0\nx;y;u\n1;2;3\n4;5;6", expected(1, None, 2)),
+            (
+                "L0;;\nx;y;u\nmm;mm;px\n1;2;3\n4;5;6",
+                expected(1, Some(2), 3),
+            ),
+        ] {
+            assert_eq!(above(text), found, "{text}");
+        }
+        // A line of names among rows is a fault of the row that it is.
+        assert_eq!(above("1;2\n3;4\nx;y").names, None);
+    }
+
+    #[test]
+    fn names_are_plain_and_as_written() {
+        let column = Column::new(" \"disp.Horizontal Displacement U [mm]\"");
+        assert_eq!(column.name, "disp.horizontal_displacement_u");
+        assert_eq!(column.written, "disp.Horizontal Displacement U");
+        assert_eq!(column.unit.as_deref(), Some("mm"));
+        assert_eq!(Column::new("位移（mm）").unit.as_deref(), Some("mm"));
+    }
+}

@@ -1,0 +1,69 @@
+//! How files were understood: layout, encoding, columns, units, origin and axes.
+
+/// How the first of the files was understood; the others are like it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Understood {
+    /// The layout of the file.
+    pub layout: &'static str,
+    /// The encoding of its text.
+    pub encoding: Option<&'static str>,
+    /// What was taken from which column.
+    pub columns: Vec<ColumnTaken>,
+    /// Whether the file's y axis points down, as in an image, and was turned up.
+    pub turned_up: bool,
+    /// Whether the file's places are those of the frame, from which the displacement was subtracted.
+    pub taken_to_rest: bool,
+}
+
+/// A column and what was taken from it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColumnTaken {
+    /// What it holds.
+    pub holds: &'static str,
+    /// Its name and unit as they are written.
+    pub head: String,
+    /// The length of its unit in mm, of columns of lengths.
+    pub unit: Option<f64>,
+    /// Where the unit is known from.
+    pub unit_source: &'static str,
+}
+
+impl Understood {
+    /// Of a layout without columns.
+    pub fn of(layout: &'static str) -> Self {
+        Self {
+            layout,
+            ..Self::default()
+        }
+    }
+
+    /// Origin and axes in words.
+    pub fn axes(&self) -> &'static str {
+        match self.turned_up {
+            true => {
+                "In the file y points down, as in an image; here y and uy are turned up: the origin is the file's, such as the \
+                 upper left corner of the image, and what lies below it has y less than zero."
+            }
+            false => "Origin and axes are the file's, with y taken to point up.",
+        }
+    }
+
+    /// Where places come from, if they are not the file's.
+    pub fn places(&self) -> Option<&'static str> {
+        self.taken_to_rest.then_some(
+            "The file's places are those in the frame; the displacement was subtracted to have them at rest.",
+        )
+    }
+
+    /// The axes of the file beside those used here, where they differ.
+    pub fn sketch(&self) -> Option<&'static str> {
+        self.turned_up.then_some(
+            "in the file          here\n\
+             O----> x             y\n\
+             |                    ^\n\
+             |                    |\n\
+             v                    |\n\
+             y                    O----> x",
+        )
+    }
+}

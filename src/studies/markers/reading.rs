@@ -1,0 +1,51 @@
+//! The report on how files were understood.
+
+use crate::markers::{ColumnTaken, Understood};
+use crate::results::Block;
+
+/// Columns, units, origin and axes of files, as far as there is something to say.
+pub fn blocks(understood: &Understood) -> Vec<Block> {
+    if understood.columns.is_empty() && !understood.turned_up {
+        return Vec::new();
+    }
+    let encoding = understood.encoding.map(|name| format!("Text in {name}. "));
+    let mut words = encoding.unwrap_or_default();
+    words += understood.axes();
+    words += &understood
+        .places()
+        .map_or(String::new(), |places| format!(" {places}"));
+    let mut blocks = vec![
+        Block::heading("How the file was read"),
+        Block::paragraph(words),
+    ];
+    if !understood.columns.is_empty() {
+        let head = ["taken as", "column", "its unit [mm]", "by"];
+        let rows = understood.columns.iter().map(row);
+        blocks.push(Block::table(&head, rows));
+    }
+    blocks.extend(
+        understood
+            .sketch()
+            .map(|sketch| Block::Code("text", sketch.to_owned())),
+    );
+    blocks
+}
+
+fn row(taken: &ColumnTaken) -> Vec<String> {
+    let unit = taken.unit.map_or(String::new(), |unit| unit.to_string());
+    vec![
+        taken.holds.to_owned(),
+        taken.head.clone(),
+        unit,
+        taken.unit_source.to_owned(),
+    ]
+}
+
+/// The layout, for the terminal.
+pub fn short(understood: &Understood) -> String {
+    let turned = match understood.turned_up {
+        true => ", y turned up",
+        false => "",
+    };
+    format!("{}{turned}", understood.layout)
+}

@@ -1,0 +1,574 @@
+//! One field in every dialect in which programs write tables is one and the same field.
+
+use std::fs;
+
+use encoding_rs::{Encoding, GB18030, UTF_8, WINDOWS_1252};
+use gelbench::markers::{ChosenColumns, MarkerFiles, MarkerSeries, ReadSettings, read};
+use tempfile::TempDir;
+
+mod common;
+
+use common::{gelbench, report_of_correction, root, words};
+
+/// A marker: x, y, ux, uy in mm, y upwards. Its numbers are short in binary, so that no way of writing them rounds.
+type Point = [f64; 4];
+
+/// A column: name, unit, and what stands there.
+type Column = (&'static str, &'static str, fn(usize, Point) -> f64);
+
+/// What a program writes.
+struct Export {
+    layout: &'static str,
+    columns: Vec<Column>,
+    /// The length of its unit in mm where the file does not say it.
+    unit: Option<f64>,
+}
+
+fn points() -> Vec<Point> {
+    let places = (0..4).flat_map(|i| (0..3).map(move |j| [f64::from(i), f64::from(j)]));
+    let point = |[i, j]: [f64; 2]| {
+        let [x, y] = [10.0 + 2.5 * i, 1200.0 + 3.25 * j];
+        [x, y, 0.125 * i + 0.0625 * j * j, 0.5 - 0.25 * j]
+    };
+    places.map(point).collect()
+}
+
+const ID: fn(usize, Point) -> f64 = |id, _| id as f64;
+const ZERO: fn(usize, Point) -> f64 = |_, _| 0.0;
+const STRAIN: fn(usize, Point) -> f64 = |id, _| 0.01 * id as f64;
+const X: fn(usize, Point) -> f64 = |_, [x, ..]| x;
+const Y: fn(usize, Point) -> f64 = |_, [_, y, ..]| y;
+const UX: fn(usize, Point) -> f64 = |_, [.., ux, _]| ux;
+const UY: fn(usize, Point) -> f64 = |_, [.., uy]| uy;
+/// Downwards, as in an image.
+const Y_DOWN: fn(usize, Point) -> f64 = |_, [_, y, ..]| -y;
+const UY_DOWN: fn(usize, Point) -> f64 = |_, [.., uy]| -uy;
+/// In pixels of half a millimetre.
+const X_PIXEL: fn(usize, Point) -> f64 = |_, [x, ..]| 2.0 * x;
+const Y_PIXEL: fn(usize, Point) -> f64 = |_, [_, y, ..]| -2.0 * y;
+const U_PIXEL: fn(usize, Point) -> f64 = |_, [.., ux, _]| 2.0 * ux;
+const V_PIXEL: fn(usize, Point) -> f64 = |_, [.., uy]| -2.0 * uy;
+
+/// Tables of programs, with heads as they write them (sources: the documentation of the layouts).
+fn exports() -> Vec<Export> {
+    let export = |layout, unit, columns: &[Column]| Export {
+        layout,
+        columns: columns.to_vec(),
+        unit,
+    };
+    let (millimetres, pixels) = (None, Some(0.5));
+    vec![
+        export(
+            "columns",
+            millimetres,
+            &[
+                ("x", "mm", X),
+                ("y", "mm", Y),
+                ("ux", "mm", UX),
+                ("uy", "mm", UY),
+            ],
+        ),
+        export(
+            "DICe",
+            pixels,
+            &[
+                ("SUBSET_ID", "", ID),
+                ("COORDINATE_X", "", X_PIXEL),
+                ("COORDINATE_Y", "", Y_PIXEL),
+                ("DISPLACEMENT_X", "", U_PIXEL),
+                ("DISPLACEMENT_Y", "", V_PIXEL),
+                ("VSG_STRAIN_XX", "", STRAIN),
+                ("GAMMA", "", STRAIN),
+                ("MATCH", "", ZERO),
+            ],
+        ),
+        export(
+            "pyALDIC",
+            pixels,
+            &[
+                ("node_id", "", ID),
+                ("x_px", "", X_PIXEL),
+                ("y_px", "", Y_PIXEL),
+                ("disp_u", "", U_PIXEL),
+                ("disp_v", "", V_PIXEL),
+                ("disp_magnitude", "", ZERO),
+                ("strain_exx", "", STRAIN),
+            ],
+        ),
+        export(
+            "muDIC",
+            pixels,
+            &[
+                ("id", "", ID),
+                ("x", "", |_, [x, _, ux, _]| 2.0 * (x + ux)),
+                ("y", "", |_, [_, y, _, uy]| -2.0 * (y + uy)),
+                ("ux", "", U_PIXEL),
+                ("uy", "", V_PIXEL),
+                ("true_strain_xx", "", STRAIN),
+            ],
+        ),
+        export(
+            "VIC-3D",
+            millimetres,
+            &[
+                ("Index", "1", ID),
+                ("X", "mm", X),
+                ("Y", "mm", Y),
+                ("Z", "mm", ZERO),
+                ("U", "mm", UX),
+                ("V", "mm", UY),
+                ("W", "mm", ZERO),
+                ("Sigma_X", "mm", STRAIN),
+                ("sigma", "pixel", STRAIN),
+                ("x", "pixel", STRAIN),
+                ("exx", "1", STRAIN),
+            ],
+        ),
+        export(
+            "VIC-2D",
+            pixels,
+            &[
+                ("x", "", X_PIXEL),
+                ("y", "", Y_PIXEL),
+                ("u", "", U_PIXEL),
+                ("v", "", V_PIXEL),
+                ("exx", "", STRAIN),
+                ("eyy", "", STRAIN),
+                ("exy", "", STRAIN),
+                ("sigma", "", STRAIN),
+            ],
+        ),
+        export(
+            "MatchID",
+            millimetres,
+            &[
+                ("Coordinates.Image X", "Pixel", ID),
+                ("Coordinates.Image Y", "Pixel", ID),
+                ("coor.X", "mm", X),
+                ("coor.Y", "mm", Y_DOWN),
+                ("disp.Horizontal Displacement U", "mm", UX),
+                ("disp.Vertical Displacement V", "mm", UY_DOWN),
+                ("strain.Strain-global frame: Exx", "-", STRAIN),
+            ],
+        ),
+        export(
+            "MatchID",
+            pixels,
+            &[
+                ("Coordinates.Image X", "Pixel", X_PIXEL),
+                ("Coordinates.Image Y", "Pixel", Y_PIXEL),
+                ("disp.Horizontal Displacement U", "Pixel", U_PIXEL),
+                ("disp.Vertical Displacement V", "Pixel", V_PIXEL),
+            ],
+        ),
+        export(
+            "MatchID",
+            Some(1.0),
+            &[
+                ("x_pic", "", ID),
+                ("y_pic", "", ID),
+                ("x", "", X),
+                ("y", "", Y_DOWN),
+                ("z", "", ZERO),
+                ("u", "", UX),
+                ("v", "", UY_DOWN),
+                ("w", "", ZERO),
+                ("exx", "", STRAIN),
+            ],
+        ),
+        export(
+            "GOM, nodemap",
+            millimetres,
+            &[
+                ("ID", "", ID),
+                ("x_undef", "mm", X),
+                ("y_undef", "mm", Y),
+                ("z_undef", "mm", ZERO),
+                ("u", "mm", UX),
+                ("v", "mm", UY),
+                ("w", "mm", ZERO),
+                ("epsx", "%", STRAIN),
+                ("epsxy", "1", STRAIN),
+            ],
+        ),
+        export(
+            "GOM Correlate",
+            Some(1.0),
+            &[
+                ("id", "", ID),
+                ("x", "", |_, [x, _, ux, _]| x + ux),
+                ("y", "", |_, [_, y, _, uy]| y + uy),
+                ("z", "", ZERO),
+                ("displacement_x", "", UX),
+                ("displacement_y", "", UY),
+                ("displacement_z", "", ZERO),
+                ("epsilon_x", "", STRAIN),
+            ],
+        ),
+    ]
+}
+
+/// How a table is written.
+#[derive(Clone, Copy, Debug)]
+struct Dialect {
+    separator: &'static str,
+    decimal: char,
+    /// Around each field, and behind each separator.
+    quotes: [&'static str; 2],
+    /// Whether units stand in a second line, else in brackets.
+    second_line: bool,
+    /// Whether the line of names is a remark.
+    remark: bool,
+    preamble: &'static str,
+    line_end: &'static str,
+}
+
+fn dialects() -> Vec<Dialect> {
+    let mut all = Vec::new();
+    let separators = [(",", '.'), (";", '.'), (";", ','), ("\t", '.'), ("\t", ',')];
+    let heads = [(false, false), (true, false), (false, true)];
+    let quotes = [["", ""], ["\"", ""], ["\"", " "], ["", " "]];
+    for (separator, decimal) in separators {
+        for (second_line, remark) in heads {
+            for quotes in quotes {
+                for preamble in ["", "Project 7, specimen 3\n5 mm/min\n"] {
+                    for line_end in ["\n", "\r\n"] {
+                        all.push(Dialect {
+                            separator,
+                            decimal,
+                            quotes,
+                            second_line,
+                            remark,
+                            preamble,
+                            line_end,
+                        });
+                    }
+                }
+            }
+        }
+    }
+    // A remark has no quotes, and nothing stands above it that is none.
+    all.retain(|one| !one.remark || one.quotes[0].is_empty() && one.preamble.is_empty());
+    let quoted = Dialect {
+        separator: ",",
+        decimal: ',',
+        quotes: ["\"", ""],
+        ..all[0]
+    };
+    all.push(quoted);
+    all
+}
+
+impl Dialect {
+    fn line(&self, fields: impl Iterator<Item = String>) -> String {
+        let [quote, space] = self.quotes;
+        let fields: Vec<String> = fields
+            .map(|field| format!("{quote}{field}{quote}"))
+            .collect();
+        fields.join(&format!("{}{space}", self.separator)) + "\n"
+    }
+
+    fn text(&self, export: &Export, remark: &str) -> String {
+        let columns = || export.columns.iter();
+        let bracketed = |(name, unit, _): &Column| match (unit.is_empty(), self.second_line) {
+            (false, false) => format!("{name} [{unit}]"),
+            _ => (*name).to_owned(),
+        };
+        let mut text = format!("# {remark}\n{}", self.preamble);
+        text += if self.remark { "#  " } else { "" };
+        text += &self.line(columns().map(bracketed));
+        if self.second_line {
+            text += &self.line(columns().map(|(_, unit, _)| (*unit).to_owned()));
+        }
+        for (id, point) in points().into_iter().enumerate() {
+            let value = |(.., value): &Column| value(id, point).to_string();
+            let field = |column| value(column).replace('.', &self.decimal.to_string());
+            text += &self.line(columns().map(field));
+        }
+        text.replace('\n', self.line_end)
+    }
+}
+
+fn read_bytes(bytes: &[u8], settings: &ReadSettings) -> MarkerFiles {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.csv");
+    fs::write(&path, bytes).unwrap();
+    read(&[path], settings).unwrap_or_else(|error| panic!("{error}\n{}", words(bytes)))
+}
+
+fn settings(unit: Option<f64>) -> ReadSettings {
+    ReadSettings {
+        unit,
+        ..ReadSettings::default()
+    }
+}
+
+/// The field as plain columns.
+fn expected() -> MarkerSeries {
+    let text = dialects()[0].text(&exports()[0], "");
+    read_bytes(text.as_bytes(), &settings(None)).series
+}
+
+#[test]
+fn every_program_in_every_dialect_gives_the_same_field() {
+    let expected = expected();
+    assert_eq!(expected.frames[0].markers.len(), 12);
+    for export in exports() {
+        for dialect in dialects() {
+            let text = dialect.text(&export, "made by hand");
+            let found = read_bytes(text.as_bytes(), &settings(export.unit));
+            assert_eq!(found.understood.layout, export.layout, "{text}");
+            assert_eq!(
+                found.series, expected,
+                "{}, {dialect:?}\n{text}",
+                export.layout
+            );
+        }
+    }
+}
+
+fn utf_16(text: &str, bytes_of: fn(u16) -> [u8; 2]) -> Vec<u8> {
+    text.encode_utf16().flat_map(bytes_of).collect()
+}
+
+#[test]
+fn every_program_in_every_encoding_gives_the_same_field() {
+    let expected = expected();
+    let in_one = |encoding: &'static Encoding, text: &str| {
+        let (bytes, _, lost) = encoding.encode(text);
+        assert!(!lost);
+        bytes.into_owned()
+    };
+    for export in exports() {
+        for dialect in [dialects()[0], dialects()[70]] {
+            let [plain, european, chinese] =
+                ["plain", "Prüfkörper, Größe in µm", "试样的位移和坐标"]
+                    .map(|remark| dialect.text(&export, remark));
+            let marked = format!("\u{feff}{chinese}");
+            for (bytes, name) in [
+                (in_one(UTF_8, &chinese), "UTF-8"),
+                (in_one(UTF_8, &marked), "UTF-8"),
+                (in_one(WINDOWS_1252, &european), "Latin-1 (Windows-1252)"),
+                (in_one(GB18030, &chinese), "gb18030"),
+                (utf_16(&marked, u16::to_le_bytes), "UTF-16LE"),
+                (utf_16(&marked, u16::to_be_bytes), "UTF-16BE"),
+                (utf_16(&plain, u16::to_le_bytes), "UTF-16LE"),
+                (utf_16(&plain, u16::to_be_bytes), "UTF-16BE"),
+            ] {
+                let found = read_bytes(&bytes, &settings(export.unit));
+                assert_eq!(found.understood.encoding, Some(name));
+                assert_eq!(found.series, expected, "{}, {name}", export.layout);
+            }
+        }
+    }
+}
+
+#[test]
+fn named_columns_give_what_the_program_is_known_for() {
+    let expected = expected();
+    let exports = exports();
+    let unnamed = |name: &str| ReadSettings {
+        columns: ChosenColumns::parse(name.split(',')).unwrap(),
+        downwards: Some(true),
+        ..settings(Some(0.5))
+    };
+    for (layout, names) in [
+        ("pyALDIC", "id=node_id,x=x_px,y=y_px,ux=disp_u,uy=disp_v"),
+        (
+            "DICe",
+            "x=COORDINATE_X,y=coordinate_y,ux=Displacement_X,uy=DISPLACEMENT_Y",
+        ),
+        ("VIC-2D", "x=x,y=y,ux=u,uy=v"),
+    ] {
+        let export = exports
+            .iter()
+            .find(|export| export.layout == layout)
+            .unwrap();
+        for dialect in [dialects()[0], dialects()[70]] {
+            let text = dialect.text(export, "");
+            let found = read_bytes(text.as_bytes(), &unnamed(names));
+            assert_eq!(found.understood.layout, "columns");
+            let places = |series: &MarkerSeries| -> Vec<_> {
+                let markers = series.frames[0].markers.iter();
+                markers
+                    .map(|marker| (marker.place, marker.displacement))
+                    .collect()
+            };
+            assert_eq!(places(&found.series), places(&expected), "{layout}");
+        }
+    }
+    // Capitals tell columns apart; the file's y axis points up here.
+    let vic = exports
+        .iter()
+        .find(|export| export.layout == "VIC-3D")
+        .unwrap();
+    let upwards = ReadSettings {
+        columns: ChosenColumns::parse(["x=X", "y=Y", "ux=U [mm]", "uy=v", "id=Index"]).unwrap(),
+        ..settings(None)
+    };
+    let text = dialects()[0].text(vic, "");
+    assert_eq!(read_bytes(text.as_bytes(), &upwards).series, expected);
+}
+
+#[test]
+fn a_field_read_downwards_is_the_mirrored_one() {
+    let text = |turned: bool| {
+        let sign = if turned { -1.0 } else { 1.0 };
+        let row = |[x, y, ux, uy]: Point| format!("{x},{},{ux},{}\n", sign * y, sign * uy);
+        "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned()
+            + &points().into_iter().map(row).collect::<String>()
+    };
+    let downwards = ReadSettings {
+        downwards: Some(true),
+        ..settings(None)
+    };
+    let found = read_bytes(text(true).as_bytes(), &downwards);
+    assert_eq!(found.series, expected());
+    assert!(found.understood.turned_up && found.understood.sketch().is_some());
+    let upwards = read_bytes(text(false).as_bytes(), &settings(None));
+    assert_eq!(found.series, upwards.series);
+    assert!(!upwards.understood.turned_up);
+    // What a layout says is overruled.
+    let dice = exports().remove(1);
+    let up = ReadSettings {
+        downwards: Some(false),
+        ..settings(Some(0.5))
+    };
+    let found = read_bytes(dialects()[0].text(&dice, "").as_bytes(), &up);
+    let [first, wanted] =
+        [&found.series, &upwards.series].map(|series| series.frames[0].markers[0]);
+    assert_eq!(
+        (first.place[1], first.displacement[1]),
+        (-wanted.place[1], -wanted.displacement[1])
+    );
+}
+
+/// The corrected field of a table: its nodes, the report, and what is printed.
+fn corrected(bytes: &[u8], more: &[&str]) -> (String, String, String) {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("a.csv"), bytes).unwrap();
+    let card = root().join("materials/pva-10.toml").display().to_string();
+    let mut arguments = vec![
+        "correct",
+        "a.csv",
+        "--material",
+        &card,
+        "--thickness",
+        "2 mm",
+    ];
+    arguments.extend([
+        "--rigid",
+        "left,right",
+        "--free",
+        "top,bottom",
+        "--edge-gap",
+        "0 mm",
+        "--cell-size",
+        "3 mm",
+    ]);
+    arguments.extend(more);
+    let done = gelbench(folder.path(), &arguments).get_output().clone();
+    let file = |name: &str| {
+        let path = folder.path().join("output/correct").join(name);
+        fs::read_to_string(path).unwrap_or_else(|_| panic!("{}", words(&done.stderr)))
+    };
+    let report = report_of_correction(folder.path());
+    assert!(report["problem"]["reading"]["encoding"].is_string());
+    (
+        file("nodes_001.csv"),
+        file("report.md"),
+        words(&done.stdout),
+    )
+}
+
+#[test]
+fn the_correction_is_the_same_to_the_bit_and_the_report_says_what_was_read() {
+    let (exports, dialects) = (exports(), dialects());
+    let plain = dialects[0].text(&exports[0], "");
+    let (nodes, report, printed) = corrected(plain.as_bytes(), &[]);
+    assert!(printed.starts_with("columns; "), "{printed}");
+    assert!(report.contains("with y taken to point up"), "{report}");
+    let german = dialects
+        .iter()
+        .find(|one| one.separator == ";" && one.decimal == ',' && one.second_line);
+    let vic = german.unwrap().text(&exports[4], "Größe");
+    let (bytes, ..) = WINDOWS_1252.encode(&vic);
+    let (of_vic, report, printed) = corrected(&bytes, &[]);
+    assert_eq!(of_vic, nodes);
+    assert!(printed.starts_with("VIC-3D; "), "{printed}");
+    assert!(report.contains("Text in Latin-1"), "{report}");
+    let aldic = german.unwrap().text(&exports[2], "");
+    let (of_aldic, report, printed) = corrected(
+        &utf_16(&format!("\u{feff}{aldic}"), u16::to_be_bytes),
+        &["--unit", "0.5 mm"],
+    );
+    assert_eq!(of_aldic, nodes);
+    assert!(printed.starts_with("pyALDIC, y turned up; "), "{printed}");
+    for told in [
+        "read as pyALDIC",
+        "Text in UTF-16BE",
+        "y points down, as in an image",
+        "| ux | disp_u | 0.5 | --unit |",
+    ] {
+        assert!(report.contains(told), "{told}: {report}");
+    }
+}
+
+#[test]
+fn wrong_names_are_told_with_those_that_there_are() {
+    let folder = TempDir::new().unwrap();
+    let text = "x_px,y_px,disp_u,disp_v,disp_v\n1,2,3,4,5\n";
+    fs::write(folder.path().join("a.csv"), text).unwrap();
+    for (columns, told) in [
+        (
+            "x=x_px,y=y_px,ux=disp_x,uy=disp_v",
+            "there is no column `disp_x` did you mean `disp_u`? the file has x_px, y_px, disp_u",
+        ),
+        (
+            "x=x_px,y=y_px,ux=disp_u,uy=disp_v",
+            "the file has 2 columns `disp_v`",
+        ),
+        ("x=x_px,x=y_px", "two columns are named for `x`"),
+        ("x=x_px,y=x_px", "the column `x_px` is named twice"),
+        (
+            "x=x_px,displacement=disp_u",
+            "`displacement` is nothing that a column holds columns hold x, y, ux, uy",
+        ),
+        ("uz=disp_u", "did you mean `ux`?"),
+        ("x_px", "`x_px` names no column"),
+        ("x=", "`x=` names no column"),
+    ] {
+        let arguments = [
+            "correct",
+            "a.csv",
+            "--material",
+            "pva-10",
+            "--thickness",
+            "2 mm",
+            "--unit",
+            "1 mm",
+            "--columns",
+            columns,
+        ];
+        let refused = gelbench(folder.path(), &arguments).code(2);
+        let found = words(&refused.get_output().stderr);
+        let plain: String = found
+            .chars()
+            .map(|letter| {
+                if "│×╰─▶·╭╯┬├".contains(letter) {
+                    ' '
+                } else {
+                    letter
+                }
+            })
+            .collect();
+        let plain = plain
+            .replace("help:", "")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        for part in told.split(" did you").collect::<Vec<_>>() {
+            assert!(plain.contains(part.trim()), "{columns}: {plain}");
+        }
+    }
+}
