@@ -150,6 +150,9 @@ enum Command {
         /// Leave out the slow cases
         #[arg(long)]
         quick: bool,
+        /// The fields that other people measured: the case real-measurements
+        #[arg(long)]
+        field: bool,
         /// Write the report into this folder
         #[arg(long, value_name = "FOLDER")]
         output: Option<PathBuf>,
@@ -214,10 +217,14 @@ fn perform(command: Command) -> u8 {
         Command::Completions { shell } => shell::completions(shell, &mut Arguments::command()),
         Command::Man { output } => shell::manual(&output, &mut Arguments::command()),
         Command::Validate {
-            cases,
+            mut cases,
             quick,
+            field,
             output,
-        } => validate(&cases, quick, output),
+        } => {
+            cases.extend(field.then(|| validation::REAL_MEASUREMENTS.to_owned()));
+            validate(&cases, quick, output)
+        }
         Command::Materials { command } => materials::run(command),
     };
     outcome.unwrap_or_else(|error| {

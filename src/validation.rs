@@ -24,11 +24,15 @@ mod oscillator;
 mod other_codes;
 mod plate;
 mod plate_ablation;
+mod real_measurements;
 pub mod report;
 mod smoothing;
 mod spring_identification;
 mod vibrating_plate;
 mod vibrating_spring;
+
+/// The case of fields that other people measured.
+pub const REAL_MEASUREMENTS: &str = "real-measurements";
 
 /// A table of cases: kind, the study that comes along, `quick` or `slow`, and what reads it.
 macro_rules! cases {
@@ -55,6 +59,7 @@ pub const CASES: &[Kind] = cases! {
     "smoothing", "examples/smoothing.toml", slow, smoothing::prepare;
     "measured-fields", "validation/cases/measured_fields.toml", slow, interval_coverage::prepare;
     "interval-coverage", "validation/cases/interval_coverage.toml", slow, interval_coverage::coverage::prepare;
+    REAL_MEASUREMENTS, "validation/cases/real_measurements.toml", slow, real_measurements::prepare;
     specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;
     motion::KIND, "examples/released_plate.toml", slow, motion::prepare;
     "cost", "examples/cost.toml", slow, cost::prepare;

@@ -15,12 +15,14 @@ use crate::corrector::estimation::{
 };
 use crate::document::TextEncoding;
 use crate::error::Error;
-use crate::markers::{ChosenColumns, ReadSettings};
+use crate::markers::{ChosenColumns, Frame, ReadSettings};
 use crate::mesh::{CellShape, Exemptions, MeshReading};
 use crate::output::{self, ResultFolder};
 use crate::results::NamedGrid;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
-use crate::studies::markers::{Conditions, MarkerStudy, MeshSource, Request, worst_answer};
+use crate::studies::markers::{
+    Conditions, MarkerStudy, MeshSource, Request, compare_frames, worst_answer,
+};
 use crate::studies::name;
 use crate::studies::sections::read_text;
 
@@ -178,39 +180,59 @@ intervals hold it; \"not explained by this law, thickness and conditions\", no i
 Exit codes: 0 explained, also with correlated noise; 1 explained, but something else is doubtful; 5 not explained; 2 wrong input,
 3 no solution, 4 cannot write.";
 
-/// Corrects frame after frame and writes each at once; what a run of the same identity has done is not done again.
+/// Corrects frame after frame and writes each as soon as the one after it is known; what a run of the same identity has done
+/// is not done again.
 fn estimates(
     field: &MarkerStudy,
     folder: &mut ResultFolder,
     progress: &Progress,
 ) -> Result<Vec<FieldEstimate>, Error> {
-    let mut all = Vec::new();
+    let mut all: Vec<FieldEstimate> = Vec::new();
+    let mut before: Option<(&Frame, bool)> = None;
     for frame in &field.series.frames {
         progress.tell(&format!("frame {}", frame.number));
-        let part = frame.number.to_string();
-        let estimate = match folder.kept(&part) {
-            Some(estimate) => estimate,
-            None => {
-                let estimate = field.estimate_frame(frame)?;
-                let files = FrameFiles::new(field, frame, &estimate);
-                for NamedGrid { name, grid, .. } in &files.grids {
-                    folder.add(&format!("vtk/{name}.vtu"), &output::vtk::grid(grid))?;
-                }
-                for (name, table) in &files.tables {
-                    folder.add(name, table.as_bytes())?;
-                }
-                folder.keep(&part, &estimate)?;
-                estimate
+        let kept = folder.kept(&part(frame));
+        let is_kept = kept.is_some();
+        let mut estimate = kept.map_or_else(|| field.estimate_frame(frame), Ok)?;
+        if let Some(((frame_before, was_kept), last)) = before.zip(all.last_mut()) {
+            compare_frames([frame_before, frame], [last, &mut estimate]);
+            if !was_kept {
+                write(field, frame_before, last, folder)?;
             }
-        };
+        }
         all.push(estimate);
+        before = Some((frame, is_kept));
         progress.advance();
+    }
+    if let Some(((frame, false), last)) = before.zip(all.last()) {
+        write(field, frame, last, folder)?;
     }
     for series in SERIES {
         let collection = output::vtk::collection(&played(field, series));
         folder.add(&format!("vtk/{series}.pvd"), &collection)?;
     }
     Ok(all)
+}
+
+/// The name under which a frame is kept.
+fn part(frame: &Frame) -> String {
+    frame.number.to_string()
+}
+
+fn write(
+    field: &MarkerStudy,
+    frame: &Frame,
+    estimate: &FieldEstimate,
+    folder: &mut ResultFolder,
+) -> Result<(), Error> {
+    let files = FrameFiles::new(field, frame, estimate);
+    for NamedGrid { name, grid, .. } in &files.grids {
+        folder.add(&format!("vtk/{name}.vtu"), &output::vtk::grid(grid))?;
+    }
+    for (name, table) in &files.tables {
+        folder.add(name, table.as_bytes())?;
+    }
+    folder.keep(&part(frame), estimate)
 }
 
 /// The files that the results follow from.

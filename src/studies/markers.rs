@@ -15,6 +15,7 @@ use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on,
 use crate::material::{Card, HyperelasticLaw};
 use crate::mesh::Mesh;
 
+mod alike;
 mod conditions;
 mod doubts;
 mod figures;
@@ -30,6 +31,7 @@ mod tables;
 mod verdict;
 pub mod written;
 
+pub use alike::compare as compare_frames;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use request::{MeshSource, Request};
 use specimen_mesh::{SpecimenMesh, mesh};
@@ -134,16 +136,25 @@ impl MarkerStudy {
         }
     }
 
-    /// Estimates the field of every frame.
+    /// Estimates the field of every frame, and compares what is left of each with that of the one before.
     ///
     /// # Errors
     /// As [`estimate`], with the frame in its message.
     pub fn estimate(&self) -> Result<Vec<FieldEstimate>, Error> {
-        let frames = self.series.frames.iter();
-        frames.map(|frame| self.estimate_frame(frame)).collect()
+        let mut all: Vec<FieldEstimate> = Vec::new();
+        let mut before = None;
+        for frame in &self.series.frames {
+            let mut found = self.estimate_frame(frame)?;
+            if let Some((before, last)) = before.zip(all.last_mut()) {
+                compare_frames([before, frame], [last, &mut found]);
+            }
+            all.push(found);
+            before = Some(frame);
+        }
+        Ok(all)
     }
 
-    /// Estimates the field of a frame.
+    /// Estimates the field of a frame by itself.
     ///
     /// # Errors
     /// As [`estimate`], with the frame in its message.

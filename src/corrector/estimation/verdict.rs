@@ -62,6 +62,8 @@ pub enum Reason {
     Long(f64),
     /// A measured force is off by so many standard errors.
     Force(f64),
+    /// What is left correlates so much with what is left of the frame before or after.
+    Alike(f64),
 }
 
 impl Reason {
@@ -77,6 +79,10 @@ impl Reason {
             Self::Force(errors) => {
                 format!("a measured force is {errors:.1} standard errors off")
             }
+            Self::Alike(correlation) => format!(
+                "what is left is alike in the frame before or after (correlation {correlation:.2}), as noise of single \
+                 pictures is not"
+            ),
         }
     }
 }

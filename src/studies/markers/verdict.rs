@@ -83,7 +83,8 @@ fn words(mend: &Mend) -> String {
 const EXPLANATION: &str = "Explained: what is left of the markers is white noise. Explained with correlated noise: it correlates \
     between neighbours as noise of image correlation does, with the length at which the correlation has fallen to 1/e; the \
     intervals hold that. Not explained: other equations take more from the misfit than noise would let them, what is left \
-    correlates too far to be told from a misfit, or a measured force is contradicted. Standard errors and intervals mean nothing \
+    correlates too far to be told from a misfit, it correlates between neighbours and is alike from frame to frame, or a measured \
+    force is contradicted. Standard errors and intervals mean nothing \
     then, and are not given.";
 
 /// The verdict on every frame, and what would mend the last one that is not explained.

@@ -1,0 +1,194 @@
+//! Whether what is left of the markers is alike from frame to frame, as a misfit is and the noise of single pictures is not.
+//!
+//! The noise of the picture at rest is common to all frames: where it is as large as that of the others, what is left of two
+//! frames correlates by ½. A correlation beyond 0.8 would take a picture at rest with twice their noise.
+
+use std::collections::HashMap;
+
+use crate::corrector::estimation::{Answer, FieldEstimate, MarkerEstimate, Reason};
+use crate::markers::Frame;
+use crate::statistics::normal_tail;
+
+/// The largest correlation that is laid to the picture at rest.
+const COMMON: f64 = 0.8;
+
+/// The probability by noise below which what is left is too much alike.
+const LEVEL: f64 = 1e-4;
+
+/// Fewer independent values tell nothing.
+const FEWEST: f64 = 6.0;
+
+/// Two frames whose noise correlates between neighbours are not explained where what is left of them is alike.
+pub fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
+    let [before, after] = &estimates;
+    let (Some(of_a), Some(of_b)) = (before.verdict.correlation, after.verdict.correlation) else {
+        return;
+    };
+    // Both components of as many markers as are independent.
+    let values = 2.0 * of_a.independent.min(of_b.independent);
+    let correlation = correlation((frames[0], before), (frames[1], after));
+    if probability(correlation, values) >= LEVEL {
+        return;
+    }
+    for estimate in estimates {
+        let verdict = &mut estimate.verdict;
+        let told = verdict
+            .reasons
+            .iter()
+            .any(|reason| matches!(reason, Reason::Alike(_)));
+        if !told {
+            verdict.reasons.push(Reason::Alike(correlation));
+        }
+        verdict.answer = Answer::NotExplained;
+    }
+}
+
+/// How probable it is that so many independent pairs of numbers that correlate by no more than [`COMMON`] have such a
+/// correlation: Fisher's transformation.
+fn probability(correlation: f64, pairs: f64) -> f64 {
+    if pairs < FEWEST || correlation <= COMMON {
+        return 1.0;
+    }
+    let excess = correlation.min(1.0 - f64::EPSILON).atanh() - COMMON.atanh();
+    0.5 * normal_tail(excess * (pairs - 3.0).sqrt())
+}
+
+/// The correlation of what is left of the markers that are sound in both frames; zero where there is nothing.
+fn correlation(before: (&Frame, &FieldEstimate), after: (&Frame, &FieldEstimate)) -> f64 {
+    let left: HashMap<usize, [f64; 2]> = sound(before).collect();
+    let pairs = sound(after).filter_map(|(number, b)| Some((*left.get(&number)?, b)));
+    let [product, of_a, of_b] = pairs.fold([0.0; 3], |[product, of_a, of_b], (a, b)| {
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        [product + dot(a, b), of_a + dot(a, a), of_b + dot(b, b)]
+    });
+    match of_a * of_b > 0.0 {
+        true => product / (of_a * of_b).sqrt(),
+        false => 0.0,
+    }
+}
+
+fn sound<'a>(
+    (frame, found): (&'a Frame, &'a FieldEstimate),
+) -> impl Iterator<Item = (usize, [f64; 2])> + 'a {
+    let known = |marker: &MarkerEstimate| (!marker.outlier).then_some(marker.residual);
+    let markers = frame.markers.iter().zip(&found.markers);
+    markers.filter_map(move |(marker, left)| Some((marker.number, left.as_ref().and_then(known)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::*;
+    use crate::corrector::estimation::{NoiseCorrelation, Verdict};
+    use crate::markers::Marker;
+
+    const MARKERS: usize = 40;
+
+    fn frame(number: usize) -> Frame {
+        let marker = |number| Marker {
+            number,
+            place: [number as f64, 0.0],
+            displacement: [0.0; 2],
+            standard_deviation: None,
+        };
+        Frame {
+            number,
+            time: None,
+            markers: (0..MARKERS).map(marker).collect(),
+        }
+    }
+
+    /// A frame of which so much is left, with noise that correlates between neighbours.
+    fn estimated(left: &[[f64; 2]]) -> FieldEstimate {
+        let marker = |residual: &[f64; 2]| {
+            Some(MarkerEstimate {
+                residual: *residual,
+                standardised_residual: 1.0,
+                trust: 1.0,
+                outlier: false,
+            })
+        };
+        let correlation = Some(NoiseCorrelation {
+            length: 1.0,
+            share: 1.0,
+            independent: MARKERS as f64,
+            evidence: 30.0,
+        });
+        let verdict = Verdict {
+            answer: Answer::Correlated,
+            correlation,
+            ..Verdict::default()
+        };
+        let markers = left.iter().map(marker).collect();
+        FieldEstimate {
+            markers,
+            verdict,
+            ..FieldEstimate::default()
+        }
+    }
+
+    /// How many of 200 pairs of frames are not explained whose noise is that of a picture at rest, `rest` times as large as their
+    /// own, and `misfit` times a field that both have in common.
+    fn told(rest: f64, misfit: f64) -> usize {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let frames = [frame(1), frame(2)];
+        let mut count = 0;
+        for _ in 0..200 {
+            let mut noise = |size: f64| -> Vec<[f64; 2]> {
+                let mut one = || {
+                    size * <StandardNormal as Distribution<f64>>::sample(
+                        &StandardNormal,
+                        &mut random,
+                    )
+                };
+                (0..MARKERS).map(|_| [one(), one()]).collect()
+            };
+            let (at_rest, common, own) = (noise(rest), noise(misfit), [noise(1.0), noise(1.0)]);
+            let left = own.map(|own| -> Vec<[f64; 2]> {
+                let all = own.iter().zip(&at_rest).zip(&common);
+                all.map(|((own, rest), common)| {
+                    [0, 1].map(|axis| own[axis] - rest[axis] + common[axis])
+                })
+                .collect()
+            });
+            let [mut before, mut after] = left.map(|left| estimated(&left));
+            compare(frames.each_ref(), [&mut before, &mut after]);
+            assert_eq!(before.verdict.answer, after.verdict.answer);
+            count += usize::from(!after.is_explained());
+        }
+        count
+    }
+
+    #[test]
+    fn noise_of_the_picture_at_rest_is_no_misfit_and_what_both_frames_have_in_common_is() {
+        assert_eq!([told(0.0, 0.0), told(1.0, 0.0), told(1.5, 0.0)], [0; 3]);
+        assert!(told(2.0, 0.0) <= 1, "{}", told(2.0, 0.0));
+        assert!(told(1.0, 6.0) >= 195, "{}", told(1.0, 6.0));
+    }
+
+    #[test]
+    fn few_values_white_noise_and_lost_markers_tell_nothing() {
+        let left: Vec<[f64; 2]> = (0..MARKERS).map(|i| [(i as f64).sin(), 1.0]).collect();
+        let alike = |change: &dyn Fn(&mut FieldEstimate)| {
+            let [mut before, mut after] = [estimated(&left), estimated(&left)];
+            change(&mut after);
+            compare([&frame(1), &frame(2)], [&mut before, &mut after]);
+            after.is_explained()
+        };
+        assert!(!alike(&|_| ()));
+        assert!(alike(&|found| found.verdict.correlation = None));
+        assert!(alike(&|found| found
+            .verdict
+            .correlation
+            .as_mut()
+            .unwrap()
+            .independent = 2.0));
+        assert!(alike(&|found| found
+            .markers
+            .iter_mut()
+            .for_each(|marker| *marker = None)));
+    }
+}
