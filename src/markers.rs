@@ -17,6 +17,7 @@ mod on_mesh;
 mod plausible;
 mod read;
 mod rows;
+mod subset;
 mod table;
 mod understood;
 
@@ -25,5 +26,6 @@ pub use frames::{Frame, Marker, MarkerSeries};
 pub use plausible::{MarkersOnMesh, check_thickness, place_on, unit_ratio};
 pub use read::{MarkerFiles, read};
 pub use rows::ReadSettings;
+pub use subset::Subset;
 pub use table::read_lines;
 pub use understood::{ColumnTaken, Understood};

@@ -130,6 +130,54 @@ fn markers_that_end_inside_the_edge_leave_the_force_open() {
 }
 
 #[test]
+fn half_a_subset_lies_between_the_outermost_markers_and_the_edge() {
+    let inner = second_frame(|[x, y]| (1.0..149.0).contains(&x) && (1.0..49.0).contains(&y));
+    let turned = |line: &str| {
+        let [x, y, ux, uy] = line.split(',').collect::<Vec<_>>()[..] else {
+            return String::new();
+        };
+        match uy.is_empty() {
+            true => format!("{x},-{y},,,0\n"),
+            false => format!("{x},-{y},{ux},{},0\n", format!("-{uy}").replace("--", "")),
+        }
+    };
+    let rows: String = inner.lines().skip(1).map(turned).collect();
+    let dice = format!(
+        "***\n*** Subset size: 10\n*** Step size: x 5 y 5 (-1 implies not regular grid)\n***\n\
+         COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,MATCH\n{rows}"
+    );
+    let (printed, found) = corrected(&dice, &["--unit", "1 mm", "--cell-size", "10 mm"], 0);
+    let told = "taken to lie 5.0000 mm outside of the outermost markers, half a subset";
+    assert!(printed.contains(told), "{printed}");
+    let origin = found["problem"]["mesh"]["origin"].as_str().unwrap();
+    assert!(
+        origin.contains("5.0000 mm farther out: half a subset (subset 10 and step 5 pixels by the head of plate.csv)"),
+        "{origin}"
+    );
+    let [force, low, high] = right_force(&found);
+    assert!((force / FORCE - 1.0).abs() < 0.01, "{force}");
+    // Up to a step farther out is left open.
+    assert!(low < FORCE && high > 1.1 * FORCE, "{low} {high}");
+    let step = number(&found, &["problem", "edge_may_lie_farther_out_by_mm"]);
+    assert!((step - 5.0).abs() < 1e-9, "{step}");
+    // What the user says goes before.
+    let (printed, found) = corrected(
+        &dice,
+        &[
+            "--unit",
+            "1 mm",
+            "--cell-size",
+            "10 mm",
+            "--edge-gap",
+            "5 mm",
+        ],
+        0,
+    );
+    assert!(!printed.contains("half a subset"), "{printed}");
+    assert!(found["problem"]["edge_may_lie_farther_out_by_mm"].is_null());
+}
+
+#[test]
 fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
     let gap = ["--edge-gap", "0 mm"];
     let whole = second_frame(|_| true);

@@ -10,6 +10,7 @@ use super::chosen::{FoundColumns, Role};
 use super::columns::{self, Length, Names, Units, find, length, plain, required};
 use super::layouts::{Layout, NAMED, recognise};
 use super::rows::{FileRows, ReadSettings, Row};
+use super::subset::Subset;
 use super::understood::{ColumnTaken, Understood};
 use crate::document::Table;
 use crate::error::{Diagnostic, Error};
@@ -30,7 +31,10 @@ pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     Ok(FileRows {
         rows: rows.collect::<Result<_, _>>()?,
         mesh: None,
-        understood: reader.understood(),
+        understood: Understood {
+            subset: Subset::of(&table, path, reader.layout),
+            ..reader.understood()
+        },
         warnings: reader.warnings,
     })
 }
@@ -85,6 +89,8 @@ struct Reader<'a> {
     name: Option<usize>,
     mismatch: Option<usize>,
     lost: Option<usize>,
+    /// Whether places are in pixels.
+    in_pixels: bool,
     /// What says the units of lengths that the heads do not say.
     given: Option<f64>,
     warnings: Vec<Diagnostic>,
@@ -133,6 +139,9 @@ impl<'a> Reader<'a> {
             name: plain_column(Role::Id, NAME),
             mismatch: plain(table, &["match"]),
             lost: plain(table, layout.lost),
+            in_pixels: heads[0]
+                .as_ref()
+                .is_some_and(|(_, unit)| unit.as_deref().map_or(units.pixels, columns::is_pixel)),
             given: reading.unit,
             warnings: columns::correction(table, common.as_deref(), reading.unit)
                 .into_iter()
@@ -262,6 +271,8 @@ impl<'a> Reader<'a> {
             columns: of_length.chain(others).collect(),
             turned_up: self.downwards,
             taken_to_rest: self.deformed,
+            subset: None,
+            pixel: self.in_pixels.then_some(self.places[0].1),
         }
     }
 

@@ -1,5 +1,7 @@
 //! How files were understood: layout, encoding, columns, units, origin and axes.
 
+use super::subset::Subset;
+
 /// How the first of the files was understood; the others are like it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Understood {
@@ -13,6 +15,10 @@ pub struct Understood {
     pub turned_up: bool,
     /// Whether the file's places are those of the frame, from which the displacement was subtracted.
     pub taken_to_rest: bool,
+    /// Subset and step of image correlation, where they are said.
+    pub subset: Option<Subset>,
+    /// The length of a pixel in mm, where places are in pixels.
+    pub pixel: Option<f64>,
 }
 
 /// A column and what was taken from it.

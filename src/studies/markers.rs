@@ -18,6 +18,7 @@ use crate::mesh::Mesh;
 mod alike;
 mod conditions;
 mod doubts;
+mod edge_place;
 mod figures;
 mod force_signs;
 mod gross_errors;

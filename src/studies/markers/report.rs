@@ -175,8 +175,8 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     ]);
     blocks.extend(field.unknown_gap.map(|gap| {
         Block::paragraph(format!(
-            "The specimen's edge is not known but for the markers: intervals of forces and moduli hold that it may lie up to a \
-             marker's spacing, {gap:.4} mm, farther out."
+            "The specimen's edge is not known but for the markers: intervals of forces and moduli hold that it may lie up to {gap:.4} mm \
+             farther out than the mesh."
         ))
     }));
     if field.regressed.is_some() {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::edge_place::EdgePlace;
 use super::request::{MeshSource, Request};
 use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
@@ -135,23 +136,15 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
             "--holes closed if markers were only lost there; --outline gives their true edges",
         ),
     }
-    let gap = request.conditions.edge_gap;
-    if let Some(gap) = gap {
-        outline = outline.widened(gap).map_err(refuse)?;
-    }
-    let mesh = made(request, &outline, found.spacing, field.series.frames.len())?;
     let spacing = found.spacing;
-    let mut origin =
-        format!("made inside the outline of the markers, which are about {spacing:.4} mm apart");
-    match gap {
-        Some(gap) if gap > 0.0 => origin += &format!(", {gap} mm farther out"),
-        Some(_) => {}
-        None => warn(
-            "the specimen's edge is not known: the outline is that of the markers, which usually end inside of it".into(),
-            "forces grow with the width: their intervals hold an edge up to a spacing farther out; say where it is with \
-             --edge-gap LENGTH (\"0 mm\" where markers lie on it), --outline or --mesh",
-        ),
-    }
+    let edge = EdgePlace::of(request, &field.understood, spacing);
+    let (outline, edge) = edge.outline(outline, spacing).map_err(refuse)?;
+    let mesh = made(request, &outline, spacing, field.series.frames.len())?;
+    let origin = format!(
+        "made inside the outline of the markers, which are about {spacing:.4} mm apart{}",
+        edge.origin()
+    );
+    warnings.extend(edge.warning());
     let doubt = |reason: String| {
         let message = format!("the outline of the markers is uncertain: {reason}");
         Diagnostic::warning("", message).hint(HINT)
@@ -161,7 +154,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
         origin,
         warnings,
         doubts: found.doubts.into_iter().map(doubt).collect(),
-        unknown_gap: gap.is_none().then_some(spacing),
+        unknown_gap: edge.unknown(),
     })
 }
 
