@@ -235,31 +235,30 @@ fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
     }
 }
 
-#[test]
-fn noise_that_correlates_is_told_and_held_by_the_intervals() {
-    let text = second_frame(|_| true);
-    let mut lines: Vec<Vec<f64>> = text
-        .lines()
-        .skip(1)
-        .filter_map(|line| line.split(',').map(|x| x.parse().ok()).collect())
-        .collect();
-    // Means of white noise over squares of three by three markers.
+/// The markers of the second frame with means of white noise over squares of so many markers.
+fn with_smooth_noise(across: usize) -> String {
     let mut random = ChaCha8Rng::seed_from_u64(21);
-    let white: Vec<f64> = (0..2 * 33 * 13)
+    let white: Vec<f64> = (0..2 * 40 * 20)
         .map(|_| StandardNormal.sample(&mut random))
         .collect();
-    for line in &mut lines {
-        let [i, j] = [line[0], line[1]].map(|x| (x / 5.0).round() as usize);
-        for axis in 0..2 {
-            let around = (0..9).map(|k| white[2 * (13 * (i + k / 3) + j + k % 3) + axis]);
-            line[2 + axis] += 0.5 * around.sum::<f64>() / 3.0;
-        }
+    let mut table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
+    for line in second_frame(|_| true).lines().skip(1) {
+        let line: Vec<f64> = line.split(',').filter_map(|x| x.parse().ok()).collect();
+        let [x, y, ux, uy] = line[..] else { continue };
+        let [i, j] = [x, y].map(|x| (x / 5.0).round() as usize);
+        let noise = [0, 1].map(|axis| {
+            let around =
+                (0..across * across).map(|k| (20 * (i + k / across) + j + k % across, axis));
+            0.5 * around.map(|(at, axis)| white[2 * at + axis]).sum::<f64>() / across as f64
+        });
+        table += &format!("{x},{y},{},{}\n", ux + noise[0], uy + noise[1]);
     }
-    let rows = lines
-        .iter()
-        .map(|line| format!("{},{},{},{}\n", line[0], line[1], line[2], line[3]));
-    let table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned() + &rows.collect::<String>();
-    let (printed, found) = corrected(&table, &["--edge-gap", "0 mm"], 0);
+    table
+}
+
+#[test]
+fn noise_that_correlates_is_told_and_held_by_the_intervals() {
+    let (printed, found) = corrected(&with_smooth_noise(2), &["--edge-gap", "0 mm"], 0);
     assert!(
         printed.contains("explained with correlated noise"),
         "{printed}"
@@ -268,11 +267,20 @@ fn noise_that_correlates_is_told_and_held_by_the_intervals() {
         &found["steps"][0]["corrected"],
         &["verdict", "correlation_length_mm"],
     );
-    assert!((4.0..20.0).contains(&length), "{length}");
+    assert!((2.5..15.0).contains(&length), "{length}");
     let [_, low, high] = right_force(&found);
     assert!(
         low < FORCE && high > FORCE && high - low > 0.01 * FORCE,
         "{low} {high}"
+    );
+}
+
+#[test]
+fn noise_of_which_few_independent_values_are_left_is_not_explained() {
+    let (printed, _) = corrected(&with_smooth_noise(4), &["--edge-gap", "0 mm"], 5);
+    assert!(
+        printed.contains("too far to be told from a misfit"),
+        "{printed}"
     );
 }
 
