@@ -21,7 +21,7 @@ mod subset;
 mod table;
 mod understood;
 
-pub use chosen::{ChosenColumns, Role};
+pub use chosen::{ChosenColumns, Role, column_named};
 pub use frames::{Frame, Marker, MarkerSeries};
 pub use plausible::{MarkersOnMesh, check_thickness, place_on, unit_ratio};
 pub use read::{MarkerFiles, read};

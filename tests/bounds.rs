@@ -119,6 +119,7 @@ fn more_markers_than_memory_holds_are_refused_with_estimate_and_remedy() {
             shape: CellShape::Triangle3,
             holes: false,
             conditions: Conditions::default(),
+            forces: None,
             budget: Budget {
                 bytes,
                 ..Budget::USUAL

@@ -515,6 +515,70 @@ fn the_correction_is_the_same_to_the_bit_and_the_report_says_what_was_read() {
 }
 
 #[test]
+fn forces_of_a_testing_machine_are_those_that_the_user_could_write() {
+    let folder = TempDir::new().unwrap();
+    let field = dialects()[0].text(&exports()[0], "");
+    fs::write(folder.path().join("a.csv"), field).unwrap();
+    fs::write(
+        folder.path().join("machine.csv"),
+        "Project 7\nframe;Weg;Kraft\n-;mm;kN\n1;0,5;0,0004\n2;0,7;0,0009\n",
+    )
+    .unwrap();
+    let study = "[[force]]\nedge = \"right\"\naxis = \"x\"\ncolumn = \"Kraft\"\nstandard_deviation = \"0.1 N\"\n";
+    fs::write(folder.path().join("study.toml"), study).unwrap();
+    let card = root().join("materials/pva-10.toml").display().to_string();
+    let measured = |more: &[&str]| {
+        let usual = [
+            "correct",
+            "a.csv",
+            "--material",
+            &card,
+            "--thickness",
+            "2 mm",
+            "--edge-gap",
+            "0 mm",
+        ];
+        let edges = [
+            "--rigid",
+            "left,right",
+            "--free",
+            "top,bottom",
+            "--cell-size",
+            "3 mm",
+        ];
+        gelbench(folder.path(), &[&usual[..], &edges[..], more].concat());
+        report_of_correction(folder.path())["steps"][0]["corrected"]["measured_forces"].clone()
+    };
+    let written = measured(&["--force", "right x 0.4 N ± 0.1 N"]);
+    assert_eq!(written[0]["measured_N"], 0.4);
+    let of_machine = [
+        "--forces",
+        "machine.csv",
+        "--force-column",
+        "right x Kraft ± 0.1 N",
+    ];
+    assert_eq!(measured(&of_machine), written);
+    assert_eq!(
+        measured(&["--forces", "machine.csv", "--study", "study.toml"]),
+        written
+    );
+    let told = |arguments: &[&str]| {
+        let usual = [
+            "correct",
+            "a.csv",
+            "--material",
+            &card,
+            "--thickness",
+            "2 mm",
+        ];
+        let refused = gelbench(folder.path(), &[&usual[..], arguments].concat()).code(2);
+        words(&refused.get_output().stderr)
+    };
+    assert!(told(&["--forces", "machine.csv"]).contains("no column of this table is named"));
+    assert!(told(&["--study", "study.toml"]).contains("--forces FILE"));
+}
+
+#[test]
 fn wrong_names_are_told_with_those_that_there_are() {
     let folder = TempDir::new().unwrap();
     let text = "x_px,y_px,disp_u,disp_v,disp_v\n1,2,3,4,5\n";

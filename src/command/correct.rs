@@ -21,7 +21,7 @@ use crate::output::{self, ResultFolder};
 use crate::results::NamedGrid;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
 use crate::studies::markers::{
-    Conditions, MarkerStudy, MeshSource, Request, compare_frames, worst_answer,
+    Conditions, ForceColumn, MarkerStudy, MeshSource, Request, compare_frames, worst_answer,
 };
 use crate::studies::name;
 use crate::studies::sections::read_text;
@@ -29,7 +29,7 @@ use crate::studies::sections::read_text;
 mod values;
 
 use values::{Cells, Holds, Holes, Places, Weights, YAxis};
-use values::{encoding, force, gap, length, size, unit};
+use values::{encoding, force, force_column, gap, length, size, unit};
 
 /// What the command line says about a correction.
 #[derive(Args, Debug)]
@@ -58,6 +58,13 @@ pub struct Options {
     /// "right x 1.2 N ± 0.02 N"
     #[arg(long, value_name = "FORCE", value_parser = force)]
     pub force: Vec<MeasuredForce>,
+    /// A testing machine's table beside the frames: its forces are matched by a column `frame`, else by `time`
+    #[arg(long, value_name = "FILE")]
+    pub forces: Option<PathBuf>,
+    /// A column of that table: edge, axis, name and, else 1 % of its largest force, the standard deviation, such as
+    /// "right x Load ± 0.02 N"; a name with - before it for the negative force
+    #[arg(long, value_name = "COLUMN", value_parser = force_column, requires = "forces")]
+    pub force_column: Vec<ForceColumn>,
     /// One or two parameters of the law that are found with the field; a force must be measured
     #[arg(long, value_name = "PARAMETER", value_delimiter = ',')]
     pub fit: Vec<String>,
@@ -237,7 +244,12 @@ fn write(
 
 /// The files that the results follow from.
 fn inputs(options: &Options) -> Vec<PathBuf> {
-    let others = [&options.study, &options.mesh, &options.outline];
+    let others = [
+        &options.study,
+        &options.mesh,
+        &options.outline,
+        &options.forces,
+    ];
     let named = others.into_iter().flatten().cloned();
     let card = PathBuf::from(&options.material);
     options
@@ -269,6 +281,7 @@ fn request(options: Options) -> Result<Request, Error> {
         conditions: conditions(&options)?,
         mesh: mesh_source(&options),
         reading: reading(&options)?,
+        forces: options.forces,
         files: options.fields,
         material: options.material,
         thickness: options.thickness,
@@ -301,6 +314,8 @@ fn conditions(options: &Options) -> Result<Conditions, Error> {
     conditions.edges.extend(edges);
     let forces = options.force.iter().map(|force| (None, force.clone()));
     conditions.forces.extend(forces);
+    let columns = options.force_column.iter().cloned();
+    conditions.force_columns.extend(columns);
     conditions.fit.extend(options.fit.iter().cloned());
     conditions.noise = options.noise.or(conditions.noise);
     conditions.edge_gap = options.edge_gap.or(conditions.edge_gap);

@@ -77,7 +77,7 @@ pub fn estimate(
     knowledge: &Knowledge,
 ) -> Result<FieldEstimate, Error> {
     let input = |fault: Diagnostic| Error::Input(vec![fault]);
-    let outline = outline::segments(specimen.mesh, &knowledge.edge_names()).map_err(input)?;
+    let outline = outline::parts(specimen.mesh, &knowledge.edges).map_err(input)?;
     knowledge.check().map_err(input)?;
     let observations = observations::Observations::new(specimen.mesh, markers, knowledge.noise);
     let mut observations = observations.map_err(input)?;

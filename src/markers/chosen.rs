@@ -88,7 +88,7 @@ impl ChosenColumns {
     pub(super) fn on(&self, table: &Table) -> Result<FoundColumns, Error> {
         let (mut found, mut faults) = (Vec::new(), Vec::new());
         for (role, name) in &self.0 {
-            match column(table, name) {
+            match column_named(table, name) {
                 Ok(index) => found.push((*role, index)),
                 Err(fault) => faults.push(fault),
             }
@@ -120,7 +120,10 @@ impl FoundColumns {
 }
 
 /// The only column of a name: as it is written with or without its unit, else in any case.
-fn column(table: &Table, name: &str) -> Result<usize, Diagnostic> {
+///
+/// # Errors
+/// A fault with the columns that there are, where there is none of this name, or more than one.
+pub fn column_named(table: &Table, name: &str) -> Result<usize, Diagnostic> {
     let ways: [&dyn Fn(&Column) -> bool; 3] = [
         &|column| column.head() == name,
         &|column| column.written == name,

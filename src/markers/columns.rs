@@ -226,6 +226,26 @@ pub fn check_all(
     }
 }
 
+/// Numbers of frames.
+pub const FRAME: Names = &["frame", "frame_number", "image"];
+/// Times.
+pub const TIME: Names = &["time", "t"];
+
+/// The unit of a column of times in s, which is 1 s where the head says none.
+///
+/// # Errors
+/// [`Error::Input`] where it is no unit of time.
+pub fn seconds(table: &Table, column: usize) -> Result<f64, Error> {
+    let Some(unit) = table.columns[column].unit.as_deref() else {
+        return Ok(1.0);
+    };
+    units::factor(unit, Dimension::Time).map_err(|_| {
+        let known: Vec<_> = Dimension::Time.units().collect();
+        let hint = suggestion(unit, &known, "known units:");
+        table.refuse_columns(format!("`{unit}` is no unit of time"), &hint)
+    })
+}
+
 /// Heights.
 pub const HEIGHT: Names = &["z"];
 /// Displacements out of the plane.

@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use super::chosen::{FoundColumns, Role};
-use super::columns::{self, Length, Names, Units, find, length, plain, required};
+use super::columns::{self, FRAME, Length, Names, TIME, Units, find, length, plain, required};
 use super::layouts::{Layout, NAMED, recognise};
 use super::rows::{FileRows, ReadSettings, Row};
 use super::subset::Subset;
@@ -70,9 +70,7 @@ pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, 
     Ok(lines.into_iter().map(|(_, line)| line).collect())
 }
 
-/// Columns that are not lengths.
-const FRAME: Names = &["frame", "frame_number", "image"];
-const TIME: Names = &["time", "t"];
+/// Columns of a point's own number.
 const NAME: Names = &["id", "subset_id", "marker", "point", "node", "node_id"];
 
 /// A table and the columns that are read.
@@ -85,7 +83,8 @@ struct Reader<'a> {
     displacements: [Length; 2],
     deviation: Option<Length>,
     frame: Option<usize>,
-    time: Option<usize>,
+    /// With its unit in s.
+    time: Option<(usize, f64)>,
     name: Option<usize>,
     mismatch: Option<usize>,
     lost: Option<usize>,
@@ -135,7 +134,10 @@ impl<'a> Reader<'a> {
                 .map(|head| length(table, head, units))
                 .transpose()?,
             frame: plain_column(Role::Frame, FRAME),
-            time: plain_column(Role::Time, TIME),
+            time: match plain_column(Role::Time, TIME) {
+                Some(column) => Some((column, columns::seconds(table, column)?)),
+                None => None,
+            },
             name: plain_column(Role::Id, NAME),
             mismatch: plain(table, &["match"]),
             lost: plain(table, layout.lost),
@@ -197,7 +199,8 @@ impl<'a> Reader<'a> {
     fn read(&self) -> impl Iterator<Item = usize> {
         let lengths = self.places.into_iter().chain(self.displacements);
         let lengths = lengths.chain(self.deviation).map(|(column, _)| column);
-        let others = [self.frame, self.time, self.lost];
+        let time = self.time.map(|(column, _)| column);
+        let others = [self.frame, time, self.lost];
         lengths.chain(others.into_iter().flatten())
     }
 
@@ -235,7 +238,7 @@ impl<'a> Reader<'a> {
             let hint = "number the frames 1, 2, 3 …";
             return Err(refuse("a frame has no whole number", hint));
         }
-        let time = self.time.map(|column| values[column]);
+        let time = self.time.map(|(column, unit)| values[column] * unit);
         Ok(Row {
             frame: whole(self.frame).map(|frame| frame as usize),
             time: time.filter(|time| time.is_finite()),
@@ -258,7 +261,7 @@ impl<'a> Reader<'a> {
             lengths.map(|(holds, (column, unit))| self.taken(holds, column, Some(unit)));
         let others = [
             ("frame", self.frame),
-            ("time", self.time),
+            ("time", self.time.map(|(column, _)| column)),
             ("id", self.name),
         ];
         let others = others

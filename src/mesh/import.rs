@@ -106,6 +106,15 @@ fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Dia
         let kept = mesh.groups().get(name).map_or(0, |group| group.edges.len());
         let message = match lines.len().saturating_sub(kept) {
             0 => return None,
+            _ if mesh
+                .groups()
+                .get(name)
+                .is_some_and(|group| group.edges.is_empty()) =>
+            {
+                format!(
+                    "no line of the group `{name}` is an edge of the boundary: it is kept as nodes on the sheet, which `correct` can hold"
+                )
+            }
             _ if kept == 0 => format!(
                 "no line of the group `{name}` is an edge of the boundary; the group is left out"
             ),

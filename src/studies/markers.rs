@@ -16,6 +16,7 @@ use crate::material::{Card, HyperelasticLaw};
 use crate::mesh::Mesh;
 
 mod alike;
+mod area;
 mod conditions;
 mod doubts;
 mod edge_place;
@@ -23,6 +24,7 @@ mod figures;
 mod force_signs;
 mod gross_errors;
 mod json;
+mod machine;
 mod quantities;
 mod reading;
 mod report;
@@ -33,7 +35,9 @@ mod verdict;
 pub mod written;
 
 pub use alike::compare as compare_frames;
+pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
+pub use machine::ForceColumn;
 pub use request::{MeshSource, Request};
 use specimen_mesh::{SpecimenMesh, mesh};
 pub use verdict::worst as worst_answer;
@@ -74,16 +78,21 @@ impl MarkerStudy {
     ///
     /// # Errors
     /// [`Error::Input`] with what is wrong and what to do.
-    pub fn prepare(request: Request) -> Result<Self, Error> {
+    pub fn prepare(mut request: Request) -> Result<Self, Error> {
         let card = Card::load(&request.material, Path::new("."))?;
-        let field = read(&request.files, &request.reading)?;
+        let mut field = read(&request.files, &request.reading)?;
+        let told = request
+            .conditions
+            .take_forces(request.forces.as_deref(), &field.series)?;
+        field.warnings.extend(told);
         let SpecimenMesh {
-            mesh,
+            mut mesh,
             origin,
             mut warnings,
             mut doubts,
             unknown_gap,
         } = mesh(&request, &field)?;
+        area::name(&mut mesh, &request.conditions.areas)?;
         request.conditions.check(&mesh)?;
         request.conditions.check_frames(&field.series)?;
         let regressed = request.conditions.regressed_law(&card)?;

@@ -81,6 +81,7 @@ impl MeasuredField {
                     edges,
                     ..Conditions::default()
                 },
+                forces: None,
                 budget: Budget::USUAL,
             },
             expected: field.choice("verdict", &ANSWERS).unwrap_or_default(),

@@ -150,6 +150,7 @@ fn request(file: PathBuf, choices: &mut Choices) -> Request {
             edge_gap: choices.maybe().then(|| choices.between(0.0, 2.0)),
             ..Conditions::default()
         },
+        forces: None,
         budget: SMALL,
     }
 }

@@ -5,7 +5,7 @@ use clap::ValueEnum;
 use crate::corrector::estimation::MeasuredForce;
 use crate::document::TextEncoding;
 use crate::error::Diagnostic;
-use crate::studies::markers::measured_force;
+use crate::studies::markers::{ForceColumn, measured_force};
 use crate::units::{self, Dimension};
 
 /// Kinds of cells.
@@ -70,28 +70,48 @@ pub enum Holds {
 
 /// An edge, an axis, a force and its standard deviation.
 pub fn force(text: &str) -> Result<MeasuredForce, Diagnostic> {
-    let refuse = |reason: String| {
-        Diagnostic::error("", reason)
-            .hint("write edge, axis and force, as in \"right x 1.2 N ± 0.02 N\"")
-    };
+    let (edge, axis, value, deviation) = on_an_edge(text, "right x 1.2 N ± 0.02 N")?;
+    Ok(measured_force(edge, axis, newtons(&value)?, deviation))
+}
+
+/// An edge, an axis, a column of forces and its standard deviation.
+pub fn force_column(text: &str) -> Result<ForceColumn, Diagnostic> {
+    let (edge, axis, column, standard_deviation) = on_an_edge(text, "right x Load ± 0.02 N")?;
+    Ok(ForceColumn {
+        edge: edge.to_owned(),
+        axis,
+        column,
+        standard_deviation,
+    })
+}
+
+/// An edge, an axis, what acts there, and the standard deviation behind ±.
+fn on_an_edge<'a>(
+    text: &'a str,
+    example: &str,
+) -> Result<(&'a str, usize, String, Option<f64>), Diagnostic> {
     let words: Vec<&str> = text.splitn(3, ' ').collect();
-    let (edge, axis, values) = match words[..] {
-        [edge, "x", values] => (edge, 0, values),
-        [edge, "y", values] => (edge, 1, values),
-        _ => return Err(refuse("it is no force on an edge".into())),
+    let (edge, axis, what) = match words[..] {
+        [edge, "x", what] => (edge, 0, what),
+        [edge, "y", what] => (edge, 1, what),
+        _ => {
+            let hint = format!("write edge, axis and force, as in \"{example}\"");
+            return Err(Diagnostic::error("", "it is no force on an edge").hint(hint));
+        }
     };
-    let newtons = |text: &str| {
-        units::parse(text, Dimension::Force).map_err(|fault| {
-            let hint = fault.remedy(text, Dimension::Force);
-            Diagnostic::error("", format!("it {fault}")).hint(hint)
-        })
+    let what = what.replace("+-", "±");
+    let (what, deviation) = match what.split_once('±') {
+        None => (&*what, None),
+        Some((what, deviation)) => (what, Some(newtons(deviation)?)),
     };
-    let values = values.replace("+-", "±");
-    let (value, deviation) = match values.split_once('±') {
-        None => (&*values, None),
-        Some((value, deviation)) => (value, Some(newtons(deviation)?)),
-    };
-    Ok(measured_force(edge, axis, newtons(value)?, deviation))
+    Ok((edge, axis, what.trim().to_owned(), deviation))
+}
+
+fn newtons(text: &str) -> Result<f64, Diagnostic> {
+    units::parse(text, Dimension::Force).map_err(|fault| {
+        let hint = fault.remedy(text, Dimension::Force);
+        Diagnostic::error("", format!("it {fault}")).hint(hint)
+    })
 }
 
 /// A length of zero or more in mm.

@@ -158,7 +158,8 @@ fn said<'a>(edges: &'a [Edge]) -> Vec<&'a str> {
 }
 
 fn is_said(edge: &Edge) -> bool {
-    edge.segment.condition.is_some() && edge.condition != EdgeCondition::Unknown
+    let named = edge.segment.condition.is_some() && !edge.segment.inside;
+    named && edge.condition != EdgeCondition::Unknown
 }
 
 /// The regression with some of the edges let go of which something is said; `None` where there are none, or data do not determine so

@@ -107,11 +107,6 @@ pub enum EdgeCondition {
 }
 
 impl Knowledge {
-    /// The names of the edges of which something is known.
-    pub(super) fn edge_names(&self) -> Vec<&str> {
-        self.edges.iter().map(|(name, _)| name.as_str()).collect()
-    }
-
     /// Looks at the measured forces and the noise.
     pub(super) fn check(&self) -> Result<(), Diagnostic> {
         let refuse = |fault: String, hint: &str| Err(Diagnostic::error("", fault).hint(hint));

@@ -210,7 +210,9 @@ impl NearestField<'_> {
 
 /// The unknowns of a refined mesh that an edge holds: those between nodes of the edge whose unknowns are held.
 fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<usize>; 2] {
-    const NEAR: f64 = 0.1;
+    if edge.segment.inside {
+        return [0, 1].map(|axis| held_inside(mesh, fine, edge, (axis, held)));
+    }
     let mut boundary: Vec<usize> = fine.boundary().iter().flatten().copied().collect();
     boundary.sort_unstable();
     boundary.dedup();
@@ -220,14 +222,8 @@ fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<u
         .windows(2)
         .map(|pair| [pair[0], pair[1]])
         .collect();
-    let on = |node: usize, [a, b]: [usize; 2]| {
-        let [p, q, x] = [mesh.nodes[a], mesh.nodes[b], fine.nodes[node]];
-        let side = [q[0] - p[0], q[1] - p[1]];
-        let square = dot(&side, &side);
-        let share = (dot(&[x[0] - p[0], x[1] - p[1]], &side) / square).clamp(0.0, 1.0);
-        let off = [0, 1].map(|axis| x[axis] - p[axis] - share * side[axis]);
-        dot(&off, &off) <= NEAR * NEAR * square
-    };
+    let on =
+        |node: usize, ends: [usize; 2]| is_near(fine.nodes[node], ends.map(|end| mesh.nodes[end]));
     [0, 1].map(|axis| {
         let both = |pair: &[usize; 2]| pair.iter().all(|node| held[2 * node + axis]);
         let holds = |node: &&usize| pairs.iter().any(|pair| both(pair) && on(**node, *pair));
@@ -237,4 +233,47 @@ fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<u
             _ => nodes.map(|node| 2 * node + axis).collect(),
         }
     })
+}
+
+/// Whether a place lies on the straight line between two others, but for a tenth of its length.
+fn is_near(place: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
+    const NEAR: f64 = 0.1;
+    let side = [to[0] - from[0], to[1] - from[1]];
+    let square = dot(&side, &side);
+    let along = [place[0] - from[0], place[1] - from[1]];
+    let share = (dot(&along, &side) / square).clamp(0.0, 1.0);
+    let off = [0, 1].map(|axis| along[axis] - share * side[axis]);
+    dot(&off, &off) <= NEAR * NEAR * square
+}
+
+/// The unknowns of a refined mesh along an axis that a pad on the sheet holds: those in cells and on sides of cells all of whose nodes
+/// are held.
+fn held_inside(
+    mesh: &Mesh,
+    fine: &Mesh,
+    edge: &Edge,
+    (axis, held): (usize, &[bool]),
+) -> Vec<usize> {
+    let nodes = edge.segment.nodes.iter().copied();
+    let pad: BTreeSet<usize> = nodes.filter(|node| held[2 * node + axis]).collect();
+    let mut found = BTreeSet::new();
+    for coarse in 0..mesh.cell_count() {
+        let own = mesh.cell(coarse);
+        let parts = (4 * coarse..4 * coarse + 4).flat_map(|part| fine.cell(part));
+        let sides = mesh.shape(coarse).edges();
+        let sides = sides.iter().map(|side| [own[side[0]], own[side[1]]]);
+        let sides: Vec<_> = sides
+            .filter(|ends| ends.iter().all(|end| held[2 * end + axis]))
+            .collect();
+        let whole = own.iter().all(|node| held[2 * node + axis])
+            && own.iter().any(|node| pad.contains(node));
+        let on_side = |node: usize| {
+            let mut near = sides
+                .iter()
+                .filter(|ends| ends.iter().any(|end| pad.contains(end)));
+            near.any(|ends| is_near(fine.nodes[node], ends.map(|end| mesh.nodes[end])))
+        };
+        found.extend(parts.filter(|node| whole || on_side(**node)).copied());
+    }
+    found.into_iter().map(|node| 2 * node + axis).collect()
 }

@@ -1,7 +1,8 @@
 //! The boundary of a specimen as a chain of edges from corner to corner.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use super::knowledge::EdgeCondition;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 
@@ -20,10 +21,12 @@ pub struct Segment {
     pub condition: Option<usize>,
     /// Whether it is a part of the outer boundary, and not of a hole.
     pub outer: bool,
+    /// Whether it is no part of the boundary but a pad on the sheet, with all of its nodes in any order.
+    pub inside: bool,
     /// Its nodes in order, the specimen to the left, those in the middle of edges too; of a closed one the first node is the
     /// last one again.
     pub nodes: Vec<usize>,
-    /// Length along the boundary from the first node to each one in mm.
+    /// Length along the boundary from the first node to each one in mm; zeros of a pad.
     pub places: Vec<f64>,
 }
 
@@ -39,10 +42,49 @@ impl Segment {
     }
 }
 
+/// The boundary in segments, and the pads on the sheet: groups, or parts of them, that are no part of the boundary and are held as one
+/// body.
+///
+/// # Errors
+/// As [`segments`]; a [`Diagnostic`] when a group inside of the sheet is neither rigid nor of known displacement.
+pub fn parts(mesh: &Mesh, edges: &[(String, EdgeCondition)]) -> Result<Vec<Segment>, Diagnostic> {
+    let names: Vec<&str> = edges.iter().map(|(name, _)| name.as_str()).collect();
+    let mut all = segments(mesh, &names)?;
+    for (number, (name, condition)) in edges.iter().enumerate() {
+        let on_edges: BTreeSet<usize> = all
+            .iter()
+            .filter(|part| part.condition == Some(number))
+            .flat_map(|part| part.nodes.iter().copied())
+            .collect();
+        let nodes = mesh.groups()[name].nodes.iter();
+        let inner: Vec<usize> = nodes
+            .filter(|node| !on_edges.contains(node))
+            .copied()
+            .collect();
+        let held = matches!(condition, EdgeCondition::Rigid | EdgeCondition::Known(_));
+        if on_edges.is_empty() && !held {
+            let fault = format!("the group `{name}` holds no edge of the boundary");
+            let hint = "name boundary edges, or all their nodes; a pad inside of the sheet is rigid or known";
+            return Err(Diagnostic::error("", fault).hint(hint));
+        }
+        if held && !inner.is_empty() {
+            all.push(Segment {
+                name: name.clone(),
+                condition: Some(number),
+                outer: false,
+                inside: true,
+                places: vec![0.0; inner.len()],
+                nodes: inner,
+            });
+        }
+    }
+    Ok(all)
+}
+
 /// The boundary of `mesh` in segments: from corner to corner, and where another one of the `groups` begins.
 ///
 /// # Errors
-/// A [`Diagnostic`] when a group is missing or holds no edge of the boundary, when the mesh has separate parts, or parts that
+/// A [`Diagnostic`] when a group is missing or has no nodes, when the mesh has separate parts, or parts that
 /// touch in one node.
 pub fn segments(mesh: &Mesh, groups: &[&str]) -> Result<Vec<Segment>, Diagnostic> {
     let labels = labels(mesh, groups)?;
@@ -84,11 +126,9 @@ fn labels(mesh: &Mesh, groups: &[&str]) -> Result<BTreeMap<usize, usize>, Diagno
                 return Err(Diagnostic::error("", shared).hint("name each edge once"));
             }
         }
-        if labels.len() == before {
-            let fault = format!("the group `{name}` holds no edge of the boundary");
-            return Err(
-                Diagnostic::error("", fault).hint("name boundary edges, or all their nodes")
-            );
+        if labels.len() == before && group.nodes.is_empty() {
+            let fault = format!("the group `{name}` holds no node");
+            return Err(Diagnostic::error("", fault).hint("name nodes or boundary edges"));
         }
     }
     Ok(labels)
@@ -156,6 +196,7 @@ fn divide(
             name,
             condition,
             outer,
+            inside: false,
             nodes,
             places,
         });
@@ -290,6 +331,34 @@ mod tests {
         mesh.name_nodes("inner", &[4, 5].into());
         let told = |groups: &[&str]| segments(&mesh, groups).unwrap_err().to_string();
         assert!(told(&["lef"]).contains("no group `lef`"));
-        assert!(told(&["inner"]).contains("holds no edge"));
+        for condition in [EdgeCondition::Free, EdgeCondition::Unknown] {
+            let told = parts(&mesh, &[("inner".into(), condition)]).unwrap_err();
+            assert!(told.to_string().contains("holds no edge"));
+        }
+    }
+
+    #[test]
+    fn nodes_of_a_held_group_that_are_no_edge_are_a_pad() {
+        let mut mesh = Mesh::plate([3.0, 2.0], [3, 2], CellShape::Quad4);
+        let names = |mesh: &Mesh| -> Vec<(String, bool, usize)> {
+            let found = parts(mesh, &[("pad".into(), EdgeCondition::Rigid)]).unwrap();
+            let own = found.into_iter().filter(|part| part.condition.is_some());
+            own.map(|part| (part.name, part.inside, part.nodes.len()))
+                .collect()
+        };
+        let inner: BTreeSet<usize> = (0..mesh.nodes.len())
+            .filter(|node| {
+                mesh.nodes[*node][1] == 1.0 && (0.5..2.5).contains(&mesh.nodes[*node][0])
+            })
+            .collect();
+        mesh.name_nodes("pad", &inner);
+        assert_eq!(names(&mesh), [("pad".to_owned(), true, 2)]);
+        let edge: BTreeSet<usize> = (0..mesh.nodes.len())
+            .filter(|node| mesh.nodes[*node][0] < 1.5)
+            .collect();
+        mesh.name_nodes("pad", &edge);
+        let found = names(&mesh);
+        assert!(found.contains(&("pad".to_owned(), true, 1)), "{found:?}");
+        assert_eq!(found.len(), 4);
     }
 }

@@ -6,6 +6,7 @@ use crate::material::{Card, HyperelasticLaw};
 use crate::problem::{BoundaryProblem, Support};
 use crate::solve::NewtonSettings;
 
+mod pads;
 mod truth;
 
 use truth::{C10, THICKNESS, estimate_mesh};

@@ -18,7 +18,7 @@ use super::field_estimate::{
     EdgeForce, EdgeOutcome, FieldEstimate, MarkerEstimate, StressEstimate,
 };
 use super::knowledge::{EdgeCondition, Knowledge, Specimen};
-use super::outline::{Segment, segments};
+use super::outline::{Segment, parts};
 use super::task::Edge;
 use crate::error::{Error, SolveFault};
 use crate::material::sheet::{Gradient, Kinematics};
@@ -101,8 +101,7 @@ pub fn transfer(
 
 /// The segments of the boundary, each with its condition.
 fn conditions(mesh: &Mesh, knowledge: &Knowledge) -> Result<Vec<(Segment, EdgeCondition)>, Error> {
-    let segments =
-        segments(mesh, &knowledge.edge_names()).map_err(|fault| Error::Input(vec![fault]))?;
+    let segments = parts(mesh, &knowledge.edges).map_err(|fault| Error::Input(vec![fault]))?;
     let with = |segment: Segment| {
         let condition = Edge::new(&segment, knowledge).condition;
         (segment, condition)

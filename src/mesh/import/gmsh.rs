@@ -196,7 +196,13 @@ impl Raw {
     /// Adds an element with the groups that it belongs to.
     fn add(&mut self, kind: &Kind, nodes: Vec<u64>, groups: &[String]) {
         match kind {
-            Kind::Cell(shape) => self.cells.push((*shape, nodes)),
+            Kind::Cell(shape) => {
+                for group in groups {
+                    let cells = self.areas.entry(group.clone()).or_default();
+                    cells.push(self.cells.len());
+                }
+                self.cells.push((*shape, nodes));
+            }
             Kind::Line => {
                 for group in groups {
                     self.lines
@@ -230,7 +236,11 @@ fn version_2(text: &str, names: &Names) -> Result<Raw, Unreadable> {
         let physical = if tags > 0 { words.whole()? as i64 } else { 0 };
         words.skip(tags.saturating_sub(1))?;
         let nodes = words.list(count)?;
-        let dimension = i64::from(!matches!(kind, Kind::Point));
+        let dimension = match kind {
+            Kind::Point => 0,
+            Kind::Line => 1,
+            Kind::Cell(_) => 2,
+        };
         let groups = if physical == 0 {
             Vec::new()
         } else {
@@ -276,25 +286,25 @@ fn version_4(text: &str, names: &Names) -> Result<Raw, Unreadable> {
     Ok(raw)
 }
 
-/// The names of the physical groups of points and curves, by dimension and number of the entity.
+/// The names of the physical groups of points, curves and surfaces, by dimension and number of the entity.
 fn entities(text: &str, names: &Names) -> Result<HashMap<(i64, i64), Vec<String>>, Unreadable> {
     let mut groups = HashMap::new();
     if body(text, "Entities").is_none() {
         return Ok(groups);
     }
     let mut words = section(text, "Entities")?;
-    let counts: [usize; 2] = [words.next()?, words.next()?];
-    words.skip(2)?;
-    for (dimension, count) in [(0, counts[0]), (1, counts[1])] {
+    let counts: [usize; 3] = [words.next()?, words.next()?, words.next()?];
+    words.skip(1)?;
+    for (dimension, count) in (0..).zip(counts) {
         for _ in 0..count {
             let tag: i64 = words.next()?;
-            // A point's place, or a curve's box.
+            // A point's place, or the box of a curve or a surface.
             words.skip(if dimension == 0 { 3 } else { 6 })?;
             let mut own = Vec::new();
             for _ in 0..words.next::<usize>()? {
                 own.push(group(names, dimension, words.next()?));
             }
-            if dimension == 1 {
+            if dimension > 0 {
                 let bounding: usize = words.next()?;
                 words.skip(bounding)?;
             }

@@ -25,6 +25,8 @@ pub struct Raw {
     /// Ends of lines, and points, by the name of their group.
     pub lines: BTreeMap<String, Vec<[u64; 2]>>,
     pub points: BTreeMap<String, Vec<u64>>,
+    /// Numbers of cells by the name of their group.
+    pub areas: BTreeMap<String, Vec<usize>>,
 }
 
 /// The bytes of a file.
@@ -135,11 +137,45 @@ impl Raw {
             let ends: BTreeSet<[usize; 2]> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
             let own = ends.iter().filter_map(|ends| edges.get(ends).cloned());
             let own: Vec<Vec<usize>> = own.collect();
-            if !own.is_empty() {
-                mesh.name_edges(name, own);
+            match own.is_empty() {
+                false => mesh.name_edges(name, own),
+                true => name_inner_lines(&mut mesh, name, &ends),
+            }
+        }
+        for (name, cells) in &self.areas {
+            let is_part = cells.len() < mesh.cell_count();
+            let is_edge = mesh
+                .groups()
+                .get(name)
+                .is_some_and(|group| !group.edges.is_empty());
+            if is_part && !is_edge {
+                let nodes = cells.iter().flat_map(|cell| mesh.cell(*cell));
+                let nodes = nodes.copied().collect();
+                mesh.put_group(name, nodes, Vec::new());
             }
         }
         Ok(mesh)
+    }
+}
+
+/// Names the nodes of lines on the sheet, with the middle ones: sides of cells that are no part of the boundary.
+fn name_inner_lines(mesh: &mut Mesh, name: &str, ends: &BTreeSet<[usize; 2]>) {
+    let sides = (0..mesh.cell_count()).flat_map(|cell| {
+        let own = mesh.cell(cell);
+        let sides = mesh.shape(cell).edges().into_iter();
+        sides.map(move |side| {
+            side.into_iter()
+                .map(|node| own[node])
+                .collect::<Vec<usize>>()
+        })
+    });
+    let named = sides.filter(|side| {
+        let [a, b] = [side[0], side[1]];
+        ends.contains(&[a.min(b), a.max(b)])
+    });
+    let nodes: Vec<usize> = named.flatten().collect();
+    if !nodes.is_empty() {
+        mesh.put_group(name, nodes, Vec::new());
     }
 }
 

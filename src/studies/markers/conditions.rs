@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use super::area::Area;
+use super::machine::{self, ForceColumn};
 use crate::corrector::estimation::{
     EdgeCondition, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
 };
@@ -23,6 +25,8 @@ pub struct Conditions {
     pub title: String,
     /// The edges.
     pub edges: EdgesByName,
+    /// Pads on the sheet by their names.
+    pub areas: Vec<(String, Area)>,
     /// Standard deviation of each component of the displacement in mm.
     pub noise: Option<f64>,
     /// How markers that are far off are weighted; where nothing is said, by Tukey's weights if some are farther off than noise
@@ -34,6 +38,8 @@ pub struct Conditions {
     pub unnamed: Unnamed,
     /// Measured forces, with the frame where it is said.
     pub forces: Vec<(Option<usize>, MeasuredForce)>,
+    /// Columns of a testing machine's table with forces.
+    pub force_columns: Vec<ForceColumn>,
     /// Parameters of the law that are found with the field.
     pub fit: Vec<String>,
     /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
@@ -149,6 +155,32 @@ impl Conditions {
         Ok(())
     }
 
+    /// Takes the forces of a testing machine's table; returns what deserves attention.
+    ///
+    /// # Errors
+    /// As [`machine::forces`]; [`Error::Input`] when columns are named and there is no table.
+    pub(super) fn take_forces(
+        &mut self,
+        table: Option<&Path>,
+        series: &MarkerSeries,
+    ) -> Result<Vec<Diagnostic>, Error> {
+        match (table, self.force_columns.first()) {
+            (None, None) => Ok(Vec::new()),
+            (None, Some(first)) => Err(Error::input(
+                format!(
+                    "the force on `{}` stands in the column `{}` of no table",
+                    first.edge, first.column
+                ),
+                "name the testing machine's table with --forces FILE",
+            )),
+            (Some(path), _) => {
+                let (forces, told) = machine::forces(path, &self.force_columns, series)?;
+                self.forces.extend(forces);
+                Ok(told)
+            }
+        }
+    }
+
     /// Every measured force with its frame.
     pub fn forces_with_frames<'a>(
         &'a self,
@@ -227,13 +259,21 @@ fn read(root: &Section) -> Conditions {
         conditions.fit = root.texts("fit");
     }
     if root.has("force") {
-        let forces = root.tables("force");
-        conditions.forces = forces.iter().map(force).collect();
+        for section in &root.tables("force") {
+            match section.has("column") && !section.has("force") {
+                true => conditions.force_columns.push(force_column(section)),
+                false => conditions.forces.push(force(section)),
+            }
+        }
     }
     if root.has("edges") {
         for section in root.tables("edges") {
             let names = section.texts("names");
             let condition = condition(&section);
+            if section.has("area") {
+                let area = area(&section, &names);
+                conditions.areas.extend(area);
+            }
             conditions
                 .edges
                 .extend(names.into_iter().map(|name| (name, condition)));
@@ -244,13 +284,57 @@ fn read(root: &Section) -> Conditions {
     conditions
 }
 
-fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
+/// The area of a pad, and the only name that it has.
+fn area(section: &Section, names: &[String]) -> Option<(String, Area)> {
+    let lengths = section.quantities("area", Dimension::Length, Bound::Any);
+    let area = Area::of(&lengths);
+    let hint = "write x and y of the lower left and of the upper right corner, or x, y and the radius of a disc";
+    match (area, names) {
+        (Some(area), [name]) => return Some((name.clone(), area)),
+        (None, _) => section.fault("area", "is no rectangle and no disc", hint),
+        _ => section.fault(
+            "names",
+            "an area has one name",
+            "give each pad a section of its own",
+        ),
+    }
+    None
+}
+
+/// A force that stands in a column of a testing machine's table.
+fn force_column(section: &Section) -> ForceColumn {
+    let (edge, axis) = edge_and_axis(section);
+    let has = section.has("standard_deviation");
+    let found = ForceColumn {
+        edge,
+        axis,
+        column: section.text("column"),
+        standard_deviation: has.then(|| deviation(section)),
+    };
+    section.unknown_keys();
+    found
+}
+
+fn edge_and_axis(section: &Section) -> (String, usize) {
     let edge = section.text("edge");
-    let axis = section.choice("axis", &[("x", 0), ("y", 1)]).unwrap_or(0);
+    let axis = section.choice("axis", &[("x", 0), ("y", 1)]);
+    (edge, axis.unwrap_or(0))
+}
+
+fn deviation(section: &Section) -> f64 {
+    section.quantity("standard_deviation", Dimension::Force, Bound::Positive)
+}
+
+fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
+    let (edge, axis) = edge_and_axis(section);
+    if section.has("column") {
+        section.text("column");
+        let hint = "leave out the column, or the force";
+        section.fault("column", "stands beside a force", hint);
+    }
     let force = section.quantity("force", Dimension::Force, Bound::Any);
     let has = |key| section.has(key);
-    let deviation = has("standard_deviation")
-        .then(|| section.quantity("standard_deviation", Dimension::Force, Bound::Positive));
+    let deviation = has("standard_deviation").then(|| deviation(section));
     let frame = has("frame").then(|| section.count("frame", 0, usize::MAX >> 1));
     section.unknown_keys();
     (frame, measured_force(&edge, axis, force, deviation))

@@ -321,7 +321,10 @@ fn edges(field: &MarkerStudy, last: &FieldEstimate) -> Vec<Block> {
         let chosen = outcome.probability.map(|p| format!("{p:.3}"));
         vec![
             outcome.edge.clone(),
-            format!("{:.3}", outcome.length),
+            match outcome.length > 0.0 {
+                true => format!("{:.3}", outcome.length),
+                false => "on the sheet".to_owned(),
+            },
             known(&outcome.condition),
             chosen.unwrap_or_default(),
         ]

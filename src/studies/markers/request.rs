@@ -39,6 +39,8 @@ pub struct Request {
     pub holes: bool,
     /// What is known besides.
     pub conditions: Conditions,
+    /// A testing machine's table with forces of the frames.
+    pub forces: Option<PathBuf>,
     /// What it may ask for.
     pub budget: Budget,
 }

@@ -1,0 +1,336 @@
+//! Forces of a testing machine's table beside the frames.
+
+use std::path::Path;
+
+use crate::corrector::estimation::MeasuredForce;
+use crate::document::Table;
+use crate::error::{Diagnostic, Error, suggestion};
+use crate::markers::{Frame, MarkerSeries, column_named, columns};
+use crate::units::{self, Dimension};
+
+/// A column of a testing machine's table and the force that it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceColumn {
+    /// The group on which the grip acts.
+    pub edge: String,
+    /// 0 along x, 1 along y.
+    pub axis: usize,
+    /// Its name; one that begins with `-` stands for the negative force.
+    pub column: String,
+    /// In N; 1 % of the largest force of the column where it is not given.
+    pub standard_deviation: Option<f64>,
+}
+
+/// What the rows of a table are matched by, one value a row.
+enum Match {
+    Frames(Vec<f64>),
+    /// In s, ascending.
+    Times(Vec<f64>),
+}
+
+/// The forces of all frames of a series, and a word about frames without one.
+///
+/// # Errors
+/// [`Error::Input`] with the place in the file and what to do, where columns are missing or rows cannot be matched.
+pub fn forces(
+    path: &Path,
+    wanted: &[ForceColumn],
+    series: &MarkerSeries,
+) -> Result<(Vec<(Option<usize>, MeasuredForce)>, Vec<Diagnostic>), Error> {
+    let table = Table::read(path, Table::HINT)?;
+    if wanted.is_empty() {
+        let heads: Vec<String> = table.columns.iter().map(|column| column.head()).collect();
+        let hint = "name edge, axis and column, as in --force-column \"right x Load\", or `column` under [[force]] in the file of --study";
+        let message = format!(
+            "no column of this table is named; it has {}",
+            heads.join(", ")
+        );
+        return Err(table.refuse_columns(message, hint));
+    }
+    let rows = matching(&table)?;
+    let mut found = Vec::new();
+    let mut without: Vec<usize> = Vec::new();
+    for one in wanted {
+        let name = one.column.trim_start_matches('-').trim();
+        let column = column_named(&table, name).map_err(|fault| Error::Input(vec![fault]))?;
+        table.check_numbers([column], "every row has a force")?;
+        let factor = newtons(&table, column)?
+            * if one.column.starts_with('-') {
+                -1.0
+            } else {
+                1.0
+            };
+        let forces: Vec<f64> = table
+            .rows
+            .iter()
+            .map(|(row, _)| factor * row[column])
+            .collect();
+        let largest = forces
+            .iter()
+            .fold(0.0, |most: f64, force| most.max(force.abs()));
+        let deviation = one.standard_deviation.unwrap_or(0.01 * largest);
+        for frame in &series.frames {
+            match rows.at(&table, frame, &forces)? {
+                Some(force) => {
+                    let force = MeasuredForce {
+                        edge: one.edge.clone(),
+                        axis: one.axis,
+                        force,
+                        standard_deviation: deviation,
+                    };
+                    found.push((Some(frame.number), force));
+                }
+                None if !without.contains(&frame.number) => without.push(frame.number),
+                None => {}
+            }
+        }
+    }
+    if found.is_empty() {
+        let hint = "number the frames in both files alike, or give the time in both";
+        return Err(table.refuse_columns("no row belongs to a frame of the field", hint));
+    }
+    let names: Vec<String> = without.iter().map(usize::to_string).collect();
+    let word = (!without.is_empty()).then(|| {
+        let message = format!(
+            "{} has no force in the frames {}",
+            path.display(),
+            names.join(", ")
+        );
+        Diagnostic::warning("", message).hint("they are corrected without one")
+    });
+    Ok((found, word.into_iter().collect()))
+}
+
+/// The factor from a column's unit to N.
+fn newtons(table: &Table, column: usize) -> Result<f64, Error> {
+    let unit = table.columns[column].unit.as_deref();
+    let name = &table.columns[column].written;
+    let Some(unit) = unit else {
+        let hint = format!("write it in brackets, as in {name} [N], or in a second line");
+        return Err(table.refuse_columns(format!("the column `{name}` has no unit"), &hint));
+    };
+    units::factor(unit, Dimension::Force).map_err(|_| {
+        let known: Vec<_> = Dimension::Force.units().collect();
+        let hint = suggestion(unit, &known, "known units:");
+        table.refuse_columns(
+            format!("`{unit}` of the column `{name}` is no unit of force"),
+            &hint,
+        )
+    })
+}
+
+/// What the rows are matched by: a column `frame`, else a column `time`.
+fn matching(table: &Table) -> Result<Match, Error> {
+    let values = |column: usize| -> Result<Vec<f64>, Error> {
+        table.check_numbers([column], "every row has a frame or a time")?;
+        Ok(table.rows.iter().map(|(row, _)| row[column]).collect())
+    };
+    if let Some(column) = columns::plain(table, columns::FRAME) {
+        let frames = values(column)?;
+        let twice = (0..frames.len()).find(|row| frames[..*row].contains(&frames[*row]));
+        return match twice {
+            None => Ok(Match::Frames(frames)),
+            Some(row) => {
+                let message = format!("the frame {} stands twice", frames[row]);
+                Err(table.refuse(
+                    table.rows[row].1.clone(),
+                    message,
+                    "give each frame one row",
+                ))
+            }
+        };
+    }
+    let Some(column) = columns::plain(table, columns::TIME) else {
+        let hint =
+            "name the column that numbers the frames `frame`, or the one of times `time [s]`";
+        return Err(table.refuse_columns("there is neither a column `frame` nor `time`", hint));
+    };
+    let second = columns::seconds(table, column)?;
+    let times: Vec<f64> = values(column)?
+        .into_iter()
+        .map(|time| second * time)
+        .collect();
+    match times.windows(2).position(|pair| pair[1] <= pair[0]) {
+        None => Ok(Match::Times(times)),
+        Some(row) => {
+            let hint = "give the rows in the order of their times, each time once";
+            let place = table.rows[row + 1].1.clone();
+            Err(table.refuse(place, "the time does not grow here", hint))
+        }
+    }
+}
+
+impl Match {
+    /// The force in a frame: that of its row, or between the rows before and after its time.
+    fn at(&self, table: &Table, frame: &Frame, forces: &[f64]) -> Result<Option<f64>, Error> {
+        let times = match self {
+            Self::Frames(frames) => {
+                let row = frames
+                    .iter()
+                    .position(|number| *number == frame.number as f64);
+                return Ok(row.map(|row| forces[row]));
+            }
+            Self::Times(times) => times,
+        };
+        let Some(time) = frame.time else {
+            let message = format!(
+                "rows are matched by time, but the frame {} has none",
+                frame.number
+            );
+            let hint = "give the field a column `time [s]`, or this table a column `frame`";
+            return Err(table.refuse_columns(message, hint));
+        };
+        let after = times.partition_point(|known| *known < time);
+        if times.get(after) == Some(&time) {
+            return Ok(Some(forces[after]));
+        }
+        if after == 0 || after == times.len() {
+            let row = after.min(times.len() - 1);
+            let message = format!(
+                "the frame {} was taken at {time} s, but the machine's times go from {} to {} s",
+                frame.number,
+                times[0],
+                times[times.len() - 1]
+            );
+            let hint = "give times from one clock: shift one of the columns";
+            return Err(table.refuse(table.rows[row].1.clone(), message, hint));
+        }
+        let share = (time - times[after - 1]) / (times[after] - times[after - 1]);
+        Ok(Some(
+            (1.0 - share) * forces[after - 1] + share * forces[after],
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series(frames: &[(usize, Option<f64>)]) -> MarkerSeries {
+        let frame = |(number, time): &(usize, Option<f64>)| Frame {
+            number: *number,
+            time: *time,
+            markers: Vec::new(),
+        };
+        MarkerSeries {
+            frames: frames.iter().map(frame).collect(),
+            lost: Vec::new(),
+        }
+    }
+
+    type Found = Result<(Vec<(Option<usize>, MeasuredForce)>, Vec<Diagnostic>), Error>;
+
+    fn of(text: &str, column: &str, frames: &[(usize, Option<f64>)]) -> Found {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("machine.csv");
+        std::fs::write(&path, text).unwrap();
+        let column = ForceColumn {
+            edge: "right".into(),
+            axis: 0,
+            column: column.into(),
+            standard_deviation: None,
+        };
+        forces(&path, &[column], &series(frames))
+    }
+
+    const BY_TIME: &str = "time [ms];Weg [mm];Load [kN]\n0;0;0\n1000;1;0,002\n3000;2;0,006\n";
+
+    #[test]
+    fn forces_are_matched_by_frame_or_between_times() {
+        let by_frame = "frame,ux [mm],Load [N]\n2,1,-5\n7,2,8\n";
+        let (found, told) = of(by_frame, "-Load", &[(7, None), (2, None), (3, None)]).unwrap();
+        let values: Vec<_> = found
+            .iter()
+            .map(|(frame, one)| (frame.unwrap(), one.force))
+            .collect();
+        assert_eq!(values, [(7, -8.0), (2, 5.0)]);
+        assert!((found[0].1.standard_deviation - 0.08).abs() < 1e-12);
+        assert!(
+            told[0].to_string().contains("no force in the frames 3"),
+            "{told:?}"
+        );
+        let (found, told) = of(BY_TIME, "load", &[(1, Some(1.0)), (2, Some(1.5))]).unwrap();
+        let values: Vec<f64> = found.iter().map(|(_, one)| one.force).collect();
+        assert!(
+            (values[0] - 2.0).abs() < 1e-12 && (values[1] - 3.0).abs() < 1e-12,
+            "{values:?}"
+        );
+        assert!(told.is_empty());
+    }
+
+    #[test]
+    fn what_cannot_be_matched_is_told_with_its_place() {
+        let frame = &[(1, Some(1.0))][..];
+        for (text, column, frames, told) in [
+            (
+                BY_TIME,
+                "Kraft",
+                frame,
+                "machine.csv:1: there is no column `Kraft`",
+            ),
+            (
+                BY_TIME,
+                "Weg",
+                frame,
+                "`mm` of the column `Weg` is no unit of force",
+            ),
+            (
+                "frame,Load\n1,2\n",
+                "Load",
+                frame,
+                "the column `Load` has no unit",
+            ),
+            (
+                "step,Load [N]\n1,2\n",
+                "Load",
+                frame,
+                "neither a column `frame` nor `time`",
+            ),
+            (
+                "frame,Load [N]\n1,2\n1,3\n",
+                "Load",
+                frame,
+                "machine.csv:3: the frame 1 stands twice",
+            ),
+            (
+                "time [s],Load [N]\n1,2\n1,3\n",
+                "Load",
+                frame,
+                "machine.csv:3: the time does not grow",
+            ),
+            (
+                "time [N],Load [N]\n1,2\n",
+                "Load",
+                frame,
+                "`N` is no unit of time",
+            ),
+            (
+                "frame,Load [N]\n1,lost\n",
+                "Load",
+                frame,
+                "machine.csv:2: column `load`: \"lost\"",
+            ),
+            (
+                "frame,Load [N]\n5,2\n",
+                "Load",
+                frame,
+                "no row belongs to a frame",
+            ),
+            (
+                BY_TIME,
+                "Load",
+                &[(4, Some(9.0))],
+                "frame 4 was taken at 9 s, but the machine's times go from 0 to 3 s",
+            ),
+            (
+                BY_TIME,
+                "Load",
+                &[(4, None)],
+                "matched by time, but the frame 4 has none",
+            ),
+        ] {
+            let found = of(text, column, frames).unwrap_err().to_string();
+            assert!(found.contains(told), "{told}: {found}");
+        }
+    }
+}
