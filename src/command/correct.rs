@@ -19,6 +19,7 @@ use crate::markers::{ChosenColumns, Frame, ReadSettings};
 use crate::mesh::{CellShape, Exemptions, MeshReading};
 use crate::output::{self, ResultFolder};
 use crate::results::NamedGrid;
+use crate::studies::markers::SHOWN;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
 use crate::studies::markers::{
     Conditions, ForceColumn, MarkerStudy, MeshSource, Request, compare_frames, worst_answer,
@@ -169,7 +170,8 @@ pub fn run(options: Options) -> Outcome {
         files.len(),
         folder.display()
     ))?;
-    warn(&field.all_doubts(&estimates));
+    let doubts = field.all_doubts(&estimates);
+    warn(&doubts[..doubts.len().min(SHOWN)]);
     Ok(match worst_answer(&estimates) {
         Answer::NotExplained => NOT_EXPLAINED,
         _ => u8::from(!results.passed()),

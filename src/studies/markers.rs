@@ -38,6 +38,7 @@ pub use alike::compare as compare_frames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use machine::ForceColumn;
+pub use report::SHOWN;
 pub use request::{MeshSource, Request};
 use specimen_mesh::{SpecimenMesh, mesh};
 pub use verdict::worst as worst_answer;

@@ -6,7 +6,10 @@ use crate::results::Block;
 use crate::statistics::Estimate;
 use crate::studies::markers::MarkerStudy;
 
-/// The figures of every frame, for the terminal.
+/// How many frames are shown in the terminal at the begin and at the end, and how many doubts.
+pub const SHOWN: usize = 12;
+
+/// The figures of the frames, for the terminal.
 pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     let mut text = format!(
         "{}; {}; mesh {}: {}\n",
@@ -21,27 +24,7 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         }
         Some(_) => "frame    nodes  correction, root mean square [mm]  largest [mm]\n",
     };
-    for (frame, estimate) in field.series.frames.iter().zip(estimates) {
-        text += &match field.coarse {
-            None => format!(
-                "{:>5}  {:>7}  {:>8}  {:>10.4}  {:>9.4}  {:>10.1}  {:>27.4}\n",
-                frame.number,
-                used(estimate),
-                outliers(estimate),
-                estimate.noise,
-                left(estimate),
-                estimate.effective_parameters,
-                largest_error(estimate)
-            ),
-            Some(_) => format!(
-                "{:>5}  {:>7}  {:>33.4}  {:>12.4}\n",
-                frame.number,
-                used(estimate),
-                left(estimate),
-                largest_correction(estimate)
-            ),
-        };
-    }
+    text += &rows(field, estimates);
     gross_errors(field, estimates).for_each(|told| text += &format!("{told}\n"));
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
@@ -65,8 +48,46 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         }
     }
     text += &verdict::summary(field, estimates);
-    for doubt in field.all_doubts(estimates) {
+    let doubts = field.all_doubts(estimates);
+    for doubt in doubts.iter().take(SHOWN) {
         text += &format!("doubtful: {}\n", doubt.message);
+    }
+    if doubts.len() > SHOWN {
+        text += &format!("doubtful: {} more, see the report\n", doubts.len() - SHOWN);
+    }
+    text
+}
+
+/// A row for each of the first and last frames.
+fn rows(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
+    let mut text = String::new();
+    let left_out = SHOWN..estimates.len().saturating_sub(SHOWN);
+    for (index, (frame, estimate)) in field.series.frames.iter().zip(estimates).enumerate() {
+        if left_out.contains(&index) {
+            if index == left_out.start {
+                text += &format!("    …  {} frames, see the report\n", left_out.len());
+            }
+            continue;
+        }
+        text += &match field.coarse {
+            None => format!(
+                "{:>5}  {:>7}  {:>8}  {:>10.4}  {:>9.4}  {:>10.1}  {:>27.4}\n",
+                frame.number,
+                used(estimate),
+                outliers(estimate),
+                estimate.noise,
+                left(estimate),
+                estimate.effective_parameters,
+                largest_error(estimate)
+            ),
+            Some(_) => format!(
+                "{:>5}  {:>7}  {:>33.4}  {:>12.4}\n",
+                frame.number,
+                used(estimate),
+                left(estimate),
+                largest_correction(estimate)
+            ),
+        };
     }
     text
 }

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::MarkerStudy;
 use crate::corrector::estimation::{Answer, FieldEstimate, Mend, Verdict};
 use crate::results::Block;
+use crate::statistics::extremes;
 
 /// Freedoms that are told in the terminal.
 const TOLD: usize = 3;
@@ -29,19 +30,22 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
     }
     let frames = || field.series.frames.iter().zip(estimates);
     let mut text = String::new();
+    let all: Vec<(usize, &FieldEstimate)> =
+        frames().map(|(frame, own)| (frame.number, own)).collect();
     for answer in ANSWERS {
-        let own = frames().filter(|(_, found)| found.verdict.answer == answer);
-        let own: Vec<String> = own
-            .map(|(frame, found)| match found.verdict.correlation {
-                Some(one) if answer == Answer::Correlated => {
-                    format!("{} (over {:.3} mm)", frame.number, one.length)
-                }
-                _ => frame.number.to_string(),
-            })
+        let runs = all.chunk_by(|(_, a), (_, b)| a.verdict.answer == b.verdict.answer);
+        let own: Vec<_> = runs
+            .filter(|run| run[0].1.verdict.answer == answer)
             .collect();
         if !own.is_empty() {
-            let frames = if own.len() == 1 { "frame" } else { "frames" };
-            text += &format!("verdict, {frames} {}: {}\n", own.join(", "), answer.words());
+            let count: usize = own.iter().map(|run| run.len()).sum();
+            let frames = if count == 1 { "frame" } else { "frames" };
+            let runs: Vec<String> = own.into_iter().map(|run| run_words(run, answer)).collect();
+            text += &format!(
+                "verdict, {frames} {}: {}\n",
+                runs.join(", "),
+                answer.words()
+            );
         }
     }
     if let Some((frame, found)) = frames().rfind(|(_, found)| !found.is_explained()) {
@@ -58,6 +62,25 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         }
     }
     text
+}
+
+/// Frames with one answer, one after the other: `4`, `4, 9`, `4 to 34`, and over which lengths their noise correlates.
+fn run_words(run: &[(usize, &FieldEstimate)], answer: Answer) -> String {
+    let numbers = match run {
+        [(one, _)] => one.to_string(),
+        [(first, _), (second, _)] => format!("{first}, {second}"),
+        [(first, _), .., (last, _)] => format!("{first} to {last}"),
+        [] => String::new(),
+    };
+    let lengths = run
+        .iter()
+        .filter_map(|(_, found)| found.verdict.correlation);
+    let [low, high] = extremes(lengths.map(|one| one.length));
+    match (answer, low < high) {
+        (Answer::Correlated, true) => format!("{numbers} (over {low:.3} to {high:.3} mm)"),
+        (Answer::Correlated, false) => format!("{numbers} (over {low:.3} mm)"),
+        _ => numbers,
+    }
 }
 
 fn reasons(verdict: &Verdict) -> String {
