@@ -13,9 +13,11 @@ mod least_squares;
 mod misfit;
 mod quality;
 mod reading;
+mod rounding;
 mod search;
 mod settings;
 mod test_data;
+mod verdict;
 mod warnings;
 
 pub use card_text::{Provenance, card_text};
@@ -25,8 +27,11 @@ pub use quality::{Quality, StableRange};
 pub use reading::KEYS;
 pub use settings::{Bounds, FitSettings, Weighting};
 pub use test_data::{Observation, StrainColumn, Test, TestData};
+pub use verdict::{Answer, Verdict};
 
 #[cfg(test)]
 mod quality_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod verdict_tests;

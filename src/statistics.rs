@@ -1,17 +1,23 @@
 //! Statistics, each formula in one place: quantiles and tail probabilities, estimates with their intervals, robust measures of
-//! scale, the inverse of normal matrices, B-splines, noise that correlates with distance.
+//! scale, the inverse of normal matrices, B-splines, noise that correlates with distance or along curves.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
+use statrs::distribution::{Beta, ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 mod correlated_regression;
 mod correlation;
+mod curve;
+mod curve_noise;
+mod durbin_watson;
 mod neighbours;
 mod spline;
 
 pub use correlated_regression::{CorrelatedNoise, CorrelatedRegression, WhiteRegression};
 pub use correlation::{Correlation, Decay, Sites, Whitening};
+pub use curve::Curve;
+pub use curve_noise::{CurveNoise, CurveResiduals};
+pub use durbin_watson::DurbinWatson;
 pub use neighbours::nearest;
 pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
@@ -87,6 +93,11 @@ pub fn chi_squared_limit(freedom: f64, probability: f64) -> f64 {
     ChiSquared::new(freedom).map_or(f64::NAN, |law| law.inverse_cdf(1.0 - probability))
 }
 
+/// P(b ≤ x) for a number b with the beta distribution of these shapes; NaN where there is none.
+pub fn beta_cumulated(shapes: [f64; 2], x: f64) -> f64 {
+    Beta::new(shapes[0], shapes[1]).map_or(f64::NAN, |law| law.cdf(x))
+}
+
 /// The median, the upper one of the middle two; NaN of nothing.
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
@@ -119,28 +130,6 @@ pub fn inverse(matrix: &DMatrix<f64>, least: f64) -> Option<DMatrix<f64>> {
     determined.then(|| scaled(&factor.inverse()))
 }
 
-/// s² (JᵀJ)⁻¹ of a Jacobian J by its singular values, with columns of unit length; what J does not determine at all
-/// gets a huge variance.
-pub fn covariance(mut jacobian: DMatrix<f64>, variance: f64) -> Option<DMatrix<f64>> {
-    const LEAST: f64 = 1e-14;
-    let size = jacobian.ncols();
-    let lengths = jacobian.column_iter().map(|column| column.norm());
-    let scales: Vec<f64> = lengths
-        .map(|length| length.max(f64::MIN_POSITIVE))
-        .collect();
-    for (mut column, scale) in jacobian.column_iter_mut().zip(&scales) {
-        column /= *scale;
-    }
-    // The triangle of QR has the singular values of J and is small.
-    let decomposition = jacobian.qr().r().svd(false, true);
-    let v = decomposition.v_t?;
-    Some(DMatrix::from_fn(size, size, |i, j| {
-        let singular = decomposition.singular_values.iter().enumerate();
-        let terms = singular.map(|(k, s)| v[(k, i)] * v[(k, j)] / s.max(LEAST).powi(2));
-        variance * terms.sum::<f64>() / (scales[i] * scales[j])
-    }))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,14 +160,5 @@ mod tests {
         let singular = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.0]);
         assert!(inverse(&singular, 1e-7).is_none());
         assert!(inverse(&-matrix, 1e-7).is_none());
-    }
-
-    /// A straight line through 0, 1, 2: (JᵀJ)⁻¹ = [5/6 −1/2; −1/2 1/2].
-    #[test]
-    fn the_covariance_of_a_straight_line_is_known() {
-        let line = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 1.0, 1.0, 2.0]);
-        let expected = DMatrix::from_row_slice(2, 2, &[5.0 / 6.0, -0.5, -0.5, 0.5]);
-        let found = covariance(line, 4.0).unwrap();
-        assert!((found - expected * 4.0).amax() < 1e-14);
     }
 }

@@ -19,15 +19,19 @@ fn a_law_is_fitted_and_its_card_is_used() {
     let fit: Vec<&str> = ["materials", "fit", data].into_iter().chain(fit).collect();
     let printed = words(&gelbench(folder.path(), &fit).code(0).get_output().stdout);
     let guide = fs::read_to_string(root().join("src/guide/materials.md")).unwrap();
-    let shown =
-        |line: &&str| line.starts_with("  c") && line.contains('±') || line.contains("RMSE");
-    assert_eq!(printed.lines().filter(shown).count(), 4);
+    let shown = |line: &&str| line.contains("no interval") || line.contains("RMSE");
+    assert_eq!(printed.lines().filter(shown).count(), 5);
     for line in printed.lines().filter(shown) {
         assert!(guide.contains(line), "the guide does not show: {line}");
     }
     let figures = fs::read_to_string(folder.path().join("pva.json")).unwrap();
     let figures: Value = serde_json::from_str(&figures).unwrap();
     assert!((number(&figures, &["r_squared"]) - 0.999_925).abs() < 1e-6);
+    assert_eq!(figures["verdict"]["answer"], "systematic");
+    assert!(figures["parameters"][0]["standard_error"].is_null());
+    let card = fs::read_to_string(folder.path().join("pva.toml")).unwrap();
+    assert_eq!(card.matches("# no interval").count(), 3);
+    assert!(card.contains("; left over: systematic, a smooth pattern"));
     assert!(
         fs::read(folder.path().join("pva.png"))
             .unwrap()

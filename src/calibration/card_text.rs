@@ -107,10 +107,10 @@ fn parameters(text: &mut String, fit: &Fit) {
             Dimension::Ratio => parameter.value.to_string(),
             other => quoted(&format!("{} {}", parameter.value, other.internal_unit())),
         };
-        let error = if estimate.standard_error.is_finite() {
-            format!("standard error {:.2e}", estimate.standard_error)
-        } else {
-            "held by a bound".to_owned()
+        let error = match estimate.standard_error {
+            error if !error.is_finite() => "held by a bound".to_owned(),
+            _ if !fit.quality.has_intervals() => "no interval".to_owned(),
+            error => format!("standard error {error:.2e}"),
         };
         let _ = writeln!(text, "{} = {value} # {error}", parameter.key);
     }
@@ -137,6 +137,10 @@ fn note(fit: &Fit) -> String {
             quality.points, quality.rmse, quality.nmad_percent, quality.r_squared
         )
     };
+    if let Some(verdict) = &quality.verdict {
+        note += "; left over: ";
+        note += &verdict.sentence();
+    }
     for warning in &quality.warnings {
         note += "; ";
         note += warning;

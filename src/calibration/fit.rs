@@ -53,8 +53,15 @@ impl Fit {
         self.stress_measure
     }
 
-    /// Half the widths of the 95 % intervals of the fitted curve at some observations, in MPa.
+    /// Half the widths of the 95 % intervals of the fitted curve at some observations, in MPa; NaN where there are none, since
+    /// the residuals are no noise, or a bound holds a parameter.
     pub fn half_widths(&self, data: &TestData, at: &[Observation]) -> Vec<f64> {
+        let bounded = self.quality.at_bound.contains(&true);
+        let noise = self.quality.noise.as_ref();
+        let known = noise.filter(|_| self.quality.has_intervals() && !bounded);
+        let Some(noise) = known else {
+            return vec![f64::NAN; at.len()];
+        };
         let values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
         let curve = Curve {
             fit: self,
@@ -62,9 +69,7 @@ impl Fit {
             at,
         };
         let gradients = least_squares::jacobian(&curve, &values, &vec![false; values.len()]);
-        let spread = &gradients * &self.quality.covariance;
-        let variance = |point: usize| spread.row(point).dot(&gradients.row(point));
-        let half = |point: usize| self.quality.student * variance(point).max(0.0).sqrt();
+        let half = |point: usize| noise.half_width(&gradients.row(point).transpose());
         (0..at.len()).map(half).collect()
     }
 }
@@ -235,7 +240,8 @@ fn take_curve(
 }
 
 /// All laws that can be fitted to some tests, the one with the smallest AICc first; laws that cannot be are
-/// left out with their reasons.
+/// left out with their reasons. All have the effective points of the law with the least variance of residuals: how
+/// many points are independent is a matter of the noise, not of a law that misses them.
 pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
     // A fibre law needs to see two directions.
     let axis = |axis: usize| {
@@ -259,6 +265,18 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
         match outcome {
             Ok(fit) => fits.push(fit),
             Err(reason) => reasons.push(reason.to_string()),
+        }
+    }
+    let variance = |fit: &Fit| {
+        let quality = &fit.quality;
+        quality.weighted_sum / (quality.points - fit.parameters.len()) as f64
+    };
+    let nearest = fits
+        .iter()
+        .min_by(|a, b| variance(a).total_cmp(&variance(b)));
+    if let Some(effective) = nearest.map(|fit| fit.quality.effective_points()) {
+        for fit in &mut fits {
+            fit.quality.aicc = fit.quality.aicc_with(effective);
         }
     }
     fits.sort_by(|a, b| a.quality.aicc.total_cmp(&b.quality.aicc));

@@ -1,7 +1,8 @@
 //! What the columns of a table mean, and the rows read by it.
 
+use super::rounding::rounding;
 use super::test_data::{Observation, StrainColumn, Test, TestData};
-use crate::document::{Faulty, Head};
+use crate::document::{Faulty, Head, Table};
 use crate::error::Diagnostic;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::units::Dimension;
@@ -158,9 +159,23 @@ impl Layout {
             drawn_axis: usize::from(widest(1) > widest(0)),
             observations,
             largest_stress,
+            rounding: self.rounding(table),
             head: head.written(),
             warnings: turns.warning(head).into_iter().collect(),
         })
+    }
+
+    /// What rounding took from strains and stresses.
+    fn rounding(&self, table: &Table) -> [f64; 2] {
+        let of = |column: usize, factor: f64| {
+            let values: Vec<f64> = table.rows.iter().map(|(row, _)| row[column]).collect();
+            factor.abs() * rounding(&values)
+        };
+        let strains = self.strains.iter().flatten();
+        let strains = strains.map(|(column, factor)| of(*column, *factor));
+        let stresses = self.stresses.iter();
+        let stresses = stresses.map(|(column, factor, _)| of(*column, *factor));
+        [strains.fold(0.0, f64::max), stresses.fold(0.0, f64::max)]
     }
 
     /// λ − 1 along both axes in a row.

@@ -9,6 +9,9 @@ use crate::material::HyperelasticLaw;
 use crate::material::parameters::CardEntries;
 use crate::material::registry::Law;
 
+/// Rows of the residuals along a curve, with the strain that they are drawn over.
+pub(super) type Rows = Vec<(usize, f64)>;
+
 /// The residuals of a law at some observations, or at means of many neighbouring ones.
 pub struct Misfit<'a> {
     law: &'static Law,
@@ -64,6 +67,20 @@ impl<'a> Misfit<'a> {
     pub fn build(&self, values: &[f64]) -> (Box<dyn HyperelasticLaw>, CardEntries) {
         let measure = self.tests[0].stress_measure;
         self.law.with_values(values, measure, MEASURE)
+    }
+
+    /// The rows along each axis of each test, with the strain that they are drawn over.
+    pub fn curves(&self) -> Vec<Rows> {
+        let mut curves: Vec<(usize, usize, Rows)> = Vec::new();
+        for (row, point) in self.points.iter().enumerate() {
+            let (test, axis) = (point.test, point.observation.axis);
+            let place = (row, self.tests[test].drawn_strain(&point.observation));
+            match curves.last_mut() {
+                Some((t, a, rows)) if (*t, *a) == (test, axis) => rows.push(place),
+                _ => curves.push((test, axis, vec![place])),
+            }
+        }
+        curves.into_iter().map(|(.., rows)| rows).collect()
     }
 
     fn predict(&self, law: &dyn HyperelasticLaw, point: &Point) -> f64 {

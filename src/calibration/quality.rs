@@ -1,15 +1,16 @@
 //! How far a fit can be trusted.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
-use super::least_squares;
+use super::least_squares::{self, Residuals};
 use super::misfit::Misfit;
 use super::settings::{SMALLEST_SHARE, Weighting};
-use super::test_data::{Test, TestData};
+use super::test_data::{Observation, Test, TestData};
+use super::verdict::{LeftOver, Verdict};
 use crate::material::HyperelasticLaw;
 use crate::material::curve::Mode;
 use crate::material::stability::stable_range;
-use crate::statistics::{self, Estimate, student_reach};
+use crate::statistics::{CurveNoise, Estimate};
 
 /// Whether the interval of an estimate does not hold zero.
 pub(super) fn knows_sign(estimate: &Estimate) -> bool {
@@ -54,20 +55,23 @@ pub struct Quality {
     pub nmad_percent: f64,
     /// 1 − Σ (σᵢ − σ)² / Σ (σᵢ − mean)².
     pub r_squared: f64,
-    /// n ln(S/n) + 2k + 2k(k + 1)/(n − k − 1), S the weighted sum of squares and k the parameters and the variance.
+    /// nₑ ln(S/n) + 2k + 2k(k + 1)/(nₑ − k − 1), S the weighted sum of squares, n and nₑ the points and the effective ones,
+    /// and k the parameters and the variance; infinite where there are too few points.
     pub aicc: f64,
+    /// S.
+    pub weighted_sum: f64,
     /// Largest |σᵢ − σ|/|σᵢ| in %, of the stresses above a hundredth of their test's largest.
     pub largest_relative_error_percent: f64,
-    /// One for each parameter; uncertainties are NaN where a bound holds it.
+    /// What the residuals are; nothing is said where no parameter is estimated from them.
+    pub verdict: Option<Verdict>,
+    /// One for each parameter; uncertainties are NaN where a bound holds it. They hold where [`Self::has_intervals`].
     pub estimates: Vec<Estimate>,
     /// Whether a bound holds it, for each parameter.
     pub at_bound: Vec<bool>,
     /// Correlation of the parameters.
     pub correlation: DMatrix<f64>,
-    /// Covariance of the parameters.
-    pub covariance: DMatrix<f64>,
-    /// Half the width of 95 % intervals over standard errors.
-    pub student: f64,
+    /// The noise that makes the parameters uncertain which no bound holds.
+    pub noise: Option<CurveNoise>,
     /// The stable ranges.
     pub stable: Vec<StableRange>,
     /// The stretches between which the data lie.
@@ -79,6 +83,29 @@ pub struct Quality {
 }
 
 impl Quality {
+    /// Whether the residuals are noise, so that there are intervals.
+    pub fn has_intervals(&self) -> bool {
+        self.verdict
+            .is_none_or(|verdict| verdict.answer.has_intervals())
+    }
+
+    /// AICc with another number of effective points, which laws must share to be compared.
+    #[must_use]
+    pub fn aicc_with(&self, effective: f64) -> f64 {
+        let parameters = (self.estimates.len() + 1) as f64;
+        aicc(
+            self.weighted_sum,
+            [self.points as f64, effective],
+            parameters,
+        )
+    }
+
+    /// The number of independent points that tell as much of the noise.
+    pub fn effective_points(&self) -> f64 {
+        let own = self.verdict.map(|verdict| verdict.effective_points);
+        own.unwrap_or(self.points as f64)
+    }
+
     /// Whether no parameter is held by a bound or has an interval that holds zero.
     pub fn is_identifiable(&self) -> bool {
         self.estimates.iter().all(knows_sign)
@@ -107,17 +134,12 @@ impl Assessment<'_> {
         let values = self.values;
         let points = self.tests.iter().map(|test| test.observations.len()).sum();
         let deviations = Deviations::of(self.tests, self.weighting, self.law);
-        let freedom = (points - values.len()) as f64;
-        let student = student_reach(freedom);
         let at_bound = self.at_bound();
-        let covariance = self.covariance(&at_bound, deviations.weighted / freedom);
-        let error = |i: usize| match at_bound[i] {
-            true => f64::NAN,
-            false => covariance[(i, i)].sqrt(),
-        };
-        let estimates = values.iter().enumerate();
-        let estimates = estimates.map(|(i, value)| Estimate::new(*value, error(i), student));
+        let judged = self.judge(&at_bound, points, deviations.weighted);
+        let (verdict, noise) = judged.unzip();
+        let (estimates, correlation) = self.estimates(&at_bound, noise.as_ref());
         let n = points as f64;
+        let effective = verdict.map_or(n, |verdict| verdict.effective_points);
         Quality {
             points,
             sum_of_squares: deviations.squares,
@@ -125,15 +147,18 @@ impl Assessment<'_> {
             nmad_percent: 100.0 * deviations.absolute
                 / deviations.measured.max(deviations.predicted),
             r_squared: 1.0 - deviations.squares / deviations.spread,
-            aicc: aicc(deviations.weighted, n, (values.len() + 1) as f64),
+            aicc: aicc(
+                deviations.weighted,
+                [n, effective],
+                (values.len() + 1) as f64,
+            ),
+            weighted_sum: deviations.weighted,
             largest_relative_error_percent: 100.0 * deviations.largest_relative,
-            estimates: estimates.collect(),
-            correlation: DMatrix::from_fn(values.len(), values.len(), |i, j| {
-                covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt()
-            }),
+            verdict,
+            estimates,
+            correlation,
             at_bound,
-            covariance,
-            student,
+            noise,
             stable: self.stable(),
             stretch_range: stretch_range(self.tests.iter()),
             untested: untested(self.tests),
@@ -149,23 +174,84 @@ impl Assessment<'_> {
         self.values.iter().zip(self.bounds).map(at_bound).collect()
     }
 
-    /// The covariance of the values that no bound holds; NaN for the others.
-    fn covariance(&self, fixed: &[bool], variance: f64) -> DMatrix<f64> {
-        let size = self.values.len();
-        let free: Vec<usize> = (0..size).filter(|index| !fixed[*index]).collect();
-        let mut covariance = DMatrix::from_element(size, size, f64::NAN);
-        if free.is_empty() {
-            return covariance;
-        }
+    /// What the residuals are, and what the values are worth that no bound holds.
+    fn judge(&self, fixed: &[bool], points: usize, weighted: f64) -> Option<(Verdict, CurveNoise)> {
         let jacobian = least_squares::jacobian(self.misfit, self.values, fixed);
-        if let Some(own) = statistics::covariance(jacobian.select_columns(&free), variance) {
-            for (i, row) in free.iter().enumerate() {
-                for (j, column) in free.iter().enumerate() {
-                    covariance[(*row, *column)] = own[(i, j)];
-                }
+        let free: Vec<usize> = (0..fixed.len()).filter(|index| !fixed[*index]).collect();
+        let rows = self.misfit.count();
+        let mut residual = DVector::zeros(rows);
+        self.misfit.evaluate(self.values, residual.as_mut_slice());
+        let left_over = LeftOver {
+            misfit: self.misfit,
+            design: &jacobian.select_columns(&free),
+            residual: &residual,
+            rounded: self.rounded() * rows as f64,
+        };
+        let (mut verdict, noise) = left_over.judge()?;
+        // Points that were gathered count as many as their means are the less scattered.
+        let estimates = self.values.len();
+        let [own, of_means] = [(weighted, points), (residual.norm_squared(), rows)]
+            .map(|(sum, count)| sum / (count - estimates.min(count - 1)) as f64);
+        if rows < points && verdict.answer.has_intervals() {
+            let gathered = points as f64 / rows as f64;
+            verdict.effective_points *= gathered * (own / of_means).min(1.0);
+        }
+        Some((verdict, noise))
+    }
+
+    /// The mean square of weighted residuals that rounding alone leaves, or that no test could tell from nothing.
+    fn rounded(&self) -> f64 {
+        const NOTHING: f64 = 1e-6;
+        let (mut sum, mut count) = (0.0, 0);
+        for test in self.tests {
+            let [strain, stress] = test.rounding;
+            for one in &test.observations {
+                let size = one
+                    .strains
+                    .iter()
+                    .fold(0.0, |most: f64, x| most.max(x.abs()));
+                let moved = Observation {
+                    strains: one.strains.map(|x| x * (1.0 + strain / size.max(strain))),
+                    ..*one
+                };
+                let by_strain = test.stress_of(self.law, &moved) - test.stress_of(self.law, one);
+                let nothing = NOTHING * test.largest_stress;
+                let square = by_strain.powi(2) + stress * stress + nothing * nothing;
+                sum += self.weighting.weight(test, one).powi(2) * square;
+                count += 1;
             }
         }
-        covariance
+        sum / f64::from(count)
+    }
+
+    /// The values with their uncertainty, NaN where a bound holds them, and their correlation.
+    fn estimates(
+        &self,
+        fixed: &[bool],
+        noise: Option<&CurveNoise>,
+    ) -> (Vec<Estimate>, DMatrix<f64>) {
+        let size = self.values.len();
+        let mut correlation = DMatrix::from_element(size, size, f64::NAN);
+        let mut estimates: Vec<Estimate> = self
+            .values
+            .iter()
+            .map(|value| Estimate::new(*value, f64::NAN, f64::NAN))
+            .collect();
+        let Some(noise) = noise else {
+            return (estimates, correlation);
+        };
+        let free: Vec<usize> = (0..size).filter(|index| !fixed[*index]).collect();
+        let covariance = noise.covariance();
+        let error = |i: usize| covariance[(i, i)].sqrt();
+        for (i, row) in free.iter().enumerate() {
+            let unit = DVector::from_fn(free.len(), |j, _| f64::from(u8::from(i == j)));
+            let reach = noise.half_width(&unit) / error(i);
+            estimates[*row] = Estimate::new(self.values[*row], error(i), reach);
+            for (j, column) in free.iter().enumerate() {
+                correlation[(*row, *column)] = covariance[(i, j)] / (error(i) * error(j));
+            }
+        }
+        (estimates, correlation)
     }
 
     fn stable(&self) -> Vec<StableRange> {
@@ -184,10 +270,11 @@ impl Assessment<'_> {
     }
 }
 
-/// n ln(S/n) + 2k + 2k(k + 1)/(n − k − 1); infinite where there are too few points.
-fn aicc(sum: f64, n: f64, k: f64) -> f64 {
-    match n - k - 1.0 > 0.0 {
-        true => n * (sum / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0),
+/// nₑ ln(S/n) + 2k + 2k(k + 1)/(nₑ − k − 1); infinite where there are too few points.
+fn aicc(sum: f64, [n, effective]: [f64; 2], k: f64) -> f64 {
+    let left = effective - k - 1.0;
+    match left > 0.0 {
+        true => effective * (sum / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / left,
         false => f64::INFINITY,
     }
 }

@@ -1,5 +1,7 @@
 //! Figures of a fit compared with their definitions.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::fit::{Fit, fit};
 use super::quality::StableRange;
 use super::search::differs;
@@ -8,6 +10,7 @@ use super::test_data::TestData;
 use crate::document::Statements;
 use crate::material::curve::Mode;
 use crate::material::registry::Law;
+use crate::statistics::{Curve, CurveResiduals};
 
 fn tests(points: &[(f64, f64)]) -> [TestData; 1] {
     let rows: String = points.iter().map(|(l, s)| format!("{l},{s}\n")).collect();
@@ -24,7 +27,7 @@ fn slope(stretch: f64) -> f64 {
     2.0 * (stretch - stretch.powi(-2))
 }
 
-/// AICc after Hurvich and Tsai, Biometrika 76, 297 (1989), with the variance as a parameter.
+/// AICc after Hurvich and Tsai, Biometrika 76, 297 (1989), with the variance as a parameter, and the effective points.
 #[test]
 fn the_figures_of_a_fit_are_as_defined() {
     // The last two stresses are below a hundredth, and above one but below a tenth, of the largest.
@@ -58,12 +61,16 @@ fn the_figures_of_a_fit_are_as_defined() {
         let counted = off.iter().zip(&points).filter(|(_, (_, s))| *s > 0.0016);
         let largest = counted.map(|(d, (_, s))| (d / s).abs()).fold(0.0, f64::max);
         let quality = &found.quality;
-        // n = 5 points, k = 2: 2k + 2k(k + 1)/(n − k − 1) = 4 + 12/2.
+        // n = 5 points, k = 2: nₑ ln(S/n) + 2k + 2k(k + 1)/(nₑ − k − 1) = nₑ ln(S/n) + 4 + 12/(nₑ − 3).
+        let effective = quality.effective_points();
+        assert!(effective > 3.5 && effective <= 5.0, "{effective}");
+        let aicc = effective * (weighted / 5.0).ln() + 4.0 + 12.0 / (effective - 3.0);
+        assert_eq!(quality.aicc_with(effective), quality.aicc);
         for (what, found, expected) in [
             ("S", quality.sum_of_squares, squares),
             ("rmse", quality.rmse, (squares / 5.0).sqrt()),
             ("R²", quality.r_squared, 1.0 - squares / spread),
-            ("AICc", quality.aicc, 5.0 * (weighted / 5.0).ln() + 10.0),
+            ("AICc", quality.aicc, aicc),
             (
                 "largest",
                 quality.largest_relative_error_percent,
@@ -81,9 +88,9 @@ fn the_figures_of_a_fit_are_as_defined() {
     assert_eq!(few.quality.aicc, f64::INFINITY);
 }
 
-/// σ = C₁₀ f + C₀₁ f/λ is linear: Cov = s² (XᵀX)⁻¹ with two columns.
+/// σ = C₁₀ f + C₀₁ f/λ is linear: two columns tell what the noise along the curve makes of both parameters.
 #[test]
-fn two_parameters_have_the_covariance_of_linear_regression() {
+fn two_parameters_have_the_uncertainty_of_linear_regression() {
     for sign in [1.0, -1.0] {
         let wiggle = |i: i32| sign * 2e-3 * (1.7 * f64::from(i)).sin();
         let row = |i: i32| {
@@ -93,23 +100,27 @@ fn two_parameters_have_the_covariance_of_linear_regression() {
         let points: Vec<_> = (1..=12).map(row).collect();
         let data = tests(&points);
         let found = fitted("mooney-rivlin", &data, &FitSettings::default());
-        let columns = |l: f64| [slope(l), slope(l) / l];
-        let sum = |value: &dyn Fn([f64; 2]) -> f64| -> f64 {
-            points.iter().map(|(l, _)| value(columns(*l))).sum()
+        let [c10, c01] = [0, 1].map(|index| found.parameters[index].value);
+        let design = DMatrix::from_fn(12, 2, |i, j| {
+            let (stretch, _) = points[i];
+            -slope(stretch) / [1.0, stretch][j]
+        });
+        let left =
+            |i: usize, _| points[i].1 + (design.row(i) * DVector::from_vec(vec![c10, c01]))[0];
+        let residuals = CurveResiduals {
+            design: &design,
+            residual: &DVector::from_fn(12, left),
+            orders: &[vec![Curve::even((0..12).collect())]],
         };
-        let [a, b, c] = [
-            sum(&|x| x[0] * x[0]),
-            sum(&|x| x[0] * x[1]),
-            sum(&|x| x[1] * x[1]),
-        ];
-        let (variance, determinant) = (found.quality.sum_of_squares / 10.0, a * c - b * b);
-        for (i, own) in [c, a].into_iter().enumerate() {
-            let expected = (variance * own / determinant).sqrt();
-            let error = found.quality.estimates[i].standard_error;
-            assert!((error / expected - 1.0).abs() < 1e-6, "{error} {expected}");
+        let expected = residuals.noise().unwrap();
+        for (i, estimate) in found.quality.estimates.iter().enumerate() {
+            let unit = DVector::from_fn(2, |j, _| f64::from(u8::from(i == j)));
+            let half = (estimate.interval[1] - estimate.interval[0]) / 2.0;
+            assert!((half / expected.half_width(&unit) - 1.0).abs() < 1e-5);
+            let error = expected.covariance()[(i, i)].sqrt();
+            assert!((estimate.standard_error / error - 1.0).abs() < 1e-5);
         }
         let correlation = found.quality.correlation[(0, 1)];
-        assert!((correlation + b / (a * c).sqrt()).abs() < 1e-6);
         // C₀₁, whose true value is zero, has either sign and is not known to have it.
         assert!(!found.quality.is_identifiable());
         let told = &found.quality.warnings;

@@ -97,6 +97,8 @@ pub struct TestData {
     pub drawn_axis: usize,
     /// The largest stress without its sign, in MPa.
     pub largest_stress: f64,
+    /// Root mean squares of what rounding took from the strains (nominal) and from the stresses in MPa of the file.
+    pub rounding: [f64; 2],
     /// What the head says about source, specimen, DOI and licence.
     pub head: Statements,
     /// What to look at before trusting the data.

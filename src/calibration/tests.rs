@@ -93,29 +93,6 @@ fn treloars_rubber_gives_the_parameters_found_elsewhere() {
     );
 }
 
-/// Half the width of a confidence interval is Student's factor times the standard error, and the slope of the
-/// neo-Hookean curve gives both in closed form.
-#[test]
-fn standard_errors_are_those_of_linear_regression() {
-    let tests = data(&["treloar_1944_uniaxial"]);
-    let fit = fitted("neo-hooke", &tests);
-    let slope = |x: f64| 2.0 * ((1.0 + x) - (1.0 + x).powi(-2));
-    let slopes = tests[0]
-        .observations
-        .iter()
-        .map(|one| slope(one.strains[0]));
-    let squares: f64 = slopes.map(|slope| slope * slope).sum();
-    let variance = fit.quality.sum_of_squares / 23.0;
-    let expected = (variance / squares).sqrt();
-    let found = fit.quality.estimates[0];
-    assert!((found.standard_error / expected - 1.0).abs() < 1e-8);
-    let half = (found.interval[1] - found.interval[0]) / 2.0;
-    assert!((half / expected - 2.068_657_6).abs() < 1e-5, "t(23)");
-    let at = tests[0].observations[10];
-    let band = fit.half_widths(&tests[0], &[at])[0];
-    assert!((band / (half * slope(at.strains[0])) - 1.0).abs() < 1e-6);
-}
-
 #[test]
 fn a_rising_cauchy_curve_is_found_unstable() {
     let row = |i: i32| {
@@ -291,28 +268,6 @@ fn the_card_of_a_measured_curve_is_the_curve() {
             "{one:?}"
         );
     }
-}
-
-/// A thousand times as many points give the same parameters: bins lose nothing.
-#[test]
-fn many_points_are_gathered_without_loss() {
-    let row = |i: i32| {
-        let x = f64::from(i) / 60_000.0;
-        let law = 0.06 * ((1.0 + x) - (1.0 + x).powi(-2)) * (0.5 * x * x).exp();
-        format!("{},{}\n", 1.0 + x, law)
-    };
-    let read = |step: usize| {
-        let rows: String = (0..=60_000).step_by(step).map(row).collect();
-        let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-        [TestData::parse("a.csv", &text, &Statements::new()).unwrap()]
-    };
-    let (all, some) = (fitted("yeoh", &read(1)), fitted("yeoh", &read(40)));
-    assert_eq!(all.quality.points, 60_001);
-    for (a, b) in values(&all).iter().zip(values(&some)) {
-        assert!((a / b - 1.0).abs() < 2e-3, "{a} {b}");
-    }
-    let ratio = all.quality.estimates[0].standard_error / some.quality.estimates[0].standard_error;
-    assert!((ratio * 40_f64.sqrt() - 1.0).abs() < 0.05, "{ratio}");
 }
 
 /// Bounds that exclude where the data lead, that lie outside of the law, and an active one of a stress.

@@ -42,7 +42,7 @@ fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
     }
     if !vague.is_empty() {
         warnings.push(format!(
-            "not identifiable from these data: {}, whose 95 % intervals hold zero",
+            "not identifiable from these data: {}, whose sign they do not tell",
             vague.join(", ")
         ));
     }

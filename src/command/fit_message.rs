@@ -39,17 +39,20 @@ fn parameters(fit: &Fit) -> String {
     if fit.parameters.is_empty() {
         return String::new();
     }
+    let quality = &fit.quality;
     let mut text = format!("  residuals    {}\n", fit.settings.weighting.describe());
+    if let Some(verdict) = &quality.verdict {
+        text += &format!("  left over    {}\n", verdict.sentence());
+    }
     let estimates = fit.quality.estimates.iter().zip(&fit.quality.at_bound);
     for (parameter, (estimate, at_bound)) in fit.parameters.iter().zip(estimates) {
         let (key, unit, value) = (parameter.key, parameter.unit(), digits(parameter.value, 6));
         let [low, high] = estimate.interval.map(|end| digits(end, 5));
         let error = digits(estimate.standard_error, 2);
-        text += &match at_bound {
-            true => format!("  {key:<12} {value} {unit}   held by a bound\n"),
-            false => {
-                format!("  {key:<12} {value} ± {error} {unit}   95 % {low} … {high}\n")
-            }
+        text += &match (at_bound, quality.has_intervals()) {
+            (true, _) => format!("  {key:<12} {value} {unit}   held by a bound\n"),
+            (_, false) => format!("  {key:<12} {value} {unit}   no interval\n"),
+            _ => format!("  {key:<12} {value} ± {error} {unit}   95 % {low} … {high}\n"),
         };
     }
     text

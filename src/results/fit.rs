@@ -206,6 +206,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
         .iter()
         .zip(quality.estimates.iter().zip(&quality.at_bound));
     let rows = quality.correlation.row_iter();
+    let told = quality.has_intervals();
     json!({
         "gelbench": env!("CARGO_PKG_VERSION"),
         "law": fit.law.name,
@@ -218,12 +219,20 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
         })).collect::<Vec<_>>(),
         "weighting": fit.settings.weighting.name(),
         "residuals": fit.settings.weighting.describe(),
+        "verdict": quality.verdict.map(|verdict| json!({
+            "answer": verdict.answer.words(),
+            "durbin_watson": verdict.durbin_watson.map(|test| test.statistic),
+            "durbin_watson_probability": verdict.durbin_watson.map(|test| test.probability),
+            "correlation_of_neighbours": verdict.of_neighbours,
+            "pattern_probability": verdict.pattern_probability,
+            "effective_points": verdict.effective_points,
+        })),
         "parameters": parameters.map(|(parameter, (estimate, at_bound))| json!({
             "key": parameter.key,
             "value": parameter.value,
             "unit": parameter.unit(),
-            "standard_error": estimate.standard_error,
-            "interval_95_percent": estimate.interval,
+            "standard_error": told.then_some(estimate.standard_error),
+            "interval_95_percent": told.then_some(estimate.interval),
             "at_bound": at_bound,
         })).collect::<Vec<_>>(),
         "correlation": rows.map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),

@@ -1,0 +1,210 @@
+//! Whether what a fit leaves is the noise of a test.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::misfit::{Misfit, Rows};
+use crate::statistics::{Curve, CurveNoise, CurveResiduals, DurbinWatson};
+
+/// What the residuals are.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Answer {
+    /// White noise.
+    White,
+    /// Noise that correlates along the curves; the intervals hold that.
+    Correlated,
+    /// A smooth pattern that no such noise makes: intervals say nothing.
+    Systematic,
+    /// No more than the file's numbers were rounded by: there is no noise to make intervals of.
+    Rounding,
+}
+
+impl Answer {
+    /// The answer in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::White => "white noise",
+            Self::Correlated => "correlated noise",
+            Self::Systematic => "systematic",
+            Self::Rounding => "rounding",
+        }
+    }
+
+    /// Whether intervals can be made of the residuals.
+    pub fn has_intervals(self) -> bool {
+        matches!(self, Self::White | Self::Correlated)
+    }
+}
+
+/// What the residuals are, with what the answer stands on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// The answer.
+    pub answer: Answer,
+    /// Durbin and Watson's test over neighbours in the file or in strain, whichever is the less like white noise; `None` where
+    /// no neighbours are left.
+    pub durbin_watson: Option<DurbinWatson>,
+    /// The correlation of neighbouring residuals.
+    pub of_neighbours: f64,
+    /// How probable it is that noise follows a smooth curve as well as the residuals do; `None` where there are too few
+    /// points to tell.
+    pub pattern_probability: Option<f64>,
+    /// The number of independent points that tell as much of the noise; all points where the residuals are no noise.
+    pub effective_points: f64,
+}
+
+impl Verdict {
+    /// The verdict in a sentence.
+    pub fn sentence(&self) -> String {
+        let test = self.durbin_watson.map_or(String::new(), |test| {
+            let chance = percent(test.probability);
+            format!(
+                " (Durbin-Watson {:.2}; as small by white noise in {chance} of cases)",
+                test.statistic
+            )
+        });
+        let pattern = percent(self.pattern_probability.unwrap_or(f64::NAN));
+        match self.answer {
+            Answer::White => format!("white noise{test}"),
+            Answer::Correlated => format!(
+                "noise that correlates, neighbours by {:.2}, so that the points tell as much as {:.1} independent ones{test}",
+                self.of_neighbours, self.effective_points
+            ),
+            Answer::Systematic => format!(
+                "systematic, a smooth pattern that comes of noise in {pattern} of cases: no intervals{test}"
+            ),
+            Answer::Rounding => {
+                "no more than the numbers were rounded by: no noise, and no intervals".to_owned()
+            }
+        }
+    }
+}
+
+/// A probability in percent.
+fn percent(probability: f64) -> String {
+    match 100.0 * probability {
+        tiny if tiny < 1e-4 => "less than 0.0001 %".to_owned(),
+        small if small < 0.1 => format!("{small:.4} %"),
+        percent => format!("{percent:.1} %"),
+    }
+}
+
+/// The probability below which white noise, or any noise, is not believed.
+const DOUBTED: f64 = 0.01;
+
+/// What a fit leaves, in the order of its curves.
+pub(super) struct LeftOver<'a> {
+    pub misfit: &'a Misfit<'a>,
+    /// Derivatives of the residuals by the parameters that no bound holds.
+    pub design: &'a DMatrix<f64>,
+    pub residual: &'a DVector<f64>,
+    /// What rounding alone leaves of the sum of squares.
+    pub rounded: f64,
+}
+
+impl LeftOver<'_> {
+    /// The verdict, and what the estimates are worth; `None` where nothing is estimated, or no freedom is left.
+    pub fn judge(&self) -> Option<(Verdict, CurveNoise)> {
+        let estimates = self.design.ncols();
+        if estimates == 0 || self.design.iter().any(|entry| !entry.is_finite()) {
+            return None;
+        }
+        let curves = self.misfit.curves();
+        let orders = orders(&curves);
+        let residuals = CurveResiduals {
+            design: self.design,
+            residual: self.residual,
+            orders: &orders,
+        };
+        let noise = residuals.noise()?;
+        let tests = orders
+            .iter()
+            .filter_map(|curves| DurbinWatson::new(self.design, self.residual, curves));
+        let doubt = tests.min_by(|a, b| a.probability.total_cmp(&b.probability));
+        let correlated =
+            doubt.is_some_and(|test| test.probability * (orders.len() as f64) < DOUBTED);
+        let functions = smooth_functions(&curves, self.residual.len(), estimates);
+        let pattern = residuals.pattern(&functions);
+        let answer = match (self.is_rounding(), pattern) {
+            (true, _) => Answer::Rounding,
+            (_, Some(probability)) if probability < DOUBTED => Answer::Systematic,
+            _ if correlated => Answer::Correlated,
+            _ => Answer::White,
+        };
+        let effective_points = match answer {
+            Answer::White | Answer::Correlated => noise.independent(),
+            Answer::Systematic | Answer::Rounding => self.residual.len() as f64,
+        };
+        let verdict = Verdict {
+            answer,
+            durbin_watson: doubt,
+            of_neighbours: noise.of_neighbours(),
+            pattern_probability: pattern,
+            effective_points,
+        };
+        Some((verdict, noise))
+    }
+
+    /// Whether the residuals are about as large as rounding leaves them.
+    fn is_rounding(&self) -> bool {
+        const FACTOR: f64 = 2.0;
+        let freedom = self.residual.len() - self.design.ncols();
+        let share = freedom as f64 / self.residual.len() as f64;
+        self.residual.norm_squared() <= FACTOR * share * self.rounded
+    }
+}
+
+/// The rows in the order of the file, and in the order of strain where that is another one or far from even.
+fn orders(curves: &[Rows]) -> Vec<Vec<Curve>> {
+    const EVEN: f64 = 2.0;
+    let file = |rows: &Rows| Curve::even(rows.iter().map(|(row, _)| *row).collect());
+    let files: Vec<Curve> = curves.iter().map(file).collect();
+    let strains: Vec<Curve> = curves.iter().cloned().map(Curve::of_places).collect();
+    let alike = |(a, b): (&Curve, &Curve)| {
+        let falling = || b.rows.iter().rev().eq(&a.rows);
+        let even = b.gaps.iter().all(|gap| (1.0 / EVEN..=EVEN).contains(gap));
+        even && (a.rows == b.rows || falling())
+    };
+    match files.iter().zip(&strains).all(alike) {
+        true => vec![files],
+        false => vec![files, strains],
+    }
+}
+
+/// Legendre polynomials of the strain along each curve, a column each; a curve with more points has more of them, up to some
+/// beyond the number of estimates, whose law follows the first ones.
+fn smooth_functions(curves: &[Rows], rows: usize, estimates: usize) -> DMatrix<f64> {
+    const BEYOND: usize = 4;
+    const POINTS_EACH: usize = 3;
+    let mut columns = Vec::new();
+    for curve in curves {
+        let count = (estimates + BEYOND).min(curve.len() / POINTS_EACH);
+        let [low, high] = crate::statistics::extremes(curve.iter().map(|(_, x)| *x));
+        if high <= low {
+            continue;
+        }
+        for degree in 0..count {
+            let mut column = DVector::zeros(rows);
+            for (row, x) in curve {
+                column[*row] = legendre(degree, (2.0 * x - low - high) / (high - low));
+            }
+            columns.push(column);
+        }
+    }
+    match columns.is_empty() {
+        true => DMatrix::zeros(rows, 0),
+        false => DMatrix::from_columns(&columns),
+    }
+}
+
+/// (n + 1) Pₙ₊₁ = (2n + 1) x Pₙ − n Pₙ₋₁.
+fn legendre(degree: usize, x: f64) -> f64 {
+    let (mut before, mut value) = (0.0, 1.0);
+    for n in 0..degree {
+        let n = n as f64;
+        (before, value) = (
+            value,
+            ((2.0 * n + 1.0) * x * value - n * before) / (n + 1.0),
+        );
+    }
+    value
+}

@@ -1,0 +1,111 @@
+//! What is said of the residuals of curves whose noise is known.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::*;
+use crate::document::Statements;
+use crate::material::parameters::{StrainMeasure, StressMeasure};
+use crate::material::registry::Law;
+
+const YEOH: [f64; 3] = [0.05, 0.02, 0.002];
+
+/// A uniaxial test of Yeoh's law to λ = 2, a point for each value of noise in MPa, its stresses with so many decimals.
+fn curve(noise: &[f64], decimals: usize) -> [TestData; 1] {
+    let law = Law::named("yeoh").unwrap();
+    let (law, _) = law.with_values(&YEOH, StressMeasure::Nominal, StrainMeasure::Nominal);
+    let count = noise.len() as f64;
+    let row = |(index, noise): (usize, &f64)| {
+        let x = (1 + index) as f64 / count;
+        let stress = law.tension([1.0, 0.0], x).nominal_stress + noise;
+        format!("{},{stress:.decimals$}\n", 1.0 + x)
+    };
+    let rows: String = noise.iter().enumerate().map(row).collect();
+    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
+    [TestData::parse("a.csv", &text, &Statements::new()).unwrap()]
+}
+
+/// Noise of 0.005 MPa, about 1 % of the largest stress, whose neighbours correlate by so much.
+fn noise(count: usize, correlation: f64, seed: u64) -> Vec<f64> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut last: f64 = StandardNormal.sample(&mut random);
+    let fresh = (1.0 - correlation * correlation).sqrt();
+    let mut next = || {
+        let z: f64 = StandardNormal.sample(&mut random);
+        last = correlation * last + fresh * z;
+        0.005 * last
+    };
+    (0..count).map(|_| next()).collect()
+}
+
+fn fitted(law: &str, tests: &[TestData]) -> Fit {
+    fit(Law::named(law).unwrap(), tests, &FitSettings::default()).unwrap()
+}
+
+fn answers(law: &str, correlation: f64) -> Vec<Answer> {
+    let one = |seed| {
+        let found = fitted(law, &curve(&noise(60, correlation, seed), 17));
+        found.quality.verdict.unwrap().answer
+    };
+    (0..10).map(one).collect()
+}
+
+#[test]
+fn white_noise_correlated_noise_and_a_wrong_law_are_told_apart() {
+    let count = |answers: &[Answer], wanted| answers.iter().filter(|one| **one == wanted).count();
+    assert!(count(&answers("yeoh", 0.0), Answer::White) >= 9);
+    assert!(count(&answers("yeoh", 0.9), Answer::Correlated) >= 9);
+    assert!(count(&answers("neo-hooke", 0.0), Answer::Systematic) >= 9);
+    assert!(count(&answers("neo-hooke", 0.9), Answer::Systematic) >= 9);
+}
+
+#[test]
+fn a_curve_without_noise_has_no_intervals() {
+    for decimals in [3, 5, 17] {
+        let tests = curve(&[0.0; 60], decimals);
+        let found = fitted("yeoh", &tests);
+        let verdict = found.quality.verdict.unwrap();
+        assert_eq!(verdict.answer, Answer::Rounding, "{decimals}: {verdict:?}");
+        assert!(found.half_widths(&tests[0], &tests[0].observations)[0].is_nan());
+        assert!(card_text(&found, &tests, &Provenance::default()).contains("MPa\" # no interval"));
+    }
+    let coarse = fitted("yeoh", &curve(&noise(60, 0.0, 1), 3));
+    assert!(coarse.quality.has_intervals());
+}
+
+/// The curve is linear in the parameters of Yeoh's law: its slope by them is a difference of curves.
+#[test]
+fn the_band_of_a_curve_is_that_of_its_combination_of_parameters() {
+    let tests = curve(&noise(60, 0.5, 3), 17);
+    let found = fitted("neo-hooke", &curve(&noise(60, 0.5, 3), 17)[..]);
+    assert!(found.half_widths(&tests[0], &tests[0].observations)[0].is_nan());
+    let found = fitted("yeoh", &tests);
+    let at = tests[0].observations[30];
+    let stretch = 1.0 + at.strains[0];
+    let slope = 2.0 * (stretch - stretch.powi(-2));
+    let invariant = stretch * stretch + 2.0 / stretch - 3.0;
+    let by = [1.0, 2.0 * invariant, 3.0 * invariant * invariant];
+    let gradient = nalgebra::DVector::from_iterator(3, by.map(|factor| slope * factor));
+    let noise = found.quality.noise.as_ref().unwrap();
+    let band = found.half_widths(&tests[0], &[at])[0];
+    assert!((band / noise.half_width(&gradient) - 1.0).abs() < 1e-5);
+}
+
+/// Forty times as many points: bins lose nothing of the law, nor of what so many points tell.
+#[test]
+fn many_points_are_gathered_without_loss() {
+    let [many, few] =
+        [40_000, 1_000].map(|count| fitted("yeoh", &curve(&noise(count, 0.0, 5), 17)));
+    for (index, truth) in YEOH.iter().enumerate() {
+        let [a, b] = [&many, &few].map(|fit| fit.quality.estimates[index]);
+        assert!((a.value - truth).abs() < 4.0 * a.standard_error, "{a:?}");
+        let ratio = a.standard_error / b.standard_error * 40_f64.sqrt();
+        assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+    }
+    assert!(many.quality.effective_points() > 0.95 * 40_000.0);
+    // Within a bin noise correlates: its means scatter more than those of white noise.
+    let correlated = fitted("yeoh", &curve(&noise(40_000, 0.9, 5), 17)).quality;
+    let effective = correlated.effective_points();
+    assert!(effective > 1_500.0 && effective < 6_000.0, "{effective}");
+}

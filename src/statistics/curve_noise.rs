@@ -1,0 +1,325 @@
+//! What the estimates of a least-squares fit to curves are worth where the noise may correlate along them.
+//!
+//! ```text
+//! Cov(β) = s² P R Pᵀ,   P = (JᵀJ)⁻¹Jᵀ,   s² = rᵀ(R⁻¹ − R⁻¹J (JᵀR⁻¹J)⁻¹ JᵀR⁻¹) r/ν,   ν = n − k
+//! w(R) ∝ w₀(R) (det R det JᵀR⁻¹J (s²)^ν)^(−½)                   restricted likelihood, Σ w = 1
+//! Σ w(R) P(|t_ν| > h/√(aᵀ Cov a)) = 5 %                         h: half the width of the 95 % interval of aᵀβ
+//! ```
+//!
+//! A short curve does not tell how far its noise correlates, and the likeliest length is too short in the mean: intervals
+//! that take it as known hold the truth too seldom. So all are asked: white noise, and exponential correlations whose lengths
+//! reach from less than a gap between points to twice the longest curve, each with the weight that the residuals give it. Distance
+//! is counted in points as they follow one another, and in strain where that is another thing.
+//!
+//! # References
+//! D. A. Harville, J. Am. Stat. Assoc. 72, 320 (1977), doi:10.1080/01621459.1977.10480998;
+//! J. O. Berger, V. De Oliveira, B. Sansó, J. Am. Stat. Assoc. 96, 1361 (2001), doi:10.1198/016214501753382282
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::correlation::{Correlation, Decay};
+use super::curve::{Curve, NoiseAlong};
+use super::{f_tail, student_reach, student_tail};
+
+/// The weight of white noise before the data speak, and of noise with these correlated shares together, over all lengths.
+const WHITE: f64 = 0.5;
+const CORRELATED: [(f64, f64); 2] = [(0.999, 0.4), (0.6, 0.1)];
+
+/// The shortest length in gaps, the factor to the next one, and the longest over the points of the longest curve.
+const SHORTEST: f64 = 0.4;
+const STEP: f64 = 1.7;
+const LONGEST: f64 = 2.0;
+
+/// Weights below this are left out.
+const LEAST: f64 = 1e-5;
+
+/// The residuals of a least-squares fit along curves.
+pub struct CurveResiduals<'a> {
+    /// J: a row for each residual.
+    pub design: &'a DMatrix<f64>,
+    /// r.
+    pub residual: &'a DVector<f64>,
+    /// Ways in which all rows follow one another on curves.
+    pub orders: &'a [Vec<Curve>],
+}
+
+/// Noise that residuals may have.
+#[derive(Clone, Copy)]
+struct Candidate {
+    order: usize,
+    correlation: Correlation,
+    weight: f64,
+}
+
+/// One noise with its weight and the covariance of the estimates under it.
+#[derive(Clone, Debug)]
+struct Part {
+    weight: f64,
+    covariance: DMatrix<f64>,
+    correlation: Correlation,
+    independent: f64,
+}
+
+/// What the noise along curves makes of the estimates.
+#[derive(Clone, Debug)]
+pub struct CurveNoise {
+    parts: Vec<Part>,
+    freedom: f64,
+}
+
+/// Columns whose lengths are one and whose directions are all different, and what brings values along them back to estimates.
+struct Basis {
+    columns: DMatrix<f64>,
+    back: DMatrix<f64>,
+}
+
+impl Basis {
+    /// J = Q S: columns Q and back = S⁻¹; directions that J does not determine at all become huge.
+    fn new(design: &DMatrix<f64>) -> Option<Self> {
+        const LEAST: f64 = 1e-14;
+        let mut scaled = design.clone();
+        let mut scales = Vec::new();
+        for mut column in scaled.column_iter_mut() {
+            let scale = column.norm().max(f64::MIN_POSITIVE);
+            column /= scale;
+            scales.push(scale);
+        }
+        let qr = scaled.qr();
+        let singular = qr.r().svd(true, true);
+        let (u, v) = (singular.u?, singular.v_t?);
+        let values = &singular.singular_values;
+        let back = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
+            v[(j, i)] / values[j].max(LEAST) / scales[i]
+        });
+        Some(Self {
+            columns: qr.q() * u,
+            back,
+        })
+    }
+}
+
+/// The triangle of a regression made white, its last column the residual.
+struct Triangle {
+    triangle: DMatrix<f64>,
+    log_determinant: f64,
+}
+
+impl Triangle {
+    fn new(noise: NoiseAlong, columns: &DMatrix<f64>) -> Self {
+        let (white, log_determinant) = noise.whitened(columns);
+        Self {
+            triangle: white.qr().r(),
+            log_determinant,
+        }
+    }
+
+    /// What is left of the residual's square behind so many columns.
+    fn left(&self, columns: usize) -> f64 {
+        let last = self.triangle.ncols() - 1;
+        let below = self.triangle.column(last).rows_range(columns..).norm();
+        below.powi(2).max(f64::MIN_POSITIVE)
+    }
+
+    /// ln of the restricted likelihood with all columns.
+    fn log_likelihood(&self, freedom: f64) -> f64 {
+        let columns = self.triangle.ncols() - 1;
+        let pivots = self.triangle.diagonal();
+        let pivots = pivots.rows(0, columns);
+        let design: f64 = pivots.iter().map(|pivot| pivot.abs().ln()).sum();
+        -0.5 * self.log_determinant - design - 0.5 * freedom * self.left(columns).ln()
+    }
+}
+
+impl CurveResiduals<'_> {
+    /// What the estimates are worth; `None` where there are no more rows than estimates.
+    pub fn noise(&self) -> Option<CurveNoise> {
+        let rows = self.design.nrows();
+        let estimates = self.design.ncols();
+        let freedom = rows.checked_sub(estimates).filter(|freedom| *freedom > 0)? as f64;
+        let basis = Basis::new(self.design)?;
+        let columns = with_last(&basis.columns, self.residual);
+        let part = |candidate: &Candidate| {
+            let noise = self.along(candidate);
+            let triangle = Triangle::new(noise, &columns);
+            let spread = basis.columns.tr_mul(&noise.product(&basis.columns));
+            let variance = triangle.left(estimates) / freedom;
+            let part = Part {
+                weight: candidate.weight,
+                covariance: &basis.back * spread * basis.back.transpose() * variance,
+                correlation: candidate.correlation,
+                independent: noise.independent(),
+            };
+            (part, triangle.log_likelihood(freedom))
+        };
+        let parts: Vec<(Part, f64)> = self.candidates().par_iter().map(part).collect();
+        let weights = shares(parts.iter().map(|(part, log)| part.weight.ln() + log));
+        let weighed = parts.into_iter().zip(weights);
+        let parts = weighed.filter(|(_, weight)| *weight > LEAST);
+        let parts = parts.map(|((part, _), weight)| Part { weight, ..part });
+        Some(CurveNoise {
+            parts: parts.collect(),
+            freedom,
+        })
+    }
+
+    /// How probable it is that smooth functions, a column each, take so much of noise as of the residuals; `None` where too
+    /// few rows are left to tell.
+    ///
+    /// ```text
+    /// F = ((S₀ − S₁)/q)/(S₁/(n − k − q)),   p = Σ w(R) P(F_(q, n−k−q) > F),   w by the likelihood with the functions
+    /// ```
+    pub fn pattern(&self, functions: &DMatrix<f64>) -> Option<f64> {
+        const FEWEST: usize = 4;
+        let basis = Basis::new(self.design)?;
+        let all = with_functions(basis.columns, functions);
+        let estimates = self.design.ncols();
+        let extra = all.ncols() - estimates;
+        let left = all.nrows().checked_sub(all.ncols())?;
+        if left < FEWEST || extra == 0 {
+            return None;
+        }
+        let freedom = left as f64;
+        let columns = with_last(&all, self.residual);
+        let tried = |candidate: &Candidate| {
+            let noise = self.along(candidate);
+            let triangle = Triangle::new(noise, &columns);
+            let without = triangle.left(estimates);
+            let with = triangle.left(estimates + extra);
+            let ratio = (without - with) / extra as f64 / (with / freedom);
+            let log = candidate.weight.ln() + triangle.log_likelihood(freedom);
+            (f_tail([extra as f64, freedom], ratio), log)
+        };
+        let tried: Vec<(f64, f64)> = self.candidates().par_iter().map(tried).collect();
+        let weights = shares(tried.iter().map(|(_, log)| *log));
+        let pairs = tried.iter().zip(&weights);
+        Some(pairs.map(|((tail, _), weight)| tail * weight).sum())
+    }
+
+    fn along(&self, candidate: &Candidate) -> NoiseAlong<'_> {
+        NoiseAlong {
+            curves: &self.orders[candidate.order],
+            correlation: candidate.correlation,
+        }
+    }
+
+    fn candidates(&self) -> Vec<Candidate> {
+        let curves = self.orders.iter().flatten();
+        let longest = curves.map(|curve| curve.rows.len()).max().unwrap_or(0) as f64;
+        let lengths = std::iter::successors(Some(SHORTEST), |length| Some(STEP * length));
+        let lengths: Vec<f64> = lengths.take_while(|l| *l <= LONGEST * longest).collect();
+        let each = (lengths.len() * self.orders.len()) as f64;
+        let correlation = |share: f64, length: f64| Correlation {
+            decay: Decay::Exponential,
+            share,
+            length,
+        };
+        let white = Candidate {
+            order: 0,
+            correlation: correlation(0.0, 1.0),
+            weight: WHITE,
+        };
+        let mut candidates = vec![white];
+        for order in 0..self.orders.len() {
+            for (share, weight) in CORRELATED {
+                candidates.extend(lengths.iter().map(|length| Candidate {
+                    order,
+                    correlation: correlation(share, *length),
+                    weight: weight / each,
+                }));
+            }
+        }
+        candidates
+    }
+}
+
+impl CurveNoise {
+    /// Half the width of the 95 % interval of aᵀβ.
+    pub fn half_width(&self, a: &DVector<f64>) -> f64 {
+        const HALVINGS: usize = 40;
+        const MISSED: f64 = 0.05;
+        let error = |part: &Part| a.dot(&(&part.covariance * a)).max(0.0).sqrt();
+        let errors: Vec<f64> = self.parts.iter().map(error).collect();
+        if errors.iter().any(|error| !error.is_finite()) {
+            return f64::NAN;
+        }
+        let [least, most] = super::extremes(errors.iter().copied());
+        let reach = student_reach(self.freedom);
+        let [mut low, mut high] = [least * reach, most * reach];
+        for _ in 0..HALVINGS {
+            if high - low <= 1e-12 * high {
+                break;
+            }
+            let middle = 0.5 * (low + high);
+            let missed = self.parts.iter().zip(&errors).map(|(part, error)| {
+                part.weight * 2.0 * student_tail(self.freedom, middle / error)
+            });
+            match missed.sum::<f64>() > MISSED {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        high
+    }
+
+    /// The covariance of the estimates.
+    pub fn covariance(&self) -> DMatrix<f64> {
+        let size = self.parts[0].covariance.nrows();
+        let parts = self.parts.iter();
+        parts.fold(DMatrix::zeros(size, size), |sum, part| {
+            sum + &part.covariance * part.weight
+        })
+    }
+
+    /// The number of independent values that tell as much of the noise's variance as all of them.
+    pub fn independent(&self) -> f64 {
+        self.mean(|part| part.independent)
+    }
+
+    /// The correlation of values one gap apart.
+    pub fn of_neighbours(&self) -> f64 {
+        self.mean(|part| part.correlation.at(1.0))
+    }
+
+    fn mean(&self, value: impl Fn(&Part) -> f64) -> f64 {
+        let parts = self.parts.iter();
+        parts.map(|part| part.weight * value(part)).sum()
+    }
+}
+
+/// Shares that have the ratios of these logarithms.
+fn shares(logarithms: impl Iterator<Item = f64>) -> Vec<f64> {
+    let logarithms: Vec<f64> = logarithms.collect();
+    let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sizes = logarithms.iter().map(|one| (one - largest).exp());
+    let sum: f64 = sizes.clone().sum();
+    sizes.map(|size| size / sum).collect()
+}
+
+fn with_last(columns: &DMatrix<f64>, last: &DVector<f64>) -> DMatrix<f64> {
+    let mut all = columns.clone().insert_column(columns.ncols(), 0.0);
+    all.set_column(columns.ncols(), last);
+    all
+}
+
+/// Columns with those of the functions that add a direction to them.
+fn with_functions(mut columns: DMatrix<f64>, functions: &DMatrix<f64>) -> DMatrix<f64> {
+    /// What must be left of a function beside the columns before it.
+    const LEAST: f64 = 1e-4;
+    for function in functions.column_iter() {
+        let mut own: DVector<f64> = function.into_owned();
+        let size = own.norm();
+        for _ in 0..2 {
+            let known = columns.tr_mul(&own);
+            own -= &columns * known;
+        }
+        let left = own.norm();
+        if left > LEAST * size {
+            columns = with_last(&columns, &(own / left));
+        }
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests;
