@@ -187,3 +187,46 @@ fn collections_name_their_files_and_times() {
         assert!(told.to_string().contains(reason), "{told}");
     }
 }
+
+#[test]
+fn groups_of_cells_and_of_lines_on_the_sheet_are_kept_as_nodes() {
+    let nodes: String = (0..16)
+        .map(|node| format!("{} {} {} 0\n", node + 1, node % 4, node / 4))
+        .collect();
+    let cell = |i: usize, j: usize| {
+        let first = 4 * j + i + 1;
+        [first, first + 1, first + 5, first + 4]
+    };
+    let words =
+        |nodes: &[usize]| -> String { nodes.iter().map(|node| format!(" {node}")).collect() };
+    let (mut elements, mut count) = (String::new(), 0);
+    let mut add = |kind: &str, nodes: &[usize]| {
+        count += 1;
+        elements += &format!("{count} {kind}{}\n", words(nodes));
+    };
+    for (i, j) in (0..9).map(|cell| (cell % 3, cell / 3)) {
+        let physical = if (i, j) == (1, 1) { 8 } else { 9 };
+        add(&format!("3 2 {physical} 1"), &cell(i, j));
+    }
+    let middle = cell(1, 1);
+    (0..4).for_each(|side| add("1 2 7 1", &[middle[side], middle[(side + 1) % 4]]));
+    let text = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 7 \"ring\"\n2 8 \"pad\"\n2 9 \"sheet\"\n$EndPhysicalNames\n\
+         $Nodes\n16\n{nodes}$EndNodes\n$Elements\n{count}\n{elements}$EndElements\n"
+    );
+    let (_folder, path) = with("a.msh", &text);
+    let (mesh, told) = import(&path, MeshReading::in_unit(1.0)).unwrap();
+    for name in ["ring", "pad"] {
+        let group = &mesh.groups()[name];
+        assert_eq!(group.nodes, [5, 6, 9, 10], "{name}");
+        assert!(group.edges.is_empty());
+    }
+    assert_eq!(mesh.groups()["sheet"].nodes.len(), 16);
+    assert!(
+        told[0].to_string().contains("kept as nodes on the sheet"),
+        "{told:?}"
+    );
+    // What holds all cells says nothing.
+    let whole = read("a.msh", &text.replace("3 2 8 1", "3 2 9 1")).unwrap();
+    assert!(!whole.groups().contains_key("sheet"));
+}
