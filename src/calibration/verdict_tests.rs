@@ -109,3 +109,18 @@ fn many_points_are_gathered_without_loss() {
     let effective = correlated.effective_points();
     assert!(effective > 1_500.0 && effective < 6_000.0, "{effective}");
 }
+
+/// A file whose rows are in no order: neighbours in strain are alike, neighbours in the file are not.
+#[test]
+fn noise_that_correlates_along_the_strain_is_found_in_any_order_of_rows() {
+    let found = (0..5).filter(|seed| {
+        let mut tests = curve(&noise(61, 0.9, *seed), 17);
+        let sorted = tests[0].observations.clone();
+        for (index, observation) in tests[0].observations.iter_mut().enumerate() {
+            *observation = sorted[index * 23 % 61];
+        }
+        let verdict = fitted("yeoh", &tests).quality.verdict.unwrap();
+        verdict.answer == Answer::Correlated && verdict.effective_points < 30.0
+    });
+    assert!(found.count() >= 4);
+}
