@@ -33,7 +33,7 @@ impl Subset {
     pub(super) fn of(table: &Table, path: &Path, layout: &str) -> Option<Self> {
         let of_head = |size: &str, step: &str| {
             let head = &table.source.text;
-            let told_by = format!("the head of {}", path.display());
+            let told_by = format!("the head of {}", name_of(path));
             Self::new([remark(head, size), remark(head, step)], told_by)
         };
         match layout {
@@ -89,10 +89,13 @@ fn json_number(text: &str, key: &str) -> Option<f64> {
 fn beside(path: &Path) -> Option<(String, String)> {
     const MOST: u64 = 1 << 20;
     let text = read_bytes(path, MOST).ok()?;
-    Some((
-        path.display().to_string(),
-        String::from_utf8_lossy(&text).into_owned(),
-    ))
+    Some((name_of(path), String::from_utf8_lossy(&text).into_owned()))
+}
+
+/// The name of a file, for messages.
+fn name_of(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
 }
 
 fn parameters_of_pyaldic(table: &Path) -> Option<PathBuf> {
