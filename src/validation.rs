@@ -16,6 +16,7 @@ mod case;
 mod correction_matrix;
 mod cost;
 mod finite_elements;
+mod fit_coverage;
 mod flagship;
 mod interval_coverage;
 mod motion_correction;
@@ -60,6 +61,7 @@ pub const CASES: &[Kind] = cases! {
     "measured-fields", "validation/cases/measured_fields.toml", slow, interval_coverage::prepare;
     "interval-coverage", "validation/cases/interval_coverage.toml", slow, interval_coverage::coverage::prepare;
     REAL_MEASUREMENTS, "validation/cases/real_measurements.toml", slow, real_measurements::prepare;
+    "test-curves", "validation/cases/test_curves.toml", slow, fit_coverage::prepare;
     specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;
     motion::KIND, "examples/released_plate.toml", slow, motion::prepare;
     "cost", "examples/cost.toml", slow, cost::prepare;
