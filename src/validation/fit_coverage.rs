@@ -241,8 +241,8 @@ fn row(subject: &Subject, kind: Kind, trials: &[Trial]) -> Vec<String> {
     let answers = [Answer::White, Answer::Correlated, Answer::Systematic];
     let head = [
         subject.name.to_owned(),
-        number(kind.points),
-        number(kind.correlation),
+        kind.points.to_string(),
+        kind.correlation.to_string(),
     ];
     let mut row = head.to_vec();
     row.extend(answers.map(|answer| number(told(trials, answer))));
