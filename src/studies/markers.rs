@@ -37,7 +37,7 @@ pub mod written;
 pub use alike::compare as compare_frames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
-pub use machine::ForceColumn;
+pub use machine::{ForceColumn, FrameForces};
 pub use report::SHOWN;
 pub use request::{MeshSource, Request};
 use specimen_mesh::{SpecimenMesh, mesh};

@@ -56,7 +56,7 @@ impl MeasuredField {
         for (key, condition) in conditions {
             if field.has(key) {
                 let names = field.texts(key).into_iter();
-                edges.extend(names.map(|name| (name, condition.clone())));
+                edges.extend(names.map(|name| (name, condition)));
             }
         }
         let pixel = || field.quantity("pixel", Dimension::Length, Bound::Positive);

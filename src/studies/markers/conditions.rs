@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::area::Area;
-use super::machine::{self, ForceColumn};
+use super::machine::{self, ForceColumn, FrameForces};
 use crate::corrector::estimation::{
     EdgeCondition, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
 };
@@ -37,7 +37,7 @@ pub struct Conditions {
     /// What is assumed of outer edges that are not named.
     pub unnamed: Unnamed,
     /// Measured forces, with the frame where it is said.
-    pub forces: Vec<(Option<usize>, MeasuredForce)>,
+    pub forces: FrameForces,
     /// Columns of a testing machine's table with forces.
     pub force_columns: Vec<ForceColumn>,
     /// Parameters of the law that are found with the field.

@@ -21,6 +21,9 @@ pub struct ForceColumn {
     pub standard_deviation: Option<f64>,
 }
 
+/// Measured forces, each with its frame where that is said.
+pub type FrameForces = Vec<(Option<usize>, MeasuredForce)>;
+
 /// What the rows of a table are matched by, one value a row.
 enum Match {
     Frames(Vec<f64>),
@@ -36,7 +39,7 @@ pub fn forces(
     path: &Path,
     wanted: &[ForceColumn],
     series: &MarkerSeries,
-) -> Result<(Vec<(Option<usize>, MeasuredForce)>, Vec<Diagnostic>), Error> {
+) -> Result<(FrameForces, Vec<Diagnostic>), Error> {
     let table = Table::read(path, Table::HINT)?;
     if wanted.is_empty() {
         let heads: Vec<String> = table.columns.iter().map(|column| column.head()).collect();
@@ -218,7 +221,7 @@ mod tests {
         }
     }
 
-    type Found = Result<(Vec<(Option<usize>, MeasuredForce)>, Vec<Diagnostic>), Error>;
+    type Found = Result<(FrameForces, Vec<Diagnostic>), Error>;
 
     fn of(text: &str, column: &str, frames: &[(usize, Option<f64>)]) -> Found {
         let folder = tempfile::tempdir().unwrap();
