@@ -28,7 +28,7 @@ mod syntax;
 mod table;
 mod text;
 
-pub use columns::{Column, plain_name};
+pub use columns::{Column, is_pixel, plain_name};
 pub use comments::comments;
 pub use encoding::TextEncoding;
 pub use explore::{FoundKey, explore};

@@ -22,7 +22,7 @@ use crate::results::NamedGrid;
 use crate::studies::markers::SHOWN;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
 use crate::studies::markers::{
-    Conditions, ForceColumn, MarkerStudy, MeshSource, Request, compare_frames, worst_answer,
+    ComparedFrames, Conditions, ForceColumn, MarkerStudy, MeshSource, Request, worst_answer,
 };
 use crate::studies::name;
 use crate::studies::sections::read_text;
@@ -196,31 +196,28 @@ fn estimates(
     folder: &mut ResultFolder,
     progress: &Progress,
 ) -> Result<Vec<FieldEstimate>, Error> {
-    let mut all: Vec<FieldEstimate> = Vec::new();
-    let mut before: Option<(&Frame, bool)> = None;
+    let mut compared = ComparedFrames::default();
+    let mut was_kept = false;
     for frame in &field.series.frames {
         progress.tell(&format!("frame {}", frame.number));
         let kept = folder.kept(&part(frame));
         let is_kept = kept.is_some();
-        let mut estimate = kept.map_or_else(|| field.estimate_frame(frame), Ok)?;
-        if let Some(((frame_before, was_kept), last)) = before.zip(all.last_mut()) {
-            compare_frames([frame_before, frame], [last, &mut estimate]);
-            if !was_kept {
-                write(field, frame_before, last, folder)?;
-            }
+        let estimate = kept.map_or_else(|| field.estimate_frame(frame), Ok)?;
+        let settled = compared.push(frame, estimate);
+        if let Some((before, estimate)) = settled.filter(|_| !was_kept) {
+            write(field, before, estimate, folder)?;
         }
-        all.push(estimate);
-        before = Some((frame, is_kept));
+        was_kept = is_kept;
         progress.advance();
     }
-    if let Some(((frame, false), last)) = before.zip(all.last()) {
-        write(field, frame, last, folder)?;
+    if let Some((last, estimate)) = compared.last().filter(|_| !was_kept) {
+        write(field, last, estimate, folder)?;
     }
     for series in SERIES {
         let collection = output::vtk::collection(&played(field, series));
         folder.add(&format!("vtk/{series}.pvd"), &collection)?;
     }
-    Ok(all)
+    Ok(compared.into_estimates())
 }
 
 /// The name under which a frame is kept.

@@ -43,6 +43,11 @@ pub fn plain_name(name: &str) -> String {
     name.trim().to_lowercase().replace([' ', '-'], "_")
 }
 
+/// Whether a unit is the pixel.
+pub fn is_pixel(unit: &str) -> bool {
+    ["px", "pixel", "pixels"].contains(&&*unit.to_lowercase())
+}
+
 /// A field without the quotation marks that stand behind a space.
 pub(super) fn unquoted(field: &str) -> &str {
     field.trim().trim_matches('"').trim()
@@ -120,9 +125,8 @@ fn is_title(line: &[String]) -> bool {
 /// Whether a field may stand in a line of units.
 fn is_unit(field: &str) -> bool {
     let plain = field.trim_matches(['(', ')', '[', ']', ' ']);
-    const OTHER: [&str; 6] = ["", "-", "1", "px", "pixel", "pixels"];
     let bracketed = plain.len() < field.len();
-    bracketed || OTHER.contains(&&*plain.to_lowercase()) || units::is_known(plain)
+    bracketed || ["", "-", "1"].contains(&plain) || is_pixel(plain) || units::is_known(plain)
 }
 
 /// Whether a line holds units, some of which are 1, and hence may look like a row.

@@ -4,7 +4,7 @@
 //! ([`is_harmless`]) are passed over, and so are those that the user names; any other one is refused, because a column that
 //! is silently ignored may hold what the user relies on.
 
-use crate::document::{Column, Table, plain_name};
+use crate::document::{Column, Table, is_pixel, plain_name};
 use crate::error::{Diagnostic, Error, nearest, suggestion};
 use crate::statistics::extremes;
 use crate::units::{self, Dimension};
@@ -59,11 +59,6 @@ pub fn unit_of(table: &Table, index: usize) -> Option<String> {
     let at_end = || name.rsplit_once('_').map(|(_, end)| end);
     let at_end = || at_end().filter(|end| is_length(end)).map(str::to_owned);
     unit.clone().or_else(at_end)
-}
-
-/// Whether a unit is the pixel.
-pub fn is_pixel(unit: &str) -> bool {
-    ["px", "pixel", "pixels"].contains(&&*unit.to_lowercase())
 }
 
 fn is_length(unit: &str) -> bool {
@@ -126,9 +121,8 @@ pub fn length(
         (Some(unit), Some(given)) if units.corrected == Some(unit) => Ok((index, given)),
         (Some(unit), Some(given)) if !units::is_known(unit) => Ok((index, given)),
         (Some(unit), _) => millimetres(unit).map(|unit| (index, unit)).ok_or_else(|| {
-            let known: Vec<_> = Dimension::Length.units().collect();
-            let hint = suggestion(unit, &known, "known units:");
-            table.refuse_columns(format!("`{unit}` is no unit of length"), &hint)
+            let message = format!("`{unit}` is no unit of length");
+            unknown_unit(table, unit, Dimension::Length, message)
         }),
         (None, Some(unit)) => Ok((index, unit)),
         (None, None) if pixels => Err(table.refuse_columns(
@@ -240,10 +234,16 @@ pub fn seconds(table: &Table, column: usize) -> Result<f64, Error> {
         return Ok(1.0);
     };
     units::factor(unit, Dimension::Time).map_err(|_| {
-        let known: Vec<_> = Dimension::Time.units().collect();
-        let hint = suggestion(unit, &known, "known units:");
-        table.refuse_columns(format!("`{unit}` is no unit of time"), &hint)
+        let message = format!("`{unit}` is no unit of time");
+        unknown_unit(table, unit, Dimension::Time, message)
     })
+}
+
+/// The fault of a head whose unit is none of a dimension, with those that there are.
+pub fn unknown_unit(table: &Table, unit: &str, dimension: Dimension, message: String) -> Error {
+    let known: Vec<_> = dimension.units().collect();
+    let hint = suggestion(unit, &known, "known units:");
+    table.refuse_columns(message, &hint)
 }
 
 /// Heights.

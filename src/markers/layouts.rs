@@ -29,7 +29,7 @@
 //! github.com/jaredvanblitterswyk/lce_tension_tests reads them (below five lines of preamble, places in the frame).
 
 use super::columns::{HEIGHT, LIFT, Names};
-use crate::document::Table;
+use crate::document::{Table, is_pixel};
 
 /// Where a layout keeps what.
 #[derive(Debug)]
@@ -196,7 +196,7 @@ pub(super) fn recognise(table: &Table) -> &'static Layout {
     };
     let in_pixels = table.column("x").is_some_and(|x| {
         let unit = table.columns[x].unit.as_deref();
-        unit.is_none_or(super::columns::is_pixel)
+        unit.is_none_or(is_pixel)
     });
     match () {
         () if any("model_displacement_x") => &DICE_STEREO,

@@ -12,7 +12,7 @@ use super::layouts::{Layout, NAMED, recognise};
 use super::rows::{FileRows, ReadSettings, Row};
 use super::subset::Subset;
 use super::understood::{ColumnTaken, Understood};
-use crate::document::Table;
+use crate::document::{Table, is_pixel};
 use crate::error::{Diagnostic, Error};
 
 /// What a file of markers is.
@@ -113,8 +113,7 @@ impl<'a> Reader<'a> {
         let units = Units {
             given: reading.unit,
             corrected: common.as_deref(),
-            pixels: layout.pixels
-                || chosen.any_length() && names().flatten().any(columns::is_pixel),
+            pixels: layout.pixels || chosen.any_length() && names().flatten().any(is_pixel),
         };
         let of = |index: usize| match &heads[index] {
             Some(head) => length(table, head.clone(), units),
@@ -143,7 +142,7 @@ impl<'a> Reader<'a> {
             lost: plain(table, layout.lost),
             in_pixels: heads[0]
                 .as_ref()
-                .is_some_and(|(_, unit)| unit.as_deref().map_or(units.pixels, columns::is_pixel)),
+                .is_some_and(|(_, unit)| unit.as_deref().map_or(units.pixels, is_pixel)),
             given: reading.unit,
             warnings: columns::correction(table, common.as_deref(), reading.unit)
                 .into_iter()

@@ -34,7 +34,7 @@ mod tables;
 mod verdict;
 pub mod written;
 
-pub use alike::compare as compare_frames;
+pub use alike::ComparedFrames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use machine::{ForceColumn, FrameForces};
@@ -152,17 +152,11 @@ impl MarkerStudy {
     /// # Errors
     /// As [`estimate`], with the frame in its message.
     pub fn estimate(&self) -> Result<Vec<FieldEstimate>, Error> {
-        let mut all: Vec<FieldEstimate> = Vec::new();
-        let mut before = None;
+        let mut compared = ComparedFrames::default();
         for frame in &self.series.frames {
-            let mut found = self.estimate_frame(frame)?;
-            if let Some((before, last)) = before.zip(all.last_mut()) {
-                compare_frames([before, frame], [last, &mut found]);
-            }
-            all.push(found);
-            before = Some(frame);
+            compared.push(frame, self.estimate_frame(frame)?);
         }
-        Ok(all)
+        Ok(compared.into_estimates())
     }
 
     /// Estimates the field of a frame by itself.

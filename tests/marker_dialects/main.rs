@@ -1,7 +1,9 @@
 //! One field in every dialect in which programs write tables is one and the same field.
 
 use std::fs;
+use std::path::Path;
 
+use assert_cmd::assert::Assert;
 use encoding_rs::{Encoding, GB18030, UTF_8, WINDOWS_1252};
 use gelbench::markers::{ChosenColumns, MarkerFiles, MarkerSeries, ReadSettings, read};
 use tempfile::TempDir;
@@ -167,31 +169,32 @@ fn a_field_read_downwards_is_the_mirrored_one() {
     );
 }
 
+/// What is known of the edges.
+const EDGES: [&str; 8] = [
+    "--rigid",
+    "left,right",
+    "--free",
+    "top,bottom",
+    "--edge-gap",
+    "0 mm",
+    "--cell-size",
+    "3 mm",
+];
+
+/// Corrects the table `a.csv` of a folder.
+fn correct(folder: &Path, more: &[&str]) -> Assert {
+    let card = root().join("materials/pva-10.toml").display().to_string();
+    let usual = ["correct", "a.csv", "--material", &card];
+    let thickness = ["--thickness", "2 mm"];
+    gelbench(folder, &[&usual[..], &thickness, more].concat())
+}
+
 /// The corrected field of a table: its nodes, the report, and what is printed.
 fn corrected(bytes: &[u8], more: &[&str]) -> (String, String, String) {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("a.csv"), bytes).unwrap();
-    let card = root().join("materials/pva-10.toml").display().to_string();
-    let mut arguments = vec![
-        "correct",
-        "a.csv",
-        "--material",
-        &card,
-        "--thickness",
-        "2 mm",
-    ];
-    arguments.extend([
-        "--rigid",
-        "left,right",
-        "--free",
-        "top,bottom",
-        "--edge-gap",
-        "0 mm",
-        "--cell-size",
-        "3 mm",
-    ]);
-    arguments.extend(more);
-    let done = gelbench(folder.path(), &arguments).get_output().clone();
+    let done = correct(folder.path(), &[&EDGES, more].concat());
+    let done = done.get_output().clone();
     let file = |name: &str| {
         let path = folder.path().join("output/correct").join(name);
         fs::read_to_string(path).unwrap_or_else(|_| panic!("{}", words(&done.stderr)))
@@ -250,27 +253,8 @@ fn forces_of_a_testing_machine_are_those_that_the_user_could_write() {
     .unwrap();
     let study = "[[force]]\nedge = \"right\"\naxis = \"x\"\ncolumn = \"Kraft\"\nstandard_deviation = \"0.1 N\"\n";
     fs::write(folder.path().join("study.toml"), study).unwrap();
-    let card = root().join("materials/pva-10.toml").display().to_string();
     let measured = |more: &[&str]| {
-        let usual = [
-            "correct",
-            "a.csv",
-            "--material",
-            &card,
-            "--thickness",
-            "2 mm",
-            "--edge-gap",
-            "0 mm",
-        ];
-        let edges = [
-            "--rigid",
-            "left,right",
-            "--free",
-            "top,bottom",
-            "--cell-size",
-            "3 mm",
-        ];
-        gelbench(folder.path(), &[&usual[..], &edges[..], more].concat());
+        correct(folder.path(), &[&EDGES, more].concat());
         report_of_correction(folder.path())["steps"][0]["corrected"]["measured_forces"].clone()
     };
     let written = measured(&["--force", "right x 0.4 N ± 0.1 N"]);
@@ -287,15 +271,7 @@ fn forces_of_a_testing_machine_are_those_that_the_user_could_write() {
         written
     );
     let told = |arguments: &[&str]| {
-        let usual = [
-            "correct",
-            "a.csv",
-            "--material",
-            &card,
-            "--thickness",
-            "2 mm",
-        ];
-        let refused = gelbench(folder.path(), &[&usual[..], arguments].concat()).code(2);
+        let refused = correct(folder.path(), arguments).code(2);
         words(&refused.get_output().stderr)
     };
     assert!(told(&["--forces", "machine.csv"]).contains("no column of this table is named"));
@@ -326,19 +302,8 @@ fn wrong_names_are_told_with_those_that_there_are() {
         ("x_px", "`x_px` names no column"),
         ("x=", "`x=` names no column"),
     ] {
-        let arguments = [
-            "correct",
-            "a.csv",
-            "--material",
-            "pva-10",
-            "--thickness",
-            "2 mm",
-            "--unit",
-            "1 mm",
-            "--columns",
-            columns,
-        ];
-        let refused = gelbench(folder.path(), &arguments).code(2);
+        let arguments = ["--unit", "1 mm", "--columns", columns];
+        let refused = correct(folder.path(), &arguments).code(2);
         let found = words(&refused.get_output().stderr);
         let plain: String = found
             .chars()

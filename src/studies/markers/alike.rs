@@ -20,8 +20,43 @@ const LEVEL: f64 = 1e-4;
 /// Fewer independent values tell nothing.
 const FEWEST: f64 = 6.0;
 
+/// Estimates of frames one after the other, each compared with the one before.
+#[derive(Default)]
+pub struct ComparedFrames<'a> {
+    frames: Vec<&'a Frame>,
+    estimates: Vec<FieldEstimate>,
+}
+
+impl<'a> ComparedFrames<'a> {
+    /// Adds the estimate of the next frame; returns the one before, whose verdict is final now.
+    pub fn push(
+        &mut self,
+        frame: &'a Frame,
+        mut estimate: FieldEstimate,
+    ) -> Option<(&'a Frame, &FieldEstimate)> {
+        let before = self.frames.last().copied();
+        if let Some((before, last)) = before.zip(self.estimates.last_mut()) {
+            compare([before, frame], [last, &mut estimate]);
+        }
+        self.frames.push(frame);
+        self.estimates.push(estimate);
+        let settled = self.estimates.iter().rev().nth(1);
+        before.zip(settled)
+    }
+
+    /// The last frame and its estimate.
+    pub fn last(&self) -> Option<(&'a Frame, &FieldEstimate)> {
+        self.frames.last().copied().zip(self.estimates.last())
+    }
+
+    /// All estimates.
+    pub fn into_estimates(self) -> Vec<FieldEstimate> {
+        self.estimates
+    }
+}
+
 /// Two frames whose noise correlates between neighbours are not explained where what is left of them is alike.
-pub fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
+fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
     let [before, after] = &estimates;
     let (Some(of_a), Some(of_b)) = (before.verdict.correlation, after.verdict.correlation) else {
         return;
@@ -179,6 +214,21 @@ mod tests {
         let told = |rest, misfit| told(rest, misfit, Answer::NotExplained);
         assert!(told(1.0, 0.0) <= 1, "{}", told(1.0, 0.0));
         assert!(told(1.0, 3.0) >= 190, "{}", told(1.0, 3.0));
+    }
+
+    #[test]
+    fn a_frame_is_handed_on_when_the_one_after_it_is_known() {
+        let left: Vec<[f64; 2]> = (0..MARKERS).map(|i| [(i as f64).sin(), 1.0]).collect();
+        let frames = [frame(1), frame(2), frame(3)];
+        let mut compared = ComparedFrames::default();
+        for (index, frame) in frames.iter().enumerate() {
+            let settled = compared.push(frame, estimated(&left));
+            let settled = settled.map(|(before, found)| (before.number, found.is_explained()));
+            assert_eq!(settled, (index > 0).then_some((index, false)));
+        }
+        let (last, found) = compared.last().unwrap();
+        assert_eq!((last.number, found.is_explained()), (3, false));
+        assert_eq!(compared.into_estimates().len(), 3);
     }
 
     #[test]

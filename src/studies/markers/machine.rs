@@ -1,11 +1,13 @@
 //! Forces of a testing machine's table beside the frames.
 
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 use crate::corrector::estimation::MeasuredForce;
 use crate::document::Table;
-use crate::error::{Diagnostic, Error, suggestion};
+use crate::error::{Diagnostic, Error};
 use crate::markers::{Frame, MarkerSeries, column_named, columns};
+use crate::solve::vector::largest;
 use crate::units::{self, Dimension};
 
 /// A column of a testing machine's table and the force that it holds.
@@ -26,7 +28,8 @@ pub type FrameForces = Vec<(Option<usize>, MeasuredForce)>;
 
 /// What the rows of a table are matched by, one value a row.
 enum Match {
-    Frames(Vec<f64>),
+    /// The row of each frame.
+    Frames(HashMap<u64, usize>),
     /// In s, ascending.
     Times(Vec<f64>),
 }
@@ -52,7 +55,7 @@ pub fn forces(
     }
     let rows = matching(&table)?;
     let mut found = Vec::new();
-    let mut without: Vec<usize> = Vec::new();
+    let mut without = BTreeSet::new();
     for one in wanted {
         let name = one.column.trim_start_matches('-').trim();
         let column = column_named(&table, name).map_err(|fault| Error::Input(vec![fault]))?;
@@ -68,10 +71,8 @@ pub fn forces(
             .iter()
             .map(|(row, _)| factor * row[column])
             .collect();
-        let largest = forces
-            .iter()
-            .fold(0.0, |most: f64, force| most.max(force.abs()));
-        let deviation = one.standard_deviation.unwrap_or(0.01 * largest);
+        let deviation = one.standard_deviation;
+        let deviation = deviation.unwrap_or_else(|| 0.01 * largest(&forces));
         for frame in &series.frames {
             match rows.at(&table, frame, &forces)? {
                 Some(force) => {
@@ -83,8 +84,9 @@ pub fn forces(
                     };
                     found.push((Some(frame.number), force));
                 }
-                None if !without.contains(&frame.number) => without.push(frame.number),
-                None => {}
+                None => {
+                    without.insert(frame.number);
+                }
             }
         }
     }
@@ -113,12 +115,8 @@ fn newtons(table: &Table, column: usize) -> Result<f64, Error> {
         return Err(table.refuse_columns(format!("the column `{name}` has no unit"), &hint));
     };
     units::factor(unit, Dimension::Force).map_err(|_| {
-        let known: Vec<_> = Dimension::Force.units().collect();
-        let hint = suggestion(unit, &known, "known units:");
-        table.refuse_columns(
-            format!("`{unit}` of the column `{name}` is no unit of force"),
-            &hint,
-        )
+        let message = format!("`{unit}` of the column `{name}` is no unit of force");
+        columns::unknown_unit(table, unit, Dimension::Force, message)
     })
 }
 
@@ -129,19 +127,15 @@ fn matching(table: &Table) -> Result<Match, Error> {
         Ok(table.rows.iter().map(|(row, _)| row[column]).collect())
     };
     if let Some(column) = columns::plain(table, columns::FRAME) {
-        let frames = values(column)?;
-        let twice = (0..frames.len()).find(|row| frames[..*row].contains(&frames[*row]));
-        return match twice {
-            None => Ok(Match::Frames(frames)),
-            Some(row) => {
-                let message = format!("the frame {} stands twice", frames[row]);
-                Err(table.refuse(
-                    table.rows[row].1.clone(),
-                    message,
-                    "give each frame one row",
-                ))
+        let mut rows = HashMap::new();
+        for (row, number) in values(column)?.into_iter().enumerate() {
+            if rows.insert(key(number), row).is_some() {
+                let place = table.rows[row].1.clone();
+                let message = format!("the frame {number} stands twice");
+                return Err(table.refuse(place, message, "give each frame one row"));
             }
-        };
+        }
+        return Ok(Match::Frames(rows));
     }
     let Some(column) = columns::plain(table, columns::TIME) else {
         let hint =
@@ -163,15 +157,18 @@ fn matching(table: &Table) -> Result<Match, Error> {
     }
 }
 
+/// A number by which frames are found: equal ones have the same bits, both zeros too.
+fn key(number: f64) -> u64 {
+    (number + 0.0).to_bits()
+}
+
 impl Match {
     /// The force in a frame: that of its row, or between the rows before and after its time.
     fn at(&self, table: &Table, frame: &Frame, forces: &[f64]) -> Result<Option<f64>, Error> {
         let times = match self {
-            Self::Frames(frames) => {
-                let row = frames
-                    .iter()
-                    .position(|number| *number == frame.number as f64);
-                return Ok(row.map(|row| forces[row]));
+            Self::Frames(rows) => {
+                let row = rows.get(&key(frame.number as f64));
+                return Ok(row.map(|row| forces[*row]));
             }
             Self::Times(times) => times,
         };

@@ -3,10 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::super::*;
-use super::truth::{SIZE, THICKNESS, law, specimen};
+use super::truth::{SIZE, solved, specimen};
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::{BoundaryProblem, Support};
-use crate::solve::NewtonSettings;
 
 /// How the pad moves in mm.
 const MOTION: [f64; 2] = [4.0, 1.5];
@@ -18,28 +16,8 @@ fn pulled(cells: [usize; 2]) -> (Mesh, Vec<f64>, [f64; 2]) {
     let pad = (0..mesh.nodes.len()).filter(|node| inside(mesh.nodes[*node]));
     let pad: BTreeSet<usize> = pad.collect();
     mesh.name_nodes("pad", &pad);
-    let problem = BoundaryProblem {
-        thickness: THICKNESS,
-        law: law(),
-        supports: vec![
-            ("left".into(), Support::Displacement([Some(0.0); 2])),
-            ("pad".into(), Support::Displacement(MOTION.map(Some))),
-        ],
-        loads: Vec::new(),
-    };
-    let energy = problem.finite_elements(&mesh);
-    let newton = NewtonSettings {
-        tolerance: 1e-10,
-        max_iterations: 30,
-    };
-    let discretised = problem.on(&mesh, &energy).unwrap();
-    let state = discretised
-        .solve(&[0.5, 1.0], newton, &|_| ())
-        .unwrap()
-        .remove(1);
-    let force = discretised.reaction(&state, "pad");
-    drop(discretised);
-    (mesh, state.displacement, [force[0], force[1]])
+    let (displacement, force) = solved(&mesh, ("pad", MOTION), &[0.5, 1.0]);
+    (mesh, displacement, force)
 }
 
 #[test]

@@ -29,6 +29,33 @@ pub(in super::super) struct Truth {
     pub(in super::super) force: f64,
 }
 
+/// The sheet held at its left edge, a group moved as a whole: the field in mm, and the force on the group in N.
+pub(in super::super) fn solved(
+    mesh: &Mesh,
+    (group, motion): (&str, [f64; 2]),
+    factors: &[f64],
+) -> (Vec<f64>, [f64; 2]) {
+    let problem = BoundaryProblem {
+        thickness: THICKNESS,
+        law: law(),
+        supports: vec![
+            ("left".into(), Support::Displacement([Some(0.0); 2])),
+            (group.into(), Support::Displacement(motion.map(Some))),
+        ],
+        loads: Vec::new(),
+    };
+    let energy = problem.finite_elements(mesh);
+    let newton = NewtonSettings {
+        tolerance: 1e-10,
+        max_iterations: 30,
+    };
+    let discretised = problem.on(mesh, &energy).unwrap();
+    let states = discretised.solve(factors, newton, &|_| ()).unwrap();
+    let last = states.last().unwrap();
+    let force = discretised.reaction(last, group);
+    (last.displacement.clone(), [force[0], force[1]])
+}
+
 impl Truth {
     pub(in super::super) fn new() -> Self {
         Self::on(Mesh::plate(SIZE, [26, 14], CellShape::Quad9))
@@ -36,31 +63,11 @@ impl Truth {
 
     /// The same on any mesh.
     pub(in super::super) fn on(mesh: Mesh) -> Self {
-        let clamp = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
-        let problem = BoundaryProblem {
-            thickness: THICKNESS,
-            law: law(),
-            supports: vec![
-                ("left".into(), clamp(0.0)),
-                ("right".into(), clamp(STRETCH * SIZE[0])),
-            ],
-            loads: Vec::new(),
-        };
-        let energy = problem.finite_elements(&mesh);
-        let newton = NewtonSettings {
-            tolerance: 1e-10,
-            max_iterations: 30,
-        };
-        let discretised = problem.on(&mesh, &energy).unwrap();
-        let state = discretised
-            .solve(&[1.0], newton, &|_| ())
-            .unwrap()
-            .remove(0);
-        let force = discretised.reaction(&state, "right")[0];
-        drop(discretised);
+        let right = ("right", [STRETCH * SIZE[0], 0.0]);
+        let (displacement, [force, _]) = solved(&mesh, right, &[1.0]);
         Self {
             mesh,
-            displacement: state.displacement,
+            displacement,
             force,
         }
     }
