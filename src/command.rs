@@ -25,9 +25,10 @@ use crate::studies::{self, name};
 use crate::validation;
 use journal::FolderJournal;
 use large::Large;
-use progress::Progress;
+use progress::{Progress, Shown, tell_files};
 use reference::FileKind;
-use terminal::{Outcome, complain, complain_of_end, print, warn};
+use serde_json::{Value, json};
+use terminal::{Outcome, Printed, complain, complain_of_end, print, print_report, warn};
 
 mod compare;
 mod containment;
@@ -71,6 +72,9 @@ struct Arguments {
     /// Show no progress
     #[arg(long, global = true)]
     quiet: bool,
+    /// Show every step of the work as a line, and every file that is written
+    #[arg(long, global = true, conflicts_with = "quiet")]
+    verbose: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -87,6 +91,8 @@ enum Command {
         output: Option<PathBuf>,
         #[command(flatten)]
         large: Large,
+        #[command(flatten)]
+        printed: Printed,
     },
     /// Read a study and its card and tell every fault, without computing
     #[command(after_help = "Sample: gelbench check examples/pva_plate.toml")]
@@ -156,6 +162,8 @@ enum Command {
         /// Write the report into this folder
         #[arg(long, value_name = "FOLDER")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        printed: Printed,
     },
     /// Print the completions of a shell
     #[command(
@@ -190,8 +198,10 @@ pub fn main() -> ExitCode {
             return ExitCode::from(code);
         }
     };
-    if arguments.quiet {
-        progress::be_quiet();
+    match (arguments.quiet, arguments.verbose) {
+        (true, _) => progress::show(Shown::Nothing),
+        (_, true) => progress::show(Shown::EveryStep),
+        _ => {}
     }
     inputs::remember();
     interrupt::attend();
@@ -205,7 +215,11 @@ fn perform(command: Command) -> u8 {
             study,
             output,
             large,
-        } => run_study(&study, output, large.budget()),
+            printed,
+        } => {
+            printed.choose();
+            run_study(&study, output, large.budget())
+        }
         Command::Check { study, large } => check(&study, large.budget()),
         Command::Compare(options) => compare::run(options),
         Command::Correct(options) => correct::run(*options),
@@ -221,7 +235,9 @@ fn perform(command: Command) -> u8 {
             quick,
             field,
             output,
+            printed,
         } => {
+            printed.choose();
             cases.extend(field.then(|| validation::REAL_MEASUREMENTS.to_owned()));
             validate(&cases, quick, output)
         }
@@ -262,6 +278,8 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     warn(&warnings);
     warn(&fault.into_iter().collect::<Vec<_>>());
     let files = results_folder.finish()?;
+    tell_files(&files);
+    print_report(|| results.json())?;
     conclude(
         &[results],
         &format!("{} files in {}", files.len(), folder.display()),
@@ -295,9 +313,19 @@ fn validate(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     warnings.extend(output::write_document(&mut results, "TIMES", &times, &[])?);
     drop(progress);
     warn(&warnings);
-    results.finish()?;
+    tell_files(&results.finish()?);
+    print_report(|| cases_json(&cases))?;
     let report = folder.join("REPORT.md");
     conclude(&cases, &format!("report: {}", report.display()))
+}
+
+/// All cases for machines, each as `report.json` has a study.
+fn cases_json(cases: &[Results]) -> Value {
+    json!({
+        "gelbench": env!("CARGO_PKG_VERSION"),
+        "passed": cases.iter().all(Results::passed),
+        "cases": cases.iter().map(Results::json).collect::<Vec<_>>(),
+    })
 }
 
 /// Prints warnings, headline figures, checks and where the results are, and decides on the exit code.

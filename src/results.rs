@@ -19,6 +19,7 @@ mod grid;
 mod identification;
 mod json;
 mod material;
+mod picture_style;
 mod report;
 mod series;
 mod sheet_arrays;
@@ -38,6 +39,7 @@ pub use fit::{fit_json, fit_picture};
 pub use grid::{Grid, GridCell, GridSeries, NamedGrid};
 pub use identification::{identification_json, identification_picture};
 pub use material::Material;
+pub use picture_style::{Palette, PictureFormat, PictureStyle, PictureWidth};
 pub use report::{claims, pictures};
 pub use series::{Series, csv};
 pub use sheet_arrays::Sheet;
@@ -103,6 +105,8 @@ pub struct Outcome {
     pub blocks: Vec<Block>,
     /// Pictures.
     pub figures: Vec<Figure>,
+    /// How they are drawn.
+    pub style: PictureStyle,
     /// Fields of the models.
     pub grids: Vec<GridSeries>,
     /// Tables and other files beside the report: name and content.

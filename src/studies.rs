@@ -13,6 +13,7 @@ use crate::solve::{Attendance, Journal};
 pub mod markers;
 pub mod motion;
 pub mod other_files;
+pub mod pictures;
 pub mod plate;
 pub mod sections;
 pub mod specimen;

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
+use serde_json::{Value, json};
 
 use super::export::not_for_other_codes;
 use super::interrupt;
 use super::large::Large;
-use super::progress::Progress;
-use super::terminal::{Outcome, print, warn};
+use super::progress::{Progress, tell_files};
+use super::terminal::{Outcome, Printed, print, print_report, warn};
 use crate::compare::imported::{
     Difference, ExternalField, ImportSettings, Mismatch, ModelField, Sites,
 };
@@ -53,6 +54,8 @@ pub struct Options {
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub large: Large,
+    #[command(flatten)]
+    pub printed: Printed,
 }
 
 /// A stretch beyond it that the study does not reach was meant in percent.
@@ -71,6 +74,7 @@ struct Comparison {
 
 /// Compares, prints, and writes what is asked for.
 pub fn run(options: Options) -> Outcome {
+    options.printed.choose();
     let compared = compute(&options)?;
     let fields = compared.fields.iter();
     let differences = fields.map(|field| compared.sites.difference(field));
@@ -85,13 +89,14 @@ pub fn run(options: Options) -> Outcome {
     print(&summary(&compared, &differences))?;
     let doubts = doubts(&differences, compared.factor);
     warn(&doubts);
+    print_report(|| json((&compared, &differences), &doubts, &options.field))?;
     if let Some(folder) = &options.output {
         let inputs = [&*options.study, &*options.field];
         let mut results = ResultFolder::open(folder, "compare", &inputs)?;
         let judged = (&*differences, &*doubts);
         interrupt::guard(&results);
         warn(&write(&compared, judged, &options.field, &mut results)?);
-        results.finish()?;
+        tell_files(&results.finish()?);
         print(&format!("report: {}\n", folder.join("report.md").display()))?;
     }
     Ok(u8::from(!doubts.is_empty()))
@@ -259,6 +264,8 @@ fn write(
         let name = field.model.replace([' ', '-'], "_");
         output::write_grids(folder, &GridSeries::single(&name, grid))?;
     }
+    let figures = json((compared, differences), doubts, file);
+    folder.add("comparison.json", format!("{figures:#}\n").as_bytes())?;
     let mut blocks = report(compared, differences, file);
     blocks.extend(
         doubts
@@ -266,6 +273,33 @@ fn write(
             .map(|doubt| Block::Paragraph(doubt.to_string())),
     );
     output::write_document(folder, "report", &blocks, &[])
+}
+
+/// The comparison for machines.
+fn json(
+    (compared, differences): (&Comparison, &[Difference]),
+    doubts: &[Diagnostic],
+    file: &Path,
+) -> Value {
+    let model = |(field, difference): (&ModelField, &Difference)| {
+        json!({
+            "model": field.model,
+            "mesh": field.mesh.describe(),
+            "displacement_percent": difference.percent,
+            "largest_difference_mm": difference.largest,
+            "at_mm": difference.place,
+        })
+    };
+    let models = compared.fields.iter().zip(differences).map(model);
+    json!({
+        "gelbench": env!("CARGO_PKG_VERSION"),
+        "title": compared.title,
+        "field": file.file_name().unwrap_or_default().to_string_lossy(),
+        "read_as": compared.imported.describe(),
+        "load_factor": compared.factor,
+        "models": models.collect::<Vec<_>>(),
+        "doubts": doubts.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    })
 }
 
 fn report(compared: &Comparison, differences: &[Difference], file: &Path) -> Vec<Block> {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 
-use super::progress::Progress;
-use super::terminal::{Outcome, print, warn};
+use super::progress::{Progress, tell_files};
+use super::terminal::{Outcome, Printed, print, print_report, warn};
 use super::{fit_message, interrupt};
 use crate::calibration::{
     self, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, TestData, Weighting,
@@ -49,6 +49,8 @@ pub struct FitArguments {
     output: PathBuf,
     #[command(flatten)]
     reading: ReadingArguments,
+    #[command(flatten)]
+    printed: Printed,
 }
 
 #[derive(Args)]
@@ -148,6 +150,7 @@ pub fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Ve
 
 /// Fits, prints, and writes card, picture and figures.
 pub fn fit(arguments: FitArguments) -> Outcome {
+    arguments.printed.choose();
     let reading = arguments.reading.reading();
     let files = arguments.data.iter();
     let tests = together(files.map(|path| TestData::read(path, &reading)))?;
@@ -191,6 +194,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     };
     let warning = written.into_folder(folder, &stem)?;
     warn(warning.as_slice());
+    print_report(|| fit_json(&fit, &tests))?;
     let card = folder.join(format!("{stem}.toml"));
     let card = card.display();
     print(&format!(
@@ -232,7 +236,7 @@ impl Written<'_> {
         let figures = format!("{:#}\n", fit_json(self.fit, self.tests));
         results.add(&json, figures.as_bytes())?;
         let drawn = output::write_picture(&mut results, &png, &fit_picture(self.fit, self.tests))?;
-        results.finish()?;
+        tell_files(&results.finish()?);
         Ok(drawn.err())
     }
 }

@@ -4,11 +4,12 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use serde_json::Value;
 
 use super::interrupt;
 use super::large::Large;
-use super::progress::Progress;
-use super::terminal::{Outcome, print, warn};
+use super::progress::{Progress, tell_files};
+use super::terminal::{Outcome, Printed, print, print_report, warn};
 use crate::budget::Need;
 use crate::error::{Diagnostic, Error};
 use crate::identification::{
@@ -79,6 +80,8 @@ pub struct Options {
     seed: u64,
     #[command(flatten)]
     large: Large,
+    #[command(flatten)]
+    printed: Printed,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -111,6 +114,7 @@ enum Over {
 
 /// Identifies, prints, and writes law, picture and figures.
 pub fn run(options: Options) -> Outcome {
+    options.printed.choose();
     if let Some(file) = options.sample {
         let sample = Sample {
             seed: options.seed,
@@ -158,9 +162,12 @@ pub fn run(options: Options) -> Outcome {
     let progress = Progress::of(0);
     let found = identify(&recording, settings, &|what| progress.tell(what))?;
     progress.tell("files");
-    let warnings = write(&found, &recording, (&path, &stem), &mut results)?;
-    results.finish()?;
+    let json = identification_json(&found, &recording, &file_name(&path));
+    let warnings = write(&found, &recording, (&json, &path, &stem), &mut results)?;
+    let files = results.finish()?;
     drop(progress);
+    tell_files(&files);
+    print_report(|| json)?;
     warn(warnings.as_slice());
     for warning in &found.warnings {
         warn(&[Diagnostic::warning("", warning)]);
@@ -177,17 +184,20 @@ pub fn run(options: Options) -> Outcome {
 fn write(
     found: &Identification,
     recording: &Recording,
-    (path, stem): (&Path, &str),
+    (json, path, stem): (&Value, &Path, &str),
     results: &mut ResultFolder,
 ) -> Result<Option<Diagnostic>, Error> {
-    let file = path.file_name().unwrap_or_default().to_string_lossy();
-    let json = identification_json(found, recording, &file);
-    let law = law_text(found, recording, &file);
+    let law = law_text(found, recording, &file_name(path));
     results.add(&format!("{stem}.toml"), law.as_bytes())?;
     results.add(&format!("{stem}.json"), format!("{json:#}\n").as_bytes())?;
     let picture = identification_picture(found, recording);
     let drawn = output::write_picture(results, &format!("{stem}.png"), &picture)?;
     Ok(drawn.err())
+}
+
+fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
 }
 
 fn message(found: &Identification, recording: &Recording, path: &Path) -> String {

@@ -1,7 +1,9 @@
-//! What is being computed, how far it is, and for how long: a bar on a terminal, a line now and then elsewhere.
+//! What is being computed, how far it is, and for how long: a bar on a terminal, a line now and then elsewhere, or a line for
+//! every step.
 
 use std::io::{IsTerminal, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -15,12 +17,35 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// A terminal with fewer columns has no room for a bar.
 const FEWEST_COLUMNS: u16 = 60;
 
-/// Whether nothing is shown.
-static QUIET: AtomicBool = AtomicBool::new(false);
+/// What is shown of the work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// A bar on a terminal, a line now and then elsewhere.
+    Usual,
+    /// Nothing.
+    Nothing,
+    /// A line for every step and every file.
+    EveryStep,
+}
 
-/// Shows no progress from here on.
-pub fn be_quiet() {
-    QUIET.store(true, Ordering::Relaxed);
+static SHOWN: AtomicU8 = AtomicU8::new(Shown::Usual as u8);
+
+/// Chooses what is shown from here on.
+pub fn show(shown: Shown) {
+    SHOWN.store(shown as u8, Ordering::Relaxed);
+}
+
+fn is_shown(shown: Shown) -> bool {
+    SHOWN.load(Ordering::Relaxed) == shown as u8
+}
+
+/// Names the files that were written, where every step is shown.
+pub fn tell_files(files: &[PathBuf]) {
+    if is_shown(Shown::EveryStep) {
+        let line = |file: &PathBuf| format!("gelbench: written: {}\n", file.display());
+        let lines: String = files.iter().map(line).collect();
+        let _ = std::io::stderr().write_all(lines.as_bytes());
+    }
 }
 
 /// What is being computed, how far it is, and for how long.
@@ -31,13 +56,18 @@ pub enum Progress {
     Bar(ProgressBar),
     /// Lines.
     Lines(Lines),
+    /// A line for every step.
+    Steps(Mutex<State>),
 }
 
 impl Progress {
     /// Of so many parts, or of an unknown number where that is 0.
     pub fn of(parts: u64) -> Self {
-        if QUIET.load(Ordering::Relaxed) {
+        if is_shown(Shown::Nothing) {
             return Self::Quiet;
+        }
+        if is_shown(Shown::EveryStep) {
+            return Self::Steps(Mutex::new(State::new(parts)));
         }
         match has_room() {
             true => Self::Bar(bar(parts)),
@@ -51,6 +81,11 @@ impl Progress {
             Self::Quiet => {}
             Self::Bar(bar) => bar.set_message(what.to_owned()),
             Self::Lines(lines) => what.clone_into(&mut lines.state().what),
+            Self::Steps(state) => {
+                let mut state = lock(state);
+                what.clone_into(&mut state.what);
+                let _ = std::io::stderr().write_all(state.line().as_bytes());
+            }
         }
     }
 
@@ -60,6 +95,7 @@ impl Progress {
             Self::Quiet => {}
             Self::Bar(bar) => bar.inc(1),
             Self::Lines(lines) => lines.state().done += 1,
+            Self::Steps(state) => lock(state).done += 1,
         }
     }
 }
@@ -92,7 +128,8 @@ fn bar(parts: u64) -> ProgressBar {
     bar
 }
 
-struct State {
+/// How far the work is.
+pub struct State {
     start: Instant,
     what: String,
     done: u64,
@@ -100,6 +137,15 @@ struct State {
 }
 
 impl State {
+    fn new(parts: u64) -> Self {
+        Self {
+            start: Instant::now(),
+            what: "begins".to_owned(),
+            done: 0,
+            parts,
+        }
+    }
+
     /// `gelbench: 20 s, 3 of 15 done: corrector, 50 % stretch`.
     fn line(&self) -> String {
         let seconds = self.start.elapsed().as_secs();
@@ -121,12 +167,7 @@ pub struct Lines {
 
 impl Lines {
     fn new(parts: u64, between: Duration, mut out: impl Write + Send + 'static) -> Self {
-        let state = Arc::new(Mutex::new(State {
-            start: Instant::now(),
-            what: "begins".to_owned(),
-            done: 0,
-            parts,
-        }));
+        let state = Arc::new(Mutex::new(State::new(parts)));
         let shown = Arc::clone(&state);
         let (end, ended) = channel();
         let writing = std::thread::spawn(move || {

@@ -233,6 +233,10 @@ fn takes(takes: &Takes) -> String {
             let names: Vec<_> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
             names.join(", ")
         }
+        Takes::Choices(names) => {
+            let names: Vec<_> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
+            format!("list of {}", names.join(", "))
+        }
         Takes::Count(limits) => format!("whole number {}", whole(limits)),
         Takes::Counts(limits, word) => {
             let word = word.as_ref().map(|word| format!(", or `\"{word}\"`"));
@@ -285,6 +289,10 @@ fn example_of(takes: &Takes) -> String {
         Takes::Choice(names) => names
             .first()
             .map_or(String::new(), |name| format!("\"{name}\"")),
+        Takes::Choices(names) => {
+            let first = names.first();
+            first.map_or("[]".to_owned(), |name| format!("[\"{name}\"]"))
+        }
         Takes::Count([low, _]) => low.to_string(),
         Takes::Counts([low, _], _) => format!("[{low}, {low}]"),
         Takes::Number(_) => "1.0".to_owned(),

@@ -91,6 +91,7 @@ fn of_value(takes: &Takes) -> Value {
         Takes::Texts => json!({ "type": "array", "items": { "type": "string" } }),
         Takes::Flag => json!({ "type": "boolean" }),
         Takes::Choice(names) => json!({ "enum": names }),
+        Takes::Choices(names) => json!({ "type": "array", "items": { "enum": names } }),
         Takes::Count(limits) => whole(limits),
         Takes::Counts(limits, None) => pair(limits),
         Takes::Counts(limits, Some(word)) => json!({ "anyOf": [pair(limits), { "const": word }] }),

@@ -1,6 +1,10 @@
 //! Printing: results to standard output, what deserves attention and progress to standard error.
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Args;
+use serde_json::Value;
 
 use super::message;
 use crate::error::{Diagnostic, Error};
@@ -9,9 +13,41 @@ use crate::results::End;
 /// What a command comes to: its exit code, or the fault that decides on it.
 pub type Outcome = Result<u8, Error>;
 
-/// Prints to standard output; a reader that has gone away is no error.
+/// What of a report is printed.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Printed {
+    /// Print the report as JSON to standard output, and everything else to standard error
+    #[arg(long)]
+    json: bool,
+}
+
+/// Whether standard output is left to a report as JSON.
+static IS_JSON: AtomicBool = AtomicBool::new(false);
+
+impl Printed {
+    /// From here on words go to standard error where a report is to be printed as JSON.
+    pub fn choose(self) {
+        IS_JSON.store(self.json, Ordering::Relaxed);
+    }
+}
+
+/// Prints a report as JSON, if that is wanted.
+pub fn print_report(report: impl FnOnce() -> Value) -> Result<(), Error> {
+    match IS_JSON.load(Ordering::Relaxed) {
+        true => print_to(&mut io::stdout().lock(), &format!("{:#}\n", report())),
+        false => Ok(()),
+    }
+}
+
+/// Prints words for people; a reader that has gone away is no error.
 pub fn print(text: &str) -> Result<(), Error> {
-    let mut out = io::stdout().lock();
+    match IS_JSON.load(Ordering::Relaxed) {
+        true => print_to(&mut io::stderr().lock(), text),
+        false => print_to(&mut io::stdout().lock(), text),
+    }
+}
+
+fn print_to(out: &mut dyn Write, text: &str) -> Result<(), Error> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
             Err(Error::write("standard output", cause))

@@ -150,6 +150,9 @@ fn value(key: &Key) -> Value {
         Some(Takes::Texts) => Value::Array(vec![text("?")]),
         Some(Takes::Flag) => Value::Boolean(true),
         Some(Takes::Choice(names)) => text(names.first().map_or("", |name| name)),
+        Some(Takes::Choices(names)) => {
+            Value::Array(names.iter().take(1).map(|name| text(name)).collect())
+        }
         Some(Takes::Count([low, _])) => number(*low),
         Some(Takes::Counts([low, _], _)) => Value::Array(vec![number(*low); 2]),
         Some(Takes::Number(_)) => Value::Float(1.0),

@@ -14,6 +14,8 @@ pub enum Takes {
     Flag,
     /// One of some names.
     Choice(Vec<String>),
+    /// A list of some names.
+    Choices(Vec<String>),
     /// A whole number within limits.
     Count([usize; 2]),
     /// Two whole numbers within limits, or a word.

@@ -9,11 +9,14 @@ use rayon::prelude::*;
 
 use super::folder::{ResultFolder, refuse_file, refuse_inputs};
 use super::html::html;
-use super::markdown::markdown;
-use super::picture::{Drawn, png};
+use super::markdown::markdown_of_files;
+use super::picture::{Drawn, PictureFault, picture, png};
 use super::vtk;
+use crate::document::name_of;
 use crate::error::{Diagnostic, Error};
-use crate::results::{Block, Content, Drawing, Figure, GridSeries, Results};
+use crate::results::{
+    Block, Content, Drawing, Figure, GridSeries, PictureFormat, PictureStyle, Results,
+};
 
 /// Writes everything that a study has found into a folder: grids, tables and, where it is wanted, the report for machines;
 /// then pictures and the report for people. Returns a warning for each picture that cannot be drawn.
@@ -47,14 +50,16 @@ pub fn write(
             warnings.extend(write_picture(folder, name, drawing)?.err());
         }
     }
-    warnings.extend(match with_report {
-        true => write_document(folder, "report", &results.report(), &outcome.figures)?,
-        false => faults(write_pictures(folder, &outcome.figures)?),
-    });
+    let pictures = write_pictures(folder, &outcome.figures, &outcome.style)?;
+    let missing = faults(&pictures);
+    if with_report {
+        add_document(folder, "report", &results.report(), &pictures)?;
+    }
+    warnings.extend(missing);
     Ok(warnings)
 }
 
-/// Draws a picture and writes it, if it can be drawn.
+/// Draws a picture for a screen and writes it, if it can be drawn.
 ///
 /// # Errors
 /// [`Error::Write`] when it cannot be written.
@@ -63,35 +68,72 @@ pub fn write_picture(
     name: &str,
     drawing: &Drawing,
 ) -> Result<Drawn, Error> {
-    add_picture(folder, name, draw(name, drawing))
-}
-
-fn draw(name: &str, drawing: &Drawing) -> Drawn {
-    png(drawing).map_err(|fault| {
-        Diagnostic::warning("", format!("the picture {name} cannot be drawn: {fault}"))
-            .hint("the numbers are complete; the files in vtk/ show the same in ParaView")
-    })
-}
-
-fn add_picture(folder: &mut ResultFolder, name: &str, drawn: Drawn) -> Result<Drawn, Error> {
+    let drawn = png(drawing).map_err(|fault| missing(name, &fault));
     if let Ok(picture) = &drawn {
         folder.add(name, picture)?;
     }
     Ok(drawn)
 }
 
-fn write_pictures(folder: &mut ResultFolder, figures: &[Figure]) -> Result<Vec<Drawn>, Error> {
-    let drawn = figures.par_iter();
-    let drawn = drawn.map(|figure| draw(&figure.name, &figure.drawing));
-    let drawn: Vec<Drawn> = drawn.collect();
-    let named = figures.iter().zip(drawn);
-    named
-        .map(|(figure, drawn)| add_picture(folder, &figure.name, drawn))
-        .collect()
+fn missing(name: &str, fault: &PictureFault) -> Diagnostic {
+    Diagnostic::warning("", format!("the picture {name} cannot be drawn: {fault}"))
+        .hint("the numbers are complete; the files in vtk/ show the same in ParaView")
 }
 
-fn faults(drawn: Vec<Drawn>) -> Vec<Diagnostic> {
-    drawn.into_iter().filter_map(Result::err).collect()
+/// A picture of a report: its PNG, and the files of its formats by their names.
+struct ReportPicture {
+    png: Drawn,
+    files: Vec<(String, Vec<u8>)>,
+}
+
+impl ReportPicture {
+    fn draw(figure: &Figure, style: &PictureStyle) -> Self {
+        let stem = figure.name.strip_suffix(".png").unwrap_or(&figure.name);
+        let drawn = |format| {
+            let drawn = picture(&figure.drawing, format, style);
+            drawn.map_err(|fault| missing(&figure.name, &fault))
+        };
+        let png = drawn(PictureFormat::Png);
+        let (mut files, mut fault) = (Vec::new(), None);
+        for format in &style.formats {
+            let bytes = match format {
+                PictureFormat::Png => png.clone(),
+                PictureFormat::Svg | PictureFormat::Pdf => drawn(*format),
+            };
+            match bytes {
+                Ok(bytes) => files.push((
+                    format!("{stem}.{}", name_of(&PictureFormat::NAMES, *format)),
+                    bytes,
+                )),
+                Err(found) => fault = Some(found),
+            }
+        }
+        Self {
+            png: fault.map_or(png, Err),
+            files,
+        }
+    }
+}
+
+fn write_pictures(
+    folder: &mut ResultFolder,
+    figures: &[Figure],
+    style: &PictureStyle,
+) -> Result<Vec<ReportPicture>, Error> {
+    let drawn = figures.par_iter();
+    let drawn = drawn.map(|figure| ReportPicture::draw(figure, style));
+    let drawn: Vec<ReportPicture> = drawn.collect();
+    for (name, bytes) in drawn.iter().flat_map(|picture| &picture.files) {
+        folder.add(name, bytes)?;
+    }
+    Ok(drawn)
+}
+
+fn faults(drawn: &[ReportPicture]) -> Vec<Diagnostic> {
+    let faults = drawn
+        .iter()
+        .filter_map(|picture| picture.png.as_ref().err());
+    faults.cloned().collect()
 }
 
 /// Writes the grids of a series into the folder `vtk`.
@@ -114,17 +156,34 @@ pub fn write_document(
     blocks: &[Block],
     figures: &[Figure],
 ) -> Result<Vec<Diagnostic>, Error> {
+    let pictures = write_pictures(folder, figures, &PictureStyle::default())?;
+    add_document(folder, name, blocks, &pictures)?;
+    Ok(faults(&pictures))
+}
+
+fn add_document(
+    folder: &mut ResultFolder,
+    name: &str,
+    blocks: &[Block],
+    pictures: &[ReportPicture],
+) -> Result<(), Error> {
     let title = blocks.iter().find_map(|block| match block {
         Block::Heading(1, title) => Some(title.as_str()),
         _ => None,
     });
-    let pictures = write_pictures(folder, figures)?;
-    let page = html(title.unwrap_or(name), blocks, &pictures);
-    let missing = |index: usize| pictures[index].as_ref().err().map(ToString::to_string);
-    let text = markdown(blocks, figures, &missing);
+    let drawn: Vec<&Drawn> = pictures.iter().map(|picture| &picture.png).collect();
+    let page = html(title.unwrap_or(name), blocks, &drawn);
+    let file = |index: usize| match &pictures[index] {
+        ReportPicture {
+            png: Err(fault), ..
+        } => Err(fault.to_string()),
+        ReportPicture { files, .. } => {
+            Ok(files.first().map_or(String::new(), |file| file.0.clone()))
+        }
+    };
+    let text = markdown_of_files(blocks, &file);
     folder.add(&format!("{name}.html"), page.as_bytes())?;
-    folder.add(&format!("{name}.md"), text.as_bytes())?;
-    Ok(faults(pictures))
+    folder.add(&format!("{name}.md"), text.as_bytes())
 }
 
 /// Begin of the names of files that do not have their own yet.

@@ -21,7 +21,7 @@ pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; 
 ";
 
 /// A self-contained page.
-pub fn html(title: &str, blocks: &[Block], pictures: &[Drawn]) -> String {
+pub fn html(title: &str, blocks: &[Block], pictures: &[&Drawn]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -40,7 +40,7 @@ pub fn html(title: &str, blocks: &[Block], pictures: &[Drawn]) -> String {
     page
 }
 
-fn render(block: &Block, pictures: &[Drawn]) -> Markup {
+fn render(block: &Block, pictures: &[&Drawn]) -> Markup {
     match block {
         Block::Heading(1, text) => html! { h1 { (text) } },
         Block::Heading(2, text) => html! { h2 { (text) } },
@@ -49,7 +49,7 @@ fn render(block: &Block, pictures: &[Drawn]) -> Markup {
         Block::Code(_, code) => html! { pre { (code) } },
         Block::Figure(index, caption) => html! {
             figure {
-                @match &pictures[*index] {
+                @match pictures[*index] {
                     Ok(picture) => {
                         img src={ "data:image/png;base64," (STANDARD.encode(picture)) } alt=(caption);
                     }

@@ -8,6 +8,15 @@ pub fn markdown(
     figures: &[Figure],
     missing: &dyn Fn(usize) -> Option<String>,
 ) -> String {
+    let file = |index: usize| missing(index).map_or_else(|| Ok(figures[index].name.clone()), Err);
+    markdown_of_files(blocks, &file)
+}
+
+/// The same, where `file` names the file of a picture or says why there is none.
+pub(super) fn markdown_of_files(
+    blocks: &[Block],
+    file: &dyn Fn(usize) -> Result<String, String>,
+) -> String {
     let mut text = String::new();
     for block in blocks {
         text += &match block {
@@ -16,9 +25,11 @@ pub fn markdown(
             }
             Block::Paragraph(paragraph) => format!("{}\n", escaped(paragraph)),
             Block::Table(head, rows) => table(head, rows),
-            Block::Figure(index, caption) => match missing(*index) {
-                None => format!("![{caption}]({})\n\n*{caption}*\n", figures[*index].name),
-                Some(fault) => format!("{}\n\n*{caption}*\n", escaped(&fault)),
+            Block::Figure(index, caption) => match file(*index) {
+                // No program shows a PDF among words.
+                Ok(name) if name.ends_with(".pdf") => format!("[{caption}]({name})\n"),
+                Ok(name) => format!("![{caption}]({name})\n\n*{caption}*\n"),
+                Err(fault) => format!("{}\n\n*{caption}*\n", escaped(&fault)),
             },
             Block::Code(language, code) => fenced(language, code),
         };

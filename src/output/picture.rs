@@ -6,19 +6,26 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::error::Diagnostic;
-use crate::results::Drawing;
+use crate::results::{Drawing, PictureFormat, PictureStyle};
+use look::Look;
 
 mod animation;
 mod canvas;
 mod colours;
+mod design;
 mod encode;
 mod fields;
 mod layout;
 mod lines;
+mod look;
 mod numbers;
 mod outlines;
 mod paint;
+mod pdf;
 mod thin;
+mod vectors;
+#[cfg(test)]
+mod vision;
 
 /// Why a picture could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -28,16 +35,29 @@ pub struct PictureFault(String);
 /// A picture of a report, or the warning in its place.
 pub type Drawn = Result<Vec<u8>, Diagnostic>;
 
-/// A drawing as a PNG.
+/// A drawing as a PNG for a screen.
+///
+/// # Errors
+/// As [`picture`].
+pub fn png(drawing: &Drawing) -> Result<Vec<u8>, PictureFault> {
+    picture(drawing, PictureFormat::Png, &PictureStyle::default())
+}
+
+/// A drawing as a file of a format; what moves is a PNG in any case.
 ///
 /// # Errors
 /// [`PictureFault`] where it cannot be drawn, whatever the reason: no picture is worth the numbers beside it.
-pub fn png(drawing: &Drawing) -> Result<Vec<u8>, PictureFault> {
+pub fn picture(
+    drawing: &Drawing,
+    format: PictureFormat,
+    style: &PictureStyle,
+) -> Result<Vec<u8>, PictureFault> {
+    let look = Look::of(style);
     let drawn = catch_unwind(AssertUnwindSafe(|| match drawing {
-        Drawing::Charts(charts) => lines::stacked(charts),
-        Drawing::Field(figure) => figure.png(),
-        Drawing::Animation(animation) => animation.png(),
-        Drawing::Mesh(figure) => figure.png(),
+        Drawing::Charts(charts) => lines::stacked(charts, look, format),
+        Drawing::Field(figure) => figure.drawn(look, format),
+        Drawing::Animation(animation) => animation.png(look.on_screen()),
+        Drawing::Mesh(figure) => figure.drawn(look, format),
     }));
     match drawn {
         Ok(drawn) => drawn.map_err(|fault| PictureFault(fault.to_string())),

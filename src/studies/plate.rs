@@ -77,6 +77,7 @@ fn outcome(study: &Study, results: &Results) -> Outcome {
             .map(|(what, seconds)| ((*what).to_owned(), *seconds))
             .collect(),
         figures,
+        style: study.pictures.style.clone(),
         grids,
         ..Outcome::default()
     };

@@ -32,6 +32,10 @@ impl<'a> Section<'a> {
     /// A list of texts.
     pub fn texts(&self, key: &'static str) -> Vec<String> {
         self.asks(key, Some(Takes::Texts));
+        self.texts_like(key)
+    }
+
+    fn texts_like(&self, key: &'static str) -> Vec<String> {
         self.read(key, "a list of texts in quotes", |value| match value {
             DeValue::Array(items) => items.iter().map(|item| text(item.get_ref())).collect(),
             _ => None,
@@ -54,6 +58,28 @@ impl<'a> Section<'a> {
         let names = choices.iter().map(|(known, _)| (*known).to_owned());
         self.asks(key, Some(Takes::Choice(names.collect())));
         let name = self.read(key, "text in quotes", text)?;
+        self.named(key, &name, choices)
+    }
+
+    /// Some of several names, each once; one that is unknown is recorded as a fault.
+    pub fn choices<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Vec<T> {
+        let names = choices.iter().map(|(known, _)| (*known).to_owned());
+        self.asks(key, Some(Takes::Choices(names.collect())));
+        let mut names = self.texts_like(key);
+        let mut seen = Vec::new();
+        names.retain(|name| {
+            let is_new = !seen.contains(name);
+            seen.push(name.clone());
+            is_new
+        });
+        let found = names
+            .iter()
+            .filter_map(|name| self.named(key, name, choices));
+        found.collect()
+    }
+
+    /// What a name stands for; `None` where it is unknown, which is recorded as a fault.
+    fn named<T: Copy>(&self, key: &'static str, name: &str, choices: &[(&str, T)]) -> Option<T> {
         if let Some((_, choice)) = choices.iter().find(|(known, _)| *known == name) {
             return Some(*choice);
         }
@@ -62,7 +88,7 @@ impl<'a> Section<'a> {
             .map(|(known, _)| format!("\"{known}\""))
             .collect();
         let mut hint = format!("one of {}", names.join(", "));
-        if let Some(near) = nearest(&name, choices.iter().map(|(known, _)| *known)) {
+        if let Some(near) = nearest(name, choices.iter().map(|(known, _)| *known)) {
             hint = format!("did you mean \"{near}\"? It must be {hint}");
         }
         self.fault(key, &format!("\"{name}\" is not known here"), &hint);
@@ -144,6 +170,27 @@ impl<'a> Section<'a> {
         let leaves = self.value(key).is_some_and(is_word);
         self.asks(key, Some(Takes::Quantity(dimension, bound)));
         (!leaves).then(|| self.quantity(key, dimension, bound))
+    }
+
+    /// A list of quantities, or one of some words.
+    pub fn quantities_or<'b>(
+        &self,
+        words: &[&'b str],
+        key: &'static str,
+        dimension: Dimension,
+        bound: Bound,
+    ) -> (Option<&'b str>, Vec<f64>) {
+        let names = words.iter().map(|word| (*word).to_owned());
+        self.asks(key, Some(Takes::Choice(names.collect())));
+        let is_text = |value: &Value<'a>| matches!(value.get_ref(), DeValue::String(_));
+        match self.value(key).filter(is_text) {
+            Some(_) => {
+                self.asks(key, Some(Takes::Quantities(dimension, bound)));
+                let choices: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
+                (self.choice(key, &choices), Vec::new())
+            }
+            None => (None, self.quantities(key, dimension, bound)),
+        }
     }
 
     /// The size of a unit by its name alone, such as `"mm"`, or as a quantity, such as `"0.05 mm"`.

@@ -1,28 +1,27 @@
 //! Fields that move, as an animated PNG: every browser plays it, and other programs show its first picture.
 
-use plotters::coord::Shift;
-use plotters::prelude::{DrawingArea, SVGBackend};
 use png::{BlendOp, DisposeOp, Writer};
 use resvg::tiny_skia::Pixmap;
 
-use super::canvas::{DrawResult, rasterise};
+use super::canvas::{Area, rasterise};
+use super::design::DrawResult;
 use super::encode::{Part, colours, encoder, whole};
+use super::look::Look;
 use super::paint::Painter;
 use crate::results::{Animation, FieldFigure, Panel, Scale};
 
 impl Animation {
     /// The animation as an APNG that plays again and again; of every picture only the part that moves is stored.
-    pub(super) fn png(&self) -> DrawResult<Vec<u8>> {
+    pub(super) fn png(&self, look: Look) -> DrawResult<Vec<u8>> {
         let all = self.frames.iter().flat_map(|frame| &frame.panels);
         let together = self.figure(String::new(), all.cloned().collect());
-        let (layout, range) = (together.layout(), together.range());
+        let (layout, range) = (together.layout(look), together.range());
         let pictures = self.frames.iter().map(|frame| {
             let title = format!("{}, t = {:.3} s", self.title, frame.time);
             let figure = self.figure(title, frame.panels.clone());
             let paint = |painter: &mut Painter| figure.paint(painter, &layout, &range);
-            let draw =
-                |area: &DrawingArea<SVGBackend<'_>, Shift>| figure.draw(area, &layout, &range);
-            rasterise(figure.size(&layout), 1.0, paint, draw)
+            let draw = |area: &Area<'_>| figure.draw(area, &layout, &range);
+            rasterise(figure.size(&layout), (look, 1.0), paint, draw)
         });
         self.encode(pictures)
     }
@@ -97,7 +96,7 @@ fn changed(before: &Pixmap, after: &Pixmap) -> Part {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Frame;
+    use crate::results::{Frame, PictureStyle};
 
     fn animation() -> Animation {
         let frame = |step: u32| {
@@ -118,8 +117,11 @@ mod tests {
 
     #[test]
     fn an_animation_holds_its_frames_and_is_the_same_each_time() {
-        let bytes = animation().png().unwrap();
-        assert_eq!(bytes, animation().png().unwrap());
+        let bytes = animation().png(Look::of(&PictureStyle::default())).unwrap();
+        assert_eq!(
+            bytes,
+            animation().png(Look::of(&PictureStyle::default())).unwrap()
+        );
         let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
             .read_info()
             .unwrap();

@@ -1,4 +1,4 @@
-//! What all pictures are drawn with: an area, fonts, strokes, numbers on axes.
+//! What all pictures are drawn with: an area, fonts, numbers on axes.
 
 use std::sync::{Arc, LazyLock};
 
@@ -6,26 +6,16 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use resvg::{tiny_skia, usvg};
 
+use super::design::{DrawResult, FAMILY, FINE};
 use super::encode::encode;
+use super::look::Look;
 use super::paint::Painter;
-use crate::results::Scale;
+use super::vectors::Vectors;
+use crate::results::{PictureFormat, Scale};
 use crate::statistics::extremes;
 
-/// Units of the drawing for each point of the design. plotters rounds to whole units: they must be small.
-pub(super) const FINE: u32 = 8;
-/// Pixels of the picture for each point of the design.
-const PIXELS: f32 = 2.0;
 const REGULAR: &[u8] = include_bytes!("../fonts/dejavu-sans-regular.ttf");
 const BOLD: &[u8] = include_bytes!("../fonts/dejavu-sans-bold.ttf");
-const FAMILY: &str = "sans-serif";
-
-/// Text and axes.
-pub(super) const INK: RGBColor = RGBColor(38, 38, 38);
-/// Grid lines.
-pub(super) const PALE: RGBColor = RGBColor(225, 225, 225);
-
-/// Why a picture could not be drawn.
-pub(super) type DrawResult<T> = Result<T, Box<dyn std::error::Error>>;
 
 static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     for (style, bytes) in [(FontStyle::Normal, REGULAR), (FontStyle::Bold, BOLD)] {
@@ -40,22 +30,58 @@ static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// Paints on a white area of `size` points what is too much to be drawn, draws above it, and returns a PNG.
+/// What draws above a painted area.
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Paints on an area of `size` points what is too much to be drawn, draws above it, and returns a file of the format.
 pub(super) fn render(
     size: (u32, u32),
+    (look, format): (Look, PictureFormat),
     paint: impl FnOnce(&mut Painter<'_>),
-    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, Shift>) -> DrawResult<()>,
+    draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
 ) -> DrawResult<Vec<u8>> {
-    Ok(encode(&rasterise(size, PIXELS, paint, draw)?)?)
+    if format == PictureFormat::Png {
+        return Ok(encode(
+            &rasterise(size, (look, look.pixels()), paint, draw)?,
+            look,
+        )?);
+    }
+    let mut image = blank(size, (look, look.pixels()))?;
+    let before = image.clone();
+    let mut painter = Painter {
+        image: &mut image,
+        pixels_per_point: look.pixels(),
+        above: Some(Vec::new()),
+    };
+    paint(&mut painter);
+    let lines = painter.above.unwrap_or_default();
+    let vectors = Vectors {
+        size,
+        paper: look.paper(),
+        image: (image != before).then_some(image),
+        lines,
+        tree: tree(size, draw)?,
+    };
+    match format {
+        PictureFormat::Svg => vectors.svg(),
+        PictureFormat::Pdf | PictureFormat::Png => vectors.pdf(),
+    }
 }
 
-/// Paints on a white area of `size` points with so many pixels a point, then draws above it.
-pub(super) fn rasterise(
+fn blank(size: (u32, u32), (look, pixels_per_point): (Look, f32)) -> DrawResult<tiny_skia::Pixmap> {
+    let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
+    let image = tiny_skia::Pixmap::new(pixels(size.0), pixels(size.1));
+    let mut image = image.ok_or_else(|| format!("it would have {} × {} points", size.0, size.1))?;
+    let RGBColor(red, green, blue) = look.paper();
+    image.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
+    Ok(image)
+}
+
+/// What is drawn, its letters as curves where they are asked for.
+fn tree(
     size: (u32, u32),
-    pixels_per_point: f32,
-    paint: impl FnOnce(&mut Painter<'_>),
-    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, Shift>) -> DrawResult<()>,
-) -> DrawResult<tiny_skia::Pixmap> {
+    draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
+) -> DrawResult<usvg::Tree> {
     let fonts = Arc::clone(&FONTS);
     let mut svg = String::new();
     {
@@ -69,14 +95,22 @@ pub(super) fn rasterise(
         fontdb: fonts,
         ..usvg::Options::default()
     };
-    let tree = usvg::Tree::from_str(&svg, &options)?;
-    let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
-    let image = tiny_skia::Pixmap::new(pixels(size.0), pixels(size.1));
-    let mut image = image.ok_or_else(|| format!("it would have {} × {} points", size.0, size.1))?;
-    image.fill(tiny_skia::Color::WHITE);
+    Ok(usvg::Tree::from_str(&svg, &options)?)
+}
+
+/// Paints on an area of `size` points with so many pixels a point, then draws above it.
+pub(super) fn rasterise(
+    size: (u32, u32),
+    (look, pixels_per_point): (Look, f32),
+    paint: impl FnOnce(&mut Painter<'_>),
+    draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
+) -> DrawResult<tiny_skia::Pixmap> {
+    let tree = tree(size, draw)?;
+    let mut image = blank(size, (look, pixels_per_point))?;
     paint(&mut Painter {
         image: &mut image,
         pixels_per_point,
+        above: None,
     });
     let scale = pixels_per_point / FINE as f32;
     let transform = tiny_skia::Transform::from_scale(scale, scale);
@@ -89,24 +123,9 @@ fn in_xml(character: char) -> bool {
     matches!(character, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..)
 }
 
-/// Points of the design in units of the drawing.
-pub(super) fn units(points: i32) -> i32 {
-    points * FINE as i32
-}
-
 /// A line of some width in points.
 pub(super) fn stroke(colour: RGBColor, width: u32) -> ShapeStyle {
     colour.stroke_width(FINE * width)
-}
-
-pub(super) fn text(size: u32) -> TextStyle<'static> {
-    (FAMILY, FINE * size).into_font().color(&INK)
-}
-
-pub(super) fn bold(size: u32) -> TextStyle<'static> {
-    (FAMILY, FINE * size, FontStyle::Bold)
-        .into_font()
-        .color(&INK)
 }
 
 /// A number as an axis shows it: no trailing zeros, a true minus sign.

@@ -1,6 +1,4 @@
-//! Which colours a field has: the range of the colour bar, and a colour for each share of it.
-
-use plotters::prelude::*;
+//! The range of the colour bar of a field.
 
 use crate::results::{Panel, Scale, Values};
 use crate::statistics::extremes;
@@ -16,24 +14,6 @@ const DECADES: f64 = 6.0;
 
 /// A field counts as one of both signs if the smaller side is at least so large a part of the larger one.
 const SIGNED: f64 = 0.02;
-
-/// Colours of a table.
-const COLOURS: usize = 256;
-
-/// ColorBrewer's `RdBu`, blue first: readable with every colour vision.
-const BLUE_TO_RED: [RGBColor; 11] = [
-    RGBColor(5, 48, 97),
-    RGBColor(33, 102, 172),
-    RGBColor(67, 147, 195),
-    RGBColor(146, 197, 222),
-    RGBColor(209, 229, 240),
-    RGBColor(247, 247, 247),
-    RGBColor(253, 219, 199),
-    RGBColor(244, 165, 130),
-    RGBColor(214, 96, 77),
-    RGBColor(178, 24, 43),
-    RGBColor(103, 0, 31),
-];
 
 /// The positions at the ends of the colour bar, and what lies beyond them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,17 +119,6 @@ impl Range {
     /// Where a position lies on the bar: 0 at its lower end, 1 at its upper one.
     pub fn share(&self, position: f64) -> f64 {
         (position - self.low) / (self.high - self.low)
-    }
-
-    /// The colours from the lower to the upper end of the bar.
-    pub fn colours(&self) -> Vec<RGBColor> {
-        let share = |index: usize| (index as f32 + 0.5) / COLOURS as f32;
-        let diverging = DerivedColorMap::new(&BLUE_TO_RED);
-        let colour = |index: usize| match self.is_signed {
-            true => diverging.get_color(share(index)),
-            false => ViridisRGB.get_color(share(index)),
-        };
-        (0..COLOURS).map(colour).collect()
     }
 }
 

@@ -1,7 +1,9 @@
 //! Pixels as PNG files.
 
-use png::{BitDepth, ColorType, Encoder, EncodingError, Filter};
+use png::{BitDepth, ColorType, Encoder, EncodingError, Filter, PixelDimensions, Unit};
 use resvg::tiny_skia::Pixmap;
+
+use super::look::{Look, MILLIMETRES};
 
 /// A part of a picture: left, top, width, height in pixels.
 pub(super) type Part = [u32; 4];
@@ -37,9 +39,27 @@ pub(super) fn encoder<'a>(
 }
 
 /// A picture as a PNG.
-pub(super) fn encode(picture: &Pixmap) -> Result<Vec<u8>, EncodingError> {
+pub(super) fn encode_plain(picture: &Pixmap) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     let mut writer = encoder(&mut bytes, picture).write_header()?;
+    writer.write_image_data(&colours(picture, whole(picture)))?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// A picture as a PNG, which says how large it is on paper where it is made for paper.
+pub(super) fn encode(picture: &Pixmap, look: Look) -> Result<Vec<u8>, EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = encoder(&mut bytes, picture);
+    if look.is_printed() {
+        let on_a_metre = (f64::from(look.pixels()) * 1000.0 / MILLIMETRES).round() as u32;
+        encoder.set_pixel_dims(Some(PixelDimensions {
+            xppu: on_a_metre,
+            yppu: on_a_metre,
+            unit: Unit::Meter,
+        }));
+    }
+    let mut writer = encoder.write_header()?;
     writer.write_image_data(&colours(picture, whole(picture)))?;
     writer.finish()?;
     Ok(bytes)

@@ -1,28 +1,35 @@
 //! Fields on deformed plates, several side by side on one colour scale.
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
 
-use super::canvas::{DrawResult, INK, render, text};
+use super::canvas::{Area, render};
 use super::colours::Range;
-use super::layout::{AXIS_HEIGHT, LABEL_HEIGHT, LEFT, Layout, Pen, RIGHT, TITLE_HEIGHT, WIDTH};
+use super::design::DrawResult;
+use super::layout::{AXIS_HEIGHT, Heading, LABEL_HEIGHT, LEFT, Layout, Pen};
+use super::look::{Look, short};
 use super::numbers::{Numbers, ticks};
 use super::paint::{Painter, Thin};
-use crate::results::{FieldFigure, Panel, Scale, Values};
+use crate::results::{FieldFigure, Panel, PictureFormat, Scale, Values};
 
 /// The outline of the deformed sheet.
-const OUTLINE: Thin = Thin {
-    colour: INK,
-    width: 0.8,
-    cover: 255,
-};
+fn outline_pen(look: Look) -> Thin {
+    Thin {
+        colour: look.ink(),
+        width: 0.8,
+        cover: 255,
+    }
+}
+
 /// The outline at rest.
-const REST: Thin = Thin {
-    colour: RGBColor(120, 120, 120),
-    width: 0.7,
-    cover: 255,
-};
+fn rest_pen(look: Look) -> Thin {
+    Thin {
+        colour: look.rest(),
+        width: 0.7,
+        cover: 255,
+    }
+}
+
 /// Lines of equal values.
 const CONTOUR: Thin = Thin {
     colour: RGBColor(0, 0, 0),
@@ -30,8 +37,6 @@ const CONTOUR: Thin = Thin {
     cover: 110,
 };
 
-/// Left and right of the colour bar.
-const BAR: [f64; 2] = [WIDTH - RIGHT + 38.0, WIDTH - RIGHT + 56.0];
 /// How far the arrow at an end of the colour bar reaches.
 const ARROW: f64 = 14.0;
 
@@ -39,26 +44,31 @@ const ARROW: f64 = 14.0;
 const MOST_CONTOURED: usize = 400_000;
 
 impl FieldFigure {
-    /// The figure as a PNG.
-    pub fn png(&self) -> DrawResult<Vec<u8>> {
-        let (layout, range) = (self.layout(), self.range());
+    /// The figure as a file.
+    pub(super) fn drawn(&self, look: Look, format: PictureFormat) -> DrawResult<Vec<u8>> {
+        let (layout, range) = (self.layout(look), self.range());
         let paint = |painter: &mut Painter| self.paint(painter, &layout, &range);
-        let draw = |area: &DrawingArea<SVGBackend<'_>, Shift>| self.draw(area, &layout, &range);
-        render(self.size(&layout), paint, draw)
+        let draw = |area: &Area<'_>| self.draw(area, &layout, &range);
+        render(self.size(&layout), (look, format), paint, draw)
     }
 
     /// Width and height in points.
     pub(super) fn size(&self, layout: &Layout) -> (u32, u32) {
         let bottom = layout.panel_top(self.panels.len());
-        (WIDTH as u32, (bottom + AXIS_HEIGHT) as u32)
+        (layout.width() as u32, (bottom + AXIS_HEIGHT) as u32)
     }
 
-    pub(super) fn layout(&self) -> Layout {
+    fn heading(&self, look: Look) -> Heading {
+        Heading::new(look, &self.title, &self.quantity)
+    }
+
+    pub(super) fn layout(&self, look: Look) -> Layout {
         let surfaces = self.panels.iter().map(|panel| &panel.surface);
-        Layout::of(surfaces.flat_map(|surface| {
+        let places = surfaces.flat_map(|surface| {
             let rest = surface.rest.iter().flatten();
             surface.points.iter().chain(rest).copied()
-        }))
+        });
+        Layout::of(look, &self.heading(look), places)
     }
 
     pub(super) fn range(&self) -> Range {
@@ -66,21 +76,21 @@ impl FieldFigure {
     }
 
     /// Draws what is written around the plates, with a layout and a range of colours, which may be those of several figures.
-    pub(super) fn draw(
-        &self,
-        area: &DrawingArea<SVGBackend<'_>, Shift>,
-        layout: &Layout,
-        range: &Range,
-    ) -> DrawResult<()> {
-        let pen = Pen(area);
-        pen.title(&self.title)?;
-        pen.write(&self.quantity, [WIDTH - 16.0, 24.0], text(13), HPos::Right)?;
+    pub(super) fn draw(&self, area: &Area<'_>, layout: &Layout, range: &Range) -> DrawResult<()> {
+        let look = layout.look;
+        let pen = Pen { area, look };
+        self.heading(look).draw(&pen)?;
+        let room = layout.bar()[0] - LEFT - 4.0;
         for (index, panel) in self.panels.iter().enumerate() {
-            let label = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
-            pen.write(&panel.label, label, text(14), HPos::Left)?;
-            if index == 0 && !panel.surface.rest.is_empty() {
-                let label = [layout.right(), label[1]];
-                pen.write("thin lines: at rest", label, text(12), HPos::Right)?;
+            let place = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
+            let label = match look.is_printed() {
+                true => short(&panel.label, 14, room),
+                false => &panel.label,
+            };
+            pen.write(label, place, look.text(14), HPos::Left)?;
+            if index == 0 && !panel.surface.rest.is_empty() && !look.is_narrow() {
+                let label = [layout.right(), place[1]];
+                pen.write("thin lines: at rest", label, look.text(12), HPos::Right)?;
             }
             layout.draw_width_axis(&pen, index)?;
         }
@@ -94,15 +104,15 @@ impl FieldFigure {
         let bottom = layout.panel_top(self.panels.len());
         let arrow = |beyond: Option<f64>| if beyond.is_some() { ARROW } else { 0.0 };
         [
-            TITLE_HEIGHT + LABEL_HEIGHT + arrow(range.above),
+            layout.top + LABEL_HEIGHT + arrow(range.above),
             bottom - arrow(range.below),
         ]
     }
 
     fn paint_bar(&self, painter: &mut Painter, layout: &Layout, range: &Range) {
-        let ([left, right], [top, bottom]) = (BAR, self.bar(layout, range));
+        let ([left, right], [top, bottom]) = (layout.bar(), self.bar(layout, range));
         let middle = 0.5 * (left + right);
-        let table = range.colours();
+        let table = layout.look.bar(range.is_signed);
         let mut shade = |corners, shares| painter.shade(corners, shares, &|share| share, &table);
         let [a, b, c, d] = [[left, bottom], [right, bottom], [right, top], [left, top]];
         shade([a, b, c], [0.0, 0.0, 1.0]);
@@ -118,7 +128,7 @@ impl FieldFigure {
     /// Paints the colour bar and the plates.
     pub(super) fn paint(&self, painter: &mut Painter, layout: &Layout, range: &Range) {
         self.paint_bar(painter, layout, range);
-        let table = range.colours();
+        let table = layout.look.bar(range.is_signed);
         let (ticks, _) = ticks([range.low, range.high], self.scale);
         // At zero a field of both signs is white, and noise would draw lines there.
         let levels = ticks
@@ -131,7 +141,8 @@ impl FieldFigure {
         };
         for (index, panel) in self.panels.iter().enumerate() {
             let place = |place: [f64; 2]| layout.place(index, place);
-            outline(painter, &panel.surface.rest, &place, REST);
+            let rest = placed(&panel.surface.rest, &place);
+            painter.lines(rest.iter().map(|line| &line[..]), rest_pen(layout.look));
             let mut contours = Vec::new();
             let triangles = panel.surface.triangles.iter();
             for (triangle, values) in triangles.zip(panel.corners()) {
@@ -145,21 +156,23 @@ impl FieldFigure {
                     );
                 }
             }
-            painter.lines(contours.iter().map(|line| &line[..]), CONTOUR);
-            outline(painter, &panel.surface.outline, &place, OUTLINE);
+            painter.lines_above(contours.iter().map(|line| &line[..]), CONTOUR);
+            let outline = placed(&panel.surface.outline, &place);
+            let pen = outline_pen(layout.look);
+            painter.lines_above(outline.iter().map(|line| &line[..]), pen);
         }
     }
 
     /// What is written beside the colour bar, and its frame; an arrow at an end says that values lie beyond it.
     fn draw_bar(&self, pen: &Pen, layout: &Layout, range: &Range) -> DrawResult<()> {
-        let [left, right] = BAR;
+        let [left, right] = layout.bar();
         let [top, bottom] = self.bar(layout, range);
         let height = |share: f64| bottom + share * (top - bottom);
         let (ticks, numbers) = ticks([range.low, range.high], self.scale);
         for (position, label) in ticks {
             let y = height(range.share(position));
             pen.line(&[[right, y], [right + 4.0, y]])?;
-            pen.write(&label, [right + 8.0, y], text(13), HPos::Left)?;
+            pen.write(&label, [right + 8.0, y], pen.look.text(13), HPos::Left)?;
         }
         let mut frame = vec![[left, top], [left, bottom]];
         if let Some(least) = range.below {
@@ -178,8 +191,8 @@ impl FieldFigure {
         match numbers.power() {
             Some(power) => pen.write(
                 &power,
-                [left, TITLE_HEIGHT + 0.5 * LABEL_HEIGHT],
-                text(13),
+                [left, layout.top + 0.5 * LABEL_HEIGHT],
+                pen.look.text(13),
                 HPos::Left,
             ),
             None => Ok(()),
@@ -199,7 +212,12 @@ impl FieldFigure {
             Scale::Logarithmic => Numbers::default().between(value),
             Scale::Linear | Scale::Interval => numbers.between(value),
         };
-        pen.write(&format!("{which} {value}"), place, text(12), HPos::Left)
+        pen.write(
+            &format!("{which} {value}"),
+            place,
+            pen.look.text(12),
+            HPos::Left,
+        )
     }
 }
 
@@ -208,15 +226,9 @@ fn has_contours(panel: &Panel) -> bool {
     is_smooth && panel.surface.triangles.len() <= MOST_CONTOURED
 }
 
-fn outline(
-    painter: &mut Painter,
-    lines: &[Vec<[f64; 2]>],
-    place: &dyn Fn([f64; 2]) -> [f64; 2],
-    pen: Thin,
-) {
+fn placed(lines: &[Vec<[f64; 2]>], place: &dyn Fn([f64; 2]) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
     let places = |line: &Vec<[f64; 2]>| line.iter().map(|at| place(*at)).collect();
-    let lines: Vec<Vec<_>> = lines.iter().map(places).collect();
-    painter.lines(lines.iter().map(|line| &line[..]), pen);
+    lines.iter().map(places).collect()
 }
 
 /// The line within a triangle on which a linear field has a value.

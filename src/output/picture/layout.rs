@@ -1,40 +1,118 @@
 //! Where plates lie in a picture, and the axes around them.
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::canvas::{DrawResult, FINE, INK, bold, stroke, text};
+use super::canvas::Area;
+use super::design::{DrawResult, FINE};
+use super::look::{Look, lines};
 use super::numbers::{Numbers, round_positions};
 use crate::mesh::geometry::bounding_box;
 
-pub(super) const WIDTH: f64 = 960.0;
-pub(super) const LEFT: f64 = 56.0;
-pub(super) const RIGHT: f64 = 146.0;
-pub(super) const TITLE_HEIGHT: f64 = 46.0;
+/// The width of a picture for a screen in points.
+const WIDTH: u32 = 960;
 pub(super) const LABEL_HEIGHT: f64 = 26.0;
 pub(super) const AXIS_HEIGHT: f64 = 46.0;
 
 /// A plate that is wider than long is drawn no higher than this.
 const HIGHEST_PLATE: f64 = 420.0;
 
+/// What stands at the head of a picture: its title, and beside or below it what the colours show.
+pub(super) struct Heading {
+    lines: Vec<String>,
+    size: u32,
+    quantity: String,
+    is_beside: bool,
+}
+
+impl Heading {
+    pub fn new(look: Look, title: &str, quantity: &str) -> Self {
+        let width = f64::from(look.points(WIDTH)) - LEFT - EDGE;
+        let size = if look.is_narrow() { 13 } else { 17 };
+        if !look.is_printed() {
+            return Self {
+                lines: vec![title.to_owned()],
+                size,
+                quantity: quantity.to_owned(),
+                is_beside: true,
+            };
+        }
+        let whole = format!("{title}    {quantity}");
+        Self {
+            lines: lines(title, size, width),
+            size,
+            quantity: quantity.to_owned(),
+            is_beside: lines(&whole, size, width).len() == 1,
+        }
+    }
+
+    /// Its height in points.
+    pub fn height(&self) -> f64 {
+        let below = if self.is_beside || self.quantity.is_empty() {
+            0
+        } else {
+            1
+        };
+        TITLE_HEIGHT + LINE_HEIGHT * (self.lines.len() - 1 + below) as f64
+    }
+
+    pub fn draw(&self, pen: &Pen) -> DrawResult<()> {
+        let mut y = 24.0;
+        for line in &self.lines {
+            pen.write(line, [LEFT, y], pen.look.bold(self.size), HPos::Left)?;
+            y += LINE_HEIGHT;
+        }
+        if self.is_beside {
+            y -= LINE_HEIGHT;
+        }
+        let right = f64::from(pen.look.points(WIDTH)) - EDGE;
+        pen.write(&self.quantity, [right, y], pen.look.text(13), HPos::Right)
+    }
+}
+
+pub(super) const LEFT: f64 = 56.0;
+const EDGE: f64 = 16.0;
+const TITLE_HEIGHT: f64 = 46.0;
+const LINE_HEIGHT: f64 = 18.0;
+
 /// Where the panels lie, in points.
 pub(super) struct Layout {
+    pub look: Look,
+    /// The upper end of the first panel.
+    pub top: f64,
     low: [f64; 2],
     high: [f64; 2],
     points_per_mm: f64,
 }
 
 impl Layout {
-    /// The layout that shows all places.
-    pub fn of(places: impl Iterator<Item = [f64; 2]>) -> Self {
+    /// The layout that shows all places below a heading.
+    pub fn of(look: Look, heading: &Heading, places: impl Iterator<Item = [f64; 2]>) -> Self {
         let [low, high] = bounding_box(places);
+        let width = f64::from(look.points(WIDTH)) - LEFT - beside(look);
         Self {
+            look,
+            top: heading.height(),
             low,
             high,
-            points_per_mm: ((WIDTH - LEFT - RIGHT) / (high[0] - low[0]))
-                .min(HIGHEST_PLATE / (high[1] - low[1])),
+            points_per_mm: (width / (high[0] - low[0])).min(HIGHEST_PLATE / (high[1] - low[1])),
         }
+    }
+
+    /// The whole picture's width.
+    pub fn width(&self) -> f64 {
+        f64::from(self.look.points(WIDTH))
+    }
+
+    /// Left and right of the colour bar.
+    pub fn bar(&self) -> [f64; 2] {
+        let [gap, width] = if self.look.is_narrow() {
+            [18.0, 14.0]
+        } else {
+            [38.0, 18.0]
+        };
+        let left = self.width() - beside(self.look) + gap;
+        [left, left + width]
     }
 
     fn size(&self, axis: usize) -> f64 {
@@ -42,7 +120,7 @@ impl Layout {
     }
 
     pub fn panel_top(&self, index: usize) -> f64 {
-        TITLE_HEIGHT + (LABEL_HEIGHT + self.size(1)) * index as f64
+        self.top + (LABEL_HEIGHT + self.size(1)) * index as f64
     }
 
     /// The right end of all panels.
@@ -75,7 +153,7 @@ impl Layout {
         for (y, number) in self.ticks(1, 36.0) {
             let [x, row] = self.place(panel, [self.low[0], y]);
             pen.line(&[[x - 11.0, row], [x - 6.0, row]])?;
-            pen.write(&number, [x - 14.0, row], text(12), HPos::Right)?;
+            pen.write(&number, [x - 14.0, row], self.look.text(12), HPos::Right)?;
         }
         Ok(())
     }
@@ -89,24 +167,38 @@ impl Layout {
         for (x, number) in self.ticks(0, 76.0) {
             let [column, _] = self.place(panel, [x, self.low[1]]);
             pen.line(&[[column, y], [column, y + 5.0]])?;
-            pen.write(&number, [column, y + 14.0], text(12), HPos::Center)?;
+            pen.write(
+                &number,
+                [column, y + 14.0],
+                self.look.text(12),
+                HPos::Center,
+            )?;
         }
-        pen.write("x, y [mm]", [right + 14.0, y + 14.0], text(12), HPos::Left)
+        pen.write(
+            "x, y [mm]",
+            [right + 14.0, y + 14.0],
+            self.look.text(12),
+            HPos::Left,
+        )
     }
 }
 
+/// What the colour bar takes to the right of the panels.
+fn beside(look: Look) -> f64 {
+    if look.is_narrow() { 100.0 } else { 146.0 }
+}
+
 /// Draws at places in points.
-pub(super) struct Pen<'a, 'b>(pub &'a DrawingArea<SVGBackend<'b>, Shift>);
+pub(super) struct Pen<'a, 'b> {
+    pub area: &'a Area<'b>,
+    pub look: Look,
+}
 
 impl Pen<'_, '_> {
     fn at([x, y]: [f64; 2]) -> (i32, i32) {
         [x, y]
             .map(|points| (points * f64::from(FINE)).round() as i32)
             .into()
-    }
-
-    pub fn title(&self, title: &str) -> DrawResult<()> {
-        self.write(title, [LEFT, 24.0], bold(17), HPos::Left)
     }
 
     pub fn write(
@@ -117,20 +209,21 @@ impl Pen<'_, '_> {
         align: HPos,
     ) -> DrawResult<()> {
         let style = style.pos(Pos::new(align, VPos::Center));
-        self.0
+        self.area
             .draw(&Text::new(words.to_owned(), Self::at(place), style))?;
         Ok(())
     }
 
     pub fn line(&self, places: &[[f64; 2]]) -> DrawResult<()> {
         let places: Vec<_> = places.iter().copied().map(Self::at).collect();
-        self.0.draw(&PathElement::new(places, stroke(INK, 1)))?;
+        self.area
+            .draw(&PathElement::new(places, self.look.axis()))?;
         Ok(())
     }
 
     pub fn fill(&self, places: &[[f64; 2]], colour: RGBColor) -> DrawResult<()> {
         let places: Vec<_> = places.iter().copied().map(Self::at).collect();
-        self.0.draw(&Polygon::new(places, colour.filled()))?;
+        self.area.draw(&Polygon::new(places, colour.filled()))?;
         Ok(())
     }
 }

@@ -11,6 +11,14 @@ use crate::statistics::extremes;
 pub(super) struct Painter<'a> {
     pub image: &'a mut Pixmap,
     pub pixels_per_point: f32,
+    /// Lines above what is shaded, where they are to stay lines; else they become pixels too.
+    pub above: Option<Vec<Lines>>,
+}
+
+/// Lines that are drawn as one.
+pub(super) struct Lines {
+    pub lines: Vec<Vec<[f64; 2]>>,
+    pub pen: Thin,
 }
 
 /// A line's colour, its width in points and how much of it covers what is below, up to 255.
@@ -60,6 +68,17 @@ impl Painter<'_> {
                 let colour = colour(table, at(column));
                 pixels[place..place + 4].copy_from_slice(&[colour.0, colour.1, colour.2, 255]);
             }
+        }
+    }
+
+    /// Draws lines above what is shaded.
+    pub fn lines_above<'a>(&mut self, lines: impl IntoIterator<Item = &'a [[f64; 2]]>, pen: Thin) {
+        match &mut self.above {
+            Some(above) => {
+                let lines = lines.into_iter().map(<[_]>::to_vec).collect();
+                above.push(Lines { lines, pen });
+            }
+            None => self.lines(lines, pen),
         }
     }
 
@@ -143,6 +162,7 @@ mod tests {
         paint(&mut Painter {
             image: &mut image,
             pixels_per_point,
+            above: None,
         });
         image
     }

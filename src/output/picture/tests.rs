@@ -1,5 +1,6 @@
 use super::*;
-use crate::results::{Animation, FieldFigure, Panel};
+use crate::mesh::{CellShape, Mesh};
+use crate::results::{Animation, FieldFigure, Palette, Panel, PictureWidth};
 
 fn squares(count: usize) -> Vec<([[f64; 2]; 4], f64)> {
     let square = |i: usize| {
@@ -31,4 +32,73 @@ fn a_picture_that_cannot_be_drawn_is_a_fault_and_no_panic() {
     assert_eq!(fault.to_string(), "it has no frames");
     // Without a panel, the axis below the last one has no place.
     assert!(png(&FieldFigure::new("none", "x [mm]", []).into()).is_err());
+}
+
+fn styled(format: PictureFormat, width: PictureWidth) -> Vec<u8> {
+    let nodes = Mesh::plate([30.0, 10.0], [6, 2], CellShape::Quad4);
+    let at_rest = vec![0.0; 2 * nodes.nodes.len()];
+    let panel = Panel::at_nodes("corrected", &nodes, &at_rest, &|node| nodes.nodes[node][0]);
+    let figure = FieldFigure::new(
+        "Largest principal stress at 50 % stretch",
+        "x [mm]",
+        [panel],
+    );
+    let style = PictureStyle {
+        formats: vec![format],
+        width,
+        palette: Palette::Default,
+    };
+    picture(&figure.into(), format, &style).unwrap()
+}
+
+#[test]
+fn pictures_for_a_column_are_as_wide_as_it_in_every_format() {
+    for (width, millimetres) in [
+        (PictureWidth::OneColumn, 85.0),
+        (PictureWidth::TwoColumns, 180.2),
+    ] {
+        let svg = String::from_utf8(styled(PictureFormat::Svg, width)).unwrap();
+        assert!(
+            svg.contains(&format!(" width=\"{millimetres:.2}mm\"")),
+            "{}",
+            &svg[..200]
+        );
+        let pdf = styled(PictureFormat::Pdf, width);
+        let points = format!("/MediaBox [0 0 {:.2}", millimetres * 72.0 / 25.4);
+        let text = String::from_utf8_lossy(&pdf).into_owned();
+        assert!(
+            text.contains(&points[..points.len() - 1]),
+            "{points}: {}",
+            &text[..400]
+        );
+        let png = styled(PictureFormat::Png, width);
+        let reader = png::Decoder::new(std::io::Cursor::new(&png))
+            .read_info()
+            .unwrap();
+        let pixels = reader.info().pixel_dims.unwrap().xppu;
+        let wide = 1000.0 * f64::from(reader.info().width) / f64::from(pixels);
+        assert!((wide - millimetres).abs() < 0.1, "{wide}");
+    }
+}
+
+#[test]
+fn vector_pictures_hold_curves_for_letters_lines_for_lines_and_the_shades_as_one_image() {
+    let svg = String::from_utf8(styled(PictureFormat::Svg, PictureWidth::OneColumn)).unwrap();
+    assert!(!svg.contains("<text"), "letters need no font");
+    assert_eq!(svg.matches("<image ").count(), 1);
+    let contours = "stroke-width=\"0.5\" stroke-opacity=\"0.431\"";
+    assert_eq!(svg.matches(contours).count(), 1, "contour lines");
+    let tree = resvg::usvg::Tree::from_str(&svg, &resvg::usvg::Options::default()).unwrap();
+    assert!(tree.root().has_children());
+    let pdf = styled(PictureFormat::Pdf, PictureWidth::OneColumn);
+    let text = String::from_utf8_lossy(&pdf);
+    assert_eq!(text.matches("/Subtype /Image").count(), 1);
+    assert!(
+        !text.contains("/Font") && text.contains("/Count 1"),
+        "one page without a font"
+    );
+    for format in [PictureFormat::Svg, PictureFormat::Pdf] {
+        let again = [(); 2].map(|()| styled(format, PictureWidth::Screen));
+        assert_eq!(again[0], again[1], "{format:?}");
+    }
 }

@@ -3,13 +3,19 @@
 use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::mesh::Mesh;
-use crate::results::{Drawing, FieldFigure, Figure, Panel, mesh_outlines};
+use crate::results::{
+    Drawing, FieldFigure, Figure, Panel, SheetField, mesh_outlines, sheet_figures,
+};
 use crate::studies::markers::MarkerStudy;
 
 use super::quantities::{misfits, nominal_stress, residuals};
 
-/// The pictures of one frame.
-pub fn figures(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Vec<Figure> {
+/// The pictures of one frame, with these fields of the sheet besides.
+pub fn figures(
+    field: &MarkerStudy,
+    (frame, estimate): (&Frame, &FieldEstimate),
+    sheet: &[SheetField],
+) -> Vec<Figure> {
     let pictures = Pictures {
         mesh: &field.mesh,
         at: format!("frame {}", frame.number),
@@ -19,6 +25,10 @@ pub fn figures(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> 
     let stress = pictures.in_cells("Nominal stress", "largest component [MPa]", &stress);
     let thickness = |cell: usize| estimate.cells[cell].thickness;
     let thickness = pictures.in_cells("Thickness", "thickness [mm]", &thickness);
+    let deformed = [(pictures.at.clone(), &field.mesh, &estimate.displacement[..])];
+    let law = field.law(estimate);
+    let file = |name: &str| format!("{name}.png");
+    let states = sheet_figures(sheet, &*law, &deformed, &pictures.at, &file);
     let multipliers = &estimate.multipliers;
     let multipliers = pictures.at_nodes("Multipliers of equilibrium", "|ζ| [mm²/N]", multipliers);
     let mut all = vec![
@@ -26,7 +36,7 @@ pub fn figures(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> 
         pictures.along(1),
         Figure::new(
             "stress.png",
-            "Largest component of the nominal stress in every cell.",
+            "Largest component of the nominal stress in every cell, at the nodes the mean of the cells around.",
             stress,
         ),
         Figure::new(
@@ -40,6 +50,7 @@ pub fn figures(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> 
             multipliers,
         ),
     ];
+    all.splice(2..2, states);
     match field.coarse {
         None => all.extend(pictures.uncertainty(frame)),
         Some(_) => all.push(pictures.correction(frame)),
@@ -66,8 +77,11 @@ impl Pictures<'_> {
         Figure::new(format!("displacement_{name}.png"), caption, figure)
     }
 
+    /// A value of each cell, at the nodes the mean of the cells around.
     fn in_cells(&self, title: &str, quantity: &str, value: &dyn Fn(usize) -> f64) -> FieldFigure {
-        let panel = Panel::in_cells(&self.at, self.mesh, &self.estimate.displacement, value);
+        let at_nodes = means_at_nodes(self.mesh, value);
+        let displacement = &self.estimate.displacement;
+        let panel = Panel::at_nodes(&self.at, self.mesh, displacement, &|node| at_nodes[node]);
         FieldFigure::new(title, quantity, [panel])
     }
 
@@ -149,6 +163,19 @@ impl Pictures<'_> {
             ),
         )
     }
+}
+
+/// The mean of the values of the cells around each node.
+fn means_at_nodes(mesh: &Mesh, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
+    let mut sums = vec![[0.0; 2]; mesh.nodes.len()];
+    for cell in 0..mesh.cell_count() {
+        let value = value(cell);
+        for node in mesh.cell(cell) {
+            sums[*node][0] += value;
+            sums[*node][1] += 1.0;
+        }
+    }
+    sums.iter().map(|[sum, cells]| sum / cells).collect()
 }
 
 fn largest(components: [f64; 4]) -> f64 {

@@ -14,6 +14,7 @@ use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::results::{Array, Content, Grid, Material, NamedGrid, Outcome, Results, Sheet};
 use crate::studies::markers::MarkerStudy;
+use crate::studies::pictures::Pictures;
 
 use super::quantities::{Residual, misfits, nominal, residuals};
 use super::{figures, json, report, tables};
@@ -21,8 +22,20 @@ use super::{figures, json, report, tables};
 /// The `kind` of these results.
 pub const KIND: &str = "markers";
 
-/// What is told of a correction but for the [`FrameFiles`]: of the study's `text`, empty where there is none, and after `seconds`.
+/// What is told of a correction but for the [`FrameFiles`]: of the study's name and `text`, empty where there is none, and after
+/// `seconds`.
 pub fn results(
+    field: &MarkerStudy,
+    estimates: &[FieldEstimate],
+    study: (String, String),
+    seconds: f64,
+) -> Results {
+    results_with(&Pictures::default(), field, estimates, study, seconds)
+}
+
+/// The same, with the pictures that are wanted.
+pub fn results_with(
+    pictures: &Pictures,
     field: &MarkerStudy,
     estimates: &[FieldEstimate],
     study: (String, String),
@@ -32,7 +45,8 @@ pub fn results(
     let doubts = field.all_doubts(estimates);
     let frames = || field.series.frames.iter().zip(estimates);
     let figures = frames().next_back();
-    let figures = figures.map(|(frame, last)| figures::figures(field, frame, last));
+    let figures =
+        figures.map(|(frame, last)| figures::figures(field, (frame, last), &pictures.fields));
     let outcome = Outcome {
         problem: json::problem(field, estimates),
         material: Some(Material::from(&field.card)),
@@ -42,6 +56,7 @@ pub fn results(
             .collect(),
         blocks: report::blocks(field, estimates),
         figures: figures.unwrap_or_default(),
+        style: pictures.style.clone(),
         files: vec![(
             "forces.csv".to_owned(),
             Content::Text(tables::forces(field, estimates)),

@@ -7,7 +7,7 @@ use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::Mesh;
 use crate::results::{
     Animation, Array, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
-    LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number,
+    LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number, sheet_figures,
 };
 
 /// How a model's lines are drawn.
@@ -74,6 +74,7 @@ pub fn figures(
             plates,
         ),
     ];
+    figures.extend(stress_figures(plate, models, corrected));
     if plate.release != Some(0.0) {
         let over_time = force(models, "time [s]", |_, now| now.time);
         let over_place = force(models, "displacement of the right side [mm]", right_side);
@@ -90,6 +91,29 @@ pub fn figures(
         Figure::new("motion_phase.png", caption, charts)
     }));
     figures
+}
+
+/// Stresses and strains at the instants that the study chooses, else at the last one.
+fn stress_figures(
+    plate: &MovingPlate,
+    models: &[ModelMotion; 2],
+    corrected: &CorrectedMotion,
+) -> Vec<Figure> {
+    let plates = shown(models, corrected);
+    let times = models[0].history.times();
+    let at_instant = |instant: usize| {
+        let deformed = plates.iter().filter_map(|plate| {
+            let [displacement, _] = *plate.motion.get(instant)?;
+            Some((plate.name.to_owned(), plate.mesh, displacement))
+        });
+        let deformed: Vec<_> = deformed.collect();
+        let at = format!("t = {} s", brief(times[instant]));
+        let file = |field: &str| format!("motion_{field}_{:05}.png", instant + 1);
+        let fields = &plate.pictures.fields;
+        sheet_figures(fields, &*plate.problem.law, &deformed, &at, &file)
+    };
+    let instants = plate.pictures.shown.instants(&times);
+    instants.into_iter().flat_map(at_instant).collect()
 }
 
 /// A time without trailing zeros.

@@ -98,6 +98,7 @@ pub fn outcome(
         along: "time",
         steps: steps(models, &deviations),
         figures: figures(plate, models, corrected),
+        style: plate.pictures.style.clone(),
         grids: grids(plate, models, corrected, &expected),
         files,
         times: times.collect(),

@@ -13,6 +13,7 @@ use crate::material::viscosity::ViscousMaterial;
 use crate::mesh::{Mesh, Side};
 use crate::problem::{ClampedPlate, Model};
 use crate::solve::NewtonSettings;
+use crate::studies::pictures::Pictures;
 
 /// How the plate at the start is solved.
 const NEWTON: NewtonSettings = NewtonSettings {
@@ -84,6 +85,8 @@ pub struct MovingPlate {
     pub probes: Vec<Probe>,
     /// What has to be reached.
     pub tolerances: Tolerances,
+    /// The pictures of its fields.
+    pub pictures: Pictures,
 }
 
 impl MovingPlate {

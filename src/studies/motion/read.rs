@@ -14,6 +14,7 @@ use crate::material::Card;
 use crate::material::card::read_viscosity;
 use crate::material::viscosity::ViscousMaterial;
 use crate::problem::ClampedPlate;
+use crate::studies::pictures::Pictures;
 use crate::studies::sections;
 use crate::units::Dimension;
 
@@ -54,6 +55,8 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     section.unknown_keys();
     let probes = tables(root, "probe", |probe| read_probe(probe, &problem));
     let tolerances = read_tolerances(&root.section("tolerances"));
+    let pictures = root.section("pictures");
+    let pictures = Pictures::read(&pictures, ("times", Dimension::Time), &[]);
     let (grip, card) = (grip?, material.card?);
     let plate = MovingPlate {
         problem: ClampedPlate {
@@ -76,6 +79,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
         element: (element?, element_cells?),
         probes,
         tolerances,
+        pictures,
     };
     let need = plate.need();
     let (steps, rest) = (need.steps, Need { steps: 0.0, ..need });

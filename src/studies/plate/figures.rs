@@ -6,8 +6,8 @@ use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::results::{
-    Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, SheetField, Stroke,
-    material_chart, sheet_figures,
+    Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, material_chart,
+    sheet_figures,
 };
 use crate::solve::State;
 
@@ -68,17 +68,19 @@ fn step_figures(results: &Results, step: usize, at: &str) -> Vec<Figure> {
         .collect()
 }
 
-/// Stresses at the last stretch that most models have reached.
+/// Stresses and strains at the stretches that the study chooses, else at the last one that most models have reached.
 fn stress_figures(study: &Study, results: &Results) -> Vec<Figure> {
     let count = |step: &usize| deformed(results, *step).len();
-    let Some(step) = (0..results.comparison.len()).max_by_key(count) else {
-        return Vec::new();
+    let last = (0..results.comparison.len()).max_by_key(count);
+    let pictures = &study.pictures;
+    let steps = pictures.shown.steps(&study.problem.stretches, last);
+    let at_step = |step: usize| {
+        let at = ClampedPlate::describe_step(results.comparison[step].stretch);
+        let models = deformed(results, step);
+        let file = |name: &str| format!("{name}_{:03}.png", step + 1);
+        sheet_figures(&pictures.fields, &*study.problem.law, &models, &at, &file)
     };
-    let at = ClampedPlate::describe_step(results.comparison[step].stretch);
-    let fields = [SheetField::VonMises, SheetField::LargestPrincipalStress];
-    let models = deformed(results, step);
-    let file = |name: &str| format!("{name}_{:03}.png", step + 1);
-    sheet_figures(&fields, &*study.problem.law, &models, &at, &file)
+    steps.into_iter().flat_map(at_step).collect()
 }
 
 /// The models that have a solution at a stretch, with their names and meshes.

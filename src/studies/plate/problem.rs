@@ -11,6 +11,7 @@ use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
+use crate::studies::pictures::Pictures;
 use crate::studies::sections::Tolerances;
 
 /// A study, checked.
@@ -36,6 +37,8 @@ pub struct Study {
     pub reference: Reference,
     /// What the corrected field has to reach.
     pub tolerances: Tolerances,
+    /// The pictures of its fields.
+    pub pictures: Pictures,
     /// What is written, and where.
     pub output: OutputSettings,
     /// The file's text.

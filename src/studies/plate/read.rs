@@ -15,6 +15,7 @@ use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
 use crate::problem::ClampedPlate;
 use crate::studies::name;
+use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
     MOST_CELLS, Tolerances, affords_cells, check_range, even_cells, read_card, read_newton,
     read_plate,
@@ -112,6 +113,8 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let corrector = read_corrector(&root.section("corrector"), &plate, (problem.size, cells));
     let reference = read_reference(&root.section("finite_element"), &problem, cells);
     let tolerances = Tolerances::read(&root.section("tolerances"), true);
+    let places = ("factors", Dimension::Ratio);
+    let pictures = Pictures::read(&root.section("pictures"), places, &problem.stretches);
     let output = read_output(&root.section("output"), name);
     root.unknown_keys();
     let study = Study {
@@ -125,6 +128,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
         corrector: corrector?,
         reference: reference?,
         tolerances,
+        pictures,
         output,
         text: String::new(),
         defaults: Vec::new(),

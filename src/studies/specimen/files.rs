@@ -6,8 +6,9 @@ use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::{
     Array, Axis, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, PALETTE, Panel,
-    SheetField, Stroke, mesh_outlines, sheet_figures,
+    Stroke, mesh_outlines, sheet_figures,
 };
+use crate::studies::pictures::Shown;
 
 /// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
 fn shown(models: &Models) -> Option<usize> {
@@ -44,18 +45,7 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
     let caption = format!("{title}, on one colour scale.");
     let displacement = FieldFigure::new(title, "displacement [mm]", fields(3).map(size));
     let mut figures = vec![figure("displacement", caption, displacement.into())];
-    let stresses = [SheetField::VonMises, SheetField::LargestPrincipalStress];
-    let deformed: Vec<_> = fields(3)
-        .map(|(name, mesh, u)| (name.to_owned(), mesh, u))
-        .collect();
-    let file = |field: &str| format!("{}_{field}.png", specimen.name);
-    figures.extend(sheet_figures(
-        &stresses,
-        specimen.sheet().law,
-        &deformed,
-        &at,
-        &file,
-    ));
+    figures.extend(stress_figures(specimen, models, step));
     let compared = expected.get(step).filter(|_| fields(2).next().is_some());
     if let Some(v) = compared {
         // Springs and corrected springs.
@@ -77,6 +67,34 @@ pub fn figures(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> V
         figure("estimated_error", caption, drawing.into())
     }));
     figures
+}
+
+/// Stresses and strains at the load factors that the study chooses, else at the last one.
+fn stress_figures(specimen: &Specimen, models: &Models, last: usize) -> Vec<Figure> {
+    let pictures = &specimen.pictures;
+    let named = models.named();
+    let at_step = |step: usize| {
+        let deformed = named.iter().filter_map(|model| {
+            let u = model.solution.displacement(step)?;
+            Some((model.name.to_owned(), &model.solution.mesh, u))
+        });
+        let deformed: Vec<_> = deformed.collect();
+        let number = match pictures.shown {
+            Shown::Last => String::new(),
+            Shown::All | Shown::At(_) => format!("_{:03}", step + 1),
+        };
+        let at = format!("load factor {}", specimen.factors[step]);
+        let file = |field: &str| format!("{}_{field}{number}.png", specimen.name);
+        sheet_figures(
+            &pictures.fields,
+            specimen.sheet().law,
+            &deformed,
+            &at,
+            &file,
+        )
+    };
+    let steps = pictures.shown.steps(&specimen.factors, Some(last));
+    steps.into_iter().flat_map(at_step).collect()
 }
 
 /// Forces below this share of the largest are those of supports that carry nothing.

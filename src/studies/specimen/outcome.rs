@@ -35,6 +35,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     let steps = (0..specimen.factors.len()).map(quantities).collect();
     let judged: Vec<_> = deviations.iter().flatten().copied().collect();
     Outcome {
+        style: specimen.pictures.style.clone(),
         checks: checks(specimen, models, &judged),
         problem: statement::json(specimen),
         material: Some(Material::from(&specimen.card)),

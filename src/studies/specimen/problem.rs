@@ -6,6 +6,7 @@ use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Model};
 use crate::results::Sheet;
 use crate::solve::Potential;
+use crate::studies::pictures::Pictures;
 use crate::studies::sections::Tolerances;
 
 mod outline;
@@ -42,6 +43,8 @@ pub struct Specimen {
     pub refinement: Option<Refinement>,
     /// What is meshed, and how.
     pub outline: Outline,
+    /// The pictures of its fields.
+    pub pictures: Pictures,
 }
 
 impl Specimen {
@@ -74,6 +77,7 @@ impl Specimen {
                 correction_percent: 1.0,
             },
             refinement: None,
+            pictures: Pictures::default(),
             outline: Outline::File {
                 mesh: Box::new(mesh),
                 element,

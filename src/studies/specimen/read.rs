@@ -9,6 +9,7 @@ use crate::document::{Bound, Section};
 use crate::error::suggestion;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Load};
+use crate::studies::pictures::Pictures;
 use crate::studies::sections::{Tolerances, read_card};
 use crate::units::Dimension;
 
@@ -63,6 +64,8 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         "take fewer",
     );
     let tolerances = Tolerances::read(&root.section("tolerances"), false);
+    let places = ("factors", Dimension::Ratio);
+    let pictures = Pictures::read(&root.section("pictures"), places, &factors);
     let (card, name, mut outline) = (card?, name?, outline?);
     if !fits(section, &outline) || !affords(section, &mut outline, factors.len(), refinement) {
         return None;
@@ -84,6 +87,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
         tolerances,
         refinement,
         outline,
+        pictures,
     };
     given.check(root, &specimen.problem, &mesh);
     check_refinement(root, &specimen);

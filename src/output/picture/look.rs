@@ -1,0 +1,360 @@
+//! How a picture looks: its width, its colours, its letters.
+
+use plotters::prelude::*;
+
+use super::design::{FAMILY, FINE};
+use crate::results::{PALETTE, Palette, PictureStyle, PictureWidth};
+
+/// Millimetres of a printed picture for each point of the design: letters of 12 points become 7.2 of a printer's.
+pub(super) const MILLIMETRES: f64 = 0.2125;
+
+/// Colours of a table.
+const COLOURS: usize = 256;
+
+/// ColorBrewer's `RdBu`, blue first: readable with every colour vision.
+const BLUE_TO_RED: [RGBColor; 11] = [
+    RGBColor(5, 48, 97),
+    RGBColor(33, 102, 172),
+    RGBColor(67, 147, 195),
+    RGBColor(146, 197, 222),
+    RGBColor(209, 229, 240),
+    RGBColor(247, 247, 247),
+    RGBColor(253, 219, 199),
+    RGBColor(244, 165, 130),
+    RGBColor(214, 96, 77),
+    RGBColor(178, 24, 43),
+    RGBColor(103, 0, 31),
+];
+
+/// `cividis`: from blue over grey to yellow, lighter and lighter.
+const BLUE_TO_YELLOW: [RGBColor; 9] = [
+    RGBColor(0, 34, 78),
+    RGBColor(26, 56, 111),
+    RGBColor(66, 78, 108),
+    RGBColor(95, 99, 110),
+    RGBColor(124, 123, 120),
+    RGBColor(155, 147, 117),
+    RGBColor(187, 173, 108),
+    RGBColor(221, 201, 88),
+    RGBColor(254, 232, 56),
+];
+
+/// ColorBrewer's `YlGnBu`: the paper's colour for little, dark for much.
+const LIGHT_TO_DARK: [RGBColor; 9] = [
+    RGBColor(255, 255, 217),
+    RGBColor(237, 248, 177),
+    RGBColor(199, 233, 180),
+    RGBColor(127, 205, 187),
+    RGBColor(65, 182, 196),
+    RGBColor(29, 145, 192),
+    RGBColor(34, 94, 168),
+    RGBColor(37, 52, 148),
+    RGBColor(8, 29, 88),
+];
+
+/// The colours of lines on black, in the order of [`PALETTE`]: Okabe's and Ito's, the darker ones lighter.
+const ON_BLACK: [[u8; 3]; 6] = [
+    [86, 160, 240],
+    [255, 120, 40],
+    [0, 190, 140],
+    [225, 150, 195],
+    [240, 220, 90],
+    [150, 215, 245],
+];
+
+/// The colours of lines that even a printer without colours tells apart.
+const PRINTED: [[u8; 3]; 6] = [
+    [0, 68, 120],
+    [176, 58, 0],
+    [70, 150, 110],
+    [70, 10, 60],
+    [240, 205, 120],
+    [155, 168, 235],
+];
+
+/// How a picture looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Look {
+    width: PictureWidth,
+    palette: Palette,
+}
+
+impl Look {
+    pub fn of(style: &PictureStyle) -> Self {
+        Self {
+            width: style.width,
+            palette: style.palette,
+        }
+    }
+
+    /// Whether the picture has the width of a single column, in which there is no room beside an area.
+    pub fn is_narrow(self) -> bool {
+        self.width == PictureWidth::OneColumn
+    }
+
+    /// Whether the picture is made for paper.
+    pub fn is_printed(self) -> bool {
+        self.width != PictureWidth::Screen
+    }
+
+    /// The same colours at the width of a screen.
+    pub fn on_screen(self) -> Self {
+        Self {
+            width: PictureWidth::Screen,
+            ..self
+        }
+    }
+
+    /// The width in points of the design; pictures for a screen have their own.
+    pub fn points(self, on_screen: u32) -> u32 {
+        match self.width {
+            PictureWidth::Screen => on_screen,
+            PictureWidth::OneColumn => 400,
+            PictureWidth::TwoColumns => 848,
+        }
+    }
+
+    /// Pixels for each point of the design: about 600 an inch where it is to be printed.
+    pub fn pixels(self) -> f32 {
+        match self.width {
+            PictureWidth::Screen => 2.0,
+            PictureWidth::OneColumn | PictureWidth::TwoColumns => 5.0,
+        }
+    }
+
+    fn is_dark(self) -> bool {
+        self.palette == Palette::Dark
+    }
+
+    /// Behind everything.
+    pub fn paper(self) -> RGBColor {
+        match self.is_dark() {
+            true => RGBColor(18, 20, 24),
+            false => WHITE,
+        }
+    }
+
+    /// Text and axes.
+    pub fn ink(self) -> RGBColor {
+        match self.is_dark() {
+            true => RGBColor(232, 232, 232),
+            false => RGBColor(38, 38, 38),
+        }
+    }
+
+    /// Grid lines.
+    pub fn pale(self) -> RGBColor {
+        match self.is_dark() {
+            true => RGBColor(58, 62, 70),
+            false => RGBColor(225, 225, 225),
+        }
+    }
+
+    /// A band behind lines.
+    pub fn band(self) -> RGBColor {
+        match self.is_dark() {
+            true => RGBColor(34, 44, 58),
+            false => RGBColor(229, 237, 246),
+        }
+    }
+
+    /// Outlines at rest.
+    pub fn rest(self) -> RGBColor {
+        match self.is_dark() {
+            true => RGBColor(150, 150, 150),
+            false => RGBColor(120, 120, 120),
+        }
+    }
+
+    /// A line's colour, which the data give for white paper.
+    pub fn line(self, colour: [u8; 3]) -> RGBColor {
+        let table = match self.palette {
+            Palette::Default => PALETTE,
+            Palette::Dark => ON_BLACK,
+            Palette::Print => PRINTED,
+        };
+        let index = PALETTE.iter().position(|known| *known == colour);
+        let [red, green, blue] = match index {
+            Some(index) => table[index],
+            // Black and its shades.
+            None if self.is_dark() => colour.map(|part| 255 - part),
+            None => colour,
+        };
+        RGBColor(red, green, blue)
+    }
+
+    /// The colour of a line as an area has it: mixed with the paper.
+    pub fn area(self, colour: [u8; 3]) -> RGBColor {
+        let (line, paper) = (self.line(colour), self.paper());
+        let mixed = |line: u8, paper: u8| {
+            let (line, paper) = (i32::from(line), i32::from(paper));
+            (paper - (paper - line) / 4) as u8
+        };
+        RGBColor(
+            mixed(line.0, paper.0),
+            mixed(line.1, paper.1),
+            mixed(line.2, paper.2),
+        )
+    }
+
+    /// The colours of a bar from its lower to its upper end.
+    pub fn bar(self, is_signed: bool) -> Vec<RGBColor> {
+        let share = |index: usize| (index as f32 + 0.5) / COLOURS as f32;
+        let between = |anchors: &[RGBColor]| {
+            let map = DerivedColorMap::new(anchors);
+            (0..COLOURS)
+                .map(|index| map.get_color(share(index)))
+                .collect()
+        };
+        match (self.palette, is_signed) {
+            (Palette::Print, true) => between(&BLUE_TO_YELLOW),
+            (Palette::Print, false) => between(&LIGHT_TO_DARK),
+            (_, true) => between(&BLUE_TO_RED),
+            (_, false) => (0..COLOURS)
+                .map(|index| ViridisRGB.get_color(share(index)))
+                .collect(),
+        }
+    }
+
+    pub fn text(self, size: u32) -> TextStyle<'static> {
+        (FAMILY, FINE * size).into_font().color(&self.ink())
+    }
+
+    pub fn bold(self, size: u32) -> TextStyle<'static> {
+        (FAMILY, FINE * size, FontStyle::Bold)
+            .into_font()
+            .color(&self.ink())
+    }
+
+    /// A line of some width in points in the colour of the axes.
+    pub fn axis(self) -> ShapeStyle {
+        self.ink().stroke_width(FINE)
+    }
+}
+
+/// Most points that a letter takes, for each point of its size.
+const LETTER: f64 = 0.62;
+
+/// Words in lines of some width in points; a word that is too long has a line of its own.
+pub(super) fn lines(words: &str, size: u32, width: f64) -> Vec<String> {
+    let most = (width / (LETTER * f64::from(size))) as usize;
+    let mut lines: Vec<String> = Vec::new();
+    for word in words.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + word.chars().count() < most => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Words without what stands in brackets at their end, where the whole has no room.
+pub(super) fn short(words: &str, size: u32, width: f64) -> &str {
+    match words.split_once(" (") {
+        Some((begin, _)) if lines(words, size, width).len() > 1 => begin,
+        _ => words,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::picture::vision::{Vision, difference, lightness};
+    use crate::results::PictureFormat;
+
+    fn look(palette: Palette) -> Look {
+        Look::of(&PictureStyle {
+            palette,
+            width: PictureWidth::Screen,
+            formats: vec![PictureFormat::Png],
+        })
+    }
+
+    const ALL: [Palette; 3] = [Palette::Default, Palette::Dark, Palette::Print];
+
+    /// From every 32nd part of a bar to the next; what is smaller is rounding.
+    fn rises(lightness: &[f64]) -> bool {
+        const PART: usize = 8;
+        let later = lightness.iter().skip(PART);
+        lightness.iter().zip(later).all(|(now, later)| later > now)
+    }
+
+    #[test]
+    fn one_signed_bars_change_their_lightness_in_one_direction_for_every_vision() {
+        for (palette, vision) in ALL
+            .iter()
+            .flat_map(|all| Vision::ALL.map(|one| (*all, one)))
+        {
+            let bar = look(palette).bar(false);
+            let mut light: Vec<f64> = bar.iter().map(|one| lightness(vision.seen(*one))).collect();
+            if light[0] > light[255] {
+                light.reverse();
+            }
+            assert!(rises(&light), "{palette:?} {vision:?}");
+            assert!(light[255] - light[0] > 60.0, "{palette:?} {vision:?}");
+        }
+    }
+
+    #[test]
+    fn bars_of_both_signs_get_lighter_towards_zero_and_their_sides_differ_or_rise_throughout() {
+        for (palette, vision) in ALL
+            .iter()
+            .flat_map(|all| Vision::ALL.map(|one| (*all, one)))
+        {
+            let bar = look(palette).bar(true);
+            let seen: Vec<_> = bar.iter().map(|one| vision.seen(*one)).collect();
+            let light: Vec<f64> = seen.iter().map(|one| lightness(*one)).collect();
+            if palette == Palette::Print {
+                assert!(rises(&light), "{vision:?}");
+                continue;
+            }
+            let from_the_end: Vec<f64> = light.iter().copied().rev().take(128).collect();
+            assert!(rises(&light[..128]) && rises(&from_the_end), "{vision:?}");
+            for index in 0..64 {
+                let apart = difference(seen[index], seen[255 - index]);
+                assert!(
+                    apart > 15.0 || vision == Vision::Grey,
+                    "{vision:?} {index}: {apart}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn lines_differ_from_one_another_and_from_the_paper_for_every_vision() {
+        for (palette, vision) in ALL
+            .iter()
+            .flat_map(|all| Vision::ALL.map(|one| (*all, one)))
+        {
+            if vision == Vision::Grey && palette != Palette::Print {
+                continue;
+            }
+            let look = look(palette);
+            let mut all: Vec<RGBColor> = PALETTE.map(|one| look.line(one)).into();
+            all.push(look.paper());
+            for (index, one) in all.iter().enumerate() {
+                for other in &all[..index] {
+                    let apart = difference(vision.seen(*one), vision.seen(*other));
+                    assert!(
+                        apart > 8.0,
+                        "{palette:?} {vision:?} {one:?} {other:?}: {apart}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn words_are_broken_where_they_have_no_room() {
+        assert_eq!(lines("Von Mises stress", 17, 900.0), ["Von Mises stress"]);
+        assert_eq!(
+            lines("Von Mises stress", 17, 110.0),
+            ["Von Mises", "stress"]
+        );
+        assert_eq!(short("elements (Q2)", 14, 100.0), "elements");
+        assert_eq!(short("elements (Q2)", 14, 200.0), "elements (Q2)");
+    }
+}

@@ -1,0 +1,156 @@
+//! What a study says of its pictures.
+
+use crate::document::{Bound, Section};
+use crate::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField};
+use crate::units::Dimension;
+
+/// The pictures that a study wants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pictures {
+    /// The quantities that are shown of every model.
+    pub fields: Vec<SheetField>,
+    /// Where on the path.
+    pub shown: Shown,
+    /// How they are drawn.
+    pub style: PictureStyle,
+}
+
+/// Where on a path fields are shown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shown {
+    /// At the last place that most models have reached.
+    Last,
+    /// Everywhere.
+    All,
+    /// At these places.
+    At(Vec<f64>),
+}
+
+impl Default for Pictures {
+    fn default() -> Self {
+        Self {
+            fields: vec![SheetField::VonMises, SheetField::LargestPrincipalStress],
+            shown: Shown::Last,
+            style: PictureStyle::default(),
+        }
+    }
+}
+
+/// A place on a path that is asked for counts as one of the path if it is so close to it, as a share of the path.
+const CLOSE: f64 = 1e-6;
+
+impl Pictures {
+    /// Reads `[pictures]`. The places along the path, of one dimension, are under `key`; `path` are those that there are, or
+    /// none where any will do.
+    pub fn read(
+        section: &Section,
+        (key, dimension): (&'static str, Dimension),
+        path: &[f64],
+    ) -> Self {
+        let fields = section.choices("fields", &SheetField::NAMES);
+        let shown = read_shown(section, (key, dimension), path);
+        let style = PictureStyle {
+            formats: section.choices("formats", &PictureFormat::NAMES),
+            width: section
+                .choice("width", &PictureWidth::NAMES)
+                .unwrap_or(PictureWidth::Screen),
+            palette: section
+                .choice("palette", &Palette::NAMES)
+                .unwrap_or(Palette::Default),
+        };
+        if style.formats.is_empty() {
+            section.fault("formats", "needs at least one format", "such as [\"png\"]");
+        }
+        section.unknown_keys();
+        Self {
+            fields,
+            shown,
+            style,
+        }
+    }
+}
+
+fn read_shown(
+    section: &Section,
+    (key, dimension): (&'static str, Dimension),
+    path: &[f64],
+) -> Shown {
+    let words = [("last", Shown::Last), ("all", Shown::All)];
+    let (word, wanted) = section.quantities_or(&["last", "all"], key, dimension, Bound::Any);
+    if let Some((_, shown)) = words.into_iter().find(|(name, _)| Some(*name) == word) {
+        return shown;
+    }
+    let length = path.iter().fold(0.0, |most: f64, at| most.max(at.abs()));
+    let on_path = |wanted: &f64| path.iter().any(|at| (at - wanted).abs() <= CLOSE * length);
+    let strange = wanted.iter().find(|at| at.is_finite() && !on_path(at));
+    if let Some(strange) = strange.filter(|_| !path.is_empty()) {
+        let known: Vec<_> = path
+            .iter()
+            .take(MOST_NAMED)
+            .map(ToString::to_string)
+            .collect();
+        let more = if path.len() > MOST_NAMED { ", …" } else { "" };
+        let hint = format!("the study has {}{more}", known.join(", "));
+        section.fault(
+            key,
+            &format!("{strange} is not on the path of the study"),
+            &hint,
+        );
+    }
+    Shown::At(wanted)
+}
+
+/// So many places are named where one is asked for that does not exist.
+const MOST_NAMED: usize = 12;
+
+impl Shown {
+    /// The steps of a path that are shown, where `last` is the one of which most can be shown.
+    pub fn steps(&self, path: &[f64], last: Option<usize>) -> Vec<usize> {
+        let length = path.iter().fold(0.0, |most: f64, at| most.max(at.abs()));
+        let is_wanted = |at: f64, wanted: &[f64]| {
+            wanted
+                .iter()
+                .any(|wanted| (at - wanted).abs() <= CLOSE * length)
+        };
+        match self {
+            Self::Last => last.into_iter().collect(),
+            Self::All => (0..path.len()).collect(),
+            Self::At(wanted) => (0..path.len())
+                .filter(|step| is_wanted(path[*step], wanted))
+                .collect(),
+        }
+    }
+
+    /// The instants that are shown: those next to what is asked for.
+    pub fn instants(&self, times: &[f64]) -> Vec<usize> {
+        let next_to = |wanted: &f64| {
+            let distance = |instant: &usize| (times[*instant] - wanted).abs();
+            (0..times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        };
+        match self {
+            Self::At(wanted) => {
+                let mut found: Vec<usize> = wanted.iter().filter_map(next_to).collect();
+                found.sort_unstable();
+                found.dedup();
+                found
+            }
+            other => other.steps(times, times.len().checked_sub(1)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_those_of_the_path() {
+        let path = [0.15, 0.3, 0.1 + 0.4];
+        assert_eq!(Shown::Last.steps(&path, Some(1)), [1]);
+        assert_eq!(Shown::Last.steps(&path, None), [0; 0]);
+        assert_eq!(Shown::All.steps(&path, Some(1)), [0, 1, 2]);
+        assert_eq!(Shown::At(vec![0.5, 0.15]).steps(&path, Some(1)), [0, 2]);
+        assert_eq!(Shown::At(vec![9.0, 0.2, 0.16]).instants(&path), [0, 2]);
+        assert_eq!(Shown::Last.instants(&path), [2]);
+    }
+}
