@@ -60,6 +60,7 @@ pub const CASES: &[Kind] = cases! {
     "smoothing", "examples/smoothing.toml", slow, smoothing::prepare;
     "measured-fields", "validation/cases/measured_fields.toml", slow, interval_coverage::prepare;
     "interval-coverage", "validation/cases/interval_coverage.toml", slow, interval_coverage::coverage::prepare;
+    "joint-parameters", "validation/cases/joint_parameters.toml", slow, interval_coverage::together::prepare;
     REAL_MEASUREMENTS, "validation/cases/real_measurements.toml", slow, real_measurements::prepare;
     "test-curves", "validation/cases/test_curves.toml", slow, fit_coverage::prepare;
     specimen::KIND, "examples/strip_with_hole.toml", slow, specimen::prepare;

@@ -11,14 +11,14 @@ use super::large::Large;
 use super::progress::Progress;
 use super::terminal::{Outcome, print, warn};
 use crate::corrector::estimation::{
-    Answer, EdgeCondition, FieldEstimate, MeasuredForce, Physics, Robust,
+    Answer, EdgeCondition, FieldEstimate, JointSettings, MeasuredForce, Physics, Robust,
 };
 use crate::document::TextEncoding;
 use crate::error::Error;
 use crate::markers::{ChosenColumns, Frame, ReadSettings};
 use crate::mesh::{CellShape, Exemptions, MeshReading};
 use crate::output::{self, ResultFolder};
-use crate::results::NamedGrid;
+use crate::results::{NamedGrid, Results};
 use crate::studies::markers::SHOWN;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
 use crate::studies::markers::{
@@ -27,6 +27,7 @@ use crate::studies::markers::{
 use crate::studies::name;
 use crate::studies::sections::read_text;
 
+mod together;
 mod values;
 
 use values::{Cells, Holds, Holes, Places, Weights, YAxis};
@@ -38,14 +39,14 @@ use values::{encoding, force, force_column, gap, length, size, unit};
 pub struct Options {
     /// The field: a table with x, y, ux, uy, or of DICe, muDIC, pyALDIC, VIC, MatchID or GOM; two matrices of Ncorr; .vtu, .vtk,
     /// .pvd, .msh, .frd. Several files are frames
-    #[arg(required = true, value_name = "FIELD")]
+    #[arg(required_unless_present = "specimen", value_name = "FIELD")]
     pub fields: Vec<PathBuf>,
     /// The material: name or path of a card
     #[arg(long, value_name = "CARD")]
     pub material: String,
     /// Thickness at rest, such as "2 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = size)]
-    pub thickness: f64,
+    #[arg(long, value_name = "LENGTH", value_parser = size, required_unless_present = "specimen")]
+    pub thickness: Option<f64>,
     /// What is known besides: a file with edges and noise
     #[arg(long, value_name = "FILE")]
     pub study: Option<PathBuf>,
@@ -66,9 +67,21 @@ pub struct Options {
     /// "right x Load ± 0.02 N"; a name with - before it for the negative force
     #[arg(long, value_name = "COLUMN", value_parser = force_column, requires = "forces")]
     pub force_column: Vec<ForceColumn>,
-    /// One or two parameters of the law that are found with the field; a force must be measured
+    /// Parameters of the law that are found with the field, or `all`; a force must be measured
     #[arg(long, value_name = "PARAMETER", value_delimiter = ',')]
     pub fit: Vec<String>,
+    /// Find the parameters with all frames together, as many as the data determine; all of the law without --fit
+    #[arg(long)]
+    pub together: bool,
+    /// A file with a specimen, see `gelbench new --kind markers`; several are taken together, as with --together
+    #[arg(long, value_name = "FILE")]
+    pub specimen: Vec<PathBuf>,
+    /// Further cards whose laws are compared with that of --material by forces of frames that are left out
+    #[arg(long, value_name = "CARD", value_delimiter = ',')]
+    pub laws: Vec<String>,
+    /// Into how many groups frames are split of which one after the other is left out
+    #[arg(long, value_name = "GROUPS", default_value_t = JointSettings::default().groups)]
+    pub leave_out: usize,
     /// The specimen's mesh: .msh, .vtu or .vtk
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
@@ -142,6 +155,9 @@ pub struct Options {
 
 /// Corrects, prints, and writes.
 pub fn run(options: Options) -> Outcome {
+    if options.together || !options.specimen.is_empty() || !options.laws.is_empty() {
+        return together::run(options);
+    }
     let folder = options.output.clone();
     let inputs = inputs(&options);
     let study = options.study.as_deref();
@@ -149,17 +165,47 @@ pub fn run(options: Options) -> Outcome {
     let name = name(study.unwrap_or(&options.fields[0]));
     let said = format!("{options:?}");
     let field = MarkerStudy::prepare(request(options)?)?;
-    let identity = identity::of(&said);
     warn(&field.warnings);
+    let told = Told {
+        name,
+        text,
+        identity: identity::of(&said),
+    };
+    let (estimates, results) = correct(&field, (told, &inputs), &folder)?;
+    let doubts = field.all_doubts(&estimates);
+    warn(&doubts[..doubts.len().min(SHOWN)]);
+    Ok(exit_code(worst_answer(&estimates), results.passed()))
+}
+
+fn exit_code(answer: Answer, passed: bool) -> u8 {
+    match answer {
+        Answer::NotExplained => NOT_EXPLAINED,
+        _ => u8::from(!passed),
+    }
+}
+
+/// What a correction is called, and what tells it from others.
+struct Told {
+    name: String,
+    text: String,
+    identity: String,
+}
+
+/// Corrects all frames of a field, writes into a folder, and prints.
+fn correct(
+    field: &MarkerStudy,
+    (told, inputs): (Told, &[PathBuf]),
+    folder: &Path,
+) -> Result<(Vec<FieldEstimate>, Results), Error> {
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-    let mut results_folder = ResultFolder::resume(&folder, "correct", &inputs, &identity)?;
+    let mut results_folder = ResultFolder::resume(folder, "correct", &inputs, &told.identity)?;
     interrupt::guard(&results_folder);
     let progress = Progress::of(field.series.frames.len() as u64);
     let start = Instant::now();
-    let estimates = estimates(&field, &mut results_folder, &progress)?;
+    let estimates = estimates(field, &mut results_folder, &progress)?;
     let seconds = start.elapsed().as_secs_f64();
     progress.tell("files");
-    let results = written::results(&field, &estimates, (name, text), seconds);
+    let results = written::results(field, &estimates, (told.name, told.text), seconds);
     let warnings = output::write(&results, true, &mut results_folder)?;
     drop(progress);
     warn(&warnings);
@@ -170,12 +216,7 @@ pub fn run(options: Options) -> Outcome {
         files.len(),
         folder.display()
     ))?;
-    let doubts = field.all_doubts(&estimates);
-    warn(&doubts[..doubts.len().min(SHOWN)]);
-    Ok(match worst_answer(&estimates) {
-        Answer::NotExplained => NOT_EXPLAINED,
-        _ => u8::from(!results.passed()),
-    })
+    Ok((estimates, results))
 }
 
 /// The exit code where the data are not explained.
@@ -283,7 +324,7 @@ fn request(options: Options) -> Result<Request, Error> {
         forces: options.forces,
         files: options.fields,
         material: options.material,
-        thickness: options.thickness,
+        thickness: options.thickness.unwrap_or_default(),
         cell_size: options.cell_size,
         shape: match options.cells {
             Cells::Triangle3 => CellShape::Triangle3,
@@ -299,7 +340,7 @@ fn request(options: Options) -> Result<Request, Error> {
 /// What the file says of the specimen, completed by the command line.
 fn conditions(options: &Options) -> Result<Conditions, Error> {
     let mut conditions = match &options.study {
-        Some(path) => Conditions::of_file(path)?,
+        Some(path) => Conditions::of_file(path)?.without_specimen(path)?,
         None => Conditions::default(),
     };
     let free = options.free.iter().map(|name| (name, EdgeCondition::Free));

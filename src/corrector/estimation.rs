@@ -36,6 +36,7 @@ mod field_estimate;
 mod forces;
 mod free_edges;
 mod freedoms;
+mod joint;
 mod judge;
 mod knowledge;
 mod linear_model;
@@ -59,6 +60,10 @@ mod whiteness;
 pub use field_estimate::{
     Contradiction, EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, MarkerEstimate, Smoothing,
     StressEstimate, TRADE, TRADE_WEIGHTED, VariogramBin, Whiteness,
+};
+pub use joint::{
+    Direction, ForcePrediction, FrameOutcome, JointEstimate, JointFrame, JointSettings, Told,
+    VAGUE, estimate_jointly,
 };
 pub use knowledge::{EdgeCondition, Knowledge, MeasuredForce, Physics, Specimen, Unnamed};
 pub use regressed_law::RegressedLaw;

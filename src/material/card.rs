@@ -16,7 +16,7 @@ use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
 
 /// A material: law, parameters and provenance.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Card {
     /// The name it was asked for by.
     pub name: String,

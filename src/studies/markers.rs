@@ -23,12 +23,14 @@ mod edge_place;
 mod figures;
 mod force_signs;
 mod gross_errors;
+pub mod joint;
 mod json;
 mod machine;
 mod quantities;
 mod reading;
 mod report;
 mod request;
+mod specimen_file;
 mod specimen_mesh;
 mod tables;
 mod verdict;
@@ -40,11 +42,12 @@ pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use machine::{ForceColumn, FrameForces};
 pub use report::SHOWN;
 pub use request::{MeshSource, Request};
+pub use specimen_file::SpecimenFile;
 use specimen_mesh::{SpecimenMesh, mesh};
 pub use verdict::worst as worst_answer;
 
 /// A field that was read, with all that its correction needs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct MarkerStudy {
     /// The material.
     pub card: Card,

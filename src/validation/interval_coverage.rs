@@ -26,6 +26,7 @@ mod coverage_trial;
 mod inference;
 mod noise;
 mod subject;
+pub mod together;
 mod trial;
 mod trials;
 mod truth;

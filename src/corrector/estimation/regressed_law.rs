@@ -8,7 +8,7 @@ use crate::material::registry::Law;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::{Card, HyperelasticLaw, Volume};
 
-/// The law of a card with one or two parameters to be found.
+/// The law of a card with parameters to be found.
 #[derive(Clone, Debug)]
 pub struct RegressedLaw {
     law: &'static Law,
@@ -19,11 +19,28 @@ pub struct RegressedLaw {
     places: Vec<usize>,
 }
 
+/// The parameters of a card that act on its law and are not zero.
+fn acting(card: &Card, law: Option<&Law>) -> Vec<&'static str> {
+    let values: Vec<f64> = card.parameters.iter().map(|one| one.value).collect();
+    let entries = law.map(|law| {
+        law.with_values(&values, card.stress_measure, card.strain_measure)
+            .1
+    });
+    let parameters = entries.into_iter().flat_map(|entries| entries.parameters);
+    parameters
+        .filter(|one| one.value != 0.0)
+        .map(|one| one.key)
+        .collect()
+}
+
+/// What stands for all parameters of a card.
+const ALL: &str = "all";
+
 impl RegressedLaw {
-    /// The parameters `keys` of a card; the search begins at the card's values.
+    /// The parameters `keys` of a card, or all that are not zero where the only key is `all`; the search begins at the card's values.
     ///
     /// # Errors
-    /// A [`Diagnostic`] when the law has no such parameter, one begins at zero, a key is given twice, more than two are given, or
+    /// A [`Diagnostic`] when the law has no such parameter, one begins at zero, a key is given twice, none is given, or
     /// the law does not follow from the values of its parameters alone.
     pub fn of_card(card: &Card, keys: &[&str]) -> Result<Self, Diagnostic> {
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
@@ -33,7 +50,12 @@ impl RegressedLaw {
             .map(|parameter| parameter.key)
             .collect();
         let mut places = Vec::new();
-        for key in keys {
+        let law = Law::named(&card.law_name);
+        let own: Vec<&str> = match keys {
+            [ALL] => acting(card, law),
+            _ => keys.to_vec(),
+        };
+        for key in &own {
             let Some(place) = known.iter().position(|known| known == key) else {
                 let message = format!("the card `{}` has no parameter `{key}`", card.name);
                 return fault(message, &suggestion(key, &known, "its parameters are"));
@@ -44,11 +66,12 @@ impl RegressedLaw {
             }
             places.push(place);
         }
-        if places.is_empty() || places.len() > 2 {
-            let message = format!("{} parameters cannot be found with a field", places.len());
-            return fault(message, "name one or two");
+        if places.is_empty() {
+            return fault(
+                "no parameter is to be found".into(),
+                "name those to be found, or all",
+            );
         }
-        let law = Law::named(&card.law_name);
         let all = law.map(|law| Self {
             law,
             measures: (card.stress_measure, card.strain_measure),
@@ -102,11 +125,38 @@ impl RegressedLaw {
     /// The same with a search that begins at multiples of the card's values.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let mut scaled = self.clone();
-        for parameter in &mut scaled.chosen {
-            parameter.value *= factor;
+        let values: Vec<f64> = self.start().iter().map(|value| factor * value).collect();
+        self.beginning_at(&values)
+    }
+
+    /// The same with a search that begins at other values.
+    #[must_use]
+    pub fn beginning_at(&self, values: &[f64]) -> Self {
+        let mut other = self.clone();
+        for (parameter, value) in other.chosen.iter_mut().zip(values) {
+            parameter.value = *value;
         }
-        scaled
+        other
+    }
+
+    /// The same with stresses that are so many times as large; `None` where not all parameters that are stresses are to be found.
+    pub fn with_stress_times(&self, factor: f64) -> Option<Self> {
+        let (_, entries) = self
+            .law
+            .with_values(&self.values, self.measures.0, self.measures.1);
+        let all = entries.parameters.iter().enumerate();
+        let mut stresses = all.filter(|(_, parameter)| parameter.is_stress());
+        if !stresses.all(|(place, _)| self.places.contains(&place)) {
+            return None;
+        }
+        let values = self
+            .chosen
+            .iter()
+            .map(|parameter| match parameter.is_stress() {
+                true => factor * parameter.value,
+                false => parameter.value,
+            });
+        Some(self.beginning_at(&values.collect::<Vec<_>>()))
     }
 
     /// The law with other values.
@@ -142,8 +192,14 @@ mod tests {
                 .to_string()
         };
         assert!(told("neo-hooke", &["c1"]).contains("did you mean `c10`"));
-        assert!(told("neo-hooke", &[]).contains("name one or two"));
+        assert!(told("neo-hooke", &[]).contains("name those"));
         assert!(told("neo-hooke", &["c10", "c10"]).contains("twice"));
+        let all = RegressedLaw::of_card(&card("pva-10-cauchy"), &["all"]).unwrap();
+        assert_eq!(
+            all.parameters().len(),
+            2,
+            "a stress at rest does not act on the law"
+        );
         let pva = RegressedLaw::of_card(&card("pva-10-cauchy"), &["amplitude", "exponent"]);
         assert_eq!(pva.unwrap().start().len(), 2);
     }

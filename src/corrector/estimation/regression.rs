@@ -89,6 +89,16 @@ pub struct Fit {
     pub freedom: Vec<f64>,
 }
 
+/// The equations of a step at a trade that stays.
+pub struct NormalEquations {
+    /// M.
+    pub matrix: DMatrix<f64>,
+    /// Mδ.
+    pub target: DVector<f64>,
+    /// What the step makes less.
+    pub misfit: f64,
+}
+
 /// A system without a unique solution: the data do not determine the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Undetermined;
@@ -158,12 +168,36 @@ impl Regression<'_> {
         priors.map(|prior| data / rough(prior)).collect()
     }
 
-    fn solve(
+    /// M and Mδ at a trade that stays, with the misfit r'Wr/v + g'g + Σ λ ρ'ρ at δ = 0.
+    pub fn equations(&self, trade: &Trade) -> NormalEquations {
+        let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
+        let (matrix, target, _) = self.system(&self.normal(&trade.trust), &forms, trade);
+        let rows = self.residual.as_slice().chunks_exact(2);
+        let weights = self.weights.iter().zip(&trade.trust);
+        let data = rows
+            .zip(weights)
+            .map(|(r, (weight, trust))| weight * trust * (r[0] * r[0] + r[1] * r[1]));
+        let rough = self.priors.iter().zip(&trade.smoothing);
+        let rough = rough.map(|(prior, smoothing)| {
+            let square: f64 = prior.values.iter().map(|value| value * value).sum();
+            smoothing * square
+        });
+        let misfit =
+            data.sum::<f64>() / trade.variance + self.facts.1.norm_squared() + rough.sum::<f64>();
+        NormalEquations {
+            matrix,
+            target,
+            misfit,
+        }
+    }
+
+    /// M, Mδ, and M but for the data.
+    fn system(
         &self,
         (normal, right): &(DMatrix<f64>, DVector<f64>),
         forms: &[Form],
         trade: &Trade,
-    ) -> Result<Fit, Undetermined> {
+    ) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
         let (facts, values) = self.facts;
         let mut held = facts.tr_mul(facts);
         let mut target = right / trade.variance + facts.tr_mul(values);
@@ -171,7 +205,17 @@ impl Regression<'_> {
             held += &form.square * *smoothing;
             target -= &form.slope * *smoothing;
         }
-        let matrix = normal / trade.variance + &held;
+        (normal / trade.variance + &held, target, held)
+    }
+
+    fn solve(
+        &self,
+        normal: &(DMatrix<f64>, DVector<f64>),
+        forms: &[Form],
+        trade: &Trade,
+    ) -> Result<Fit, Undetermined> {
+        let (matrix, target, held) = self.system(normal, forms, trade);
+        let (normal, _) = normal;
         let covariance = inverse(&matrix, LEAST_PIVOT).ok_or(Undetermined)?;
         let step = &covariance * &target;
         let left = |(form, smoothing): (&Form, &f64)| {

@@ -11,7 +11,7 @@ use crate::solve::vector::largest;
 pub const MOST_STEPS: usize = 40;
 
 /// Steps after which the trade stays as it is: two of equal likelihood could take turns.
-const TRADING: usize = 6;
+pub const TRADING: usize = 6;
 
 /// Length of a step in standard errors that does not matter, where a trade that stays lets it become no shorter soon.
 const NEAR: f64 = 0.03;
@@ -50,27 +50,40 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// [`Error::Input`] when the data do not determine it, [`Error::Solve`] when `most` steps do not reach it.
     pub fn run(mut self, most: usize) -> Result<NearestField<'a>, Error> {
-        let (mut place, trust) = self.start()?;
-        let mut trade = Trade {
+        let (place, trust) = self.start()?;
+        let trade = Trade {
             smoothing: Vec::new(),
             trust,
             variance: self.first_variance(&place.field),
             sound: 1.0,
         };
+        self.run_from((place, trade), TRADING, most)
+    }
+
+    /// The same from a place, with a trade that the data change in so many first steps.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_from(
+        mut self,
+        (mut place, mut trade): (Place, Trade),
+        trading: usize,
+        most: usize,
+    ) -> Result<NearestField<'a>, Error> {
         let (mut moved, mut last, mut share) = (f64::NAN, f64::INFINITY, 1.0);
         for steps in 1..=most {
             let linear = self.linearise(&place)?;
-            let fit = self.regress((&place, steps), &linear, &mut trade)?;
+            let fit = self.regress((&place, steps > trading), &linear, &mut trade)?;
             let change = combined(&linear.still, &linear.sensitivities, fit.step.as_slice());
             let close = self.close(&trade, &place.field);
             moved = largest(&change) / largest(&place.field);
             // Steps that do not become shorter swing about the nearest field.
-            if steps > TRADING && fit.length > 0.5 * last && share > SHORTEST {
+            if steps > trading && fit.length > 0.5 * last && share > SHORTEST {
                 share *= 0.5;
             }
             last = fit.length;
             let near = fit.length <= NEAR && largest(&linear.still) <= close;
-            let done = largest(&change) <= close || (steps > TRADING && near);
+            let done = largest(&change) <= close || (steps > trading && near);
             let cut = self.advance(&mut place, &change, fit.step.as_slice(), share)?;
             if done && !cut {
                 let multipliers = self.multipliers(&fit, &trade)?;
@@ -113,7 +126,7 @@ impl<'a> Equations<'a> {
             ..found.trade.clone()
         };
         let linear = self.linearise(&place)?;
-        let fit = self.regress((&place, 1), &linear, &mut trade)?;
+        let fit = self.regress((&place, false), &linear, &mut trade)?;
         Ok(Scored { linear, fit, trade })
     }
 
@@ -133,15 +146,32 @@ impl<'a> Equations<'a> {
 
     fn regress(
         &self,
-        (place, steps): (&Place, usize),
+        (place, settled): (&Place, bool),
         linear: &Linear,
         trade: &mut Trade,
     ) -> Result<Fit, Error> {
+        let fitted =
+            self.with_regression((place, settled), linear, |regression| regression.fit(trade));
+        fitted.map_err(|Undetermined| {
+            Error::input(
+                "the data do not determine how the edges moved, or the parameters of the law",
+                "say more of the edges (free, rigid, known), measure more markers near them, or find fewer parameters",
+            )
+        })
+    }
+
+    /// Works with the regression about a place.
+    pub(super) fn with_regression<T>(
+        &self,
+        (place, settled): (&Place, bool),
+        linear: &Linear,
+        work: impl FnOnce(&Regression) -> T,
+    ) -> T {
         let Linear { still, design, .. } = linear;
         let ahead: Vec<f64> = place.field.iter().zip(still).map(|(u, s)| u + s).collect();
         let residual = self.task.observations.residual(&ahead);
         let priors = self.priors(&place.parameters);
-        let regression = Regression {
+        work(&Regression {
             design,
             residual: &residual,
             weights: &self.task.observations.weights,
@@ -149,13 +179,7 @@ impl<'a> Equations<'a> {
             facts: (&linear.facts.0, &linear.facts.1),
             priors: &priors,
             robust: self.task.knowledge.robust,
-            settled: steps > TRADING,
-        };
-        regression.fit(trade).map_err(|Undetermined| {
-            Error::input(
-                "the data do not determine how the edges moved, or the parameters of the law",
-                "say more of the edges (free, rigid, known), measure more markers near them, or find fewer parameters",
-            )
+            settled,
         })
     }
 

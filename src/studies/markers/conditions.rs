@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::area::Area;
 use super::machine::{self, ForceColumn, FrameForces};
+use super::specimen_file::{self, SpecimenFile};
 use crate::corrector::estimation::{
     EdgeCondition, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
 };
@@ -44,6 +45,8 @@ pub struct Conditions {
     pub fit: Vec<String>,
     /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
     pub edge_gap: Option<f64>,
+    /// The specimen itself, where the file holds it.
+    pub specimen: Option<SpecimenFile>,
 }
 
 /// The file that `gelbench new --kind markers` writes.
@@ -257,6 +260,9 @@ fn read(root: &Section) -> Conditions {
     }
     if root.has("fit") {
         conditions.fit = root.texts("fit");
+    }
+    if root.has("specimen") {
+        conditions.specimen = Some(specimen_file::read(&root.section("specimen")));
     }
     if root.has("force") {
         for section in &root.tables("force") {

@@ -1,0 +1,285 @@
+//! The search for the parameters that all frames agree on.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::super::equations::solve;
+use super::super::regressed_law::RegressedLaw;
+use super::direction::{Direction, LOOSE, VAGUE, directions, inverse};
+use super::frame::{Judged, State};
+use super::{Step, Told};
+use crate::document::Bound;
+use crate::error::{Error, SolveFault};
+
+/// Steps allowed.
+const MOST_STEPS: usize = 40;
+
+/// Steps after which smoothness and noise of the frames stay as they are, so that the misfit has a minimum.
+const TRADING: usize = 4;
+
+/// Length of a step in standard errors that does not matter.
+const CLOSE: f64 = 0.02;
+
+/// The largest change of a parameter in one step: by so much of itself, or of its first value where it may change its sign.
+const WITHIN: f64 = 0.5;
+
+/// The shortest share of a step.
+const SHORTEST: f64 = 1.0 / 64.0;
+
+/// All frames and the law.
+pub struct Descent<'a> {
+    pub frames: Vec<&'a Judged<'a>>,
+    pub law: RegressedLaw,
+    /// What every parameter is measured by, where it is known which combinations are determined; else it follows the search.
+    pub scales: Option<Vec<f64>>,
+}
+
+/// Where the search is.
+#[derive(Clone)]
+pub struct Course {
+    pub values: Vec<f64>,
+    pub states: Vec<State>,
+    pub steps: usize,
+}
+
+impl Course {
+    /// Nothing but first values.
+    pub fn of_start(values: Vec<f64>) -> Self {
+        Self {
+            values,
+            states: Vec::new(),
+            steps: 0,
+        }
+    }
+
+    /// Σ Sₖ.
+    pub fn information(&self) -> DMatrix<f64> {
+        let count = self.values.len();
+        let own = self.states.iter().map(|state| &state.information);
+        own.fold(DMatrix::zeros(count, count), |sum, own| sum + own)
+    }
+
+    fn score(&self) -> Step {
+        let own = self.states.iter().map(|state| &state.score);
+        own.fold(DVector::zeros(self.values.len()), |sum, own| sum + own)
+    }
+
+    /// Σ Qₖ.
+    pub fn misfit(&self) -> f64 {
+        self.states.iter().map(|state| state.misfit).sum()
+    }
+}
+
+impl<'a> Descent<'a> {
+    /// Of frames, with a law that begins at its first values.
+    pub fn new(frames: Vec<&'a Judged<'a>>, law: &RegressedLaw) -> Self {
+        Self {
+            frames,
+            law: law.clone(),
+            scales: None,
+        }
+    }
+
+    /// Finds the parameters: all that the data determine at all, then, where some combinations came out as vague, the others alone, those
+    /// staying at their first values.
+    ///
+    /// # Errors
+    /// As [`Self::descend`].
+    pub fn find(&mut self, told: Told) -> Result<Course, Error> {
+        self.scale()?;
+        let start = self.law.start();
+        let found = self.descend(Course::of_start(start.clone()), None, told);
+        let values = found.as_ref().map_or(&start, |found| &found.values);
+        let scales = self.scales_at(values);
+        self.scales = Some(scales.clone());
+        let states = match found {
+            Ok(found) => {
+                let all = directions(&found.information(), &scales);
+                if all.iter().all(Direction::is_determined) {
+                    return Ok(found);
+                }
+                found.states
+            }
+            Err(_) => Vec::new(),
+        };
+        let begin = Course {
+            states,
+            ..Course::of_start(start)
+        };
+        self.descend(begin, None, told)
+    }
+
+    /// Takes the stiffness at which the search begins from the measured forces, where the law can be scaled.
+    ///
+    /// # Errors
+    /// As the search of a frame.
+    fn scale(&mut self) -> Result<(), Error> {
+        let start = self.law.start();
+        let found: Result<Vec<_>, Error> = self
+            .frames
+            .par_iter()
+            .map(|frame| frame.foreign(&self.law, &start, None))
+            .collect();
+        let found = found?;
+        let forces = self.frames.iter().zip(&found);
+        let forces = forces.flat_map(|(frame, found)| frame.measured().iter().zip(&found.forces));
+        let [product, square] = forces.fold([0.0; 2], |[product, square], (measured, there)| {
+            let weight = measured.standard_deviation.powi(-2);
+            [
+                product + weight * measured.force * there,
+                square + weight * there * there,
+            ]
+        });
+        let factor = product / square;
+        if factor > 0.0 && factor.is_finite() {
+            let scaled = self.law.with_stress_times(factor);
+            self.law = scaled.unwrap_or(self.law.clone());
+        }
+        Ok(())
+    }
+
+    /// Goes down to the least misfit, with one parameter that stays where it is `held`; from a course with states smoothness and
+    /// noise stay as they are.
+    ///
+    /// # Errors
+    /// As the search of a frame; [`SolveFault::Stalled`] when [`MOST_STEPS`] do not reach it.
+    pub fn descend(&self, from: Course, held: Option<usize>, told: Told) -> Result<Course, Error> {
+        let warm = !from.states.is_empty();
+        let mut course = self.moved(&from, from.values.clone(), warm)?;
+        let mut length = f64::NAN;
+        for step in 1..=MOST_STEPS {
+            let settled = warm || step > TRADING;
+            let change = self.step(&course, held);
+            length = change
+                .dot(&(course.information() * &change))
+                .max(0.0)
+                .sqrt();
+            told(&format!("step {step}, {length:.1e} standard errors"));
+            if length <= CLOSE && settled {
+                course.steps = step;
+                return Ok(course);
+            }
+            course = self.advance(&course, &change, settled)?;
+        }
+        Err(solve(SolveFault::Stalled {
+            iterations: MOST_STEPS,
+            residual: length,
+            tolerance: CLOSE,
+        }))
+    }
+
+    /// The values that all frames but some agree on, from those of all; `None` where no force is left.
+    ///
+    /// # Errors
+    /// As [`Self::descend`].
+    pub fn without(
+        &self,
+        course: &Course,
+        left_out: &Range<usize>,
+        told: Told,
+    ) -> Result<Option<Vec<f64>>, Error> {
+        let stays = |index: &usize| !left_out.contains(index);
+        let others: Vec<usize> = (0..self.frames.len()).filter(stays).collect();
+        let rest = Descent {
+            frames: others.iter().map(|index| self.frames[*index]).collect(),
+            law: self.law.clone(),
+            scales: self.scales.clone(),
+        };
+        if rest.frames.iter().all(|frame| frame.measured().is_empty()) {
+            return Ok(None);
+        }
+        let from = Course {
+            values: course.values.clone(),
+            states: others
+                .iter()
+                .map(|index| course.states[*index].clone())
+                .collect(),
+            steps: 0,
+        };
+        let found = rest.descend(from, None, told)?;
+        Ok(Some(found.values))
+    }
+
+    /// All frames at other values.
+    fn moved(&self, course: &Course, values: Vec<f64>, settled: bool) -> Result<Course, Error> {
+        let states: Result<Vec<State>, Error> = self
+            .frames
+            .par_iter()
+            .enumerate()
+            .map(|(index, frame)| frame.at(&self.law, &values, (course.states.get(index), settled)))
+            .collect();
+        Ok(Course {
+            values,
+            states: states?,
+            steps: course.steps,
+        })
+    }
+
+    /// The step to the least misfit of the linearised frames, over what they determine.
+    fn step(&self, course: &Course, held: Option<usize>) -> Step {
+        let mut information = course.information();
+        let mut score = course.score();
+        if let Some(held) = held {
+            information.row_mut(held).fill(0.0);
+            information.column_mut(held).fill(0.0);
+            score[held] = 0.0;
+        }
+        let (scales, limit) = match &self.scales {
+            None => (self.scales_at(&course.values), LOOSE),
+            Some(scales) => (scales.clone(), VAGUE),
+        };
+        let mut step = inverse(&directions(&information, &scales), &scales, limit) * score;
+        let most = self.most(&course.values);
+        let share = step.iter().zip(&most).map(|(step, most)| step.abs() / most);
+        step /= share.fold(1.0, f64::max);
+        step
+    }
+
+    /// The largest change of each parameter.
+    fn most(&self, values: &[f64]) -> Vec<f64> {
+        let scales = self.scales_at(values);
+        let parameters = self.law.parameters().iter().zip(values).zip(scales);
+        let most = parameters.map(|((parameter, value), scale)| match parameter.bound {
+            Bound::Any => WITHIN * scale,
+            _ => WITHIN * value.abs(),
+        });
+        most.collect()
+    }
+
+    /// What every parameter is measured by at the end of a course.
+    pub fn settled_scales(&self, course: &Course) -> Vec<f64> {
+        let settled = self.scales.clone();
+        settled.unwrap_or_else(|| self.scales_at(&course.values))
+    }
+
+    /// What every parameter is measured by: the larger of its value and its first value.
+    fn scales_at(&self, values: &[f64]) -> Vec<f64> {
+        let first = self.law.start();
+        let pairs = values.iter().zip(&first);
+        pairs
+            .map(|(value, first)| value.abs().max(first.abs()))
+            .collect()
+    }
+
+    /// Takes the step, or as much of it as all frames can follow and, once smoothness and noise stay, makes the misfit less.
+    fn advance(&self, course: &Course, change: &Step, settled: bool) -> Result<Course, Error> {
+        // What rounding and the searches of the frames leave of the misfit.
+        const ROUGH: f64 = 1e-3;
+        let mut share = 1.0;
+        loop {
+            let values = course.values.iter().zip(change.iter());
+            let values = values
+                .map(|(value, change)| value + share * change)
+                .collect();
+            let next = self.moved(course, values, settled);
+            let worse = |next: &Course| settled && next.misfit() > course.misfit() + ROUGH;
+            match next {
+                Ok(next) if !worse(&next) || share <= SHORTEST => return Ok(next),
+                Err(fault) if share <= SHORTEST => return Err(fault),
+                _ => share *= 0.5,
+            }
+        }
+    }
+}

@@ -1,0 +1,484 @@
+//! One frame among all, at given parameters of the law.
+
+use std::collections::HashMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::super::equations::{Equations, Place, solve};
+use super::super::free_edges;
+use super::super::knowledge::{Knowledge, MeasuredForce, Specimen};
+use super::super::linear_model::Model;
+use super::super::observations::Observations;
+use super::super::outline::{self, Segment};
+use super::super::regressed_law::RegressedLaw;
+use super::super::regression::{NormalEquations, Trade};
+use super::super::rows::{Rows, soundness};
+use super::super::search::{MOST_STEPS, NearestField, TRADING};
+use super::super::task::{Edge, Task};
+use super::{JointFrame, Step};
+use crate::error::{Diagnostic, Error, SolveFault};
+use crate::statistics::{CorrelatedNoise, Sites, Whitening, inverse};
+
+/// The least pivot of the edges' part of a matrix scaled to a unit diagonal.
+const LEAST_PIVOT: f64 = 1e-8;
+
+/// What does not change with the law.
+pub struct Ground<'a> {
+    frame: &'a JointFrame<'a>,
+    outline: Vec<Segment>,
+    observations: Observations,
+}
+
+/// A frame whose edges are settled.
+pub struct Judged<'a> {
+    ground: &'a Ground<'a>,
+    edges: Vec<Edge<'a>>,
+    observations: Observations,
+}
+
+/// Where the search of a frame is.
+#[derive(Clone)]
+pub struct State {
+    place: Place,
+    trade: Trade,
+    /// Sₖ.
+    pub information: DMatrix<f64>,
+    /// tₖ.
+    pub score: Step,
+    /// Qₖ.
+    pub misfit: f64,
+}
+
+/// What a frame says at the end.
+pub struct Say {
+    /// Sₖ.
+    pub information: DMatrix<f64>,
+    /// Jₖ.
+    pub spread: DMatrix<f64>,
+    /// −2 ln L of its independent values.
+    pub deviance: f64,
+    /// Parameters of its edges that the data determine.
+    pub effective: f64,
+    /// Independent values of its markers.
+    pub independent: f64,
+    /// What is left of its markers by their numbers.
+    left: HashMap<usize, [f64; 2]>,
+}
+
+/// A frame with the law of others.
+pub struct Foreign {
+    /// Each measured force as the field has it, in N.
+    pub forces: Vec<f64>,
+    /// Root mean square of what is left of the components of trusted markers in mm.
+    pub left: f64,
+}
+
+impl<'a> Ground<'a> {
+    /// # Errors
+    /// As [`super::super::estimate`].
+    pub fn new(frame: &'a JointFrame<'a>) -> Result<Self, Error> {
+        let input = |fault: Diagnostic| Error::Input(vec![fault]);
+        let knowledge = &frame.knowledge;
+        knowledge.check().map_err(input)?;
+        Ok(Self {
+            outline: outline::parts(frame.mesh, &knowledge.edges).map_err(input)?,
+            observations: Observations::new(frame.mesh, frame.markers, knowledge.noise)
+                .map_err(input)?,
+            frame,
+        })
+    }
+
+    /// With edges that the data have chosen where that is open, and noise that they do not contradict.
+    pub fn judged(&'a self, law: &RegressedLaw) -> Result<Judged<'a>, Error> {
+        let specimen = self.specimen(law, &law.start());
+        let knowledge = self.knowledge(None, false);
+        let mut observations = self.observations.clone();
+        let edges = self.outline.iter();
+        let first: Vec<_> = edges
+            .map(|segment| Edge::new(segment, &self.frame.knowledge))
+            .collect();
+        let search = |observations: &Observations| {
+            let task = Task {
+                specimen: &specimen,
+                observations,
+                knowledge: &knowledge,
+            };
+            let (found, edges) = free_edges::search(&task, first.clone())?;
+            let off = found.contradicted_noise(&found.markers()).is_some();
+            let settled = edges.iter().map(|edge| (edge.condition, edge.probability));
+            Ok::<_, Error>((settled.collect::<Vec<_>>(), off))
+        };
+        let (mut settled, off) = search(&observations)?;
+        if off {
+            observations.known_noise = false;
+            (settled, _) = search(&observations)?;
+        }
+        let edges = first.into_iter().zip(settled);
+        Ok(Judged {
+            ground: self,
+            edges: edges
+                .map(|(edge, (condition, probability))| Edge {
+                    condition,
+                    probability,
+                    tested: false,
+                    ..edge
+                })
+                .collect(),
+            observations,
+        })
+    }
+
+    fn specimen(&self, law: &RegressedLaw, values: &[f64]) -> Specimen<'a> {
+        Specimen {
+            mesh: self.frame.mesh,
+            law: law.at(values),
+            thickness: self.frame.thickness,
+        }
+    }
+
+    fn knowledge(&self, law: Option<RegressedLaw>, forces: bool) -> Knowledge {
+        let mut knowledge = self.frame.knowledge.clone();
+        knowledge.law = law;
+        if !forces {
+            knowledge.forces.clear();
+        }
+        knowledge
+    }
+}
+
+impl Judged<'_> {
+    /// The measured forces.
+    pub fn measured(&self) -> &[MeasuredForce] {
+        &self.ground.frame.knowledge.forces
+    }
+
+    /// Whether the noise is stated, and not contradicted.
+    pub fn knows_noise(&self) -> bool {
+        self.observations.known_noise
+    }
+
+    /// The frame's field at values of the law's parameters, from a state or from nothing; with a trade that stays where `settled`.
+    ///
+    /// # Errors
+    /// As the search.
+    pub fn at(
+        &self,
+        law: &RegressedLaw,
+        values: &[f64],
+        from: (Option<&State>, bool),
+    ) -> Result<State, Error> {
+        self.with_field(law, values, (from.0, from.1, true), |found| {
+            let (place, trade) = (place(&found), found.trade.clone());
+            let (equations, _) = self.law_equations(found, law, values, &place, &trade)?;
+            let reduced = Reduced::new(&equations, values.len())?;
+            Ok(State {
+                information: reduced.information,
+                score: reduced.score,
+                misfit: reduced.misfit,
+                place,
+                trade,
+            })
+        })
+    }
+
+    /// What the frame says at the end.
+    ///
+    /// # Errors
+    /// As the search.
+    pub fn say(&self, law: &RegressedLaw, values: &[f64], from: &State) -> Result<Say, Error> {
+        self.with_field(law, values, (Some(from), true, true), |found| {
+            let left = self.left(&found);
+            let observations = found.observations();
+            let sound = soundness(&observations.weights, &found.fit, &found.trade);
+            let rows = Rows::new(&found, &sound, None);
+            let noise = rows
+                .as_ref()
+                .and_then(|rows| Model::of_search(rows, &found).noise(rows));
+            let markers = observations.chosen.len() as f64;
+            let sites = Sites::new(observations.places.clone());
+            let independent = 2.0
+                * noise.map_or(markers, |noise: CorrelatedNoise| {
+                    noise.correlation.independent(sites.places())
+                });
+            let rms: f64 = found.trade.variance;
+            let markers_deviance = match observations.known_noise {
+                true => self.weighted_square(&found) * independent / (2.0 * markers),
+                false => independent * rms.ln(),
+            };
+            let forces = found.linear.facts.1.norm_squared();
+            let effective = found.fit.effective;
+            let (place, trade) = (place(&found), found.trade.clone());
+            let (equations, design) = self.law_equations(found, law, values, &place, &trade)?;
+            let reduced = Reduced::new(&equations, values.len())?;
+            let spread = match noise {
+                None => reduced.information.clone(),
+                Some(noise) => {
+                    let data = self.data_spread(&design, (&trade, &noise), &sites);
+                    let white = self.data_spread_white(&design, &trade);
+                    let middle = &equations.matrix - white + data;
+                    reduced.project(&middle)
+                }
+            };
+            Ok(Say {
+                information: reduced.information,
+                spread,
+                deviance: markers_deviance + forces,
+                effective,
+                independent,
+                left,
+            })
+        })
+    }
+
+    /// The frame with the law of others: its measured forces beside those of its field, which it does not know.
+    ///
+    /// # Errors
+    /// As the search.
+    pub fn foreign(
+        &self,
+        law: &RegressedLaw,
+        values: &[f64],
+        from: Option<&State>,
+    ) -> Result<Foreign, Error> {
+        self.with_field(law, values, (from, false, false), |found| {
+            let forces = found.forces(1.0, None)?;
+            let prediction = |measured: &MeasuredForce| {
+                let own = forces.iter().filter(|force| force.edge == measured.edge);
+                own.map(|force| force.force[measured.axis].value).sum()
+            };
+            let trusted = found.trade.trust.iter().sum::<f64>().max(1.0);
+            let rows = found.fit.residual.as_slice().chunks_exact(2);
+            let square: f64 = rows
+                .zip(&found.trade.trust)
+                .map(|(r, trust)| trust * (r[0] * r[0] + r[1] * r[1]))
+                .sum();
+            Ok(Foreign {
+                forces: self.measured().iter().map(prediction).collect(),
+                left: (square / (2.0 * trusted)).sqrt(),
+            })
+        })
+    }
+
+    /// Works with the nearest field at given values.
+    fn with_field<T>(
+        &self,
+        law: &RegressedLaw,
+        values: &[f64],
+        (from, settled, forces): (Option<&State>, bool, bool),
+        work: impl FnOnce(NearestField) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let specimen = self.ground.specimen(law, values);
+        let knowledge = self.ground.knowledge(None, forces);
+        let task = Task {
+            specimen: &specimen,
+            observations: &self.observations,
+            knowledge: &knowledge,
+        };
+        let search = Equations::new(&task, &self.edges)?;
+        let found = match from {
+            None => search.run(MOST_STEPS)?,
+            Some(state) => {
+                let trading = if settled { 0 } else { TRADING };
+                let start = (state.place.clone(), state.trade.clone());
+                search.run_from(start, trading, MOST_STEPS)?
+            }
+        };
+        work(found)
+    }
+
+    /// The normal equations about a field with the law's parameters among the unknowns, and the derivatives of the markers.
+    fn law_equations(
+        &self,
+        found: NearestField,
+        law: &RegressedLaw,
+        values: &[f64],
+        place: &Place,
+        trade: &Trade,
+    ) -> Result<(Ordered, DMatrix<f64>), Error> {
+        let knowledge = self.ground.knowledge(Some(law.beginning_at(values)), true);
+        let specimen = self.ground.specimen(law, values);
+        let first = found.equations.motion.parameters();
+        drop(found);
+        let task = Task {
+            specimen: &specimen,
+            observations: &self.observations,
+            knowledge: &knowledge,
+        };
+        let mut equations = Equations::new(&task, &self.edges)?;
+        let mut place = place.clone();
+        place
+            .parameters
+            .splice(first..first, values.iter().copied());
+        equations.balance(&mut place)?;
+        let linear = equations.linearise(&place)?;
+        let normal = equations.with_regression((&place, true), &linear, |regression| {
+            regression.equations(trade)
+        });
+        let order = Order {
+            first,
+            law: values.len(),
+            all: linear.design.ncols(),
+        };
+        let design = order.columns(&linear.design);
+        Ok((order.of(normal), design))
+    }
+
+    /// ÃᵀÃ of the derivatives of the markers over the noise.
+    fn data_spread_white(&self, design: &DMatrix<f64>, trade: &Trade) -> DMatrix<f64> {
+        let scaled = self.scaled(design, trade);
+        scaled.tr_mul(&scaled)
+    }
+
+    /// τ² ÃᵀRÃ.
+    fn data_spread(
+        &self,
+        design: &DMatrix<f64>,
+        (trade, noise): (&Trade, &CorrelatedNoise),
+        sites: &Sites,
+    ) -> DMatrix<f64> {
+        let whitening = Whitening::new(sites, &noise.correlation);
+        let scaled = self.scaled(design, trade);
+        let columns = scaled.column_iter();
+        let root = columns.flat_map(|column| whitening.apply_inverse_transposed(column.as_slice()));
+        let root = DMatrix::from_iterator(design.nrows(), design.ncols(), root);
+        root.tr_mul(&root) * noise.variance
+    }
+
+    fn scaled(&self, design: &DMatrix<f64>, trade: &Trade) -> DMatrix<f64> {
+        let scale = |row: usize| {
+            let weight = self.observations.weights[row / 2] * trade.trust[row / 2];
+            (weight / trade.variance).sqrt()
+        };
+        DMatrix::from_fn(design.nrows(), design.ncols(), |row, column| {
+            scale(row) * design[(row, column)]
+        })
+    }
+
+    fn weighted_square(&self, found: &NearestField) -> f64 {
+        let rows = found.fit.residual.as_slice().chunks_exact(2);
+        let weights = self.observations.weights.iter().zip(&found.trade.trust);
+        rows.zip(weights)
+            .map(|(r, (weight, trust))| weight * trust * (r[0] * r[0] + r[1] * r[1]))
+            .sum()
+    }
+
+    /// What is left of the markers that are trusted, by their numbers.
+    fn left(&self, found: &NearestField) -> HashMap<usize, [f64; 2]> {
+        const TRUSTED: f64 = 0.5;
+        let rows = found.fit.residual.as_slice().chunks_exact(2);
+        let all = self
+            .observations
+            .chosen
+            .iter()
+            .zip(rows)
+            .zip(&found.trade.trust);
+        let trusted = all.filter(|(_, trust)| **trust >= TRUSTED);
+        trusted
+            .map(|((index, r), _)| (self.ground.frame.markers[*index].number, [r[0], r[1]]))
+            .collect()
+    }
+}
+
+fn place(found: &NearestField) -> Place {
+    Place {
+        parameters: found.parameters.clone(),
+        field: found.field.clone(),
+    }
+}
+
+/// Where the law's parameters stand among all.
+struct Order {
+    first: usize,
+    law: usize,
+    all: usize,
+}
+
+/// Normal equations with the law's parameters behind all others.
+type Ordered = NormalEquations;
+
+impl Order {
+    fn places(&self) -> Vec<usize> {
+        let law = self.first..self.first + self.law;
+        let others = (0..self.all).filter(|place| !law.contains(place));
+        others.chain(law.clone()).collect()
+    }
+
+    fn columns(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        matrix.select_columns(&self.places())
+    }
+
+    fn of(&self, equations: NormalEquations) -> Ordered {
+        let places = self.places();
+        NormalEquations {
+            matrix: equations
+                .matrix
+                .select_columns(&places)
+                .select_rows(&places),
+            target: equations.target.select_rows(&places),
+            misfit: equations.misfit,
+        }
+    }
+}
+
+/// Normal equations without the edges.
+struct Reduced {
+    information: DMatrix<f64>,
+    score: Step,
+    misfit: f64,
+    /// M_θp M_pp⁻¹.
+    follow: DMatrix<f64>,
+}
+
+impl Reduced {
+    fn new(equations: &Ordered, law: usize) -> Result<Self, Error> {
+        let edges = equations.matrix.nrows() - law;
+        let part = |row: usize, column: usize, shape: (usize, usize)| {
+            equations.matrix.view((row, column), shape).into_owned()
+        };
+        let own = part(0, 0, (edges, edges));
+        let mixed = part(edges, 0, (law, edges));
+        let covariance = match edges {
+            0 => own,
+            _ => inverse(&own, LEAST_PIVOT).ok_or_else(|| solve(SolveFault::Singular))?,
+        };
+        let follow = &mixed * covariance;
+        let of_edges = equations.target.rows(0, edges).into_owned();
+        let of_law: DVector<f64> = equations.target.rows(edges, law).into_owned();
+        let gained = (&follow * &of_edges, mixed);
+        Ok(Self {
+            information: part(edges, edges, (law, law)) - &follow * gained.1.transpose(),
+            score: of_law - gained.0,
+            misfit: equations.misfit,
+            follow,
+        })
+    }
+
+    /// [−M_θp M_pp⁻¹, 1] V [−M_θp M_pp⁻¹, 1]ᵀ.
+    fn project(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let law = self.follow.nrows();
+        let mut rows = -&self.follow;
+        rows = rows.resize_horizontally(self.follow.ncols() + law, 0.0);
+        (0..law).for_each(|index| rows[(index, self.follow.ncols() + index)] = 1.0);
+        &rows * matrix * rows.transpose()
+    }
+}
+
+/// The mean correlation of what is left of the same markers in one frame and the next one of the same specimen; zero where there is
+/// none, or frames differ in their markers.
+pub fn common_noise(frames: &[&Judged], says: &[Say]) -> f64 {
+    let pairs = frames.windows(2).zip(says.windows(2));
+    let same = pairs.filter(|(frames, _)| {
+        std::ptr::eq(frames[0].ground.frame.mesh, frames[1].ground.frame.mesh)
+    });
+    let [product, size] = same.fold([0.0; 2], |[product, size], (_, says)| {
+        let found = says[0].left.iter().filter_map(|(number, a)| {
+            let b = says[1].left.get(number)?;
+            Some((*a, *b))
+        });
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        found.fold([product, size], |[product, size], (a, b)| {
+            [product + dot(a, b), size + 0.5 * (dot(a, a) + dot(b, b))]
+        })
+    });
+    (product / size.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+}

@@ -1,0 +1,99 @@
+//! Intervals of the parameters by profile likelihood.
+
+use nalgebra::DMatrix;
+
+use super::descent::{Course, Descent};
+use super::direction::Direction;
+use crate::statistics::Estimate;
+
+/// How near the likelihood at an end has to be: part of the reach.
+const NEAR: f64 = 0.03;
+
+/// Ends that are tried on one side.
+const MOST_ENDS: usize = 5;
+
+/// Where the search has ended, with what the intervals follow from.
+pub struct Ends<'a> {
+    pub descent: &'a Descent<'a>,
+    pub course: &'a Course,
+    /// S⁻¹.
+    pub inverse: &'a DMatrix<f64>,
+    /// Cov(θ).
+    pub covariance: &'a DMatrix<f64>,
+    /// Half the width of an interval in standard errors.
+    pub reach: f64,
+    /// Combinations of parameters.
+    pub directions: &'a [Direction],
+}
+
+impl Ends<'_> {
+    /// The values found with their intervals: where the misfit, the other parameters following, has risen by the square of the
+    /// reach; by more where the noise correlates. Where no equilibrium is found on the way, the end is that of the standard error.
+    pub fn intervals(&self, profiles: bool) -> Vec<Estimate> {
+        let estimate = |index: usize| {
+            let value = self.course.values[index];
+            if !self.is_determined(index) {
+                return Estimate::exact(value);
+            }
+            let variance = self.covariance[(index, index)].max(0.0);
+            let mut estimate = Estimate::new(value, variance.sqrt(), self.reach);
+            if profiles && variance > 0.0 {
+                let side = Side {
+                    ends: self,
+                    index,
+                    wider: variance / self.inverse[(index, index)],
+                };
+                let first = self.reach * variance.sqrt();
+                estimate.interval = [-first, first].map(|first| side.end(first));
+            }
+            estimate
+        };
+        (0..self.course.values.len()).map(estimate).collect()
+    }
+
+    /// Whether a parameter lies more in the combinations that are determined than in the others.
+    fn is_determined(&self, index: usize) -> bool {
+        let vague = self.directions.iter().filter(|one| !one.is_determined());
+        vague.map(|one| one.weights[index].powi(2)).sum::<f64>() < 0.5
+    }
+}
+
+/// One parameter on its way to an end.
+struct Side<'a> {
+    ends: &'a Ends<'a>,
+    index: usize,
+    /// The variance over that by white noise.
+    wider: f64,
+}
+
+impl Side<'_> {
+    /// The end of the interval that begins to be looked for at a distance from the value found.
+    fn end(&self, first: f64) -> f64 {
+        let value = self.ends.course.values[self.index];
+        let mut distance = first;
+        for _ in 0..MOST_ENDS {
+            let Some(root) = self.root(value + distance) else {
+                return value + first;
+            };
+            if (root / self.ends.reach - 1.0).abs() < NEAR {
+                return value + distance;
+            }
+            let ratio = (self.ends.reach / root.max(0.1 * self.ends.reach)).clamp(0.4, 2.5);
+            distance *= ratio;
+        }
+        value + distance
+    }
+
+    /// √(rise of the misfit) with the parameter there.
+    fn root(&self, there: f64) -> Option<f64> {
+        let mut from = self.ends.course.clone();
+        from.values[self.index] = there;
+        let found = self
+            .ends
+            .descent
+            .descend(from, Some(self.index), &|_| ())
+            .ok()?;
+        let rise = found.misfit() - self.ends.course.misfit();
+        (rise > 0.0).then(|| (rise / self.wider).sqrt())
+    }
+}

@@ -1,0 +1,357 @@
+//! The report on parameters that were found with all frames together.
+
+use super::{CorrectedSpecimen, JointResults, JointStudy};
+use crate::corrector::estimation::{Answer, Direction, ForcePrediction, JointEstimate, VAGUE};
+use crate::error::Error;
+use crate::results::Block;
+use crate::statistics::Estimate;
+
+/// A force that was measured: specimen, frame, and what was predicted.
+pub type ForceRow<'a> = (&'a str, usize, &'a ForcePrediction);
+
+/// All measured forces, specimen after specimen and frame after frame.
+pub fn forces<'a>(study: &'a JointStudy, estimate: &'a JointEstimate) -> Vec<ForceRow<'a>> {
+    let places = study.specimens.iter().flat_map(|(name, own)| {
+        let frames = own.series.frames.iter();
+        frames.map(move |frame| (name.as_str(), frame.number))
+    });
+    let frames = places.zip(&estimate.frames);
+    frames
+        .flat_map(|((name, number), frame)| {
+            frame.forces.iter().map(move |force| (name, number, force))
+        })
+        .collect()
+}
+
+/// Whether every frame of every specimen is explained with the law found, so that intervals mean something.
+pub fn is_explained(specimens: &[CorrectedSpecimen]) -> bool {
+    let mut all = specimens.iter().flat_map(|specimen| &specimen.estimates);
+    all.all(|found| found.verdict.answer != Answer::NotExplained)
+}
+
+/// For the terminal.
+pub fn summary(
+    study: &JointStudy,
+    found: &JointResults,
+    specimens: &[CorrectedSpecimen],
+) -> String {
+    let explained = is_explained(specimens);
+    let estimate = &found.estimate;
+    let mut text = format!(
+        "{} of {} from {} frames of {}\n",
+        found.card.law_name,
+        found.card.name,
+        estimate.frames.len(),
+        study.told_specimens()
+    );
+    for (parameter, estimate) in estimate.with_keys() {
+        text += &format!(
+            "{:<12} {}\n",
+            parameter.key,
+            value(estimate, unit(parameter.unit()), explained)
+        );
+    }
+    for direction in estimate
+        .directions
+        .iter()
+        .filter(|one| !one.is_determined())
+    {
+        text += &format!(
+            "not determined: {}; it stays as the card has it, but for a common factor of stresses\n",
+            combination(estimate, direction)
+        );
+    }
+    if let Some(error) = estimate.prediction_error() {
+        text += &format!(
+            "forces of frames that were left out: predicted to {:.3} % (root mean square)\n",
+            100.0 * error
+        );
+    }
+    if !found.others.is_empty() {
+        text +=
+            "law           parameters  forces left out [%]  markers left out [mm]       ΔAICc\n";
+        for row in ranked(study, found) {
+            text += &match row.figures {
+                Some([error, left, criterion]) => format!(
+                    "{:<14}{:>9}  {:>19}  {:>21.5}  {:>10.1}\n",
+                    row.name,
+                    row.parameters,
+                    error_words(error),
+                    left,
+                    criterion
+                ),
+                None => format!("{:<14}{}\n", row.name, row.fault),
+            };
+        }
+    }
+    if !explained {
+        text += "no interval: not all frames are explained by this law, thickness and conditions\n";
+    }
+    text
+}
+
+fn error_words(error: f64) -> String {
+    match error.is_finite() {
+        true => format!("{error:.3}"),
+        false => "none".to_owned(),
+    }
+}
+
+fn unit(unit: &str) -> &str {
+    if unit == "–" { "" } else { unit }
+}
+
+fn value(estimate: &Estimate, unit: &str, explained: bool) -> String {
+    let [low, high] = estimate.interval;
+    let interval = match (explained, low < high) {
+        (true, true) => format!(" ({low:.6} … {high:.6})"),
+        (false, true) => " (no interval: not explained)".to_owned(),
+        _ => " (not determined: first value)".to_owned(),
+    };
+    format!("{:.6} {unit}{interval}", estimate.value)
+}
+
+/// A combination of parameters, in words.
+fn combination(estimate: &JointEstimate, direction: &Direction) -> String {
+    const LITTLE: f64 = 0.05;
+    let parameters = estimate.law.parameters().iter().zip(&direction.weights);
+    let parts: Vec<String> = parameters
+        .filter(|(_, weight)| weight.abs() > LITTLE)
+        .map(|(parameter, weight)| format!("{weight:+.2} {}", parameter.key))
+        .collect();
+    parts.join(" ")
+}
+
+/// A law in the ranking.
+pub struct RankedLaw {
+    /// The card.
+    pub name: String,
+    /// How many parameters were found.
+    pub parameters: usize,
+    /// Error of the forces left out in percent, what is left of markers of frames left out in mm, AICc above the least.
+    pub figures: Option<[f64; 3]>,
+    /// Why there is none.
+    pub fault: String,
+}
+
+/// The laws, the one that predicts the forces left out best first.
+pub fn ranked(study: &JointStudy, found: &JointResults) -> Vec<RankedLaw> {
+    let others = found.others.iter();
+    let others = others.map(|other| (other.card, other.found.as_ref()));
+    let all: Vec<(usize, Result<&JointEstimate, &Error>)> = [(0, Ok(&found.estimate))]
+        .into_iter()
+        .chain(others)
+        .collect();
+    let criteria = all.iter().filter_map(|(_, found)| found.ok());
+    let least = criteria
+        .map(JointEstimate::information_criterion)
+        .fold(f64::INFINITY, f64::min);
+    let row = |(card, found): &(usize, Result<&JointEstimate, &Error>)| {
+        let of = |found: &&JointEstimate| {
+            let count = found.frames.len() as f64;
+            let square: f64 = found.frames.iter().map(|frame| frame.left.powi(2)).sum();
+            let error = found
+                .prediction_error()
+                .map_or(f64::NAN, |error| 100.0 * error);
+            let above = found.information_criterion() - least;
+            [error, (square / count).sqrt(), above]
+        };
+        RankedLaw {
+            name: study.cards[*card].name.clone(),
+            parameters: found.map_or(0, |found| found.parameters.len()),
+            figures: found.as_ref().ok().map(of),
+            fault: found.err().map_or(String::new(), ToString::to_string),
+        }
+    };
+    let mut rows: Vec<RankedLaw> = all.iter().map(row).collect();
+    let order = |row: &RankedLaw| {
+        let [error, _, criterion] = row.figures.unwrap_or([f64::INFINITY; 3]);
+        if error.is_finite() { error } else { criterion }
+    };
+    rows.sort_by(|a, b| order(a).total_cmp(&order(b)));
+    rows
+}
+
+/// The report.
+pub fn blocks(
+    study: &JointStudy,
+    found: &JointResults,
+    specimens: &[CorrectedSpecimen],
+) -> Vec<Block> {
+    let explained = is_explained(specimens);
+    let estimate = &found.estimate;
+    let mut blocks = vec![
+        Block::heading("Parameters"),
+        Block::table(
+            &[
+                "parameter",
+                "value",
+                "unit",
+                "standard error",
+                "95 % interval",
+                "first value",
+            ],
+            estimate.with_keys().map(|(parameter, value)| {
+                let [low, high] = value.interval;
+                let of = |text: String| {
+                    if explained && low < high {
+                        text
+                    } else {
+                        "–".to_owned()
+                    }
+                };
+                let first = study.cards[0].parameter(parameter.key).unwrap_or(f64::NAN);
+                vec![
+                    parameter.key.to_owned(),
+                    format!("{:.6}", value.value),
+                    parameter.unit().to_owned(),
+                    of(format!("{:.6}", value.standard_error)),
+                    of(format!("{low:.6} … {high:.6}")),
+                    format!("{first:.6}"),
+                ]
+            }),
+        ),
+        Block::paragraph(intervals(estimate, explained)),
+        Block::heading("What the data determine"),
+        Block::table(
+            &[
+                "combination, each parameter over its value",
+                "singular value",
+                "relative standard error [%]",
+                "determined",
+            ],
+            estimate.directions.iter().map(|direction| {
+                vec![
+                    combination(estimate, direction),
+                    format!("{:.4}", direction.relative_error.recip()),
+                    format!("{:.4}", 100.0 * direction.relative_error),
+                    if direction.is_determined() {
+                        "yes"
+                    } else {
+                        "no"
+                    }
+                    .to_owned(),
+                ]
+            }),
+        ),
+        Block::paragraph(format!(
+            "Singular values of what all frames say of the parameters, their edges being free to follow. A combination that is \
+             known to no better than {:.0} % of itself is not determined, and stays as the card has it, but for a common factor of \
+             all stresses.",
+            100.0 * VAGUE
+        )),
+    ];
+    blocks.extend(predictions(study, found));
+    if !found.others.is_empty() {
+        blocks.extend(ranking(study, found));
+    }
+    blocks.extend(verdicts(specimens));
+    blocks
+}
+
+fn intervals(estimate: &JointEstimate, explained: bool) -> String {
+    match explained {
+        true => format!(
+            "Markers that are far off are weighted by Tukey's weights, unless the conditions say otherwise. Intervals follow the profile \
+             likelihood of all frames, with the noise that was found in each. What is left of a marker in \
+             one frame and the next correlates by {:.2}, by which frames count for less.",
+            estimate.common
+        ),
+        false => "There are no intervals: law, thickness and conditions do not explain all frames, see the verdicts.".to_owned(),
+    }
+}
+
+fn predictions(study: &JointStudy, found: &JointResults) -> Vec<Block> {
+    let rows = forces(study, &found.estimate);
+    let rows = rows.into_iter().map(|(name, frame, force)| {
+        let measured = &force.measured;
+        let off = force
+            .predicted
+            .map(|there| 100.0 * (there / measured.force - 1.0));
+        let of = |value: Option<f64>, digits: usize| {
+            value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
+        };
+        vec![
+            name.to_owned(),
+            frame.to_string(),
+            measured.edge.clone(),
+            ["x", "y"][measured.axis].to_owned(),
+            format!("{:.6}", measured.force),
+            format!("{:.6}", measured.standard_deviation),
+            of(force.predicted, 6),
+            of(off, 3),
+        ]
+    });
+    let head = [
+        "specimen",
+        "frame",
+        "edge",
+        "axis",
+        "measured force [N]",
+        "standard deviation [N]",
+        "predicted by the others [N]",
+        "off by [%]",
+    ];
+    vec![
+        Block::heading("Forces of frames that were left out"),
+        Block::table(&head, rows),
+        Block::paragraph(
+            "Frames are left out in groups, one after the other; the law of the other frames and the markers of the frame predict its \
+             force. A dash: no other group has a force.",
+        ),
+    ]
+}
+
+fn ranking(study: &JointStudy, found: &JointResults) -> [Block; 3] {
+    let rows = ranked(study, found)
+        .into_iter()
+        .map(|law| match law.figures {
+            Some([error, left, criterion]) => vec![
+                law.name,
+                law.parameters.to_string(),
+                error_words(error),
+                format!("{left:.5}"),
+                format!("{criterion:.1}"),
+            ],
+            None => vec![
+                law.name,
+                law.fault,
+                String::new(),
+                String::new(),
+                String::new(),
+            ],
+        });
+    let head = [
+        "card",
+        "parameters",
+        "forces left out, root mean square error [%]",
+        "left of markers, root mean square [mm]",
+        "ΔAICc",
+    ];
+    [
+        Block::heading("Laws"),
+        Block::table(&head, rows),
+        Block::paragraph(
+            "The law that predicts the forces left out best first. AICc counts as many values as are independent, and is given above the \
+             least.",
+        ),
+    ]
+}
+
+fn verdicts(specimens: &[CorrectedSpecimen]) -> [Block; 2] {
+    let rows = specimens.iter().flat_map(|specimen| {
+        let frames = specimen.study.series.frames.iter().zip(&specimen.estimates);
+        frames.map(|(frame, found)| {
+            vec![
+                specimen.name.clone(),
+                frame.number.to_string(),
+                found.verdict.answer.words().to_owned(),
+                format!("{:.5}", found.noise),
+            ]
+        })
+    });
+    [
+        Block::heading("Verdicts with the law found"),
+        Block::table(&["specimen", "frame", "verdict", "noise [mm]"], rows),
+    ]
+}

@@ -1,0 +1,189 @@
+//! What is written of parameters that were found with all frames together: report, card, forces, and a picture of them.
+
+use serde_json::{Map, Value, json};
+
+use super::report::{self, ForceRow};
+use super::{CorrectedSpecimen, JointResults, JointStudy, card};
+use crate::results::{
+    Axis, Content, Figure, Line, LineChart, Material, Outcome, PALETTE, Results, Scale, Stroke,
+};
+use crate::statistics::extremes;
+
+/// The `kind` of these results.
+pub const KIND: &str = "parameters";
+
+/// The results of a joint search after so many `seconds`.
+pub fn results(
+    study: &JointStudy,
+    found: &JointResults,
+    specimens: &[CorrectedSpecimen],
+    seconds: f64,
+) -> Results {
+    let rows = report::forces(study, &found.estimate);
+    let warnings = specimens.iter().flat_map(|specimen| {
+        let told = specimen.study.warnings.iter();
+        told.map(|warning| format!("{}: {warning}", specimen.name))
+    });
+    let doubts = specimens.iter().flat_map(|specimen| {
+        let told = specimen.study.all_doubts(&specimen.estimates);
+        told.into_iter()
+            .map(|doubt| format!("{}: {doubt}", specimen.name))
+    });
+    let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
+    let outcome = Outcome {
+        problem: problem(study, found, specimens),
+        material: Some(Material::from(&found.card)),
+        along: "frame",
+        blocks: report::blocks(study, found, specimens),
+        figures: figure(&rows).into_iter().collect(),
+        files: vec![
+            (
+                card::FILE.to_owned(),
+                Content::Text(found.card.text.clone()),
+            ),
+            ("forces.csv".to_owned(), Content::Text(table(&rows))),
+        ],
+        doubts: doubts.collect(),
+        balance: estimates.map(|found| found.imbalance).reduce(f64::max),
+        summary: report::summary(study, found, specimens),
+        ..Outcome::default()
+    };
+    Results {
+        name: "parameters".to_owned(),
+        title: format!(
+            "Parameters of {} from displacement fields",
+            found.card.law_name
+        ),
+        kind: KIND,
+        text: String::new(),
+        defaults: Vec::new(),
+        read_warnings: warnings.collect(),
+        outcome,
+        seconds,
+    }
+}
+
+/// For machines.
+fn problem(
+    study: &JointStudy,
+    found: &JointResults,
+    specimens: &[CorrectedSpecimen],
+) -> Map<String, Value> {
+    let explained = report::is_explained(specimens);
+    let estimate = &found.estimate;
+    let parameters = estimate.with_keys().map(|(parameter, value)| {
+        let determined = explained && value.standard_error > 0.0;
+        json!({
+            "key": parameter.key,
+            "unit": parameter.unit(),
+            "value": value.value,
+            "standard_error": determined.then_some(value.standard_error),
+            "interval": determined.then_some(value.interval),
+        })
+    });
+    let directions = estimate.directions.iter().map(|direction| {
+        json!({
+            "weights": direction.weights,
+            "relative_standard_error": direction.relative_error,
+            "is_determined": direction.is_determined(),
+        })
+    });
+    let laws = report::ranked(study, found).into_iter().map(|law| {
+        let [error, left, criterion] = law.figures.map_or([None; 3], |figures| figures.map(Some));
+        json!({
+            "card": law.name,
+            "parameters": law.parameters,
+            "force_error_percent": error,
+            "left_mm": left,
+            "aicc_above_least": criterion,
+            "fault": (!law.fault.is_empty()).then_some(law.fault),
+        })
+    });
+    let forces = report::forces(study, estimate);
+    let forces = forces.iter().map(|(name, frame, force)| {
+        json!({
+            "specimen": name,
+            "frame": frame,
+            "edge": force.measured.edge,
+            "axis": (["x", "y"][force.measured.axis]),
+            "measured_N": force.measured.force,
+            "predicted_N": force.predicted,
+        })
+    });
+    let answers = specimens.iter().map(|specimen| {
+        let answers = specimen
+            .estimates
+            .iter()
+            .map(|found| found.verdict.answer.words());
+        json!({ "name": specimen.name, "verdicts": answers.collect::<Vec<_>>() })
+    });
+    let all = json!({
+        "is_explained": explained,
+        "parameters": parameters.collect::<Vec<_>>(),
+        "combinations": directions.collect::<Vec<_>>(),
+        "laws": laws.collect::<Vec<_>>(),
+        "forces": forces.collect::<Vec<_>>(),
+        "specimens": answers.collect::<Vec<_>>(),
+        "correlation_between_frames": estimate.common,
+        "aicc": estimate.information_criterion(),
+        "steps": estimate.steps,
+    });
+    all.as_object().cloned().unwrap_or_default()
+}
+
+fn table(rows: &[ForceRow]) -> String {
+    let mut text = String::from(
+        "specimen,frame,edge,axis,measured_force [N],standard_deviation [N],predicted_by_others [N]\n",
+    );
+    for (name, frame, force) in rows {
+        let predicted = force
+            .predicted
+            .map_or(String::new(), |there| there.to_string());
+        let measured = &force.measured;
+        text += &format!(
+            "{name},{frame},{},{},{},{},{predicted}\n",
+            measured.edge,
+            ["x", "y"][measured.axis],
+            measured.force,
+            measured.standard_deviation
+        );
+    }
+    text
+}
+
+/// Predicted over measured forces; `None` where none was predicted.
+fn figure(rows: &[ForceRow]) -> Option<Figure> {
+    let mut lines: Vec<Line> = Vec::new();
+    let pairs: Vec<(&str, [f64; 2])> = rows
+        .iter()
+        .filter_map(|(name, _, force)| Some((*name, [force.measured.force, force.predicted?])))
+        .collect();
+    let [low, high] = extremes(pairs.iter().flat_map(|(_, pair)| *pair));
+    if low >= high {
+        return None;
+    }
+    let grey = [150, 150, 150];
+    lines.push(Line::new(
+        "equal",
+        [[low, low], [high, high]],
+        grey,
+        Stroke::Dashed,
+    ));
+    for (index, group) in pairs.chunk_by(|a, b| a.0 == b.0).enumerate() {
+        let colour = PALETTE[index % PALETTE.len()];
+        let points = group.iter().map(|(_, pair)| *pair);
+        lines.push(Line::new(group[0].0, points, colour, Stroke::Points));
+    }
+    let axis = |label: &str| Axis::new(label, Scale::Linear);
+    let chart = LineChart::new(
+        "Forces of frames that were left out",
+        axis("measured force [N]"),
+        axis("predicted force [N]"),
+        lines,
+    );
+    Some(Figure::new(
+        "forces.png",
+        "Forces as the other frames predict them over those that were measured.",
+        chart,
+    ))
+}
