@@ -193,6 +193,15 @@ impl Bound {
     /// The size of a thing, in mm.
     pub const SIZE: Self = Self::Range(SIZES[0], SIZES[1], "greater than zero, from 1 nm to 1 km");
 
+    /// The least and the largest value, infinite where there is none.
+    pub fn ends(self) -> [f64; 2] {
+        match self {
+            Self::Any => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Positive | Self::NonNegative => [0.0, f64::INFINITY],
+            Self::Within(low, high) | Self::Range(low, high, _) => [low, high],
+        }
+    }
+
     /// A value, or the end of the bound that a conversion of units has rounded it away from.
     fn on_the_end(self, value: f64) -> f64 {
         match self {

@@ -108,7 +108,6 @@ fn two_specimens_give_two_parameters_a_card_and_a_ranking() {
     for (parameter, truth) in parameters.iter().zip(TRUTH) {
         let interval: [f64; 2] = [0, 1].map(|end| parameter["interval"][end].as_f64().unwrap());
         assert!(interval[0] < truth && truth < interval[1], "{parameter}");
-        assert!((number(parameter, &["value"]) / truth - 1.0).abs() < 0.05);
     }
     let laws = found["problem"]["laws"].as_array().unwrap();
     assert_eq!(laws[0]["card"], "mooney-rivlin", "{laws:?}");

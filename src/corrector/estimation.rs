@@ -63,7 +63,7 @@ pub use field_estimate::{
 };
 pub use joint::{
     Direction, ForcePrediction, FrameOutcome, JointEstimate, JointFrame, JointSettings, Told,
-    VAGUE, estimate_jointly,
+    VAGUE, check_joint_frames, estimate_jointly,
 };
 pub use knowledge::{EdgeCondition, Knowledge, MeasuredForce, Physics, Specimen, Unnamed};
 pub use regressed_law::RegressedLaw;
@@ -77,6 +77,26 @@ pub use verdict::{Answer, Freedom, Mend, NoiseCorrelation, Reason, Verdict, Wors
 /// [`Error::Input`] when the data, the mesh and the conditions do not go together or do not determine the field,
 /// [`Error::Solve`] when no equilibrium near the data was found.
 pub fn estimate(
+    specimen: &Specimen,
+    markers: &[Marker],
+    knowledge: &Knowledge,
+) -> Result<FieldEstimate, Error> {
+    let found = estimate_with(specimen, markers, knowledge);
+    let known = knowledge.law.is_none() && !knowledge.facts().is_empty();
+    match found {
+        // Where no field has such forces, it is compared with them.
+        Err(Error::Solve { .. }) if known => {
+            let checked = Knowledge {
+                forces_are_checks: true,
+                ..knowledge.clone()
+            };
+            estimate_with(specimen, markers, &checked)
+        }
+        found => found,
+    }
+}
+
+fn estimate_with(
     specimen: &Specimen,
     markers: &[Marker],
     knowledge: &Knowledge,

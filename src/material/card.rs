@@ -30,6 +30,8 @@ pub struct Card {
     pub law: Arc<dyn HyperelasticLaw>,
     /// How the material resists a change of volume; `None` where it keeps its volume.
     pub volume: Option<Volume>,
+    /// Poisson's ratio, where the card states it and the bulk modulus follows from it.
+    pub poisson_ratio: Option<f64>,
     /// The parameters in internal units.
     pub parameters: Vec<Parameter>,
     /// What else the law's card states: key and choice.
@@ -61,6 +63,9 @@ pub struct Card {
     /// The card's text as it was read.
     pub text: String,
 }
+
+/// The Poisson's ratios of a material that changes its volume.
+pub const POISSON_RATIO: Bound = Bound::Range(-0.9, 0.4999, "between -0.9 and 0.4999");
 
 /// What a card needs to be fitted again.
 #[derive(Clone, Debug)]
@@ -164,6 +169,7 @@ impl Card {
             formula: "not stated",
             law,
             volume: None,
+            poisson_ratio: None,
             parameters: Vec::new(),
             choices: Vec::new(),
             density: None,
@@ -184,10 +190,13 @@ impl Card {
 
     /// Reads how the material resists a change of volume.
     fn resist(&mut self, section: &Section) {
-        const RATIO: Bound = Bound::Range(-0.9, 0.4999, "between -0.9 and 0.4999");
         let (bulk, ratio) = ("bulk_modulus", "poisson_ratio");
         let bulk_modulus = match (section.has(bulk), section.has(ratio)) {
-            (false, true) => bulk_modulus(self.law.shear_modulus(), section.number(ratio, RATIO)),
+            (false, true) => {
+                let stated = section.number(ratio, POISSON_RATIO);
+                self.poisson_ratio = Some(stated);
+                bulk_modulus(self.law.shear_modulus(), stated)
+            }
             (true, true) => {
                 let hint = "each follows from the other and from the law's shear modulus";
                 section.fault(

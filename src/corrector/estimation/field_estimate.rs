@@ -84,8 +84,8 @@ pub struct ForceCheck {
     pub measured: MeasuredForce,
     /// The force of the field in N.
     pub found: f64,
-    /// The difference in units of its own standard deviation, √(σ² − s² + e²): σ of the measured force, s of the field's by the
-    /// noise, e by the mesh.
+    /// The difference in units of its own standard deviation, √(σ² − s² + e²), or √(σ² + s² + e²) where the field does not know the
+    /// measured force: σ of the measured force, s of the field's by the noise, e by the mesh.
     pub standardised: f64,
 }
 

@@ -79,7 +79,10 @@ impl NearestField<'_> {
             };
             let ([found, noise], [_, whole]) = (sum(&plain), sum(&with_mesh));
             let variance = measured.standard_deviation.powi(2);
-            let left = variance - noise;
+            let left = match self.equations.task.knowledge.forces_are_checks {
+                true => variance + noise,
+                false => variance - noise,
+            };
             if left > REDUNDANT * variance {
                 let spread = (left + (whole - noise).max(0.0)).sqrt();
                 checks.push(ForceCheck {

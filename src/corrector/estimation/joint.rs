@@ -7,7 +7,8 @@
 //! δθ = (Σ Sₖ)⁻¹ Σ tₖ,             Cov(θ) = S⁻¹ (Σ Jₖ) S⁻¹ (1 + ρ (K − 1))
 //! ```
 //!
-//! M is the matrix of the regression of one frame. The eigenvectors of Σ Sₖ, every parameter over its value, are the
+//! M is the matrix of the regression of one frame about the field that is nearest to its markers alone; the forces act on the law by these
+//! equations, with the noise of the field's own force beside that of the measured one. The eigenvectors of Σ Sₖ, every parameter over its value, are the
 //! combinations of parameters that the data determine one by one; those with a relative standard error over [`VAGUE`] are not
 //! determined, and stay as the card has them, but for a common factor of all stresses. Jₖ = Sₖ where the noise of the markers is white; else that of the noise found. ρ is the
 //! correlation of what is left of a marker in one frame and the next: noise of the picture at rest is common to all frames.
@@ -164,7 +165,7 @@ pub fn estimate_jointly(
     settings: &JointSettings,
     told: Told,
 ) -> Result<JointEstimate, Error> {
-    check(frames)?;
+    check_joint_frames(frames)?;
     told("edges of the frames");
     let grounds: Result<Vec<Ground>, Error> = frames.par_iter().map(Ground::new).collect();
     let grounds = grounds?;
@@ -178,8 +179,11 @@ pub fn estimate_jointly(
     outcome(&descent, course, settings, told)
 }
 
-/// Whether a force was measured.
-fn check(frames: &[JointFrame]) -> Result<(), Error> {
+/// Whether a force was measured in any frame.
+///
+/// # Errors
+/// [`Error::Input`] where none was.
+pub fn check_joint_frames(frames: &[JointFrame]) -> Result<(), Error> {
     let measured = frames
         .iter()
         .any(|frame| !frame.knowledge.forces.is_empty());

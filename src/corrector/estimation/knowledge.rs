@@ -30,6 +30,9 @@ pub struct Knowledge {
     pub unnamed: Unnamed,
     /// Forces that were measured.
     pub forces: Vec<MeasuredForce>,
+    /// Whether the field does not know the measured forces, but is only compared with them. It does so too where no field near the
+    /// markers has such forces.
+    pub forces_are_checks: bool,
     /// Standard deviation of each component of the displacement of markers without one of their own, in mm; `None` where it
     /// is to be estimated.
     pub noise: Option<f64>,
@@ -107,6 +110,14 @@ pub enum EdgeCondition {
 }
 
 impl Knowledge {
+    /// The measured forces that the field knows.
+    pub(super) fn facts(&self) -> &[MeasuredForce] {
+        match self.forces_are_checks {
+            true => &[],
+            false => &self.forces,
+        }
+    }
+
     /// Looks at the measured forces and the noise.
     pub(super) fn check(&self) -> Result<(), Diagnostic> {
         let refuse = |fault: String, hint: &str| Err(Diagnostic::error("", fault).hint(hint));

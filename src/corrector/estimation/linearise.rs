@@ -73,7 +73,7 @@ impl Equations<'_> {
         sensitivities: &[Vec<f64>],
         slopes: &[Vec<f64>],
     ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
-        let measured = &self.task.knowledge.forces;
+        let measured = self.task.knowledge.facts();
         let mut rows = DMatrix::zeros(measured.len(), sensitivities.len());
         let mut values = DVector::zeros(measured.len());
         for (row, measured) in measured.iter().enumerate() {

@@ -196,7 +196,7 @@ impl NearestField<'_> {
         let weighted = weighted.map(|(row, d)| -weight(row) * d / self.trade.variance);
         let weighted = DVector::from_iterator(at_markers.len(), weighted);
         let mut target = self.linear.design.tr_mul(&weighted);
-        let measured = self.equations.task.knowledge.forces.iter().enumerate();
+        let measured = self.equations.task.knowledge.facts().iter().enumerate();
         for (row, measured) in measured {
             let own = self.equations.bodies.iter().zip(forces);
             let own = own.filter(|(body, _)| body.name == measured.edge);

@@ -2,57 +2,69 @@
 
 use std::sync::Arc;
 
+use crate::document::Bound;
 use crate::error::{Diagnostic, suggestion};
+use crate::material::card;
 use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
 use crate::material::registry::Law;
 use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::volume::bulk_modulus;
 use crate::material::{Card, HyperelasticLaw, Volume};
+use crate::units::Dimension;
 
-/// The law of a card with parameters to be found.
+/// The law of a card with parameters to be found. What resists a change of volume is one of them where the card has it: its bulk
+/// modulus or its Poisson's ratio, whichever it states; the other one follows.
 #[derive(Clone, Debug)]
 pub struct RegressedLaw {
     law: &'static Law,
     measures: (StressMeasure, StrainMeasure),
     volume: Option<Volume>,
-    values: Vec<f64>,
+    all: Vec<Parameter>,
     chosen: Vec<Parameter>,
     places: Vec<usize>,
-}
-
-/// The parameters of a card that act on its law and are not zero.
-fn acting(card: &Card, law: Option<&Law>) -> Vec<&'static str> {
-    let values: Vec<f64> = card.parameters.iter().map(|one| one.value).collect();
-    let entries = law.map(|law| {
-        law.with_values(&values, card.stress_measure, card.strain_measure)
-            .1
-    });
-    let parameters = entries.into_iter().flat_map(|entries| entries.parameters);
-    parameters
-        .filter(|one| one.value != 0.0)
-        .map(|one| one.key)
-        .collect()
 }
 
 /// What stands for all parameters of a card.
 const ALL: &str = "all";
 
+/// The keys of what resists a change of volume.
+const BULK_MODULUS: &str = "bulk_modulus";
+const POISSON_RATIO: &str = "poisson_ratio";
+
 impl RegressedLaw {
-    /// The parameters `keys` of a card, or all that are not zero where the only key is `all`; the search begins at the card's values.
+    /// The parameters `keys` of a card, or all that act on its law and are not zero where the only key is `all`; the search begins at
+    /// the card's values.
     ///
     /// # Errors
     /// A [`Diagnostic`] when the law has no such parameter, one begins at zero, a key is given twice, none is given, or
     /// the law does not follow from the values of its parameters alone.
     pub fn of_card(card: &Card, keys: &[&str]) -> Result<Self, Diagnostic> {
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
-        let known: Vec<&str> = card
-            .parameters
-            .iter()
-            .map(|parameter| parameter.key)
-            .collect();
-        let mut places = Vec::new();
-        let law = Law::named(&card.law_name);
+        let beyond = || {
+            let message = format!(
+                "the law of the card `{}` is more than its parameters",
+                card.name
+            );
+            let hint = "take a card whose law is given by parameters alone";
+            Diagnostic::error("", message).hint(hint)
+        };
+        let law = Law::named(&card.law_name).ok_or_else(beyond)?;
+        let mut law = Self {
+            law,
+            measures: (card.stress_measure, card.strain_measure),
+            volume: card.volume,
+            all: card
+                .parameters
+                .iter()
+                .cloned()
+                .chain(resistance(card))
+                .collect(),
+            chosen: Vec::new(),
+            places: Vec::new(),
+        };
+        let known: Vec<&str> = law.all.iter().map(|parameter| parameter.key).collect();
         let own: Vec<&str> = match keys {
-            [ALL] => acting(card, law),
+            [ALL] => law.acting(),
             _ => keys.to_vec(),
         };
         for key in &own {
@@ -60,43 +72,42 @@ impl RegressedLaw {
                 let message = format!("the card `{}` has no parameter `{key}`", card.name);
                 return fault(message, &suggestion(key, &known, "its parameters are"));
             };
-            if places.contains(&place) || card.parameters[place].value == 0.0 {
+            if law.places.contains(&place) || law.all[place].value == 0.0 {
                 let message = format!("the parameter `{key}` is given twice, or zero on the card");
                 return fault(message, "name each once, with a first guess on the card");
             }
-            places.push(place);
+            law.places.push(place);
+            law.chosen.push(law.all[place].clone());
         }
-        if places.is_empty() {
-            return fault(
-                "no parameter is to be found".into(),
-                "name those to be found, or all",
-            );
+        if law.places.is_empty() {
+            let hint = "name those to be found, or all";
+            return fault("no parameter is to be found".into(), hint);
         }
-        let all = law.map(|law| Self {
-            law,
-            measures: (card.stress_measure, card.strain_measure),
-            volume: card.volume,
-            values: card
-                .parameters
-                .iter()
-                .map(|parameter| parameter.value)
-                .collect(),
-            chosen: places
-                .iter()
-                .map(|place| card.parameters[*place].clone())
-                .collect(),
-            places: places.clone(),
-        });
-        match all {
-            Some(all) if all.is_law_of(card) => Ok(all),
-            _ => fault(
-                format!(
-                    "the law of the card `{}` is more than its parameters",
-                    card.name
-                ),
-                "take a card whose law is given by parameters alone",
-            ),
+        match law.is_law_of(card) {
+            true => Ok(law),
+            false => Err(beyond()),
         }
+    }
+
+    /// The keys of the parameters that act on the law and are not zero.
+    fn acting(&self) -> Vec<&'static str> {
+        let resistance = self.all[self.all.len() - usize::from(self.volume.is_some())..]
+            .iter()
+            .cloned();
+        let acting = self.law_parameters().into_iter().chain(resistance);
+        acting
+            .filter(|one| one.value != 0.0)
+            .map(|one| one.key)
+            .collect()
+    }
+
+    /// What the law asks for, in its order.
+    fn law_parameters(&self) -> Vec<Parameter> {
+        let values: Vec<f64> = self.all.iter().map(|one| one.value).collect();
+        self.law
+            .with_values(&values, self.measures.0, self.measures.1)
+            .1
+            .parameters
     }
 
     /// Whether the values make the card's law, at one state.
@@ -141,12 +152,11 @@ impl RegressedLaw {
 
     /// The same with stresses that are so many times as large; `None` where not all parameters that are stresses are to be found.
     pub fn with_stress_times(&self, factor: f64) -> Option<Self> {
-        let (_, entries) = self
-            .law
-            .with_values(&self.values, self.measures.0, self.measures.1);
-        let all = entries.parameters.iter().enumerate();
-        let mut stresses = all.filter(|(_, parameter)| parameter.is_stress());
-        if !stresses.all(|(place, _)| self.places.contains(&place)) {
+        let mut stresses = self
+            .law_parameters()
+            .into_iter()
+            .filter(Parameter::is_stress);
+        if !stresses.all(|one| self.chosen.iter().any(|chosen| chosen.key == one.key)) {
             return None;
         }
         let values = self
@@ -161,15 +171,47 @@ impl RegressedLaw {
 
     /// The law with other values.
     pub fn at(&self, values: &[f64]) -> Arc<dyn HyperelasticLaw> {
-        let mut all = self.values.clone();
+        let mut all: Vec<f64> = self.all.iter().map(|one| one.value).collect();
         for (place, value) in self.places.iter().zip(values) {
             all[*place] = *value;
         }
         let (law, _) = self.law.with_values(&all, self.measures.0, self.measures.1);
         let law: Arc<dyn HyperelasticLaw> = Arc::from(law);
-        let resisting = self.volume.and_then(|volume| volume.of(Arc::clone(&law)));
+        let resisting = self.volume.zip(self.all.last()).and_then(|(volume, last)| {
+            let stated = all[all.len() - 1];
+            let bulk_modulus = match last.key {
+                POISSON_RATIO => bulk_modulus(law.shear_modulus(), stated),
+                _ => stated,
+            };
+            let volume = Volume {
+                bulk_modulus,
+                ..volume
+            };
+            volume.of(Arc::clone(&law))
+        });
         resisting.unwrap_or(law)
     }
+}
+
+/// What resists a change of volume, as the card states it.
+fn resistance(card: &Card) -> Option<Parameter> {
+    let volume = card.volume?;
+    Some(match card.poisson_ratio {
+        Some(value) => Parameter {
+            key: POISSON_RATIO,
+            value,
+            dimension: Dimension::Ratio,
+            bound: card::POISSON_RATIO,
+            usual: [0.0, 0.5],
+        },
+        None => Parameter {
+            key: BULK_MODULUS,
+            value: volume.bulk_modulus,
+            dimension: Dimension::Stress,
+            bound: Bound::Positive,
+            usual: [f64::NAN; 2],
+        },
+    })
 }
 
 #[cfg(test)]
@@ -202,5 +244,24 @@ mod tests {
         );
         let pva = RegressedLaw::of_card(&card("pva-10-cauchy"), &["amplitude", "exponent"]);
         assert_eq!(pva.unwrap().start().len(), 2);
+    }
+
+    #[test]
+    fn a_stated_poissons_ratio_stays_while_the_stiffness_changes() {
+        let text = Card::load("neo-hooke", Path::new(".")).unwrap().text;
+        let found = |stated: &str, keys: &[&str], values: &[f64]| {
+            let text = text.replace("[data]", &format!("[volume]\n{stated}\n[data]"));
+            let card = Card::parse("own", "own.toml", &text).unwrap();
+            RegressedLaw::of_card(&card, keys).unwrap().at(values)
+        };
+        let ratio =
+            |law: &dyn HyperelasticLaw| law.youngs_modulus() / (2.0 * law.shear_modulus()) - 1.0;
+        let softer = found("poisson_ratio = 0.3", &["c10"], &[0.01]);
+        assert!((ratio(&*softer) - 0.3).abs() < 1e-9);
+        let both = found("poisson_ratio = 0.3", &["all"], &[0.01, 0.2]);
+        assert!((ratio(&*both) - 0.2).abs() < 1e-9);
+        let modulus = found("bulk_modulus = \"0.04 MPa\"", &["all"], &[0.01, 0.02]);
+        let expected = (3.0 * 0.02 - 2.0 * 0.02) / (2.0 * (3.0 * 0.02 + 0.02));
+        assert!((ratio(&*modulus) - expected).abs() < 1e-9);
     }
 }

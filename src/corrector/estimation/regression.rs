@@ -95,8 +95,10 @@ pub struct NormalEquations {
     pub matrix: DMatrix<f64>,
     /// Mδ.
     pub target: DVector<f64>,
-    /// What the step makes less.
+    /// r'Wr/v + Σ λ ρ'ρ before the step.
     pub misfit: f64,
+    /// g'g before the step.
+    pub fact_misfit: f64,
 }
 
 /// A system without a unique solution: the data do not determine the parameters.
@@ -168,7 +170,7 @@ impl Regression<'_> {
         priors.map(|prior| data / rough(prior)).collect()
     }
 
-    /// M and Mδ at a trade that stays, with the misfit r'Wr/v + g'g + Σ λ ρ'ρ at δ = 0.
+    /// M and Mδ at a trade that stays, and the misfit at δ = 0.
     pub fn equations(&self, trade: &Trade) -> NormalEquations {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
         let (matrix, target, _) = self.system(&self.normal(&trade.trust), &forms, trade);
@@ -182,12 +184,11 @@ impl Regression<'_> {
             let square: f64 = prior.values.iter().map(|value| value * value).sum();
             smoothing * square
         });
-        let misfit =
-            data.sum::<f64>() / trade.variance + self.facts.1.norm_squared() + rough.sum::<f64>();
         NormalEquations {
             matrix,
             target,
-            misfit,
+            misfit: data.sum::<f64>() / trade.variance + rough.sum::<f64>(),
+            fact_misfit: self.facts.1.norm_squared(),
         }
     }
 

@@ -39,6 +39,8 @@ pub struct Conditions {
     pub unnamed: Unnamed,
     /// Measured forces, with the frame where it is said.
     pub forces: FrameForces,
+    /// Whether fields do not know the measured forces, but are only compared with them.
+    pub forces_are_checks: bool,
     /// Columns of a testing machine's table with forces.
     pub force_columns: Vec<ForceColumn>,
     /// Parameters of the law that are found with the field.
@@ -224,6 +226,7 @@ impl Conditions {
                 .filter(|_| !forces.is_empty() || self.forces.is_empty())
                 .cloned(),
             forces,
+            forces_are_checks: self.forces_are_checks,
         }
     }
 }

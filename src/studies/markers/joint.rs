@@ -9,7 +9,7 @@ use std::path::Path;
 use super::{Conditions, MarkerStudy};
 use crate::corrector::estimation::{
     FieldEstimate, JointEstimate, JointFrame, JointSettings, Knowledge, RegressedLaw, Robust, Told,
-    estimate_jointly,
+    check_joint_frames, estimate_jointly,
 };
 use crate::error::{Diagnostic, Error};
 use crate::material::Card;
@@ -92,7 +92,7 @@ impl JointStudy {
         for index in 0..self.cards.len() {
             self.law(index)?;
         }
-        Ok(())
+        check_joint_frames(&self.frames())
     }
 
     /// Finds the parameters of all laws.
@@ -168,7 +168,7 @@ impl MarkerStudy {
             .collect()
     }
 
-    /// The same with another card, whose law stays as it is.
+    /// The same with another card, whose law stays as it is and is compared with the forces.
     #[must_use]
     pub fn with_card(&self, card: &Card) -> Self {
         let mut other = Self {
@@ -177,6 +177,7 @@ impl MarkerStudy {
             ..self.clone()
         };
         other.conditions.fit.clear();
+        other.conditions.forces_are_checks = true;
         other
     }
 }

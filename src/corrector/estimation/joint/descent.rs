@@ -10,7 +10,6 @@ use super::super::regressed_law::RegressedLaw;
 use super::direction::{Direction, LOOSE, VAGUE, directions, inverse};
 use super::frame::{Judged, State};
 use super::{Step, Told};
-use crate::document::Bound;
 use crate::error::{Error, SolveFault};
 
 /// Steps allowed.
@@ -22,7 +21,7 @@ const TRADING: usize = 4;
 /// Length of a step in standard errors that does not matter.
 const CLOSE: f64 = 0.02;
 
-/// The largest change of a parameter in one step: by so much of itself, or of its first value where it may change its sign.
+/// The largest change of a parameter in one step: by so much of what it is measured by, and of the way to the end of its bound.
 const WITHIN: f64 = 0.5;
 
 /// The shortest share of a step.
@@ -241,9 +240,9 @@ impl<'a> Descent<'a> {
     fn most(&self, values: &[f64]) -> Vec<f64> {
         let scales = self.scales_at(values);
         let parameters = self.law.parameters().iter().zip(values).zip(scales);
-        let most = parameters.map(|((parameter, value), scale)| match parameter.bound {
-            Bound::Any => WITHIN * scale,
-            _ => WITHIN * value.abs(),
+        let most = parameters.map(|((parameter, value), scale)| {
+            let [low, high] = parameter.bound.ends();
+            WITHIN * scale.min(value - low).min(high - value)
         });
         most.collect()
     }

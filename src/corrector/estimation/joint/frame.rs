@@ -167,7 +167,7 @@ impl Judged<'_> {
         values: &[f64],
         from: (Option<&State>, bool),
     ) -> Result<State, Error> {
-        self.with_field(law, values, (from.0, from.1, true), |found| {
+        self.with_field(law, values, from, |found| {
             let (place, trade) = (place(&found), found.trade.clone());
             let (equations, _) = self.law_equations(found, law, values, &place, &trade)?;
             let reduced = Reduced::new(&equations, values.len())?;
@@ -186,7 +186,7 @@ impl Judged<'_> {
     /// # Errors
     /// As the search.
     pub fn say(&self, law: &RegressedLaw, values: &[f64], from: &State) -> Result<Say, Error> {
-        self.with_field(law, values, (Some(from), true, true), |found| {
+        self.with_field(law, values, (Some(from), true), |found| {
             let left = self.left(&found);
             let observations = found.observations();
             let sound = soundness(&observations.weights, &found.fit, &found.trade);
@@ -205,11 +205,11 @@ impl Judged<'_> {
                 true => self.weighted_square(&found) * independent / (2.0 * markers),
                 false => independent * rms.ln(),
             };
-            let forces = found.linear.facts.1.norm_squared();
             let effective = found.fit.effective;
             let (place, trade) = (place(&found), found.trade.clone());
             let (equations, design) = self.law_equations(found, law, values, &place, &trade)?;
             let reduced = Reduced::new(&equations, values.len())?;
+            let forces = reduced.force_misfit;
             let spread = match noise {
                 None => reduced.information.clone(),
                 Some(noise) => {
@@ -240,7 +240,7 @@ impl Judged<'_> {
         values: &[f64],
         from: Option<&State>,
     ) -> Result<Foreign, Error> {
-        self.with_field(law, values, (from, false, false), |found| {
+        self.with_field(law, values, (from, false), |found| {
             let forces = found.forces(1.0, None)?;
             let prediction = |measured: &MeasuredForce| {
                 let own = forces.iter().filter(|force| force.edge == measured.edge);
@@ -259,16 +259,17 @@ impl Judged<'_> {
         })
     }
 
-    /// Works with the nearest field at given values.
+    /// Works with the nearest field at given values, which does not know the forces: what they say of the law follows from the equations
+    /// linearised about it, so that a wrong force or thickness bends no edge.
     fn with_field<T>(
         &self,
         law: &RegressedLaw,
         values: &[f64],
-        (from, settled, forces): (Option<&State>, bool, bool),
+        (from, settled): (Option<&State>, bool),
         work: impl FnOnce(NearestField) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let specimen = self.ground.specimen(law, values);
-        let knowledge = self.ground.knowledge(None, forces);
+        let knowledge = self.ground.knowledge(None, false);
         let task = Task {
             specimen: &specimen,
             observations: &self.observations,
@@ -415,7 +416,7 @@ impl Order {
                 .select_columns(&places)
                 .select_rows(&places),
             target: equations.target.select_rows(&places),
-            misfit: equations.misfit,
+            ..equations
         }
     }
 }
@@ -425,6 +426,8 @@ struct Reduced {
     information: DMatrix<f64>,
     score: Step,
     misfit: f64,
+    /// (F − f)²/(σ² + s²): s is what noise leaves of the force.
+    force_misfit: f64,
     /// M_θp M_pp⁻¹.
     follow: DMatrix<f64>,
 }
@@ -441,14 +444,16 @@ impl Reduced {
             0 => own,
             _ => inverse(&own, LEAST_PIVOT).ok_or_else(|| solve(SolveFault::Singular))?,
         };
-        let follow = &mixed * covariance;
+        let follow = &mixed * &covariance;
         let of_edges = equations.target.rows(0, edges).into_owned();
         let of_law: DVector<f64> = equations.target.rows(edges, law).into_owned();
         let gained = (&follow * &of_edges, mixed);
+        let force_misfit = equations.fact_misfit - of_edges.dot(&(covariance * &of_edges));
         Ok(Self {
             information: part(edges, edges, (law, law)) - &follow * gained.1.transpose(),
             score: of_law - gained.0,
-            misfit: equations.misfit,
+            misfit: equations.misfit + force_misfit,
+            force_misfit,
             follow,
         })
     }

@@ -70,10 +70,15 @@ impl Side<'_> {
     /// The end of the interval that begins to be looked for at a distance from the value found.
     fn end(&self, first: f64) -> f64 {
         let value = self.ends.course.values[self.index];
+        let bound = self.ends.descent.law.parameters()[self.index].bound;
+        let [low, high] = bound.ends();
         let mut distance = first;
         for _ in 0..MOST_ENDS {
+            if !(low < value + distance && value + distance < high) {
+                return (value + distance).clamp(low, high);
+            }
             let Some(root) = self.root(value + distance) else {
-                return value + first;
+                return (value + first).clamp(low, high);
             };
             if (root / self.ends.reach - 1.0).abs() < NEAR {
                 return value + distance;

@@ -132,14 +132,17 @@ fn three_parameters_come_out_of_five_frames_from_anywhere_and_in_any_order() {
     let mut frames = series.frames();
     let found = estimated(&frames, &start, false);
     for (value, truth) in values(&found).iter().zip(&truth) {
-        assert!((value / truth - 1.0).abs() < 2e-3, "{value} for {truth}");
+        assert!((value / truth - 1.0).abs() < 0.03, "{value} for {truth}");
     }
     assert!(found.directions.iter().all(Direction::is_determined));
     assert!(found.prediction_error().unwrap() < 0.01);
     frames.reverse();
     let turned = estimated(&frames, &start, false);
-    for (a, b) in values(&found).iter().zip(values(&turned)) {
-        assert!((a / b - 1.0).abs() < 1e-4, "{a} and {b}");
+    for (a, b) in found.parameters.iter().zip(&turned.parameters) {
+        assert!(
+            (a.value - b.value).abs() < 0.1 * a.standard_error,
+            "{a:?}, {b:?}"
+        );
     }
 }
 

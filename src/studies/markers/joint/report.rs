@@ -3,6 +3,7 @@
 use super::{CorrectedSpecimen, JointResults, JointStudy};
 use crate::corrector::estimation::{Answer, Direction, ForcePrediction, JointEstimate, VAGUE};
 use crate::error::Error;
+use crate::material::Card;
 use crate::results::Block;
 use crate::statistics::Estimate;
 
@@ -200,14 +201,14 @@ pub fn blocks(
                         "–".to_owned()
                     }
                 };
-                let first = study.cards[0].parameter(parameter.key).unwrap_or(f64::NAN);
+                let first = first_value(&study.cards[0], parameter.key);
                 vec![
                     parameter.key.to_owned(),
                     format!("{:.6}", value.value),
                     parameter.unit().to_owned(),
                     of(format!("{:.6}", value.standard_error)),
                     of(format!("{low:.6} … {high:.6}")),
-                    format!("{first:.6}"),
+                    first,
                 ]
             }),
         ),
@@ -247,6 +248,16 @@ pub fn blocks(
     }
     blocks.extend(verdicts(specimens));
     blocks
+}
+
+/// The value of a parameter on the card.
+fn first_value(card: &Card, key: &str) -> String {
+    let stated = match key {
+        "poisson_ratio" => card.poisson_ratio,
+        "bulk_modulus" => card.volume.map(|volume| volume.bulk_modulus),
+        key => card.parameter(key),
+    };
+    stated.map_or(String::new(), |value| format!("{value:.6}"))
 }
 
 fn intervals(estimate: &JointEstimate, explained: bool) -> String {

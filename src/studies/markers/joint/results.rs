@@ -24,11 +24,7 @@ pub fn results(
         let told = specimen.study.warnings.iter();
         told.map(|warning| format!("{}: {warning}", specimen.name))
     });
-    let doubts = specimens.iter().flat_map(|specimen| {
-        let told = specimen.study.all_doubts(&specimen.estimates);
-        told.into_iter()
-            .map(|doubt| format!("{}: {doubt}", specimen.name))
-    });
+    let doubts = specimens.iter().filter_map(doubt);
     let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
     let outcome = Outcome {
         problem: problem(study, found, specimens),
@@ -60,6 +56,26 @@ pub fn results(
         read_warnings: warnings.collect(),
         outcome,
         seconds,
+    }
+}
+
+/// What makes the figures of a specimen doubtful, in one sentence.
+fn doubt(specimen: &CorrectedSpecimen) -> Option<String> {
+    let own = specimen.study.all_doubts(&specimen.estimates);
+    let off = specimen
+        .estimates
+        .iter()
+        .filter(|found| !found.is_explained());
+    let (off, all) = (off.count(), specimen.estimates.len());
+    let name = &specimen.name;
+    match (off, own.len()) {
+        (0, 0) => None,
+        (0, count) => Some(format!(
+            "{name}: {count} doubts, see specimens/{name}/report.html"
+        )),
+        (off, _) => Some(format!(
+            "{name}: {off} of {all} frames are not explained by this law, thickness and conditions, see specimens/{name}/report.html"
+        )),
     }
 }
 
