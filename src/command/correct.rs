@@ -27,7 +27,7 @@ use crate::studies::markers::{
 use crate::studies::name;
 use crate::studies::sections::read_text;
 
-mod together;
+pub mod together;
 mod values;
 
 use values::{Cells, Holds, Holes, Places, Weights, YAxis};
@@ -153,11 +153,15 @@ pub struct Options {
     pub large: Large,
 }
 
+impl Options {
+    /// Whether parameters are found with all frames together.
+    pub fn is_together(&self) -> bool {
+        self.together || !self.specimen.is_empty() || !self.laws.is_empty()
+    }
+}
+
 /// Corrects, prints, and writes.
 pub fn run(options: Options) -> Outcome {
-    if options.together || !options.specimen.is_empty() || !options.laws.is_empty() {
-        return together::run(options);
-    }
     let folder = options.output.clone();
     let inputs = inputs(&options);
     let study = options.study.as_deref();

@@ -98,7 +98,25 @@ pub fn segments(mesh: &Mesh, groups: &[&str]) -> Result<Vec<Segment>, Diagnostic
     for chain in &loops {
         divide(mesh, groups, chain, &labels, &mut all);
     }
+    number_alike(&mut all);
     Ok(all)
+}
+
+/// Numbers parts that no group names and that would have one name, as they follow each other.
+fn number_alike(all: &mut [Segment]) {
+    let unnamed = |part: &&mut Segment| part.condition.is_none();
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for part in all.iter_mut().filter(unnamed) {
+        *counts.entry(part.name.clone()).or_default() += 1;
+    }
+    let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+    for part in all.iter_mut().filter(unnamed) {
+        if counts[&part.name] > 1 {
+            let number = numbers.entry(part.name.clone()).or_default();
+            *number += 1;
+            part.name = format!("{} {number}", part.name);
+        }
+    }
 }
 
 /// The number of the group of every boundary edge that has one, by its first node.
@@ -308,6 +326,18 @@ mod tests {
             assert_eq!(named[0].nodes.len(), degree * cells[1] + 1);
             assert!(all.iter().any(|part| part.name == "bottom"));
         }
+    }
+
+    #[test]
+    fn sides_without_a_group_have_names_of_their_own() {
+        let shape = Shape::NotchedStrip {
+            size: [100.0, 40.0],
+            depth: 12.0,
+            half_length: 12.0,
+        };
+        let all = segments(&shape.mesh(12, CellShape::Quad4), &[]).unwrap();
+        let names: BTreeSet<&str> = all.iter().map(|part| part.name.as_str()).collect();
+        assert!(all.len() > 4 && names.len() == all.len(), "{names:?}");
     }
 
     #[test]

@@ -1,11 +1,8 @@
 //! A file with a whole specimen: its fields, thickness and mesh in a section, and what is known besides.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::conditions::Conditions;
-use super::request::{MeshSource, Request};
 use crate::document::{Bound, Section};
-use crate::mesh::MeshReading;
 use crate::units::Dimension;
 
 /// What the section `[specimen]` holds; paths are relative to the file.
@@ -57,38 +54,4 @@ pub fn read(section: &Section) -> SpecimenFile {
     }
     section.unknown_keys();
     found
-}
-
-impl SpecimenFile {
-    /// A request like another one, for this specimen; paths are relative to `folder`.
-    pub fn request(&self, folder: &Path, conditions: Conditions, like: &Request) -> Request {
-        let at = |path: &PathBuf| folder.join(path);
-        let mut reading = like.reading.clone();
-        reading.unit = self.unit.or(reading.unit);
-        Request {
-            files: self.fields.iter().map(at).collect(),
-            reading,
-            thickness: self.thickness,
-            mesh: match (&self.mesh, &self.outline) {
-                (Some((mesh, unit)), _) => MeshSource::File(at(mesh), MeshReading::in_unit(*unit)),
-                (None, Some(outline)) => MeshSource::Outline(at(outline)),
-                (None, None) => MeshSource::Data,
-            },
-            cell_size: self.cell_size.or(like.cell_size),
-            conditions,
-            forces: self.forces.as_ref().map(at),
-            ..like.clone()
-        }
-    }
-
-    /// The files that it names, relative to `folder`.
-    pub fn inputs<'a>(&'a self, folder: &'a Path) -> impl Iterator<Item = PathBuf> + 'a {
-        let mesh = self.mesh.iter().map(|(mesh, _)| mesh);
-        let others = self.outline.iter().chain(&self.forces);
-        self.fields
-            .iter()
-            .chain(mesh)
-            .chain(others)
-            .map(|path| folder.join(path))
-    }
 }

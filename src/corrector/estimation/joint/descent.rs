@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use super::super::equations::solve;
 use super::super::regressed_law::RegressedLaw;
 use super::direction::{Direction, LOOSE, VAGUE, directions, inverse};
+use super::found::{Step, Told};
 use super::frame::{Judged, State};
-use super::{Step, Told};
 use crate::error::{Error, SolveFault};
 
 /// Steps allowed.
@@ -41,6 +41,8 @@ pub struct Course {
     pub values: Vec<f64>,
     pub states: Vec<State>,
     pub steps: usize,
+    /// Why it ended before the least misfit: no frame's equilibrium was found farther on.
+    pub ended: Option<String>,
 }
 
 impl Course {
@@ -50,6 +52,7 @@ impl Course {
             values,
             states: Vec::new(),
             steps: 0,
+            ended: None,
         }
     }
 
@@ -143,7 +146,7 @@ impl<'a> Descent<'a> {
     /// noise stay as they are.
     ///
     /// # Errors
-    /// As the search of a frame; [`SolveFault::Stalled`] when [`MOST_STEPS`] do not reach it.
+    /// As the search of a frame at the first values; [`SolveFault::Stalled`] when [`MOST_STEPS`] do not reach it.
     pub fn descend(&self, from: Course, held: Option<usize>, told: Told) -> Result<Course, Error> {
         let warm = !from.states.is_empty();
         let mut course = self.moved(&from, from.values.clone(), warm)?;
@@ -160,7 +163,14 @@ impl<'a> Descent<'a> {
                 course.steps = step;
                 return Ok(course);
             }
-            course = self.advance(&course, &change, settled)?;
+            match self.advance(&course, &change, settled) {
+                Ok(next) => course = next,
+                Err(fault) => {
+                    course.steps = step;
+                    course.ended = Some(fault.to_string());
+                    return Ok(course);
+                }
+            }
         }
         Err(solve(SolveFault::Stalled {
             iterations: MOST_STEPS,
@@ -195,7 +205,7 @@ impl<'a> Descent<'a> {
                 .iter()
                 .map(|index| course.states[*index].clone())
                 .collect(),
-            steps: 0,
+            ..Course::of_start(Vec::new())
         };
         let found = rest.descend(from, None, told)?;
         Ok(Some(found.values))
@@ -213,6 +223,7 @@ impl<'a> Descent<'a> {
             values,
             states: states?,
             steps: course.steps,
+            ended: None,
         })
     }
 

@@ -2,25 +2,24 @@
 
 use std::collections::HashMap;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-use super::super::equations::{Equations, Place, solve};
+use super::super::equations::{Equations, Place};
 use super::super::free_edges;
 use super::super::knowledge::{Knowledge, MeasuredForce, Specimen};
 use super::super::linear_model::Model;
 use super::super::observations::Observations;
 use super::super::outline::{self, Segment};
 use super::super::regressed_law::RegressedLaw;
-use super::super::regression::{NormalEquations, Trade};
+use super::super::regression::Trade;
 use super::super::rows::{Rows, soundness};
 use super::super::search::{MOST_STEPS, NearestField, TRADING};
 use super::super::task::{Edge, Task};
-use super::{JointFrame, Step};
-use crate::error::{Diagnostic, Error, SolveFault};
-use crate::statistics::{CorrelatedNoise, Sites, Whitening, inverse};
-
-/// The least pivot of the edges' part of a matrix scaled to a unit diagonal.
-const LEAST_PIVOT: f64 = 1e-8;
+use super::found::{JointFrame, Step};
+use super::reduced::{Order, Ordered, Reduced};
+use super::spread::MarkerRows;
+use crate::error::{Diagnostic, Error};
+use crate::statistics::{CorrelatedNoise, Sites};
 
 /// What does not change with the law.
 pub struct Ground<'a> {
@@ -55,6 +54,8 @@ pub struct Say {
     pub information: DMatrix<f64>,
     /// Jₖ.
     pub spread: DMatrix<f64>,
+    /// The part of it that is the markers'.
+    pub spread_of_markers: DMatrix<f64>,
     /// −2 ln L of its independent values.
     pub deviance: f64,
     /// Parameters of its edges that the data determine.
@@ -210,18 +211,18 @@ impl Judged<'_> {
             let (equations, design) = self.law_equations(found, law, values, &place, &trade)?;
             let reduced = Reduced::new(&equations, values.len())?;
             let forces = reduced.force_misfit;
-            let spread = match noise {
-                None => reduced.information.clone(),
-                Some(noise) => {
-                    let data = self.data_spread(&design, (&trade, &noise), &sites);
-                    let white = self.data_spread_white(&design, &trade);
-                    let middle = &equations.matrix - white + data;
-                    reduced.project(&middle)
-                }
+            let rows = MarkerRows {
+                design: &design,
+                weights: &self.observations.weights,
+                trade: &trade,
             };
+            let white = rows.information();
+            let of_markers = noise.map_or(white.clone(), |noise| rows.spread(&noise, &sites));
+            let spread = &equations.matrix - white + &of_markers;
             Ok(Say {
+                spread: reduced.project(&spread),
+                spread_of_markers: reduced.project(&of_markers),
                 information: reduced.information,
-                spread,
                 deviance: markers_deviance + forces,
                 effective,
                 independent,
@@ -324,37 +325,6 @@ impl Judged<'_> {
         Ok((order.of(normal), design))
     }
 
-    /// ÃᵀÃ of the derivatives of the markers over the noise.
-    fn data_spread_white(&self, design: &DMatrix<f64>, trade: &Trade) -> DMatrix<f64> {
-        let scaled = self.scaled(design, trade);
-        scaled.tr_mul(&scaled)
-    }
-
-    /// τ² ÃᵀRÃ.
-    fn data_spread(
-        &self,
-        design: &DMatrix<f64>,
-        (trade, noise): (&Trade, &CorrelatedNoise),
-        sites: &Sites,
-    ) -> DMatrix<f64> {
-        let whitening = Whitening::new(sites, &noise.correlation);
-        let scaled = self.scaled(design, trade);
-        let columns = scaled.column_iter();
-        let root = columns.flat_map(|column| whitening.apply_inverse_transposed(column.as_slice()));
-        let root = DMatrix::from_iterator(design.nrows(), design.ncols(), root);
-        root.tr_mul(&root) * noise.variance
-    }
-
-    fn scaled(&self, design: &DMatrix<f64>, trade: &Trade) -> DMatrix<f64> {
-        let scale = |row: usize| {
-            let weight = self.observations.weights[row / 2] * trade.trust[row / 2];
-            (weight / trade.variance).sqrt()
-        };
-        DMatrix::from_fn(design.nrows(), design.ncols(), |row, column| {
-            scale(row) * design[(row, column)]
-        })
-    }
-
     fn weighted_square(&self, found: &NearestField) -> f64 {
         let rows = found.fit.residual.as_slice().chunks_exact(2);
         let weights = self.observations.weights.iter().zip(&found.trade.trust);
@@ -384,87 +354,6 @@ fn place(found: &NearestField) -> Place {
     Place {
         parameters: found.parameters.clone(),
         field: found.field.clone(),
-    }
-}
-
-/// Where the law's parameters stand among all.
-struct Order {
-    first: usize,
-    law: usize,
-    all: usize,
-}
-
-/// Normal equations with the law's parameters behind all others.
-type Ordered = NormalEquations;
-
-impl Order {
-    fn places(&self) -> Vec<usize> {
-        let law = self.first..self.first + self.law;
-        let others = (0..self.all).filter(|place| !law.contains(place));
-        others.chain(law.clone()).collect()
-    }
-
-    fn columns(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
-        matrix.select_columns(&self.places())
-    }
-
-    fn of(&self, equations: NormalEquations) -> Ordered {
-        let places = self.places();
-        NormalEquations {
-            matrix: equations
-                .matrix
-                .select_columns(&places)
-                .select_rows(&places),
-            target: equations.target.select_rows(&places),
-            ..equations
-        }
-    }
-}
-
-/// Normal equations without the edges.
-struct Reduced {
-    information: DMatrix<f64>,
-    score: Step,
-    misfit: f64,
-    /// (F − f)²/(σ² + s²): s is what noise leaves of the force.
-    force_misfit: f64,
-    /// M_θp M_pp⁻¹.
-    follow: DMatrix<f64>,
-}
-
-impl Reduced {
-    fn new(equations: &Ordered, law: usize) -> Result<Self, Error> {
-        let edges = equations.matrix.nrows() - law;
-        let part = |row: usize, column: usize, shape: (usize, usize)| {
-            equations.matrix.view((row, column), shape).into_owned()
-        };
-        let own = part(0, 0, (edges, edges));
-        let mixed = part(edges, 0, (law, edges));
-        let covariance = match edges {
-            0 => own,
-            _ => inverse(&own, LEAST_PIVOT).ok_or_else(|| solve(SolveFault::Singular))?,
-        };
-        let follow = &mixed * &covariance;
-        let of_edges = equations.target.rows(0, edges).into_owned();
-        let of_law: DVector<f64> = equations.target.rows(edges, law).into_owned();
-        let gained = (&follow * &of_edges, mixed);
-        let force_misfit = equations.fact_misfit - of_edges.dot(&(covariance * &of_edges));
-        Ok(Self {
-            information: part(edges, edges, (law, law)) - &follow * gained.1.transpose(),
-            score: of_law - gained.0,
-            misfit: equations.misfit + force_misfit,
-            force_misfit,
-            follow,
-        })
-    }
-
-    /// [−M_θp M_pp⁻¹, 1] V [−M_θp M_pp⁻¹, 1]ᵀ.
-    fn project(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
-        let law = self.follow.nrows();
-        let mut rows = -&self.follow;
-        rows = rows.resize_horizontally(self.follow.ncols() + law, 0.0);
-        (0..law).for_each(|index| rows[(index, self.follow.ncols() + index)] = 1.0);
-        &rows * matrix * rows.transpose()
     }
 }
 

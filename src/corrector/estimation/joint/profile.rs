@@ -98,6 +98,9 @@ impl Side<'_> {
             .descent
             .descend(from, Some(self.index), &|_| ())
             .ok()?;
+        if found.ended.is_some() {
+            return None;
+        }
         let rise = found.misfit() - self.ends.course.misfit();
         (rise > 0.0).then(|| (rise / self.wider).sqrt())
     }

@@ -6,9 +6,11 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::super::EdgeCondition;
 use super::super::tests::with_grips;
+use super::super::{Knowledge, MeasuredForce};
 use super::*;
+use crate::markers::Marker;
 use crate::material::Card;
-use crate::mesh::CellShape;
+use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Support};
 use crate::solve::NewtonSettings;
 

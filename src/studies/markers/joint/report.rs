@@ -1,7 +1,9 @@
 //! The report on parameters that were found with all frames together.
 
 use super::{CorrectedSpecimen, JointResults, JointStudy};
-use crate::corrector::estimation::{Answer, Direction, ForcePrediction, JointEstimate, VAGUE};
+use crate::corrector::estimation::{
+    Direction, FieldEstimate, ForcePrediction, JointEstimate, VAGUE,
+};
 use crate::error::Error;
 use crate::material::Card;
 use crate::results::Block;
@@ -24,10 +26,11 @@ pub fn forces<'a>(study: &'a JointStudy, estimate: &'a JointEstimate) -> Vec<For
         .collect()
 }
 
-/// Whether every frame of every specimen is explained with the law found, so that intervals mean something.
-pub fn is_explained(specimens: &[CorrectedSpecimen]) -> bool {
+/// Whether the search has reached its goal, and every frame of every specimen is explained with the law found, so that intervals mean
+/// something.
+pub fn is_explained(found: &JointResults, specimens: &[CorrectedSpecimen]) -> bool {
     let mut all = specimens.iter().flat_map(|specimen| &specimen.estimates);
-    all.all(|found| found.verdict.answer != Answer::NotExplained)
+    found.estimate.ended.is_none() && all.all(FieldEstimate::is_explained)
 }
 
 /// For the terminal.
@@ -36,7 +39,7 @@ pub fn summary(
     found: &JointResults,
     specimens: &[CorrectedSpecimen],
 ) -> String {
-    let explained = is_explained(specimens);
+    let explained = is_explained(found, specimens);
     let estimate = &found.estimate;
     let mut text = format!(
         "{} of {} from {} frames of {}\n",
@@ -68,6 +71,19 @@ pub fn summary(
             100.0 * error
         );
     }
+    text += &ranking_lines(study, found);
+    if let Some(ended) = &estimate.ended {
+        text += &format!("the search ended before its goal: {ended}\n");
+    }
+    if !explained {
+        text += "no interval: not all frames are explained by this law, thickness and conditions\n";
+    }
+    text
+}
+
+/// The laws for the terminal; nothing where there is only one.
+fn ranking_lines(study: &JointStudy, found: &JointResults) -> String {
+    let mut text = String::new();
     if !found.others.is_empty() {
         text +=
             "law           parameters  forces left out [%]  markers left out [mm]       ΔAICc\n";
@@ -84,9 +100,6 @@ pub fn summary(
                 None => format!("{:<14}{}\n", row.name, row.fault),
             };
         }
-    }
-    if !explained {
-        text += "no interval: not all frames are explained by this law, thickness and conditions\n";
     }
     text
 }
@@ -179,40 +192,56 @@ pub fn blocks(
     found: &JointResults,
     specimens: &[CorrectedSpecimen],
 ) -> Vec<Block> {
-    let explained = is_explained(specimens);
+    let explained = is_explained(found, specimens);
     let estimate = &found.estimate;
     let mut blocks = vec![
         Block::heading("Parameters"),
-        Block::table(
-            &[
-                "parameter",
-                "value",
-                "unit",
-                "standard error",
-                "95 % interval",
-                "first value",
-            ],
-            estimate.with_keys().map(|(parameter, value)| {
-                let [low, high] = value.interval;
-                let of = |text: String| {
-                    if explained && low < high {
-                        text
-                    } else {
-                        "–".to_owned()
-                    }
-                };
-                let first = first_value(&study.cards[0], parameter.key);
-                vec![
-                    parameter.key.to_owned(),
-                    format!("{:.6}", value.value),
-                    parameter.unit().to_owned(),
-                    of(format!("{:.6}", value.standard_error)),
-                    of(format!("{low:.6} … {high:.6}")),
-                    first,
-                ]
-            }),
-        ),
+        parameters(study, estimate, explained),
         Block::paragraph(intervals(estimate, explained)),
+    ];
+    blocks.extend(determined(estimate));
+    blocks.extend(predictions(study, found));
+    if !found.others.is_empty() {
+        blocks.extend(ranking(study, found));
+    }
+    blocks.extend(verdicts(specimens));
+    blocks
+}
+
+fn parameters(study: &JointStudy, estimate: &JointEstimate, explained: bool) -> Block {
+    Block::table(
+        &[
+            "parameter",
+            "value",
+            "unit",
+            "standard error",
+            "95 % interval",
+            "first value",
+        ],
+        estimate.with_keys().map(|(parameter, value)| {
+            let [low, high] = value.interval;
+            let of = |text: String| {
+                if explained && low < high {
+                    text
+                } else {
+                    "–".to_owned()
+                }
+            };
+            let first = first_value(&study.cards[0], parameter.key);
+            vec![
+                parameter.key.to_owned(),
+                format!("{:.6}", value.value),
+                parameter.unit().to_owned(),
+                of(format!("{:.6}", value.standard_error)),
+                of(format!("{low:.6} … {high:.6}")),
+                first,
+            ]
+        }),
+    )
+}
+
+fn determined(estimate: &JointEstimate) -> [Block; 3] {
+    [
         Block::heading("What the data determine"),
         Block::table(
             &[
@@ -241,13 +270,7 @@ pub fn blocks(
              all stresses.",
             100.0 * VAGUE
         )),
-    ];
-    blocks.extend(predictions(study, found));
-    if !found.others.is_empty() {
-        blocks.extend(ranking(study, found));
-    }
-    blocks.extend(verdicts(specimens));
-    blocks
+    ]
 }
 
 /// The value of a parameter on the card.

@@ -24,7 +24,10 @@ pub fn results(
         let told = specimen.study.warnings.iter();
         told.map(|warning| format!("{}: {warning}", specimen.name))
     });
-    let doubts = specimens.iter().filter_map(doubt);
+    let ended = found.estimate.ended.iter().map(|ended| {
+        format!("the search for the parameters ended before its goal: {ended}; frames, forces and thickness contradict each other")
+    });
+    let doubts = ended.chain(specimens.iter().filter_map(doubt));
     let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
     let outcome = Outcome {
         problem: problem(study, found, specimens),
@@ -85,7 +88,7 @@ fn problem(
     found: &JointResults,
     specimens: &[CorrectedSpecimen],
 ) -> Map<String, Value> {
-    let explained = report::is_explained(specimens);
+    let explained = report::is_explained(found, specimens);
     let estimate = &found.estimate;
     let parameters = estimate.with_keys().map(|(parameter, value)| {
         let determined = explained && value.standard_error > 0.0;
