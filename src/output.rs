@@ -1,5 +1,7 @@
 //! What a run writes: VTK files, pictures and reports. Nothing else in gelbench writes files.
 
+#[cfg(feature = "pictures")]
+mod explorer;
 pub mod export;
 #[cfg(feature = "pictures")]
 mod files;

@@ -109,6 +109,8 @@ pub struct Outcome {
     pub style: PictureStyle,
     /// Fields of the models.
     pub grids: Vec<GridSeries>,
+    /// Fields that are written elsewhere or nowhere, for those who read the report.
+    pub explored: Vec<GridSeries>,
     /// Tables and other files beside the report: name and content.
     pub files: Vec<(String, Content)>,
     /// Times that were measured: what, and seconds.

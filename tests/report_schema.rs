@@ -9,7 +9,7 @@ use tempfile::TempDir;
 mod common;
 
 use common::schema::faults;
-use common::{SMALL, folder_with, gelbench, root};
+use common::{SMALL, folder_with, gelbench, root, words};
 
 fn schema() -> Value {
     serde_json::from_str(REPORT_SCHEMA).unwrap()
@@ -108,6 +108,125 @@ fn markers_follow_the_schema() {
 fn a_validation_case_follows_the_schema() {
     let study = fs::read_to_string(root().join("examples/nonlinear_spring.toml")).unwrap();
     report(&run(&study), "nonlinear-spring", None, 0);
+}
+
+/// Every command that makes a report, and where its JSON is among the files that it writes, if it is.
+#[test]
+fn with_json_standard_output_is_the_report_and_words_go_to_standard_error() {
+    let folder = folder_with(SMALL);
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write(
+        "other.csv",
+        "X [mm],Y [mm],ux [mm],uy [mm]\n15,5,1.5,0\n20,5,2,0\n",
+    );
+    write("m.csv", &common::process::markers(1));
+    let data = root().join("materials/data/pva_10_uniaxial.csv");
+    fs::copy(data, folder.path().join("data.csv")).unwrap();
+    fs::copy(
+        root().join("examples/spring_dashpot.csv"),
+        folder.path().join("s.csv"),
+    )
+    .unwrap();
+    let correct = format!("{} --json", common::process::CORRECT);
+    let correct: Vec<&str> = correct.split(' ').collect();
+    let samples: [(&[&str], &str, &str); 6] = [
+        (
+            &["run", "small.toml", "--output", "r", "--json"],
+            "r/report.json",
+            "files in r",
+        ),
+        (&correct, "c/report.json", "files in c"),
+        (
+            &[
+                "compare",
+                "small.toml",
+                "other.csv",
+                "--output",
+                "o",
+                "--json",
+            ],
+            "o/comparison.json",
+            "deviation from",
+        ),
+        (
+            &["validate", "nonlinear-spring", "--output", "v", "--json"],
+            "",
+            "report: v",
+        ),
+        (
+            &[
+                "identify",
+                "s.csv",
+                "--output",
+                "i",
+                "--stiffness",
+                "constant",
+                "--damping",
+                "constant",
+                "--json",
+            ],
+            "i/s.json",
+            "written: i",
+        ),
+        (
+            &[
+                "materials",
+                "fit",
+                "data.csv",
+                "--law",
+                "yeoh",
+                "--name",
+                "a",
+                "--output",
+                "f",
+                "--json",
+            ],
+            "f/a.json",
+            "written: f",
+        ),
+    ];
+    for (arguments, file, told) in samples {
+        let done = gelbench(folder.path(), arguments);
+        let output = done.get_output();
+        let printed: Value = serde_json::from_slice(&output.stdout)
+            .unwrap_or_else(|fault| panic!("{arguments:?}: {fault}: {}", words(&output.stdout)));
+        if !file.is_empty() {
+            let written = fs::read_to_string(folder.path().join(file)).unwrap();
+            assert_eq!(
+                printed,
+                serde_json::from_str::<Value>(&written).unwrap(),
+                "{file}"
+            );
+        }
+        assert!(
+            words(&output.stderr).contains(told),
+            "{}",
+            words(&output.stderr)
+        );
+    }
+}
+
+#[test]
+fn verbose_names_steps_and_files_and_quiet_names_neither() {
+    let folder = folder_with(SMALL);
+    let told = |option: &str| {
+        let done = gelbench(
+            folder.path(),
+            &["run", "small.toml", "--output", "o", option],
+        );
+        words(&done.code(0).get_output().stderr)
+    };
+    let verbose = told("--verbose");
+    for line in [
+        "done: mass-spring, ",
+        "done: corrector, ",
+        "written: o/report.json",
+        "written: o/vtk/corrected.pvd",
+    ] {
+        assert!(verbose.contains(line), "{line}: {verbose}");
+    }
+    let quiet = told("--quiet");
+    assert!(!quiet.contains("gelbench: "), "{quiet}");
 }
 
 #[test]

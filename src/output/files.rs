@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use rayon::prelude::*;
 
+use super::explorer::Explorer;
 use super::folder::{ResultFolder, refuse_file, refuse_inputs};
 use super::html::html;
 use super::markdown::markdown_of_files;
@@ -53,7 +54,13 @@ pub fn write(
     let pictures = write_pictures(folder, &outcome.figures, &outcome.style)?;
     let missing = faults(&pictures);
     if with_report {
-        add_document(folder, "report", &results.report(), &pictures)?;
+        let explorer = Explorer::of(results);
+        add_document(
+            folder,
+            "report",
+            &results.report(),
+            (&pictures, explorer.as_ref()),
+        )?;
     }
     warnings.extend(missing);
     Ok(warnings)
@@ -157,7 +164,7 @@ pub fn write_document(
     figures: &[Figure],
 ) -> Result<Vec<Diagnostic>, Error> {
     let pictures = write_pictures(folder, figures, &PictureStyle::default())?;
-    add_document(folder, name, blocks, &pictures)?;
+    add_document(folder, name, blocks, (&pictures, None))?;
     Ok(faults(&pictures))
 }
 
@@ -165,14 +172,14 @@ fn add_document(
     folder: &mut ResultFolder,
     name: &str,
     blocks: &[Block],
-    pictures: &[ReportPicture],
+    (pictures, explorer): (&[ReportPicture], Option<&Explorer>),
 ) -> Result<(), Error> {
     let title = blocks.iter().find_map(|block| match block {
         Block::Heading(1, title) => Some(title.as_str()),
         _ => None,
     });
     let drawn: Vec<&Drawn> = pictures.iter().map(|picture| &picture.png).collect();
-    let page = html(title.unwrap_or(name), blocks, &drawn);
+    let page = html(title.unwrap_or(name), blocks, &drawn, explorer);
     let file = |index: usize| match &pictures[index] {
         ReportPicture {
             png: Err(fault), ..

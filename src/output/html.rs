@@ -4,6 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::explorer::{self, Explorer};
 use super::picture::Drawn;
 use crate::results::Block;
 
@@ -21,7 +22,17 @@ pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; 
 ";
 
 /// A self-contained page.
-pub fn html(title: &str, blocks: &[Block], pictures: &[&Drawn]) -> String {
+pub fn html(
+    title: &str,
+    blocks: &[Block],
+    pictures: &[&Drawn],
+    explorer: Option<&Explorer>,
+) -> String {
+    let is_figure = |block: &Block| matches!(block, Block::Figure(..));
+    let figure = blocks.iter().position(is_figure).unwrap_or(blocks.len());
+    let is_headed = matches!(blocks[..figure].last(), Some(Block::Heading(..)));
+    let first = figure - usize::from(is_headed);
+    let (above, below) = blocks.split_at(first);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -29,15 +40,50 @@ pub fn html(title: &str, blocks: &[Block], pictures: &[&Drawn]) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) @if explorer.is_some() { (PreEscaped(explorer::STYLE)) } }
             }
-            body { @for block in blocks { (render(block, pictures)) } }
+            body {
+                @for block in above { (render(block, pictures)) }
+                @if let Some(explorer) = explorer { (explore(explorer)) }
+                @for block in below { (render(block, pictures)) }
+            }
         }
     };
     let mut page = page.into_string();
     // Controls, which names of files and titles may hold, have no place in a page.
     page.retain(|character| matches!(character, '\n' | '\t') || !character.is_control());
     page
+}
+
+/// What the program in the page fills; it is hidden where no program runs.
+fn explore(explorer: &Explorer) -> Markup {
+    html! {
+        section id="explorer" hidden {
+            h2 { "Explore" }
+            div.choices {
+                label { "model" select id="explorer-model" {} }
+                label { "field" select id="explorer-name" {} }
+                label { input id="explorer-step" type="range" min="0" step="1"; span id="explorer-at" {} }
+            }
+            canvas id="explorer-field" {}
+            div.bar { span id="explorer-low" {} canvas id="explorer-bar" {} span id="explorer-high" {} }
+            p id="explorer-reached" {}
+            div id="explorer-along" {
+                div.choices { label { "along the path" select id="explorer-quantity" {} } }
+                canvas id="explorer-curve" {}
+            }
+            div.said {
+                div.wide { table id="explorer-values" {} }
+                div.wide { table id="explorer-forces" {} }
+            }
+            p {
+                "The colours of a step are those of all models, without the outermost hundredth of the nodes at each end. Point at the \
+                 sheet to read values at the same place of all models; drag over the curve to change the step. " (explorer.note)
+            }
+        }
+        script id="explorer-data" type="application/json" { (PreEscaped(&explorer.data)) }
+        script { (PreEscaped(explorer::PROGRAM)) }
+    }
 }
 
 fn render(block: &Block, pictures: &[&Drawn]) -> Markup {

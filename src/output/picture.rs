@@ -1,6 +1,6 @@
 //! Pictures. The only folder that knows plotters and resvg.
 //!
-//! Figures are drawn as SVG and rendered with an embedded font, so that they look the same on every
+//! Figures are drawn as SVG with the letters of an embedded font as curves, so that they look the same on every
 //! machine, whatever fonts it has.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,6 +16,7 @@ mod design;
 mod encode;
 mod fields;
 mod layout;
+mod letters;
 mod lines;
 mod look;
 mod numbers;
@@ -63,6 +64,14 @@ pub fn picture(
         Ok(drawn) => drawn.map_err(|fault| PictureFault(fault.to_string())),
         Err(_) => Err(PictureFault("the drawing libraries gave up on it".into())),
     }
+}
+
+/// Red, green and blue of a colour bar from its lower to its upper end, of values of one sign or of both.
+pub fn bar_colours(is_signed: bool) -> Vec<[u8; 3]> {
+    let bar = Look::of(&PictureStyle::default()).bar(is_signed);
+    bar.iter()
+        .map(|colour| [colour.0, colour.1, colour.2])
+        .collect()
 }
 
 #[cfg(test)]

@@ -72,6 +72,8 @@ def main():
         else:
             layout.AssignView(cell, view)
         display = simple.Show(source, view)
+        # Colours as the bar has them, without light and shade.
+        display.Ambient, display.Diffuse = 1.0, 0.0
         simple.ColorBy(display, (where, COLOUR))
         display.SetScalarBarVisibility(view, True)
         simple.Show(simple.Text(Text=name.replace("_", " ")), view)

@@ -56,10 +56,10 @@ fn outcome(study: &Study, results: &Results) -> Outcome {
         true => figures::figures(study, results),
         false => Vec::new(),
     };
-    let grids = match study.output.vtk {
-        true => vtk::grids(study, results),
-        false => Vec::new(),
-    };
+    let (mut grids, mut explored) = (vtk::grids(study, results), Vec::new());
+    if !study.output.vtk {
+        std::mem::swap(&mut grids, &mut explored);
+    }
     let times = results.times.iter();
     let summary = summary::summary(results, &requirements);
     let mut outcome = Outcome {
@@ -79,6 +79,7 @@ fn outcome(study: &Study, results: &Results) -> Outcome {
         figures,
         style: study.pictures.style.clone(),
         grids,
+        explored,
         ..Outcome::default()
     };
     outcome.blocks = report::blocks(study, results, &outcome);

@@ -9,6 +9,7 @@ use assert_cmd::assert::Assert;
 use serde_json::Value;
 use tempfile::TempDir;
 
+pub mod browser;
 pub mod exports;
 pub mod mesh_files;
 pub mod process;

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::{Options, Told, correct, exit_code, inputs, request};
+use super::frames::{Told, correct, exit_code};
+use super::options::Options;
+use super::request::request;
 use crate::command::identity;
 use crate::command::interrupt;
-use crate::command::progress::Progress;
-use crate::command::terminal::{Outcome, print, warn};
+use crate::command::progress::{Progress, tell_files};
+use crate::command::terminal::{Outcome, print, print_report, warn};
 use crate::corrector::estimation::JointSettings;
 use crate::error::Error;
 use crate::material::Card;
@@ -18,8 +20,10 @@ use crate::studies::name;
 
 /// Finds the parameters, corrects, prints, and writes.
 pub fn run(options: Options) -> Outcome {
+    options.printed.choose();
     let folder = options.output.clone();
     let said = format!("{options:?}");
+    let pictures = options.pictures.chosen();
     let (study, inputs) = read(options)?;
     study.check()?;
     let identity = identity::of(&said);
@@ -40,6 +44,7 @@ pub fn run(options: Options) -> Outcome {
             name: name.clone(),
             text: String::new(),
             identity: format!("{identity}_{name}"),
+            pictures: pictures.clone(),
         };
         let (estimates, _) = correct(&own, (told, &inputs), &folder.join("specimens").join(name))?;
         corrected.push(CorrectedSpecimen {
@@ -53,6 +58,8 @@ pub fn run(options: Options) -> Outcome {
     let results = results(&study, &found, &corrected, seconds);
     warn(&output::write(&results, true, &mut results_folder)?);
     let files = results_folder.finish()?;
+    tell_files(&files);
+    print_report(|| results.json())?;
     print(&format!(
         "{}{} files in {}\n",
         results.outcome.summary,
@@ -72,7 +79,7 @@ pub fn run(options: Options) -> Outcome {
 
 /// The study and the files that it follows from.
 fn read(options: Options) -> Result<(JointStudy, Vec<PathBuf>), Error> {
-    let mut all_inputs = inputs(&options);
+    let mut all_inputs = options.inputs();
     let materials = [&options.material].into_iter().chain(&options.laws);
     let cards: Result<Vec<Card>, Error> = materials
         .map(|card| Card::load(card, Path::new(".")))

@@ -1,34 +1,17 @@
 //! What all pictures are drawn with: an area, fonts, numbers on axes.
 
-use std::sync::{Arc, LazyLock};
-
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use resvg::{tiny_skia, usvg};
 
-use super::design::{DrawResult, FAMILY, FINE};
+use super::design::{DrawResult, FINE};
 use super::encode::encode;
+use super::letters;
 use super::look::Look;
 use super::paint::Painter;
 use super::vectors::Vectors;
 use crate::results::{PictureFormat, Scale};
 use crate::statistics::extremes;
-
-const REGULAR: &[u8] = include_bytes!("../fonts/dejavu-sans-regular.ttf");
-const BOLD: &[u8] = include_bytes!("../fonts/dejavu-sans-bold.ttf");
-
-static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
-    for (style, bytes) in [(FontStyle::Normal, REGULAR), (FontStyle::Bold, BOLD)] {
-        plotters::style::register_font(FAMILY, style, bytes)
-            .ok()
-            .expect("the embedded font is a font");
-    }
-    let mut fonts = usvg::fontdb::Database::new();
-    fonts.load_font_data(REGULAR.to_vec());
-    fonts.load_font_data(BOLD.to_vec());
-    fonts.set_sans_serif_family("DejaVu Sans");
-    Arc::new(fonts)
-});
 
 /// What draws above a painted area.
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -60,7 +43,7 @@ pub(super) fn render(
         paper: look.paper(),
         image: (image != before).then_some(image),
         lines,
-        tree: tree(size, draw)?,
+        drawn: drawn(size, draw)?,
     };
     match format {
         PictureFormat::Svg => vectors.svg(),
@@ -77,12 +60,9 @@ fn blank(size: (u32, u32), (look, pixels_per_point): (Look, f32)) -> DrawResult<
     Ok(image)
 }
 
-/// What is drawn, its letters as curves where they are asked for.
-fn tree(
-    size: (u32, u32),
-    draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
-) -> DrawResult<usvg::Tree> {
-    let fonts = Arc::clone(&FONTS);
+/// What is drawn as SVG, its letters as curves.
+fn drawn(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> DrawResult<()>) -> DrawResult<String> {
+    letters::register();
     let mut svg = String::new();
     {
         let area =
@@ -91,11 +71,7 @@ fn tree(
         area.present()?;
     }
     svg.retain(in_xml);
-    let options = usvg::Options {
-        fontdb: fonts,
-        ..usvg::Options::default()
-    };
-    Ok(usvg::Tree::from_str(&svg, &options)?)
+    letters::as_curves(&svg)
 }
 
 /// Paints on an area of `size` points with so many pixels a point, then draws above it.
@@ -105,7 +81,7 @@ pub(super) fn rasterise(
     paint: impl FnOnce(&mut Painter<'_>),
     draw: impl FnOnce(&Area<'_>) -> DrawResult<()>,
 ) -> DrawResult<tiny_skia::Pixmap> {
-    let tree = tree(size, draw)?;
+    let tree = usvg::Tree::from_str(&drawn(size, draw)?, &usvg::Options::default())?;
     let mut image = blank(size, (look, pixels_per_point))?;
     paint(&mut Painter {
         image: &mut image,

@@ -27,7 +27,8 @@ impl Vectors {
         let [catalog, pages, page, drawing, image] = [(); 5].map(|()| id());
         let (width, height) = (self.size.0 as f32, self.size.1 as f32);
         let mut covers = Covers::default();
-        let content = self.content(&mut covers);
+        let tree = usvg::Tree::from_str(&self.drawn, &usvg::Options::default())?;
+        let content = self.content(&tree, &mut covers);
         let mut pdf = Pdf::new();
         pdf.catalog(catalog).pages(pages);
         pdf.pages(pages).kids([page]).count(1);
@@ -71,7 +72,7 @@ impl Vectors {
         Ok(pdf.finish())
     }
 
-    fn content(&self, covers: &mut Covers) -> Vec<u8> {
+    fn content(&self, tree: &usvg::Tree, covers: &mut Covers) -> Vec<u8> {
         let (width, height) = (self.size.0 as f32, self.size.1 as f32);
         let mut content = Content::new();
         // From here on in points of the design, downwards.
@@ -90,7 +91,7 @@ impl Vectors {
         let unit = 1.0 / FINE as f32;
         draw_group(
             &mut content,
-            self.tree.root(),
+            tree.root(),
             Transform::from_scale(unit, unit),
             covers,
         );
@@ -158,11 +159,10 @@ fn draw_group(content: &mut Content, group: &Group, unit: Transform, covers: &mu
     for node in group.children() {
         match node {
             Node::Group(inner) => draw_group(content, inner, unit, covers),
-            Node::Text(text) => draw_group(content, text.flattened(), unit, covers),
             Node::Path(path) if path.is_visible() => {
                 draw_path(content, path, unit.pre_concat(path.abs_transform()), covers);
             }
-            Node::Path(_) | Node::Image(_) => {}
+            Node::Path(_) | Node::Image(_) | Node::Text(_) => {}
         }
     }
 }

@@ -6,7 +6,6 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use plotters::style::RGBColor;
 use resvg::tiny_skia::Pixmap;
-use resvg::usvg::{Tree, WriteOptions};
 
 use super::design::{DrawResult, FINE};
 use super::encode::encode_plain;
@@ -22,8 +21,8 @@ pub(super) struct Vectors {
     pub image: Option<Pixmap>,
     /// Lines at places in points.
     pub lines: Vec<Lines>,
-    /// What is drawn, in units of the drawing.
-    pub tree: Tree,
+    /// What is drawn, as SVG in units of the drawing.
+    pub drawn: String,
 }
 
 impl Vectors {
@@ -47,10 +46,9 @@ impl Vectors {
         for lines in &self.lines {
             svg += &path(lines)?;
         }
-        let drawn = self.tree.to_string(&WriteOptions::default());
         // The drawing stands in units of its own.
         let scale = 1.0 / f64::from(FINE);
-        let inner = drawn.split_once('>').map_or("", |(_, inner)| inner);
+        let inner = self.drawn.split_once('>').map_or("", |(_, inner)| inner);
         let inner = inner.trim_end().trim_end_matches("</svg>");
         writeln!(svg, "<g transform=\"scale({scale})\">{inner}</g>\n</svg>")?;
         Ok(svg.into_bytes())

@@ -12,7 +12,9 @@
 
 use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
-use crate::results::{Array, Content, Grid, Material, NamedGrid, Outcome, Results, Sheet};
+use crate::results::{
+    Array, Content, Grid, GridSeries, Material, NamedGrid, Outcome, Results, Sheet,
+};
 use crate::studies::markers::MarkerStudy;
 use crate::studies::pictures::Pictures;
 
@@ -57,6 +59,7 @@ pub fn results_with(
         blocks: report::blocks(field, estimates),
         figures: figures.unwrap_or_default(),
         style: pictures.style.clone(),
+        explored: vec![explored(field, estimates)],
         files: vec![(
             "forces.csv".to_owned(),
             Content::Text(tables::forces(field, estimates)),
@@ -146,6 +149,15 @@ pub(super) fn title(field: &MarkerStudy) -> String {
         "" => "Corrected displacement field".to_owned(),
         title => title.to_owned(),
     }
+}
+
+/// The corrected fields of the last frames.
+fn explored(field: &MarkerStudy, estimates: &[FieldEstimate]) -> GridSeries {
+    const MOST: usize = 20;
+    let frames = field.series.frames.iter().zip(estimates);
+    let last = frames.skip(estimates.len().saturating_sub(MOST));
+    let grids = last.map(|(frame, estimate)| (frame.number as f64, corrected(field, estimate)));
+    GridSeries::steps(SERIES[0], grids)
 }
 
 fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
