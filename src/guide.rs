@@ -27,6 +27,12 @@
 //! | [Markers of your own](own_markers) | an equilibrium field from markers that are already in memory |
 //! | [A condition of your own](own_condition) | a condition of your own in the corrector |
 //! | [A study in a program](own_study) | reading a study file and writing its results |
+//!
+//! # From Python
+//!
+//! | page | for |
+//! |---|---|
+//! | [Python](python) | the package `gelbench`: plates, meshes, fits, measured fields, and the corrector on the equations of any program |
 
 #[doc = include_str!("guide/first_plate.md")]
 pub mod first_plate {}
@@ -73,3 +79,5 @@ pub mod other_codes {}
 pub mod validation {}
 #[doc = include_str!("guide/performance.md")]
 pub mod performance {}
+#[doc = include_str!("guide/python.md")]
+pub mod python {}

@@ -26,8 +26,8 @@ pub use cells::{Group, Mesh};
 pub use faults::{Exemptions, UnknownName};
 pub use grid::{Grid, Side};
 pub use import::{
-    ImportFault, ImportedField, ImportedSeries, ImportedStep, MeshReading, import, import_field,
-    import_series,
+    ImportFault, ImportedField, ImportedSeries, ImportedStep, MeshData, MeshReading, import,
+    import_field, import_series,
 };
 pub use nodal_field::NodalField;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};

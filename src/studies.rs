@@ -11,12 +11,15 @@ use crate::results::{Outcome, Results};
 use crate::solve::{Attendance, Journal};
 
 pub mod markers;
+mod models;
 pub mod motion;
 pub mod other_files;
 pub mod pictures;
 pub mod plate;
 pub mod sections;
 pub mod specimen;
+
+pub use models::{ModelKind, OneModel};
 
 /// Whom a computation tells what it does, and where it keeps what it has found.
 #[derive(Clone, Copy)]
@@ -129,7 +132,7 @@ impl Kind {
         file: &Path,
         text: &str,
         budget: Budget,
-        read: fn(&Section, &Path) -> Option<T>,
+        read: impl FnOnce(&Section, &Path) -> Option<T>,
     ) -> Result<(String, T, Vec<Diagnostic>), Error> {
         let read = self.read_with(file, text, budget, read)?;
         let made = read.made.expect("a study without faults can be computed");

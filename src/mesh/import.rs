@@ -12,6 +12,7 @@ use crate::error::{Diagnostic, Severity};
 
 mod field;
 mod frd;
+mod given;
 mod gmsh;
 mod pvd;
 mod raw;
@@ -26,6 +27,7 @@ use unreadable::Unreadable;
 pub use field::{
     ImportFault, ImportedField, ImportedSeries, ImportedStep, import_field, import_series,
 };
+pub use given::MeshData;
 
 /// How a mesh is read from a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,17 +60,28 @@ pub fn import(
     path: &Path,
     reading: MeshReading,
 ) -> Result<(Mesh, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let unreadable = |reason: Unreadable| {
-        let hint = "a mesh stands in Gmsh's .msh (ASCII, 2.2 or 4.1), .vtu or .vtk, and is flat";
-        let message = format!("{} {reason}", path.display());
-        vec![Diagnostic::error("", message).hint(hint)]
-    };
-    let mut raw = read(path).map_err(unreadable)?;
+    let name = path.display().to_string();
+    let raw = read(path).map_err(|reason| unreadable(&name, reason))?;
+    sound(raw, &name, reading)
+}
+
+fn unreadable(name: &str, reason: Unreadable) -> Vec<Diagnostic> {
+    let hint = "a mesh stands in Gmsh's .msh (ASCII, 2.2 or 4.1), .vtu or .vtk, and is flat";
+    vec![Diagnostic::error("", format!("{name} {reason}")).hint(hint)]
+}
+
+/// A mesh without faults of what `name` holds, with what deserves attention.
+fn sound(
+    mut raw: Raw,
+    name: &str,
+    reading: MeshReading,
+) -> Result<(Mesh, Vec<Diagnostic>), Vec<Diagnostic>> {
     if let Some(tolerance) = reading.merge_nodes {
         raw.merge_nodes(tolerance / reading.unit);
     }
     let lost = raw.lines.clone();
-    let mesh = raw.mesh(reading.unit).map_err(unreadable)?;
+    let mesh = raw.mesh(reading.unit);
+    let mesh = mesh.map_err(|reason| unreadable(name, reason))?;
     let mut told = mesh.faults(reading.allowed);
     let wrong = told.iter().any(|fault| fault.severity == Severity::Error);
     if !wrong {
@@ -78,7 +91,7 @@ pub fn import(
         }
     }
     for fault in &mut told {
-        fault.message = format!("{}: {}", path.display(), fault.message);
+        fault.message = format!("{name}: {}", fault.message);
     }
     if wrong {
         return Err(told);

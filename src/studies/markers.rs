@@ -82,8 +82,16 @@ impl MarkerStudy {
     ///
     /// # Errors
     /// [`Error::Input`] with what is wrong and what to do.
-    pub fn prepare(mut request: Request) -> Result<Self, Error> {
+    pub fn prepare(request: Request) -> Result<Self, Error> {
         let card = Card::load(&request.material, Path::new("."))?;
+        Self::prepare_with(card, request)
+    }
+
+    /// Reads everything but the material, which is that of a card such as [`Card::of_law`] makes.
+    ///
+    /// # Errors
+    /// As [`Self::prepare`].
+    pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
         let mut field = read(&request.files, &request.reading)?;
         let told = request
             .conditions

@@ -29,8 +29,12 @@ pub const KIND: &str = "plate";
 /// # Errors
 /// [`Error::Input`] with every fault of the study and of its card.
 pub fn prepare(path: &Path, text: String, budget: Budget) -> Result<PreparedStudy, Error> {
-    let study = Study::of_file(path, text, budget)?;
-    Ok(PreparedStudy {
+    Ok(ready(Study::of_file(path, text, budget)?))
+}
+
+/// A study that was read, with a card of the caller's or its own, ready to be computed.
+pub fn ready(study: Study) -> PreparedStudy {
+    PreparedStudy {
         name: study.name.clone(),
         title: study.title.clone(),
         kind: KIND,
@@ -45,7 +49,7 @@ pub fn prepare(path: &Path, text: String, budget: Budget) -> Result<PreparedStud
             let results = run::run(&study, progress)?;
             Ok(outcome(&study, &results))
         }),
-    })
+    }
 }
 
 /// What is told of a plate; pictures and grids where the study wants them.

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::budget::Budget;
 use crate::document::Section;
 use crate::error::{Diagnostic, Error};
+use crate::mesh::MeshData;
 use crate::results::Outcome;
 use crate::studies::{Computation, Kind, Progress};
 
@@ -20,7 +21,7 @@ mod warnings;
 pub use problem::{Refinement, Specimen};
 use results::end::{End, tell};
 use results::models::Models;
-pub use results::{fields, finest_mesh, force_with_error};
+pub use results::{fields, finest_mesh, force_with_error, one_model};
 
 /// The `kind` of these studies.
 pub const KIND: &str = "specimen";
@@ -36,6 +37,22 @@ pub fn load(
     budget: Budget,
 ) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
     case.load(file, text, budget, read::read)
+}
+
+/// The same on a mesh in memory, which takes the place of the one that the study names as `file`.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn load_on(
+    mesh: &MeshData,
+    case: &Kind,
+    file: &Path,
+    text: &str,
+    budget: Budget,
+) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
+    case.load(file, text, budget, |root, folder| {
+        read::read_with(root, folder, &|_, reading| mesh.read(reading))
+    })
 }
 
 /// Reads a study of this kind.

@@ -25,6 +25,8 @@ pub struct Raw {
     /// Ends of lines, and points, by the name of their group.
     pub lines: BTreeMap<String, Vec<[u64; 2]>>,
     pub points: BTreeMap<String, Vec<u64>>,
+    /// Nodes by the name of their group, to which the edges between them belong.
+    pub sets: BTreeMap<String, Vec<u64>>,
     /// Numbers of cells by the name of their group.
     pub areas: BTreeMap<String, Vec<usize>>,
 }
@@ -74,8 +76,8 @@ impl Raw {
         }
         let cells = self.cells.iter_mut().flat_map(|(_, nodes)| nodes);
         let lines = self.lines.values_mut().flatten().flatten();
-        let points = self.points.values_mut().flatten();
-        for node in cells.chain(lines).chain(points) {
+        let points = self.points.values_mut().chain(self.sets.values_mut());
+        for node in cells.chain(lines).chain(points.flatten()) {
             *node = merged.get(node).copied().unwrap_or(*node);
         }
     }
@@ -141,6 +143,14 @@ impl Raw {
                 false => mesh.name_edges(name, own),
                 true => name_inner_lines(&mut mesh, name, &ends),
             }
+        }
+        for (name, set) in &self.sets {
+            let nodes = set.iter().filter_map(|node| names.get(node).copied());
+            let nodes: BTreeSet<usize> = nodes.collect();
+            if nodes.is_empty() {
+                return Err(format!("has the group `{name}` without a node of its cells").into());
+            }
+            mesh.name_nodes(name, &nodes);
         }
         for (name, cells) in &self.areas {
             let is_part = cells.len() < mesh.cell_count();

@@ -93,9 +93,16 @@ impl Conditions {
     /// # Errors
     /// [`Error::Input`] with all of its faults.
     pub fn of_file(path: &Path) -> Result<Self, Error> {
-        let text = sections::read_text(path)?;
+        Self::parse(&path.display().to_string(), &sections::read_text(path)?)
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// As [`Self::of_file`].
+    pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
         let faults = Faults::default();
-        let document = Document::parse(&path.display().to_string(), &text, &faults);
+        let document = Document::parse(file, text, &faults);
         let conditions = read(&document.root(None, &faults));
         drop(document);
         faults.finish()?;

@@ -7,7 +7,7 @@ use super::problem::{Outline, Refinement, Specimen};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::error::suggestion;
-use crate::mesh::{CellShape, Mesh};
+use crate::mesh::{CellShape, Mesh, import};
 use crate::problem::{BoundaryProblem, Load};
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{Tolerances, read_card};
@@ -16,7 +16,7 @@ use crate::units::Dimension;
 mod outline;
 mod supports;
 
-use outline::{SHAPES, read_outline};
+use outline::{Import, SHAPES, read_outline};
 use supports::SupportsAndLoads;
 
 /// What a study must say of the specimen; cells and lattice have defaults.
@@ -32,6 +32,12 @@ const MEASURES: &[&str] = &[
 
 /// Reads a study; `None` where it has faults, which are recorded.
 pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
+    let of_file = |file: &str, reading| import(&folder.join(file), reading);
+    read_with(root, folder, &of_file)
+}
+
+/// The same where `import` reads the mesh.
+pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Specimen> {
     let material = root.section("material").requiring(&["card"]);
     let card = read_card(&material, folder);
     material.unknown_keys();
@@ -45,7 +51,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<Specimen> {
     let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
     let thickness = section.quantity("thickness", Dimension::Length, Bound::SIZE);
     let element = element.unwrap_or(CellShape::Quad9);
-    let outline = name.and_then(|name| read_outline(section, name, folder, element));
+    let outline = name.and_then(|name| read_outline(section, name, import, element));
     section.unknown_keys();
     let given = SupportsAndLoads::read(root);
 

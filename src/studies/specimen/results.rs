@@ -5,7 +5,7 @@ use crate::compare::imported::ModelField;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::studies::Progress;
+use crate::studies::{ModelKind, OneModel, Progress};
 
 pub mod end;
 pub mod lattice;
@@ -32,6 +32,47 @@ pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
     let force = reference.measured.at(&reference.finest, last);
     let own = reference.measured_percent(last);
     Ok((force.unwrap_or(f64::NAN), own.unwrap_or(f64::NAN)))
+}
+
+/// One model of a specimen alone; finite elements on the finest mesh of the study.
+///
+/// # Errors
+/// [`Error::Input`] when a group of a mesh cannot be held or loaded as the study says.
+pub fn one_model(
+    specimen: &Specimen,
+    kind: ModelKind,
+    progress: Progress,
+) -> Result<OneModel, Error> {
+    let mut ends = Vec::new();
+    let solution = match kind {
+        ModelKind::MassSpring => lattice::solve_springs(specimen, &mut ends, progress)?.1,
+        ModelKind::FiniteElement => refine::finest(specimen, &mut ends, progress)?,
+        ModelKind::Corrected => {
+            let found = OnLattice::solve(specimen, &mut ends, progress)?;
+            // Where the springs end early the correction goes on.
+            ends.retain(|end| !end.is_of("mass-spring"));
+            found.corrected
+        }
+    };
+    Ok(OneModel {
+        forces: measured_forces(specimen, &solution),
+        multipliers: vec![Vec::new(); solution.reached()],
+        ends: ends.iter().map(end::End::error).collect(),
+        solution,
+    })
+}
+
+/// The force on the measured group in each state, along the axis of the larger component in the last one.
+fn measured_forces(specimen: &Specimen, solution: &Solution) -> Vec<f64> {
+    let groups = specimen.groups();
+    let index = groups.iter().position(|group| *group == specimen.group);
+    let index = index.expect("the measured group is one of them");
+    let force = |step| solution.groups(step).map(|groups| groups[index].force);
+    let forces: Vec<[f64; 2]> = (0..solution.reached()).filter_map(force).collect();
+    let axis = forces
+        .last()
+        .map_or(0, |[x, y]| usize::from(y.abs() > x.abs()));
+    forces.iter().map(|force| force[axis]).collect()
 }
 
 /// The mesh of the finest finite elements; a specimen that refines itself is solved for it.

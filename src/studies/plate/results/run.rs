@@ -14,8 +14,8 @@ use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::problem::{ClampedPlate, Measures, Model, Solution};
 use crate::solve::{NewtonSettings, State};
-use crate::studies::Progress;
 use crate::studies::plate::problem::Study;
+use crate::studies::{ModelKind, OneModel, Progress};
 
 /// How many times [`run`] reports progress for a study.
 pub fn progress_steps(study: &Study) -> usize {
@@ -88,6 +88,57 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     })
 }
 
+/// One model of a study alone.
+pub fn one_model(study: &Study, kind: ModelKind, progress: Progress) -> OneModel {
+    let mut run = Run {
+        study,
+        progress,
+        times: Vec::new(),
+        ends: Vec::new(),
+    };
+    let plate = &study.problem;
+    if kind == ModelKind::FiniteElement {
+        let [.., finest] = study.finite_elements();
+        let model = finest.model(plate);
+        let solution = run.solve("finite elements", &model, study.reference.newton);
+        return of_solution(solution, run.ends);
+    }
+    let springs = MassSpring::new(plate, study.cells, study.lattice);
+    let uncorrected = run.solve("mass-spring", &springs.model(plate), study.mass_spring);
+    if kind == ModelKind::MassSpring {
+        return of_solution(uncorrected, run.ends);
+    }
+    // Where the springs end early the correction goes on.
+    run.ends.clear();
+    let found: Vec<CorrectedState> = run.correct(&uncorrected).into_iter().flatten().collect();
+    let energy = study.corrector.scheme.energy(plate, &springs.mesh);
+    let forces = found.iter().map(|own| own.measures.force).collect();
+    let (states, multipliers) = found
+        .into_iter()
+        .map(|own| (own.state, own.multipliers))
+        .unzip();
+    OneModel {
+        solution: Solution::new(&plate.on(&springs.mesh, &energy), &GRIPS, states),
+        forces,
+        multipliers,
+        ends: run.ends,
+    }
+}
+
+/// The names of the grips.
+const GRIPS: [&str; 2] = ["left", "right"];
+
+fn of_solution(solution: Solution, ends: Vec<Error>) -> OneModel {
+    let states = solution.states.iter();
+    let forces = states.map(|state| Measures::of(&solution.mesh, state).force);
+    OneModel {
+        forces: forces.collect(),
+        multipliers: vec![Vec::new(); solution.reached()],
+        solution,
+        ends,
+    }
+}
+
 /// A study under way.
 struct Run<'a> {
     study: &'a Study,
@@ -110,7 +161,7 @@ impl Run<'_> {
                 end.states
             })
         });
-        Solution::new(model, &[], states)
+        Solution::new(model, &GRIPS, states)
     }
 
     /// The corrected field at every stretch. Where the springs have no field the affine stretch takes its place: it has a

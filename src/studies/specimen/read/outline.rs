@@ -1,10 +1,8 @@
 //! The outline of a specimen's study: a shape by its measures, or the mesh of a file.
 
-use std::path::Path;
-
 use crate::document::{Bound, Section};
-use crate::error::Severity;
-use crate::mesh::{CellShape, Exemptions, Mesh, MeshReading, Shape, import};
+use crate::error::{Diagnostic, Severity};
+use crate::mesh::{CellShape, Exemptions, Mesh, MeshReading, Shape};
 use crate::studies::specimen::problem::{HALVINGS, MESH, Outline};
 use crate::units::Dimension;
 
@@ -21,15 +19,19 @@ pub const SHAPES: [&str; 6] = [
     "ring-sector",
 ];
 
+/// Reads the mesh that a study names as `file`: the mesh and what deserves attention, or its faults.
+pub type Import<'a> =
+    dyn Fn(&str, MeshReading) -> Result<(Mesh, Vec<Diagnostic>), Vec<Diagnostic>> + 'a;
+
 /// The outline under a shape's name; `None` where it has faults, which are recorded.
 pub fn read_outline(
     section: &Section,
     name: &str,
-    folder: &Path,
+    import: &Import,
     element: CellShape,
 ) -> Option<Outline> {
     if name == MESH {
-        let (mesh, allowed) = read_mesh(section, folder)?;
+        let (mesh, allowed) = read_mesh(section, import)?;
         return Some(Outline::File {
             mesh: Box::new(mesh),
             element,
@@ -57,7 +59,7 @@ pub fn read_outline(
 }
 
 /// The mesh of a file; `None` where it cannot be used, with the faults recorded.
-fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Exemptions)> {
+fn read_mesh(section: &Section, import: &Import) -> Option<(Mesh, Exemptions)> {
     let file = section.text("file");
     let unit = section.unit("file_unit", Dimension::Length);
     let merge_nodes = section
@@ -83,7 +85,7 @@ fn read_mesh(section: &Section, folder: &Path) -> Option<(Mesh, Exemptions)> {
         merge_nodes,
         allowed: allowed.ok()?,
     };
-    let read = import(&folder.join(&file), reading);
+    let read = import(&file, reading);
     let (mesh, told) = match read {
         Ok((mesh, told)) => (Some(mesh), told),
         Err(told) => (None, told),

@@ -55,6 +55,11 @@ impl End {
         }
     }
 
+    /// Whether it is the end of a model of this name.
+    pub fn is_of(&self, model: &str) -> bool {
+        self.model == model
+    }
+
     /// Whether not one equilibrium was found on the way.
     pub fn is_empty(&self) -> bool {
         self.last.is_none()

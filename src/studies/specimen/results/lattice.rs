@@ -65,6 +65,24 @@ pub fn solve(
     Solution::new(model, &specimen.groups(), states)
 }
 
+/// The springs on the lattice, as far as they go.
+pub fn solve_springs(
+    specimen: &Specimen,
+    ends: &mut Vec<End>,
+    progress: Progress,
+) -> Result<(MassSpring, Solution), Error> {
+    let problem = &specimen.problem;
+    progress.tell("mass-spring");
+    let lattice = specimen.outline.lattice();
+    let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
+    let model = specimen.on(&springs.mesh, springs.potential())?;
+    let model = model.named("mass-spring");
+    let model = model.describing(|element| springs.describe_element(element));
+    let uncorrected = solve(specimen, &model, "mass_spring", ends, progress);
+    drop(model);
+    Ok((springs, uncorrected))
+}
+
 impl OnLattice {
     /// Solves the springs and corrects them; each goes as far as it can, whatever the other does.
     pub fn solve(
@@ -72,20 +90,10 @@ impl OnLattice {
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
-        let problem = &specimen.problem;
-        progress.tell("mass-spring");
-        let lattice = specimen.outline.lattice();
-        let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
-        let lattice = &springs.mesh;
-        let model = specimen
-            .on(lattice, springs.potential())?
-            .named("mass-spring");
-        let model = model.describing(|element| springs.describe_element(element));
-        let uncorrected = solve(specimen, &model, "mass_spring", ends, progress);
-        drop(model);
-
+        let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
         progress.tell("corrector");
-        let energy = problem.finite_elements(lattice);
+        let lattice = &springs.mesh;
+        let energy = specimen.problem.finite_elements(lattice);
         let model = specimen.on(lattice, &energy)?.named("corrector");
         let (states, starts) = Corrections::new(specimen, &model, progress).all(&uncorrected, ends);
         let corrected = Solution::new(&model, &specimen.groups(), states);

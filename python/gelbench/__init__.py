@@ -1,0 +1,53 @@
+"""gelbench: sheets of soft tissue and hydrogel at large strains.
+
+A sheet is solved with a lattice of springs, with hyperelastic finite elements, and with the *corrector*, which takes any
+displacement field and finds the nearest one that satisfies equilibrium and what is known at the boundary.
+
+>>> import gelbench as gb
+>>> plate = gb.Plate(length=150, width=50, thickness=2, material="pva-10")
+>>> plate.solve(model="corrected", factors=[0.5]).force
+
+Plain numbers are mm, N, MPa; texts with a unit and quantities of pint are taken too.
+"""
+
+from . import corrector
+from ._core import __version__
+from ._errors import Fault, InputError, PerformanceWarning, SolveError, WriteError
+from ._markers import Correction, correct
+from ._material import Derivatives, Material, Parameter, laws, materials
+from ._results import Field, Results
+from ._solution import AtPoints, GroupForce, Solution, State
+from ._study import Plate, Specimen, check, run
+from ._tests import Estimate, Fit, Identification, fit, identify
+
+__all__ = [
+    "AtPoints",
+    "Correction",
+    "Derivatives",
+    "Estimate",
+    "Fault",
+    "Field",
+    "Fit",
+    "GroupForce",
+    "Identification",
+    "InputError",
+    "Material",
+    "Parameter",
+    "PerformanceWarning",
+    "Plate",
+    "Results",
+    "Solution",
+    "SolveError",
+    "Specimen",
+    "State",
+    "WriteError",
+    "__version__",
+    "check",
+    "correct",
+    "corrector",
+    "fit",
+    "identify",
+    "laws",
+    "materials",
+    "run",
+]

@@ -1,0 +1,101 @@
+"""What can go wrong, sorted by who must act on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+__all__ = ["Fault", "InputError", "PerformanceWarning", "SolveError", "WriteError"]
+
+
+class Fault(NamedTuple):
+    """One fault of an input: where it is, what is wrong, and what to do about it."""
+
+    message: str
+    """What is wrong."""
+    key: str = ""
+    """The key or argument, such as ``plate.length``; empty where there is none."""
+    hint: str | None = None
+    """What to do about it."""
+    file: str | None = None
+    """The file, where there is one."""
+    line: int | None = None
+    """The line of the file, from 1."""
+    is_warning: bool = False
+    """Whether it alone would stop nothing."""
+    text: str = ""
+    """All of it in one line."""
+
+    def __str__(self) -> str:
+        return self.text or self.message
+
+
+class InputError(ValueError):
+    """The input is wrong.
+
+    Attributes
+    ----------
+    faults : tuple of Fault
+        All faults at once.
+    """
+
+    faults: tuple[Fault, ...]
+
+    def __init__(self, message: str, faults: Sequence[Fault] = ()) -> None:
+        super().__init__(message)
+        self.faults = tuple(faults) or (Fault(message, text=message),)
+
+
+class SolveError(RuntimeError):
+    """A model has no solution that could be found.
+
+    Attributes
+    ----------
+    model : str
+        The model, such as ``finite elements``.
+    step : str
+        Where on the path, such as ``load factor 0.75 (reached 0.6183)``.
+    load_factor : float or None
+        The first load factor, or stretch of a plate, that was asked for and not reached.
+    cell : str or None
+        The cell or node where it happened, with its place.
+    cause : str
+        What happened.
+    advice : str
+        What to try.
+    solution : gelbench.Solution or None
+        What was reached before.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        model: str = "",
+        step: str = "",
+        cause: str = "",
+        cell: str | None = None,
+        advice: str = "",
+    ) -> None:
+        super().__init__(message)
+        self.model = model
+        self.step = step
+        self.cause = cause
+        self.cell = cell
+        self.advice = advice
+        self.load_factor: float | None = None
+        self.solution: Any = None
+
+
+class WriteError(OSError):
+    """A file could not be written."""
+
+
+class PerformanceWarning(UserWarning):
+    """Something works, but much slower than it could."""
+
+
+def fault(argument: str, message: str, hint: str) -> InputError:
+    """One fault of an argument."""
+    text = f"{argument}: {message} ({hint})"
+    return InputError(text, [Fault(message, argument, hint, text=text)])

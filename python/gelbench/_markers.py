@@ -1,0 +1,266 @@
+"""Measured displacement fields."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._errors import fault
+from ._material import Material, card
+from ._material import material as _material
+from ._progress import Progress, callback
+from ._quantities import PathLike, Quantity, number, text, toml
+from ._results import Field, Results
+from ._tests import Data, Estimate
+from ._tests import _table as table
+
+__all__ = ["Correction", "correct"]
+
+COLUMNS = ("x [mm]", "y [mm]", "ux [mm]", "uy [mm]")
+
+
+class Correction(Results):
+    """The field nearest to measured displacements that satisfies the physics, frame by frame, with intervals."""
+
+    def __init__(self, core: _core.Results, verdict: str) -> None:
+        super().__init__(core)
+        self._verdict = verdict
+
+    @property
+    def verdict(self) -> str:
+        """``explained``, ``explained with correlated noise``, or ``not explained by this law, thickness and conditions``."""
+        return self._verdict
+
+    @property
+    def explained(self) -> bool:
+        """Whether intervals hold what they say."""
+        return self._verdict.startswith("explained")
+
+    @property
+    def field(self) -> Field:
+        """The corrected field of the last frame, with standard errors."""
+        return self.fields["corrected"][-1]
+
+    @property
+    def markers(self) -> Field:
+        """The markers of the last frame with what is left of them."""
+        return self.fields["markers"][-1]
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of a component of a displacement in the last frame [mm]."""
+        return float(self._last["noise_mm"])
+
+    @property
+    def forces(self) -> dict[str, tuple[Estimate, Estimate]]:
+        """Forces on the edges that are not free, x and y [N], of the last frame."""
+        found: dict[str, tuple[Estimate, Estimate]] = {}
+        for one in self._last["forces"]:
+            axes = (_estimate(one[f"{axis}_N"], "N") for axis in "xy")
+            found[str(one["edge"])] = (next(axes), next(axes))
+        return found
+
+    @property
+    def _last(self) -> dict[str, Any]:
+        models: dict[str, Any] = self.json["steps"][-1]["models"]
+        found: dict[str, Any] = models["corrected"]
+        return found
+
+    def _repr_html_(self) -> str:
+        return f"<p><b>{self.verdict}</b></p>{super()._repr_html_()}"
+
+
+def _estimate(one: Mapping[str, Any], unit: str) -> Estimate:
+    interval = one.get("interval")
+    pair = None if interval is None else (float(interval[0]), float(interval[1]))
+    return Estimate(float(one["value"]), unit, one.get("standard_error"), pair)
+
+
+def correct(
+    markers: Data,
+    material: Material | PathLike,
+    thickness: Quantity,
+    *,
+    free: Sequence[str] = (),
+    rigid: Sequence[str] = (),
+    known: Mapping[str, Mapping[str, Quantity]] | None = None,
+    force: Mapping[str, Mapping[str, Quantity]] | None = None,
+    noise: Quantity | None = None,
+    edge_gap: Quantity | None = None,
+    robust: str | None = None,
+    physics: str | None = None,
+    fit: Sequence[str] = (),
+    conditions: PathLike | None = None,
+    unit: str | None = None,
+    array: str | None = None,
+    grid: Quantity | None = None,
+    columns: Mapping[str, str] | None = None,
+    ignore_columns: Sequence[str] = (),
+    encoding: str | None = None,
+    y_axis: str | None = None,
+    places: str | None = None,
+    mesh: PathLike | None = None,
+    mesh_unit: str = "mm",
+    merge_nodes: Quantity | None = None,
+    allow: Sequence[str] = (),
+    outline: PathLike | None = None,
+    forces: PathLike | None = None,
+    cell_size: Quantity | None = None,
+    cells: str = "triangle6",
+    holes: bool = True,
+    progress: Progress | None = None,
+    allow_large: bool = False,
+) -> Correction:
+    """Makes a measured displacement field satisfy the physics: stresses, forces and their uncertainty follow.
+
+    Parameters
+    ----------
+    markers : path, list of paths, DataFrame, mapping or array_like
+        The field: files of image correlation programs, one for each frame; a table with ``x [mm]``, ``y [mm]``, ``ux [mm]``,
+        ``uy [mm]``, and, where they are known, ``standard_deviation [mm]`` and ``frame``; or an array n × 4 of these in mm.
+    material : Material, str or path
+        The material, or its card.
+    thickness : quantity
+        Thickness at rest [mm].
+    free, rigid : sequence of str
+        Edges without traction, and edges that moved as rigid bodies by unknown amounts: ``left``, ``right``, ``bottom``, ``top``, or
+        groups of the mesh.
+    known : mapping, optional
+        Edges of known displacement: ``{"left": {"ux": 0, "uy": 0}}`` [mm].
+    force : mapping, optional
+        Measured forces of grips on the specimen [N]: ``{"right": {"x": 1.2, "x_deviation": 0.02}}``; without a deviation 1 %.
+    noise : quantity, optional
+        Standard deviation of the displacement's components [mm]; estimated where it is not given.
+    edge_gap : quantity, optional
+        How far inside of the specimen's edge the outermost markers lie [mm].
+    robust : {"no", "huber", "tukey"}, optional
+        Weights of markers that are far off.
+    physics : {"exact", "weighted"}, optional
+        How far the physics holds.
+    fit : sequence of str
+        One or two parameters of the law that are found with the field; a force must be measured.
+    conditions : path, optional
+        A file that says what is known instead of the arguments from `free` to `fit`.
+    unit, array, grid, columns, ignore_columns, encoding, y_axis, places
+        How files are read: the options of ``gelbench correct``.
+    mesh, mesh_unit, merge_nodes, allow, outline, cell_size, cells, holes
+        The specimen's mesh or outline, and how it is meshed: likewise. `mesh_unit` is a length's unit.
+    forces : path, optional
+        A testing machine's table beside the frames; `conditions` names its columns.
+    progress : callable or tqdm bar, optional
+        Is told each frame.
+    allow_large : bool
+        Whether to let pass what needs more than a common machine has.
+
+    Returns
+    -------
+    Correction
+        Field, forces with intervals, noise, and the verdict.
+
+    Raises
+    ------
+    gelbench.InputError
+        With what is wrong and what to do.
+    gelbench.SolveError
+        Where no corrected field was found.
+    """
+    own = _material(material)
+    said = {
+        "noise": noise if noise is None else text(noise, "mm", "noise"),
+        "edge_gap": edge_gap if edge_gap is None else text(edge_gap, "mm", "edge_gap"),
+        "robust": robust,
+        "physics": physics,
+        "fit": list(fit) or None,
+    }
+    listed = _edges(free, rigid, known or {})
+    measured = _forces(force or {})
+    if conditions is None:
+        wanted: dict[str, Any] = {key: value for key, value in said.items() if value is not None}
+        lists = {key: value for key, value in (("edges", listed), ("force", measured)) if value}
+        what = toml({**wanted, **lists})
+    elif listed or measured or any(value is not None for value in said.values()):
+        raise fault("conditions", "is given beside what the file says", "say everything in the file, or nothing")
+    else:
+        try:
+            what = Path(conditions).read_text(encoding="utf-8")
+        except OSError as cause:
+            raise fault("conditions", f"{conditions} cannot be read: {cause}", "name a file") from None
+    options: dict[str, Any] = {
+        "unit": unit,
+        "array": array,
+        "grid": None if grid is None else number(grid, "mm", "grid"),
+        "ignore_columns": list(ignore_columns),
+        "columns": [f"{role}={column}" for role, column in (columns or {}).items()],
+        "encoding": encoding,
+        "y_axis": y_axis,
+        "places": places,
+        "mesh": _path(mesh),
+        "mesh_unit": mesh_unit,
+        "merge_nodes": None if merge_nodes is None else number(merge_nodes, "mm", "merge_nodes"),
+        "allow": list(allow),
+        "outline": _path(outline),
+        "forces": _path(forces),
+        "cell_size": None if cell_size is None else number(cell_size, "mm", "cell_size"),
+        "cells": cells,
+        "holes": holes,
+        "allow_large": allow_large,
+    }
+    size = number(thickness, "mm", "thickness")
+    told = callback(progress)
+    files = _files(markers)
+    if files is not None:
+        name = Path(conditions or files[0]).stem
+        return Correction(*_core.correct(name, files, card(own), size, what, options, told))
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "markers.csv"
+        file.write_text(table(markers, "markers", COLUMNS)[1], encoding="utf-8")
+        return Correction(*_core.correct("markers", [str(file)], card(own), size, what, options, told))
+
+
+def _path(path: PathLike | None) -> str | None:
+    return None if path is None else os.fspath(path)
+
+
+def _files(markers: Any) -> list[str] | None:
+    if isinstance(markers, (str, os.PathLike)):
+        path: os.PathLike[str] | str = markers
+        return [os.fspath(path)]
+    if isinstance(markers, (list, tuple)) and markers and all(isinstance(one, (str, os.PathLike)) for one in markers):
+        paths: Sequence[PathLike] = markers
+        return [os.fspath(path) for path in paths]
+    if not hasattr(markers, "keys") and np.ndim(markers) != 2:
+        raise fault("markers", f"has {np.ndim(markers)} dimensions", "give files, a table, or an array n × 4")
+    return None
+
+
+def _edges(
+    free: Sequence[str], rigid: Sequence[str], known: Mapping[str, Mapping[str, Quantity]]
+) -> list[dict[str, Any]]:
+    if isinstance(free, str) or isinstance(rigid, str):
+        raise fault("free" if isinstance(free, str) else "rigid", "is a text", 'give a list of names, such as ["top", "bottom"]')
+    edges: list[dict[str, Any]] = [
+        {"names": list(names), "condition": condition} for names, condition in ((free, "free"), (rigid, "rigid")) if names
+    ]
+    for name, values in known.items():
+        told = {axis: text(value, "mm", f"known.{name}.{axis}") for axis, value in values.items()}
+        edges.append({"names": [name], "condition": "known", **told})
+    return edges
+
+
+def _forces(force: Mapping[str, Mapping[str, Quantity]]) -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = []
+    for edge, values in force.items():
+        for axis in ("x", "y"):
+            if axis in values:
+                row = {"edge": edge, "axis": axis, "force": text(values[axis], "N", f"force.{edge}.{axis}")}
+                if f"{axis}_deviation" in values:
+                    deviation = values[f"{axis}_deviation"]
+                    row["standard_deviation"] = text(deviation, "N", f"force.{edge}.{axis}_deviation")
+                rows.append(row)
+    return rows

@@ -1,0 +1,119 @@
+"""Pictures with matplotlib."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._fields import Cells
+from ._quantities import Floats
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ._material import Material
+    from ._solution import Solution, State
+
+__all__ = ["deformed", "forces", "inline", "material_curves"]
+
+CORNERS = {
+    "triangle": [(0, 1, 2)],
+    "triangle6": [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
+    "quad": [(0, 1, 2), (0, 2, 3)],
+    "quad8": [(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6), (4, 6, 7)],
+    "quad9": [(0, 4, 8), (0, 8, 7), (4, 1, 5), (4, 5, 8), (8, 5, 2), (8, 2, 6), (7, 8, 6), (7, 6, 3)],
+}
+"""Triangles of each kind of cells."""
+
+
+def axes(ax: Axes | None) -> Axes:
+    """The axes given, or new ones."""
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt
+
+    found: Axes = plt.subplots(layout="constrained")[1]
+    return found
+
+
+def inline(draw: Callable[[Axes], object]) -> str:
+    """A picture for a notebook; nothing where matplotlib is not installed."""
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        return ""
+    figure: Any = Figure(figsize=(6.0, 3.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    draw(figure.subplots())
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=110)
+    return f'<img src="data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}">'
+
+
+def triangles(cells: Cells) -> Any:
+    """All cells as triangles of their nodes."""
+    parts = [points[:, corner] for name, (_, points) in cells.items() for corner in CORNERS.get(name, [])]
+    return np.concatenate(parts)
+
+
+def label(name: str) -> str:
+    """The words of an array's name: ``von_mises_stress_at_nodes_MPa`` → ``von mises stress [MPa]``."""
+    words = name.replace("_at_nodes", "").split("_")
+    known = {"MPa", "mm", "N"}
+    unit = f" [{words.pop()}]" if words[-1] in known else ""
+    text = " ".join(words) + unit
+    return text.replace("von mises", "von Mises").replace("cauchy", "Cauchy").replace("green lagrange", "Green–Lagrange")
+
+
+def deformed(state: State, quantity: str, ax: Axes | None, options: dict[str, Any]) -> Axes:
+    """The deformed sheet, coloured by an array at its nodes."""
+    from ._errors import fault
+
+    data = state.point_data
+    if quantity not in data:
+        raise fault("quantity", f"there is no array `{quantity}`", f"arrays are {', '.join(data)}")
+    own: Any = axes(ax)
+    values = data[quantity]
+    values = values if values.ndim == 1 else values[:, 0]
+    place = state.solution.points + state.displacement
+    settings: dict[str, Any] = {"shading": "gouraud", "cmap": "viridis", **options}
+    drawn = own.tripcolor(place[:, 0], place[:, 1], triangles(state.solution.cells), values, **settings)
+    own.set_aspect("equal")
+    own.set_xlabel("x [mm]")
+    own.set_ylabel("y [mm]")
+    own.set_title(f"{state.solution.model}, at {state.factor:g}")
+    own.figure.colorbar(drawn, ax=own, label=label(quantity), shrink=0.8)
+    found: Axes = own
+    return found
+
+
+def forces(solution: Solution, ax: Axes | None) -> Axes:
+    """Force over load factor."""
+    own = axes(ax)
+    own.plot(solution.factors, solution.forces, "o-", label=solution.model)
+    own.set_xlabel("load factor")
+    own.set_ylabel("force [N]")
+    own.grid(alpha=0.3)
+    own.legend()
+    return own
+
+
+def material_curves(material: Material, ax: Axes | None, tests: tuple[str, ...], stretch: ArrayLike | None) -> Axes:
+    """Nominal stress over stretch."""
+    own = axes(ax)
+    low, high = material.stretch_range
+    at: Floats = np.linspace(low, high, 101) if stretch is None else np.asarray(stretch, dtype=np.float64)
+    for test in tests:
+        own.plot(at, material.stress(at, test), label=test)
+    own.set_xlabel("stretch λ")
+    own.set_ylabel("nominal stress [MPa]")
+    own.set_title(material.title)
+    own.grid(alpha=0.3)
+    own.legend()
+    return own

@@ -1,0 +1,203 @@
+"""What studies find, as the command tells it."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+import json
+import os
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _core
+from ._fields import Cells, cells_of, to_meshio, to_pyvista
+from ._quantities import Floats, PathLike
+
+if TYPE_CHECKING:
+    import meshio
+    import pandas
+    import pyvista
+
+__all__ = ["Field", "Results"]
+
+
+class Field:
+    """A mesh with arrays, as a VTK file holds it: the unit is part of each array's name."""
+
+    def __init__(self, core: _core.Results, series: int, number: int, time: float | None) -> None:
+        self._core = core
+        self._place = (series, number)
+        self.time = time
+        """Stretch, load factor, time [s] or frame; None where there is none."""
+
+    @property
+    def points(self) -> Floats:
+        """Nodes at rest [mm], n × 2."""
+        return self._core.field_points(*self._place)
+
+    @property
+    def cells(self) -> Cells:
+        """Cells by their meshio names: the number of each, and its nodes."""
+        return cells_of(self._core.field_cells(*self._place))
+
+    @cached_property
+    def _arrays(self) -> tuple[dict[str, Floats], dict[str, Floats]]:
+        return self._core.field_arrays(*self._place)
+
+    @property
+    def point_data(self) -> dict[str, Floats]:
+        """Arrays at the nodes."""
+        return self._arrays[0]
+
+    @property
+    def cell_data(self) -> dict[str, Floats]:
+        """Arrays in the cells."""
+        return self._arrays[1]
+
+    @property
+    def displacement(self) -> Floats:
+        """ux, uy of every node [mm], n × 2."""
+        return self.point_data["displacement_mm"]
+
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
+        """The field as a grid of PyVista."""
+        return to_pyvista(self.points, self.cells, self.point_data, self.cell_data)
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The field as a mesh of meshio."""
+        return to_meshio(self.points, self.cells, self.point_data, self.cell_data)
+
+    def __repr__(self) -> str:
+        at = "" if self.time is None else f" at {self.time:g}"
+        return f"<gelbench.Field{at}: {len(self.points)} nodes>"
+
+
+class Results:
+    """What a study finds: figures, requirements, warnings, fields, tables, pictures."""
+
+    def __init__(self, core: _core.Results) -> None:
+        self._core = core
+
+    @property
+    def title(self) -> str:
+        """Title of the study."""
+        return self._core.title
+
+    @property
+    def kind(self) -> str:
+        """Kind of the study."""
+        return self._core.kind
+
+    @property
+    def passed(self) -> bool:
+        """Whether all requirements are met, without a doubt, by models that did not end early."""
+        return self._core.passed
+
+    @property
+    def summary(self) -> str:
+        """The headline figures, as the command prints them."""
+        return self._core.summary
+
+    @property
+    def warnings(self) -> list[str]:
+        """What deserves attention."""
+        return self._core.warnings
+
+    @property
+    def doubts(self) -> list[str]:
+        """What makes the figures doubtful."""
+        return self._core.doubts
+
+    @property
+    def seconds(self) -> float:
+        """Computing time [s]."""
+        return self._core.seconds
+
+    @cached_property
+    def json(self) -> dict[str, Any]:
+        """Everything in figures: what the command writes into ``report.json``."""
+        found: dict[str, Any] = json.loads(self._core.json())
+        return found
+
+    @property
+    def markdown(self) -> str:
+        """The report as Markdown."""
+        return self._core.markdown()
+
+    @property
+    def requirements(self) -> list[dict[str, Any]]:
+        """The requirements, and what comes of them."""
+        found: list[dict[str, Any]] = self.json["requirements"]
+        return found
+
+    @cached_property
+    def fields(self) -> dict[str, list[Field]]:
+        """Fields by the names of their series, such as ``corrected``, in the order of their times."""
+        found: dict[str, list[Field]] = {}
+        for series, (name, times) in enumerate(self._core.fields()):
+            found[name] = [Field(self._core, series, number, time) for number, time in enumerate(times)]
+        return found
+
+    @cached_property
+    def tables(self) -> dict[str, pandas.DataFrame]:
+        """Tables by the names of their files."""
+        import pandas
+
+        return {name: pandas.read_csv(io.StringIO(text), comment="#") for name, text in self._core.tables()}
+
+    @property
+    def pictures(self) -> Mapping[str, bytes]:
+        """Pictures as PNG by their names; each is drawn when it is asked for."""
+        return _Pictures(self._core)
+
+    def write(self, folder: PathLike | None = None) -> list[Path]:
+        """Writes what the command writes: report, pictures, VTK files.
+
+        Parameters
+        ----------
+        folder : str or path, optional
+            By default the folder that the study names, else ``output/`` and the study's name.
+
+        Returns
+        -------
+        list of pathlib.Path
+            The files.
+
+        Raises
+        ------
+        gelbench.WriteError
+            Where a file cannot be written, or is none of gelbench's.
+        """
+        return [Path(path) for path in self._core.write(None if folder is None else os.fspath(folder))]
+
+    def __repr__(self) -> str:
+        return f"<gelbench.{type(self).__name__} {self.title!r}: {'passed' if self.passed else 'not passed'}>"
+
+    def _repr_html_(self) -> str:
+        pictures = list(self.pictures.values())[:2]
+        drawn = "".join(
+            f'<img style="max-width:100%" src="data:image/png;base64,{base64.b64encode(one).decode()}">'
+            for one in pictures
+        )
+        told = "".join(f"<p>{html.escape(warning)}</p>" for warning in [*self.doubts, *self.warnings])
+        return f"<h3>{html.escape(self.title)}</h3><pre>{html.escape(self.summary)}</pre>{told}{drawn}"
+
+
+class _Pictures(Mapping[str, bytes]):
+    def __init__(self, core: _core.Results) -> None:
+        self._core = core
+        self._names = [name for name, _ in core.pictures()]
+
+    def __getitem__(self, name: str) -> bytes:
+        if name not in self._names:
+            raise KeyError(name)
+        return self._core.picture(self._names.index(name))
+
+    def __iter__(self) -> Any:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)

@@ -1,0 +1,315 @@
+"""Equilibria of one model."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._fields import Cells, cells_of, to_meshio, to_pyvista
+from ._quantities import Floats, finite, floats
+
+if TYPE_CHECKING:
+    import meshio
+    import pyvista
+    from matplotlib.axes import Axes
+
+__all__ = ["AtPoints", "GroupForce", "Solution", "State"]
+
+
+class GroupForce(NamedTuple):
+    """What happens at a group of nodes that is held, loaded or measured."""
+
+    force: Floats
+    """Force of the supports on the sheet, x and y [N]."""
+    moment: float
+    """Moment of that force about the group's mean deformed place [N·mm], counter-clockwise."""
+    displacement: Floats
+    """Mean displacement, x and y [mm]."""
+
+
+class AtPoints(NamedTuple):
+    """A state at points of the sheet."""
+
+    displacement: Floats
+    """ux, uy [mm], n × 2."""
+    stress: Floats
+    """Cauchy stress σ₁₁, σ₂₂, σ₁₂ [MPa], n × 3."""
+    stretches: Floats
+    """Principal stretches, the larger in the plane, the smaller, and that of the thickness, n × 3."""
+
+
+class State:
+    """An equilibrium at one load factor.
+
+    Arrays at nodes have the order of `Solution.points`.
+    """
+
+    __slots__ = ("_arrays", "_errors", "_solution", "_step", "factor")
+
+    factor: float
+    """Load factor; the stretch of a plate."""
+
+    def __init__(self, solution: Solution, step: int, factor: float, errors: dict[str, float]) -> None:
+        self._solution = solution
+        self._step = step
+        self._errors = errors
+        self._arrays: tuple[dict[str, Floats], dict[str, Floats]] | None = None
+        self.factor = factor
+
+    @property
+    def displacement(self) -> Floats:
+        """ux, uy of every node [mm], n × 2; read-only, the library's own memory."""
+        return self._solution._core.displacement(self._step)
+
+    @property
+    def residual(self) -> Floats:
+        """Internal forces of every node [N], n × 2; read-only."""
+        return self._solution._core.residual(self._step)
+
+    @property
+    def force(self) -> float:
+        """Force on the moving grip of a plate, or on the measured group of a specimen [N]."""
+        return self._solution._core.forces()[self._step]
+
+    @property
+    def groups(self) -> dict[str, GroupForce]:
+        """What happens at each group that is held, loaded or measured."""
+        found = self._solution._core.at_groups(self._step)
+        return {
+            name: GroupForce(np.array(force), moment, np.array(displacement))
+            for name, (force, moment, displacement) in found.items()
+        }
+
+    @property
+    def energy(self) -> float:
+        """Strain energy [mJ]."""
+        return self._solution._core.energy(self._step)
+
+    @property
+    def balance(self) -> float:
+        """What is left of all forces and moments together, over the largest of them."""
+        return self._solution._core.balance(self._step)
+
+    @property
+    def residuals(self) -> Floats:
+        """Relative residual after each iteration."""
+        return np.array(self._solution._core.residuals(self._step))
+
+    @property
+    def multipliers(self) -> dict[str, Floats]:
+        """Lagrange multipliers of a corrected plate by condition: ζ [mm²/N], η [mm] or [mm²/N]."""
+        return self._solution._core.multipliers(self._step)
+
+    @property
+    def error(self) -> dict[str, float]:
+        """Errors in percent, where ``solve(..., reference=True)`` has found them.
+
+        Of springs and corrected fields the deviation from the finite elements, of these their own error. The names are those
+        of ``report.json``.
+        """
+        return dict(self._errors)
+
+    @property
+    def point_data(self) -> dict[str, Floats]:
+        """Arrays at the nodes, as in VTK files: the unit is part of each name."""
+        return self._data()[0]
+
+    @property
+    def cell_data(self) -> dict[str, Floats]:
+        """Arrays in the cells, as in VTK files: the unit is part of each name."""
+        return self._data()[1]
+
+    @property
+    def stress(self) -> Floats:
+        """Cauchy stress σ₁₁, σ₂₂, σ₃₃, σ₁₂ at every node [MPa], n × 4."""
+        return self.point_data["cauchy_stress_at_nodes_MPa"]
+
+    def at(self, points: ArrayLike) -> AtPoints:
+        """Displacement, stress and stretches at points of the sheet.
+
+        Parameters
+        ----------
+        points : array_like
+            Places at rest [mm], n × 2, or one place.
+
+        Raises
+        ------
+        gelbench.InputError
+            Where a point is not on the sheet.
+        """
+        single = np.ndim(points) == 1
+        places = finite(floats(np.atleast_2d(np.asarray(points)), "points", (None, 2)), "points")
+        found = self._solution._core.at(self._step, places)
+        return AtPoints(*(one[0] if single else one for one in found))
+
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
+        """The state as a grid of PyVista; warp it by ``displacement_mm`` to see it deformed."""
+        solution = self._solution
+        return to_pyvista(solution.points, solution.cells, self.point_data, self.cell_data)
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The state as a mesh of meshio, which writes it in many formats."""
+        solution = self._solution
+        return to_meshio(solution.points, solution.cells, self.point_data, self.cell_data)
+
+    def plot(
+        self, quantity: str = "von_mises_stress_at_nodes_MPa", ax: Axes | None = None, **options: Any
+    ) -> Axes:
+        """Draws the deformed sheet.
+
+        Parameters
+        ----------
+        quantity : str
+            An array of `point_data`; of vectors and tensors the first component is drawn.
+        ax : matplotlib.axes.Axes, optional
+            Where to draw.
+        **options
+            For `matplotlib.axes.Axes.tripcolor`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from ._plots import deformed
+
+        return deformed(self, quantity, ax, options)
+
+    def _data(self) -> tuple[dict[str, Floats], dict[str, Floats]]:
+        if self._arrays is None:
+            self._arrays = self._solution._core.arrays(self._step)
+        return self._arrays
+
+    @property
+    def solution(self) -> Solution:
+        """The solution that it is part of."""
+        return self._solution
+
+    def __repr__(self) -> str:
+        return f"<gelbench.State at {self.factor:g}: {self.force:.6g} N>"
+
+    def _repr_html_(self) -> str:
+        from ._plots import inline
+
+        head = f"{html.escape(self._solution.model)} at {self.factor:g}: {self.force:.6g} N"
+        return f"{head}<br>{inline(lambda ax: self.plot(ax=ax))}"
+
+
+class Solution(Sequence[State]):
+    """The equilibria of one model, one `State` for each load factor.
+
+    What a state has, a solution has too: that of its last state.
+    """
+
+    def __init__(self, core: _core.Solution, model: str, errors: dict[float, dict[str, float]]) -> None:
+        self._core = core
+        self._model = model
+        states = enumerate(core.factors())
+        self._states = [State(self, step, factor, errors.get(factor, {})) for step, factor in states]
+
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return self._model
+
+    @property
+    def points(self) -> Floats:
+        """Nodes at rest [mm], n × 2; read-only."""
+        return self._core.points
+
+    @property
+    def cells(self) -> Cells:
+        """Cells by their meshio names: the number of each, and its nodes."""
+        return cells_of(self._core.cells())
+
+    @property
+    def nodes(self) -> dict[str, NDArray[np.int64]]:
+        """Nodes of the groups of the mesh."""
+        return self._core.group_nodes()
+
+    @property
+    def thickness(self) -> float:
+        """Thickness at rest [mm]."""
+        return self._core.thickness
+
+    @property
+    def factors(self) -> Floats:
+        """Load factors that were reached; stretches of a plate."""
+        return np.array(self._core.factors())
+
+    @property
+    def forces(self) -> Floats:
+        """The `force` of every state [N]."""
+        return np.array(self._core.forces())
+
+    @property
+    def last(self) -> State:
+        """The state at the last load factor."""
+        return self._states[-1]
+
+    @property
+    def displacement(self) -> Floats:
+        """`State.displacement` of the last state."""
+        return self.last.displacement
+
+    @property
+    def force(self) -> float:
+        """`State.force` of the last state."""
+        return self.last.force
+
+    @property
+    def stress(self) -> Floats:
+        """`State.stress` of the last state."""
+        return self.last.stress
+
+    @property
+    def error(self) -> dict[str, float]:
+        """`State.error` of the last state."""
+        return self.last.error
+
+    def at(self, points: ArrayLike) -> AtPoints:
+        """`State.at` of the last state."""
+        return self.last.at(points)
+
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
+        """`State.to_pyvista` of the last state."""
+        return self.last.to_pyvista()
+
+    def to_meshio(self) -> meshio.Mesh:
+        """`State.to_meshio` of the last state."""
+        return self.last.to_meshio()
+
+    def plot(
+        self, quantity: str = "von_mises_stress_at_nodes_MPa", ax: Axes | None = None, **options: Any
+    ) -> Axes:
+        """`State.plot` of the last state."""
+        return self.last.plot(quantity, ax, **options)
+
+    def plot_forces(self, ax: Axes | None = None) -> Axes:
+        """Draws the force over the load factor."""
+        from ._plots import forces
+
+        return forces(self, ax)
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    @overload
+    def __getitem__(self, index: int) -> State: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[State]: ...
+    def __getitem__(self, index: int | slice) -> State | list[State]:
+        return self._states[index]
+
+    def __repr__(self) -> str:
+        return f"<gelbench.Solution {self.model}: {len(self.points)} nodes, {len(self)} states>"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><td>{state.factor:g}</td><td>{state.force:.6g}</td></tr>" for state in self)
+        head = f"<b>{html.escape(self.model)}</b>, {len(self.points)} nodes"
+        table = f"<table><tr><th>load factor</th><th>force [N]</th></tr>{rows}</table>"
+        return head + table + (self.last._repr_html_() if self._states else "")

@@ -1,0 +1,333 @@
+"""The corrective technique for any discretisation.
+
+Of all fields that satisfy conditions, the one nearest to a given field is found, with Lagrange multipliers::
+
+    minimise ½ ‖u − ū‖²_W   subject to   F(u) = 0,  T(u) = 0
+
+F is the governing equation at some unknowns, T what is known besides; both are `Condition` objects, whose values and Jacobians come
+from any program. Where there are as many conditions as unknowns, ū has a say in the multipliers only; where there are fewer, the
+data and the physics decide together.
+
+Examples
+--------
+The point of a parabola that is nearest to (0, 2):
+
+>>> import numpy as np
+>>> from gelbench import corrector
+>>> parabola = corrector.Condition(
+...     "parabola", lambda u: u[1] - u[0] ** 2, lambda u: np.array([[-2 * u[0], 1.0]]))
+>>> corrector.correct([0.0, 2.0], [parabola], start=[1.0, 1.0]).field.round(6)
+array([1.224745, 1.5     ])
+
+References
+----------
+H. Mohammadi, W. Wan: A novel numerical corrective technique to mass spring systems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._errors import fault
+from ._progress import Progress, callback
+from ._quantities import Floats, finite, floats
+
+__all__ = ["Condition", "Corrected", "Estimate", "Matrix", "correct", "linear", "prescribed"]
+
+Matrix: TypeAlias = Any
+"""A sparse matrix or array of SciPy, or an array of two dimensions."""
+
+Csr: TypeAlias = "tuple[NDArray[np.int64], NDArray[np.int64], Floats]"
+
+
+class Condition:
+    """Conditions c(u) = 0 on a field of n unknowns, with one multiplier a row.
+
+    Parameters
+    ----------
+    name : str
+        Name, for messages and multipliers.
+    values : callable
+        Of a field (n), the m values c(u). A value that is no number says that the field is inadmissible: a shorter step is tried.
+    jacobian : callable or matrix
+        Of a field, ∂c/∂u, m × n, sparse or dense; a matrix if it is always the same.
+    curvature : callable, optional
+        Of a field and m multipliers ψ, Σ ψᵢ ∂²cᵢ/∂u∂u, n × n; it saves steps where c is not linear.
+    unknowns : array_like of int, optional
+        The unknown that each row belongs to, where each belongs to one. Where all conditions together name each unknown once, the
+        system is solved as a square one.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        values: Callable[[Floats], ArrayLike],
+        jacobian: Callable[[Floats], Matrix] | Matrix,
+        *,
+        curvature: Callable[[Floats, Floats], Matrix] | None = None,
+        unknowns: ArrayLike | None = None,
+    ) -> None:
+        self.name = name
+        self._values = values
+        self._jacobian: Callable[[Floats], Matrix] = jacobian if callable(jacobian) else lambda _: jacobian
+        self._curvature = curvature
+        self._unknowns = None if unknowns is None else np.asarray(unknowns, dtype=np.int64).reshape(-1)
+
+    def values(self, u: ArrayLike) -> Floats:
+        """The values at a field."""
+        found = self._values(np.asarray(u, dtype=np.float64))
+        return floats(np.atleast_1d(np.asarray(found)), f"the values of `{self.name}`", (None,))
+
+    def jacobian(self, u: ArrayLike) -> Matrix:
+        """The Jacobian at a field."""
+        return self._jacobian(np.asarray(u, dtype=np.float64))
+
+    def check(self, u: ArrayLike, *, step: float = 1e-6, seed: int = 0) -> float:
+        """Compares the Jacobian with differences along a random direction.
+
+        Parameters
+        ----------
+        u : array_like
+            The field.
+        step : float
+            Length of the direction over that of the field, or 1.
+
+        Returns
+        -------
+        float
+            The deviation over the larger of both; some 1e-8 where all is well.
+        """
+        field = finite(floats(u, "u", (None,)), "u")
+        direction = np.random.default_rng(seed).standard_normal(field.size)
+        length = step * max(1.0, float(np.abs(field).max(initial=0.0)))
+        difference = (self.values(field + length * direction) - self.values(field - length * direction)) / (2 * length)
+        derivative = np.asarray(self.jacobian(field) @ direction).reshape(-1)
+        size = max(float(np.linalg.norm(difference)), float(np.linalg.norm(derivative)), np.finfo(float).tiny)
+        return float(np.linalg.norm(difference - derivative)) / size
+
+    def _given(self, start: Floats) -> dict[str, Any]:
+        rows = self.values(start).size
+        size = start.size
+
+        def linearise(u: Floats) -> tuple[Floats, Csr]:
+            values = self.values(u)
+            if values.size != rows:
+                raise fault("conditions", f"`{self.name}` has {values.size} values, and had {rows}", "return as many each time")
+            return values, _csr(self._jacobian(u), (rows, size), f"the Jacobian of `{self.name}`")
+
+        def curvature(u: Floats, multipliers: Floats) -> Csr:
+            assert self._curvature is not None
+            return _csr(self._curvature(u, multipliers), (size, size), f"the curvature of `{self.name}`")
+
+        unknowns = None
+        if self._unknowns is not None:
+            if self._unknowns.size != rows or (self._unknowns < 0).any() or (self._unknowns >= size).any():
+                raise fault("conditions", f"the unknowns of `{self.name}` do not fit", f"give one of {size} for each of {rows} rows")
+            unknowns = self._unknowns.tolist()
+        return {
+            "name": self.name,
+            "rows": rows,
+            "linearise": linearise,
+            "curvature": None if self._curvature is None else curvature,
+            "unknowns": unknowns,
+        }
+
+
+def linear(name: str, matrix: Matrix, right_hand_side: ArrayLike, *, unknowns: ArrayLike | None = None) -> Condition:
+    """Linear conditions B u − b = 0.
+
+    Parameters
+    ----------
+    name : str
+        Name.
+    matrix : matrix
+        B, m × n.
+    right_hand_side : array_like
+        b, m.
+    unknowns : array_like of int, optional
+        As of `Condition`.
+    """
+    given = finite(floats(right_hand_side, "right_hand_side", (None,)), "right_hand_side")
+    if matrix.shape[0] != given.size:
+        raise fault("right_hand_side", f"has {given.size} entries, the matrix {matrix.shape[0]} rows", "give one a row")
+
+    def values(u: Floats) -> Floats:
+        found: Floats = np.asarray(matrix @ u).reshape(-1) - given
+        return found
+
+    return Condition(name, values, matrix, unknowns=unknowns)
+
+
+def prescribed(name: str, size: int, known: Mapping[int, float]) -> Condition:
+    """Known values uᵢ = gᵢ: supports, symmetry, measured entries.
+
+    Parameters
+    ----------
+    name : str
+        Name.
+    size : int
+        Unknowns of the field, n.
+    known : mapping
+        Values by the numbers of the unknowns.
+    """
+    unknowns = np.fromiter(known.keys(), dtype=np.int64, count=len(known))
+    given = finite(np.fromiter(known.values(), dtype=np.float64, count=len(known)), "known")
+    if (unknowns < 0).any() or (unknowns >= size).any():
+        raise fault("known", "names unknowns that the field does not have", f"it has {size}, counted from 0")
+    rows = _Selection(unknowns, size)
+
+    def values(u: Floats) -> Floats:
+        found: Floats = u[unknowns] - given
+        return found
+
+    return Condition(name, values, rows, unknowns=unknowns)
+
+
+class _Selection:
+    """The matrix that picks some unknowns."""
+
+    def __init__(self, unknowns: NDArray[np.int64], size: int) -> None:
+        self.shape = (unknowns.size, size)
+        self.indptr = np.arange(unknowns.size + 1, dtype=np.int64)
+        self.indices = unknowns
+        self.data = np.ones(unknowns.size)
+
+    def tocsr(self) -> _Selection:
+        return self
+
+    def __matmul__(self, u: Floats) -> Floats:
+        found: Floats = u[self.indices]
+        return found
+
+
+class Estimate(NamedTuple):
+    """An unknown with its uncertainty."""
+
+    value: float
+    """Its value."""
+    standard_error: float
+    """Its standard error."""
+    interval: tuple[float, float]
+    """Its 95 % interval."""
+
+
+class Corrected(NamedTuple):
+    """A corrected field, and how it was found."""
+
+    field: Floats
+    """u, n."""
+    multipliers: dict[str, Floats]
+    """Multipliers by condition: −∂(½ ‖u − ū‖²_W)/∂b of each row c(u) = b."""
+    residuals: Floats
+    """The largest residual, as a distance over the largest entry, of the start and after each step."""
+    lengths: Floats
+    """The share of the linearised step that was taken to get there; 1 for the start."""
+    estimates: dict[int, Estimate]
+    """Unknowns that were asked for, with their uncertainty."""
+
+    @property
+    def steps(self) -> int:
+        """Steps that were taken."""
+        return len(self.residuals) - 1
+
+
+def correct(
+    field: ArrayLike,
+    conditions: Sequence[Condition],
+    *,
+    start: ArrayLike | None = None,
+    weights: ArrayLike | None = None,
+    estimate: Iterable[int] = (),
+    tolerance: float = 1e-10,
+    movement: float = 1e-9,
+    max_steps: int = 40,
+    solver: Literal["automatic", "dense", "cholesky", "kkt", "symmetric"] = "automatic",
+    progress: Progress | None = None,
+) -> Corrected:
+    """Finds the field nearest to a given one that satisfies conditions.
+
+    Parameters
+    ----------
+    field : array_like
+        ū, n.
+    conditions : sequence of Condition
+        F and T.
+    start : array_like, optional
+        Where the search begins, n; ū by default. Never begin at noisy data: the conditions are linearised there.
+    weights : array_like, optional
+        The diagonal of W, n: inverse variances of ū; 1 by default. An entry with the weight 0 has no data: it is a parameter that
+        is found with the field.
+    estimate : iterable of int
+        Unknowns whose uncertainty is wanted; the variance of the data follows from what is left of them.
+    tolerance : float
+        Largest residual as a distance over the largest entry of the field.
+    movement : float
+        Largest further move that is left undone, over the largest entry.
+    max_steps : int
+        Steps allowed.
+    solver : {"automatic", "dense", "cholesky", "kkt", "symmetric"}
+        Form of the projection.
+    progress : callable or tqdm bar, optional
+        Reserved for what takes long.
+
+    Returns
+    -------
+    Corrected
+        The field, the multipliers, the way to it.
+
+    Raises
+    ------
+    gelbench.InputError
+        Where shapes do not fit, or numbers are none.
+    gelbench.SolveError
+        Where no field is found, or conditions depend on each other: its rows are named.
+    """
+    given = finite(floats(field, "field", (None,)), "field")
+    begin = given if start is None else finite(floats(start, "start", (given.size,)), "start")
+    own = np.ones(given.size) if weights is None else finite(floats(weights, "weights", (given.size,)), "weights")
+    if (own < 0.0).any():
+        raise fault("weights", f"holds {own.min()}", "weights are inverse variances, or zero")
+    wanted = [int(unknown) for unknown in estimate]
+    if any(unknown not in range(given.size) for unknown in wanted):
+        raise fault("estimate", "names unknowns that the field does not have", f"it has {given.size}, counted from 0")
+    settings = {"tolerance": tolerance, "movement": movement, "max_steps": max_steps, "solver": solver}
+    listed = [condition._given(begin) for condition in conditions]
+    found = _core.corrected(given, begin, own, listed, settings, wanted, callback(progress))
+    u, residuals, lengths, multipliers, estimates = found
+    return Corrected(
+        u,
+        dict(multipliers),
+        np.array(residuals),
+        np.array(lengths),
+        {unknown: Estimate(*one) for unknown, one in zip(wanted, estimates, strict=True)},
+    )
+
+
+def _csr(matrix: Matrix, shape: tuple[int, int], what: str) -> Csr:
+    if not hasattr(matrix, "tocsr"):
+        matrix = _Dense(floats(np.atleast_2d(np.asarray(matrix)), what, (None, None)))
+    if tuple(matrix.shape) != shape:
+        raise fault("conditions", f"{what} has the shape {tuple(matrix.shape)}", f"it must be {shape[0]} × {shape[1]}")
+    rows = matrix.tocsr()
+    data = finite(np.ascontiguousarray(rows.data, dtype=np.float64), what)
+    return np.asarray(rows.indptr, dtype=np.int64), np.asarray(rows.indices, dtype=np.int64), data
+
+
+class _Dense:
+    """A dense matrix by rows."""
+
+    def __init__(self, matrix: Floats) -> None:
+        self.shape = matrix.shape
+        rows, columns = np.nonzero(matrix)
+        counts = np.bincount(rows, minlength=matrix.shape[0])
+        self.indptr = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        self.indices = columns.astype(np.int64)
+        self.data = matrix[rows, columns]
+
+    def tocsr(self) -> _Dense:
+        return self

@@ -1,0 +1,217 @@
+//! The corrector for conditions that Python hands over.
+
+use gelbench::corrector::{
+    Condition, Corrector, CorrectorSettings, Linearisation, Multipliers, Solver,
+};
+use gelbench::error::Error;
+use gelbench::solve::{Inadmissible, SparseRows};
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use crate::errors::input;
+use crate::running::{Watch, run};
+
+/// A sparse matrix by rows: begins of rows, columns, values.
+type Csr<'py> = (
+    PyReadonlyArray1<'py, i64>,
+    PyReadonlyArray1<'py, i64>,
+    PyReadonlyArray1<'py, f64>,
+);
+
+/// The rows of a sparse matrix with so many columns.
+fn sparse_rows(columns: usize, (begins, places, values): &Csr<'_>) -> PyResult<SparseRows> {
+    let (begins, places, values) = (begins.as_slice()?, places.as_slice()?, values.as_slice()?);
+    let mut rows = SparseRows::new(columns);
+    for ends in begins.windows(2) {
+        let range = ends[0] as usize..ends[1] as usize;
+        let row = places[range.clone()].iter().zip(&values[range]);
+        rows.push(row.map(|(column, value)| (*column as usize, *value)));
+    }
+    Ok(rows)
+}
+
+/// Conditions that a callable linearises: of a field, values and the Jacobian by rows.
+struct PythonCondition<'a> {
+    name: String,
+    rows: usize,
+    linearise: Py<PyAny>,
+    curvature: Option<Py<PyAny>>,
+    unknowns: Option<Vec<usize>>,
+    watch: &'a Watch,
+}
+
+impl PythonCondition<'_> {
+    fn call(&self, u: &[f64]) -> Linearisation {
+        self.watch.check();
+        let found = Python::attach(|py| {
+            let found = self.linearise.call1(py, (PyArray1::from_slice(py, u),))?;
+            let (values, jacobian): (PyReadonlyArray1<'_, f64>, Csr<'_>) = found.extract(py)?;
+            Ok(Linearisation {
+                values: values.as_slice()?.to_vec(),
+                jacobian: sparse_rows(u.len(), &jacobian)?,
+            })
+        });
+        found.unwrap_or_else(|error| self.watch.fail(error))
+    }
+}
+
+impl Condition for PythonCondition<'_> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
+        let found = self.call(u);
+        // A trial field at which the conditions have no value is too long a step.
+        match found.values.iter().all(|value| value.is_finite()) {
+            true => Ok(found),
+            false => Err(Inadmissible { element: 0 }),
+        }
+    }
+
+    fn curvature(
+        &self,
+        u: &[f64],
+        multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        let Some(curvature) = &self.curvature else {
+            return Ok(None);
+        };
+        self.watch.check();
+        let found = Python::attach(|py| {
+            let field = PyArray1::from_slice(py, u);
+            let multipliers = PyArray1::from_slice(py, multipliers);
+            let found = curvature.call1(py, (field, multipliers))?;
+            let found: Csr<'_> = found.extract(py)?;
+            sparse_rows(u.len(), &found)
+        });
+        Ok(Some(found.unwrap_or_else(|error| self.watch.fail(error))))
+    }
+
+    fn unknowns(&self) -> Option<&[usize]> {
+        self.unknowns.as_deref()
+    }
+}
+
+/// What Python says of a group of conditions.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Given {
+    name: String,
+    rows: usize,
+    linearise: Py<PyAny>,
+    curvature: Option<Py<PyAny>>,
+    unknowns: Option<Vec<usize>>,
+}
+
+/// When a correction ends.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Settings {
+    tolerance: f64,
+    movement: f64,
+    max_steps: usize,
+    solver: String,
+}
+
+const SOLVERS: [(&str, Solver); 5] = [
+    ("automatic", Solver::Automatic),
+    ("dense", Solver::Dense),
+    ("cholesky", Solver::Cholesky),
+    ("kkt", Solver::Kkt),
+    ("symmetric", Solver::Symmetric),
+];
+
+impl Settings {
+    fn read(&self) -> Result<CorrectorSettings, Error> {
+        let solver = SOLVERS.iter().find(|(name, _)| *name == self.solver);
+        let unknown = || {
+            let known = SOLVERS.map(|(name, _)| name).join(", ");
+            input(
+                format!("there is no solver `{}`", self.solver),
+                format!("take one of {known}"),
+            )
+        };
+        Ok(CorrectorSettings {
+            tolerance: self.tolerance,
+            movement: self.movement,
+            max_steps: self.max_steps,
+            solver: solver.ok_or_else(unknown)?.1,
+        })
+    }
+}
+
+/// Value, standard error and 95 % interval.
+type Estimate = (f64, f64, (f64, f64));
+
+/// Field, residuals of the steps, shares of the steps, multipliers, estimates.
+type Corrected<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Vec<f64>,
+    Vec<f64>,
+    Vec<(String, Bound<'py, PyArray1<f64>>)>,
+    Vec<Estimate>,
+);
+
+/// The field nearest to `data` that satisfies the conditions, sought from `start`.
+#[pyfunction]
+#[pyo3(signature = (data, start, weights, conditions, settings, estimate, progress=None))]
+#[expect(clippy::too_many_arguments, reason = "the problem's parts")]
+pub fn corrected<'py>(
+    py: Python<'py>,
+    data: PyReadonlyArray1<'py, f64>,
+    start: PyReadonlyArray1<'py, f64>,
+    weights: PyReadonlyArray1<'py, f64>,
+    conditions: Vec<Given>,
+    settings: Settings,
+    estimate: Vec<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Corrected<'py>> {
+    let data = data.as_slice()?.to_vec();
+    let start = start.as_slice()?.to_vec();
+    let weights = weights.as_slice()?.to_vec();
+    let (field, residuals, lengths, multipliers, estimates) = run(py, progress, |watch| {
+        let conditions = conditions.into_iter().map(|given| {
+            Box::new(PythonCondition {
+                name: given.name,
+                rows: given.rows,
+                linearise: given.linearise,
+                curvature: given.curvature,
+                unknowns: given.unknowns,
+                watch,
+            }) as Box<dyn Condition + '_>
+        });
+        let corrector = Corrector::new(conditions.collect(), weights, settings.read()?);
+        let failed = |fault| Error::Solve {
+            model: "corrector".into(),
+            step: "the given field".into(),
+            fault,
+        };
+        let found = corrector.correct(&data, &start).map_err(failed)?;
+        let one = |unknown: &usize| {
+            let found = corrector
+                .estimate(&data, &found, *unknown)
+                .map_err(failed)?;
+            Ok((found.value, found.standard_error, found.interval.into()))
+        };
+        let estimates = estimate
+            .iter()
+            .map(one)
+            .collect::<Result<Vec<Estimate>, Error>>()?;
+        Ok((
+            found.field().to_vec(),
+            found.steps.iter().map(|step| step.residual).collect(),
+            found.steps.iter().map(|step| step.length).collect(),
+            found.multipliers,
+            estimates,
+        ))
+    })?;
+    let named = |one: Multipliers| (one.name, PyArray1::from_vec(py, one.values));
+    let multipliers = multipliers.into_iter().map(named).collect();
+    let field = PyArray1::from_vec(py, field);
+    Ok((field, residuals, lengths, multipliers, estimates))
+}

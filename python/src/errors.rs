@@ -1,0 +1,88 @@
+//! The library's errors as Python's exceptions, which `gelbench._errors` defines.
+
+use gelbench::error::{Diagnostic, Error, Severity, SolveFault};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// The exception of an error, with the library's own text.
+pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
+    made(py, error).unwrap_or_else(|fault| fault)
+}
+
+fn made(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+    let module = py.import("gelbench._errors")?;
+    let raised = match error {
+        Error::Input(faults) => {
+            let class = module.getattr("Fault")?;
+            let faults = faults.iter().map(|fault| described(&class, fault));
+            let faults = faults.collect::<PyResult<Vec<_>>>()?;
+            module
+                .getattr("InputError")?
+                .call1((error.to_string(), faults))?
+        }
+        Error::Solve { model, step, fault } => {
+            let said = PyDict::new(py);
+            said.set_item("model", model)?;
+            said.set_item("step", step)?;
+            said.set_item("cause", fault.to_string())?;
+            said.set_item("cell", place(fault))?;
+            said.set_item("advice", fault.advice())?;
+            let class = module.getattr("SolveError")?;
+            class.call((error.to_string(),), Some(&said))?
+        }
+        Error::Write { .. } => module.getattr("WriteError")?.call1((error.to_string(),))?,
+    };
+    Ok(PyErr::from_value(raised))
+}
+
+fn described<'py>(class: &Bound<'py, PyAny>, fault: &Diagnostic) -> PyResult<Bound<'py, PyAny>> {
+    let place = fault.place.as_ref();
+    class.call1((
+        fault.message.as_str(),
+        fault.key.as_str(),
+        fault.hint.as_deref(),
+        place.map(|(source, _)| source.name.as_str()),
+        place.map(|(source, span)| source.line(span.start)),
+        fault.severity == Severity::Warning,
+        fault.to_string(),
+    ))
+}
+
+/// Where a solver failed, in words.
+fn place(fault: &SolveFault) -> Option<&str> {
+    match fault {
+        SolveFault::Inverted { element } | SolveFault::MaterialUnstable { element, .. } => {
+            Some(element)
+        }
+        SolveFault::LoadMaximum { place, .. } | SolveFault::Buckling { place } => Some(place),
+        _ => None,
+    }
+}
+
+/// One fault of what Python hands over.
+pub fn input(message: impl Into<String>, hint: impl Into<String>) -> Error {
+    Error::input(message, hint)
+}
+
+/// The same where the message says what to do.
+pub fn refused(message: impl Into<String>) -> Error {
+    Error::Input(vec![Diagnostic::error("", message)])
+}
+
+/// A fault of gelbench itself.
+pub fn internal(payload: &(dyn std::any::Any + Send)) -> PyErr {
+    let text = payload
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| payload.downcast_ref::<&str>().copied());
+    let text = text.unwrap_or("unknown");
+    PyRuntimeError::new_err(format!(
+        "a fault of gelbench itself, please report it: {text}"
+    ))
+}
+
+/// What is raised where a computation was stopped without any other reason.
+pub fn interrupted() -> PyErr {
+    PyKeyboardInterrupt::new_err(())
+}

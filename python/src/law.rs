@@ -1,0 +1,244 @@
+//! Laws that Python hands over, and laws that let a computation end.
+
+use std::fmt;
+use std::panic::resume_unwind;
+use std::sync::Arc;
+
+use gelbench::material::code::{Code, CodeLaw};
+use gelbench::material::law::TensionResponse;
+use gelbench::material::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
+use gelbench::material::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
+use numpy::{PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::running::Watch;
+
+/// An exception in a law written in Python, on its way out of a computation.
+pub struct Raised(PyErr);
+
+impl Raised {
+    /// The exception.
+    pub fn error(&self) -> PyErr {
+        Python::attach(|py| self.0.clone_ref(py))
+    }
+}
+
+/// A law of the first two invariants as a Python callable: arrays of I₁ and I₂ to an array with the rows Ψ, Ψ₁, Ψ₂, Ψ₁₁, Ψ₁₂,
+/// Ψ₂₂, one for each point.
+struct Callable(Py<PyAny>);
+
+impl Callable {
+    fn at_all(&self, points: &[Invariants]) -> Vec<EnergyDerivatives> {
+        let found = Python::attach(|py| self.call(py, points));
+        found.unwrap_or_else(|error| resume_unwind(Box::new(Raised(error))))
+    }
+
+    fn call(&self, py: Python<'_>, points: &[Invariants]) -> PyResult<Vec<EnergyDerivatives>> {
+        let array = |of: fn(&Invariants) -> f64| {
+            PyArray1::from_iter(py, points.iter().map(|point| 3.0 + of(point)))
+        };
+        let i1 = array(|point| point.i1_minus_3);
+        let i2 = array(|point| point.i2_minus_3);
+        let found = self.0.call1(py, (i1, i2))?;
+        let found: PyReadonlyArray2<'_, f64> = found.extract(py)?;
+        let rows = found.as_array();
+        let row = |row: usize| EnergyDerivatives {
+            energy: rows[[row, 0]],
+            d1: rows[[row, 1]],
+            d2: rows[[row, 2]],
+            d11: rows[[row, 3]],
+            d12: rows[[row, 4]],
+            d22: rows[[row, 5]],
+        };
+        Ok((0..points.len()).map(row).collect())
+    }
+}
+
+impl fmt::Debug for Callable {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a law in Python")
+    }
+}
+
+impl InvariantLaw for Callable {
+    fn evaluate(&self, at: Invariants) -> EnergyDerivatives {
+        self.at_all(&[at])[0]
+    }
+}
+
+/// A law written in Python, asked at many points at once where the library asks so.
+#[derive(Debug)]
+pub struct PythonLaw(Arc<Callable>);
+
+impl PythonLaw {
+    /// Of a callable.
+    pub fn new(evaluate: Py<PyAny>) -> Self {
+        Self(Arc::new(Callable(evaluate)))
+    }
+
+    /// The states of many points, and what the law says of them; nothing where J is not positive at one.
+    fn at_all(&self, gradients: [&[f64]; 4]) -> Option<(Vec<Kinematics>, Vec<EnergyDerivatives>)> {
+        let points = 0..gradients[0].len();
+        let at = |point: usize| {
+            Kinematics::new(&gradients.map(|component| component[point]).into()).ok()
+        };
+        let states = points.map(at).collect::<Option<Vec<_>>>()?;
+        let invariants: Vec<Invariants> = states.iter().map(|state| state.invariants).collect();
+        let derivatives = self.0.at_all(&invariants);
+        Some((states, derivatives))
+    }
+}
+
+impl HyperelasticLaw for PythonLaw {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+        self.0.stress(kinematics)
+    }
+
+    fn response(&self, kinematics: &Kinematics) -> SheetResponse {
+        self.0.response(kinematics)
+    }
+
+    fn tension(&self, direction: [f64; 2], strain: f64) -> TensionResponse {
+        self.0.tension(direction, strain)
+    }
+
+    fn stresses(&self, gradients: [&[f64]; 4], mut stresses: [&mut [f64]; 4]) -> bool {
+        let Some((states, derivatives)) = self.at_all(gradients) else {
+            return false;
+        };
+        for (point, (state, derivatives)) in states.iter().zip(&derivatives).enumerate() {
+            let (_, stress) = state.stress(derivatives);
+            for (component, value) in stresses.iter_mut().zip(stress.iter()) {
+                component[point] = *value;
+            }
+        }
+        true
+    }
+
+    fn tangents(&self, gradients: [&[f64]; 4], mut tangents: [&mut [f64]; 10]) -> bool {
+        let Some((states, derivatives)) = self.at_all(gradients) else {
+            return false;
+        };
+        for (point, (state, derivatives)) in states.iter().zip(&derivatives).enumerate() {
+            let tangent = state.response(derivatives).tangent;
+            let lower = (0..4).flat_map(|column| (column..4).map(move |row| (row, column)));
+            for (component, place) in tangents.iter_mut().zip(lower) {
+                component[point] = tangent[place];
+            }
+        }
+        true
+    }
+
+    fn of_invariants(self: Arc<Self>) -> Option<Arc<dyn InvariantLaw>> {
+        Some(Arc::clone(&self.0) as Arc<dyn InvariantLaw>)
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.0.shear_modulus()
+    }
+
+    fn youngs_modulus(&self) -> f64 {
+        self.0.youngs_modulus()
+    }
+}
+
+/// A law as it is, which ends the computation that asks it if that is to end.
+pub struct Watched {
+    law: Arc<dyn HyperelasticLaw>,
+    watch: Arc<Watch>,
+}
+
+impl Watched {
+    /// A law under a watch.
+    pub fn law(law: &Arc<dyn HyperelasticLaw>, watch: &Arc<Watch>) -> Arc<dyn HyperelasticLaw> {
+        Arc::new(Self {
+            law: Arc::clone(law),
+            watch: Arc::clone(watch),
+        })
+    }
+}
+
+impl fmt::Debug for Watched {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.law.fmt(formatter)
+    }
+}
+
+impl HyperelasticLaw for Watched {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+        self.watch.check();
+        self.law.stress(kinematics)
+    }
+
+    fn response(&self, kinematics: &Kinematics) -> SheetResponse {
+        self.watch.check();
+        self.law.response(kinematics)
+    }
+
+    fn tension(&self, direction: [f64; 2], strain: f64) -> TensionResponse {
+        self.watch.check();
+        self.law.tension(direction, strain)
+    }
+
+    fn biaxial(&self, strains: [f64; 2]) -> [f64; 2] {
+        self.law.biaxial(strains)
+    }
+
+    fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
+        self.watch.check();
+        self.law.stresses(gradients, stresses)
+    }
+
+    fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
+        self.watch.check();
+        self.law.tangents(gradients, tangents)
+    }
+
+    fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {
+        self.law.in_code(code, bulk_modulus)
+    }
+
+    fn volume_ratio(&self, kinematics: &Kinematics) -> f64 {
+        self.law.volume_ratio(kinematics)
+    }
+
+    fn thickness_stretch(&self, kinematics: &Kinematics) -> f64 {
+        self.law.thickness_stretch(kinematics)
+    }
+
+    fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
+        self.law.thickness_gradient(kinematics)
+    }
+
+    fn thickness_stress(&self, kinematics: &Kinematics) -> f64 {
+        self.law.thickness_stress(kinematics)
+    }
+
+    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &Gradient) -> [f64; 3] {
+        self.law.cauchy_stress(kinematics, stress)
+    }
+
+    fn plane_state(&self) -> PlaneState {
+        self.law.plane_state()
+    }
+
+    fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
+        self.law.in_plane_strain()
+    }
+
+    fn of_invariants(self: Arc<Self>) -> Option<Arc<dyn InvariantLaw>> {
+        Arc::clone(&self.law).of_invariants()
+    }
+
+    fn is_isotropic(&self) -> bool {
+        self.law.is_isotropic()
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.law.shear_modulus()
+    }
+
+    fn youngs_modulus(&self) -> f64 {
+        self.law.youngs_modulus()
+    }
+}

@@ -1,0 +1,41 @@
+//! gelbench for Python: the module `gelbench._core`, below the package `gelbench`.
+//!
+//! It hands texts and arrays to the library's front door and what comes of them back, and knows no mechanics. The GIL is free
+//! while something is computed: [`running`].
+
+use pyo3::prelude::*;
+
+mod corrector;
+mod errors;
+mod fields;
+mod law;
+mod markers;
+mod material;
+mod results;
+mod running;
+mod solution;
+mod study;
+mod tests_to_laws;
+
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<material::MaterialCard>()?;
+    module.add_class::<results::Results>()?;
+    module.add_class::<solution::Solution>()?;
+    module.add_class::<study::GivenMesh>()?;
+    module.add_function(wrap_pyfunction!(corrector::corrected, module)?)?;
+    module.add_function(wrap_pyfunction!(markers::correct, module)?)?;
+    module.add_function(wrap_pyfunction!(material::laws, module)?)?;
+    module.add_function(wrap_pyfunction!(material::materials, module)?)?;
+    module.add_function(wrap_pyfunction!(study::check, module)?)?;
+    module.add_function(wrap_pyfunction!(study::quantity, module)?)?;
+    module.add_function(wrap_pyfunction!(study::run, module)?)?;
+    module.add_function(wrap_pyfunction!(study::run_plate, module)?)?;
+    module.add_function(wrap_pyfunction!(study::run_specimen, module)?)?;
+    module.add_function(wrap_pyfunction!(study::solve_plate, module)?)?;
+    module.add_function(wrap_pyfunction!(study::solve_specimen, module)?)?;
+    module.add_function(wrap_pyfunction!(tests_to_laws::fit, module)?)?;
+    module.add_function(wrap_pyfunction!(tests_to_laws::identify, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,192 @@
+//! Measured displacement fields.
+
+use std::path::PathBuf;
+
+use gelbench::document::TextEncoding;
+use gelbench::error::Error;
+use gelbench::markers::{ChosenColumns, ReadSettings};
+use gelbench::mesh::{CellShape, Exemptions, MeshReading};
+use gelbench::results::GridSeries;
+use gelbench::studies::markers::written::{self, FrameFiles, SERIES};
+use gelbench::studies::markers::{
+    ComparedFrames, Conditions, MarkerStudy, MeshSource, Request, worst_answer,
+};
+use gelbench::units::{self, Dimension};
+use pyo3::prelude::*;
+use std::time::Instant;
+
+use crate::errors::{input, refused};
+use crate::material::MaterialCard;
+use crate::results::{OfFrames, Results};
+use crate::running::run;
+use crate::study::budget;
+
+/// How a field is read, and on which mesh it is corrected: everything but files, material, thickness and what is known.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Options {
+    unit: Option<String>,
+    array: Option<String>,
+    grid: Option<f64>,
+    ignore_columns: Vec<String>,
+    columns: Vec<String>,
+    encoding: Option<String>,
+    y_axis: Option<String>,
+    places: Option<String>,
+    mesh: Option<PathBuf>,
+    mesh_unit: String,
+    merge_nodes: Option<f64>,
+    allow: Vec<String>,
+    outline: Option<PathBuf>,
+    forces: Option<PathBuf>,
+    cell_size: Option<f64>,
+    cells: String,
+    holes: bool,
+    allow_large: bool,
+}
+
+impl Options {
+    fn reading(&self) -> Result<ReadSettings, Error> {
+        let columns = ChosenColumns::parse(self.columns.iter().map(String::as_str));
+        let encoding = self.encoding.as_deref().map(|name| {
+            let unknown = || {
+                input(
+                    format!("the encoding `{name}` is not known"),
+                    "such as latin1",
+                )
+            };
+            TextEncoding::of_name(name).ok_or_else(unknown)
+        });
+        Ok(ReadSettings {
+            unit: self.unit.as_deref().map(length_unit).transpose()?,
+            array: self.array.clone(),
+            grid: self.grid,
+            ignored_columns: self.ignore_columns.clone(),
+            columns: columns.map_err(|fault| Error::Input(vec![fault]))?,
+            encoding: encoding.transpose()?,
+            downwards: either("y_axis", self.y_axis.as_deref(), ["down", "up"])?,
+            deformed: either("places", self.places.as_deref(), ["frame", "rest"])?,
+        })
+    }
+
+    fn mesh(&self) -> Result<MeshSource, Error> {
+        Ok(match (&self.mesh, &self.outline) {
+            (Some(_), Some(_)) => {
+                return Err(input(
+                    "mesh and outline are both given",
+                    "leave out one of them",
+                ));
+            }
+            (Some(mesh), None) => {
+                let names = self.allow.iter().map(String::as_str);
+                let allowed = Exemptions::of_names(names);
+                let reading = MeshReading {
+                    unit: length_unit(&self.mesh_unit)?,
+                    merge_nodes: self.merge_nodes,
+                    allowed: allowed.map_err(|unknown| refused(unknown.to_string()))?,
+                };
+                MeshSource::File(mesh.clone(), reading)
+            }
+            (None, Some(outline)) => MeshSource::Outline(outline.clone()),
+            (None, None) => MeshSource::Data,
+        })
+    }
+
+    fn shape(&self) -> Result<CellShape, Error> {
+        Ok(match &*self.cells {
+            "triangle3" => CellShape::Triangle3,
+            "triangle6" => CellShape::Triangle6,
+            "quadrilateral4" => CellShape::Quad4,
+            "quadrilateral9" => CellShape::Quad9,
+            other => {
+                let hint = "take triangle3, triangle6, quadrilateral4 or quadrilateral9";
+                return Err(input(format!("cells `{other}` are not known"), hint));
+            }
+        })
+    }
+}
+
+/// The length of a unit, or of a pixel, in mm.
+fn length_unit(text: &str) -> Result<f64, Error> {
+    let named = units::factor(text, Dimension::Length);
+    let found = named.or_else(|_| units::parse(text, Dimension::Length));
+    found.map_err(|fault| refused(fault.to_string()))
+}
+
+/// Whether a choice is the first of two.
+fn either(what: &str, chosen: Option<&str>, [yes, no]: [&str; 2]) -> Result<Option<bool>, Error> {
+    match chosen {
+        None => Ok(None),
+        Some(name) if name == yes => Ok(Some(true)),
+        Some(name) if name == no => Ok(Some(false)),
+        Some(other) => Err(input(
+            format!("{what} `{other}` is not known"),
+            format!("take {yes} or {no}"),
+        )),
+    }
+}
+
+/// Corrects the field of some files: the results and the worst verdict.
+#[pyfunction]
+#[pyo3(signature = (name, files, material, thickness, known, options, progress=None))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "what is measured, and what is known of it"
+)]
+pub fn correct(
+    py: Python<'_>,
+    name: String,
+    files: Vec<PathBuf>,
+    material: &MaterialCard,
+    thickness: f64,
+    known: String,
+    options: Options,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Results, String)> {
+    run(py, progress, |watch| {
+        let card = material.watched(watch);
+        let request = Request {
+            reading: options.reading()?,
+            material: card.name.clone(),
+            thickness,
+            mesh: options.mesh()?,
+            cell_size: options.cell_size,
+            shape: options.shape()?,
+            holes: options.holes,
+            conditions: Conditions::parse("conditions", &known)?,
+            forces: options.forces.clone(),
+            budget: budget(options.allow_large),
+            files: files.clone(),
+        };
+        let start = Instant::now();
+        let study = MarkerStudy::prepare_with(card, request)?;
+        let mut compared = ComparedFrames::default();
+        for frame in &study.series.frames {
+            watch.tell(&format!("frame {}", frame.number));
+            compared.push(frame, study.estimate_frame(frame)?);
+        }
+        let estimates = compared.into_estimates();
+        let seconds = start.elapsed().as_secs_f64();
+        let results = written::results(&study, &estimates, (name, known), seconds);
+        let mut of_frames = OfFrames {
+            series: SERIES
+                .map(|name| GridSeries {
+                    name: name.to_owned(),
+                    grids: Vec::new(),
+                })
+                .to_vec(),
+            tables: Vec::new(),
+        };
+        for (frame, estimate) in study.series.frames.iter().zip(&estimates) {
+            let found = FrameFiles::new(&study, frame, estimate);
+            for (series, grid) in of_frames.series.iter_mut().zip(found.grids) {
+                series.grids.push(grid);
+            }
+            of_frames.tables.extend(found.tables);
+        }
+        let file = files.into_iter().next().unwrap_or_default();
+        let answer = worst_answer(&estimates).words().to_owned();
+        let found = Results::new(results, file, None, true).with_frames(of_frames);
+        Ok((found, answer))
+    })
+}

@@ -1,0 +1,224 @@
+//! Material cards.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use gelbench::document::name_of;
+use gelbench::error::{Error, suggestion};
+use gelbench::material::curve::{Mode, simple_shear};
+use gelbench::material::registry::{CARDS, LAWS, Law};
+use gelbench::material::stability::stable_range;
+use gelbench::material::{Card, HyperelasticLaw};
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use crate::errors::{exception, input};
+use crate::law::{PythonLaw, Watched};
+use crate::running::{Watch, caught};
+
+/// A material card.
+#[pyclass(frozen, module = "gelbench._core")]
+pub struct MaterialCard {
+    pub card: Arc<Card>,
+}
+
+/// A parameter of a card: key, value, unit.
+type Parameter = (&'static str, f64, &'static str);
+
+impl MaterialCard {
+    pub fn of(card: Card) -> Self {
+        Self {
+            card: Arc::new(card),
+        }
+    }
+
+    fn changed(&self, mut values: BTreeMap<String, f64>) -> Result<Card, Error> {
+        let card = &self.card;
+        let law = Law::named(&card.law_name).filter(|_| card.volume.is_none());
+        let law = law.ok_or_else(|| {
+            let message = format!("the parameters of {} cannot be changed", card.name);
+            input(
+                message,
+                "take an incompressible card of a law that gelbench has",
+            )
+        })?;
+        let of = |own: &gelbench::material::parameters::Parameter| {
+            values.remove(own.key).unwrap_or(own.value)
+        };
+        let all: Vec<f64> = card.parameters.iter().map(of).collect();
+        if let Some(unknown) = values.keys().next() {
+            let known: Vec<_> = card.parameters.iter().map(|own| own.key).collect();
+            let hint = suggestion(unknown, &known, "its parameters are");
+            return Err(input(format!("the law has no parameter `{unknown}`"), hint));
+        }
+        if let Some(wrong) = all.iter().find(|value| !value.is_finite()) {
+            return Err(input(format!("a parameter is {wrong}"), "give a number"));
+        }
+        let (made, entries) = law.with_values(&all, card.stress_measure, card.strain_measure);
+        Ok(Card {
+            law: made.into(),
+            parameters: entries.parameters,
+            text: String::new(),
+            fit: None,
+            ..(**card).clone()
+        })
+    }
+
+    /// The card for a computation that can be ended.
+    pub fn watched(&self, watch: &Arc<Watch>) -> Card {
+        Card {
+            law: Watched::law(&self.card.law, watch),
+            ..(*self.card).clone()
+        }
+    }
+}
+
+#[pymethods]
+impl MaterialCard {
+    #[staticmethod]
+    fn load(py: Python<'_>, name: &str, folder: &str) -> PyResult<Self> {
+        let card = Card::load(name, Path::new(folder));
+        card.map(Self::of).map_err(|error| exception(py, &error))
+    }
+
+    #[staticmethod]
+    fn parse(py: Python<'_>, name: &str, text: &str) -> PyResult<Self> {
+        let card = Card::parse(name, &format!("{name}.toml"), text);
+        card.map(Self::of).map_err(|error| exception(py, &error))
+    }
+
+    #[staticmethod]
+    fn of_python(name: &str, evaluate: Py<PyAny>, stretch_range: [f64; 2]) -> Self {
+        let law = Arc::new(PythonLaw::new(evaluate));
+        Self::of(Card::of_law(name, law, stretch_range))
+    }
+
+    /// The same law with other values of some parameters, in internal units.
+    fn with_parameters(&self, py: Python<'_>, values: BTreeMap<String, f64>) -> PyResult<Self> {
+        let card = self.changed(values);
+        card.map(Self::of).map_err(|error| exception(py, &error))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.card.name
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.card.title
+    }
+
+    #[getter]
+    fn law(&self) -> &str {
+        &self.card.law_name
+    }
+
+    #[getter]
+    fn formula(&self) -> &str {
+        self.card.formula
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        &self.card.text
+    }
+
+    #[getter]
+    fn citation(&self) -> &str {
+        &self.card.citation
+    }
+
+    #[getter]
+    fn doi(&self) -> &str {
+        &self.card.doi
+    }
+
+    #[getter]
+    fn note(&self) -> &str {
+        &self.card.note
+    }
+
+    #[getter]
+    fn density(&self) -> Option<f64> {
+        self.card.density
+    }
+
+    #[getter]
+    fn stretch_range(&self) -> (f64, f64) {
+        self.card.stretch_range.into()
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let parameters = self.card.parameters.iter();
+        parameters
+            .map(|one| (one.key, one.value, one.unit()))
+            .collect()
+    }
+
+    fn shear_modulus(&self, py: Python<'_>) -> PyResult<f64> {
+        caught(py, || self.card.law.shear_modulus())
+    }
+
+    fn youngs_modulus(&self, py: Python<'_>) -> PyResult<f64> {
+        caught(py, || self.card.law.youngs_modulus())
+    }
+
+    fn stable_range(&self, py: Python<'_>, test: &str) -> PyResult<(f64, f64)> {
+        let mode = mode(test).map_err(|error| exception(py, &error))?;
+        let Some(mode) = mode else {
+            let error = input("simple shear has no stable range here", "take another test");
+            return Err(exception(py, &error));
+        };
+        caught(py, || stable_range(&*self.card.law, mode).into())
+    }
+
+    /// Nominal stress in MPa at each stretch λ, or at each 1 + γ of simple shear.
+    fn stress<'py>(
+        &self,
+        py: Python<'py>,
+        test: &str,
+        stretches: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mode = mode(test).map_err(|error| exception(py, &error))?;
+        let stretches = stretches.as_slice()?;
+        let law: &dyn HyperelasticLaw = &*self.card.law;
+        let at = |stretch: &f64| match mode {
+            Some(mode) => mode.nominal_stress(law, stretch - 1.0),
+            None => simple_shear(law, stretch - 1.0),
+        };
+        let stresses = caught(py, || stretches.iter().map(at).collect())?;
+        Ok(PyArray1::from_vec(py, stresses))
+    }
+}
+
+/// The test of a name; `None` for simple shear.
+fn mode(name: &str) -> Result<Option<Mode>, Error> {
+    if name == "shear" {
+        return Ok(None);
+    }
+    let found = Mode::ALL.iter().find(|(known, _)| *known == name);
+    found.map(|(_, mode)| Some(*mode)).ok_or_else(|| {
+        let known = Mode::ALL.map(|(_, mode)| name_of(&Mode::ALL, mode));
+        let hint = format!("take {} or shear", known.join(", "));
+        input(format!("there is no test `{name}`"), hint)
+    })
+}
+
+/// The names and titles of the cards that come along.
+#[pyfunction]
+pub fn materials(py: Python<'_>) -> PyResult<Vec<(String, String)>> {
+    let read = |(name, text): &(&str, &str)| {
+        let card = Card::parse(name, &format!("{name}.toml"), text);
+        card.map(|card| (card.name, card.title))
+    };
+    let cards: Result<_, _> = CARDS.iter().map(read).collect();
+    cards.map_err(|error| exception(py, &error))
+}
+
+/// The names and energies of the laws.
+#[pyfunction]
+pub fn laws() -> Vec<(&'static str, &'static str)> {
+    LAWS.iter().map(|law| (law.name, law.formula)).collect()
+}

@@ -1,0 +1,273 @@
+//! Plates and specimens of one model, and study files.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use gelbench::budget::Budget;
+use gelbench::error::{Diagnostic, Error};
+use gelbench::mesh::{CellShape, MeshData};
+use gelbench::studies::plate::results::run::one_model;
+use gelbench::studies::plate::{self, Study};
+use gelbench::studies::specimen::Specimen;
+use gelbench::studies::{Kind, ModelKind, Progress, specimen};
+use gelbench::units::{self, Dimension};
+use gelbench::validation;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::errors::{exception, input, refused};
+use crate::material::MaterialCard;
+use crate::results::Results;
+use crate::running::{Watch, run as run_beside};
+use crate::solution::{Material, Solution};
+
+/// What may be used.
+pub fn budget(allow_large: bool) -> Budget {
+    match allow_large {
+        true => Budget::LARGE,
+        false => Budget::USUAL,
+    }
+}
+
+/// The model of a name.
+fn model_kind(name: &str) -> Result<ModelKind, Error> {
+    let found = ModelKind::NAMES.iter().find(|(known, _)| *known == name);
+    found.map(|(_, kind)| *kind).ok_or_else(|| {
+        let known = ModelKind::NAMES.map(|(known, _)| known);
+        let hint = format!("take one of {}", known.join(", "));
+        input(format!("there is no model `{name}`"), hint)
+    })
+}
+
+/// Solves one model of a plate whose study has the text `study`.
+#[pyfunction]
+#[pyo3(signature = (study, material, model, progress=None, allow_large=false))]
+pub fn solve_plate(
+    py: Python<'_>,
+    study: String,
+    material: &MaterialCard,
+    model: &str,
+    progress: Option<Py<PyAny>>,
+    allow_large: bool,
+) -> PyResult<Solution> {
+    let kind = model_kind(model).map_err(|error| exception(py, &error))?;
+    let work = |watch: &Arc<Watch>| {
+        let study = Study::of_file(Path::new("plate"), study, budget(allow_large))?;
+        let study = study.with_card(material.watched(watch));
+        let told = |what: &str| watch.tell(what);
+        let found = one_model(&study, kind, Progress::to(&told));
+        Ok((found, study.problem.thickness))
+    };
+    let (found, thickness) = run_beside(py, progress, work)?;
+    let groups = ["left", "right"].map(str::to_owned).to_vec();
+    let law = Arc::clone(&material.card.law);
+    Solution::new(py, found, Material { law, thickness }, groups)
+}
+
+/// Computes all models of a plate whose study has the text `study`, and compares them.
+#[pyfunction]
+#[pyo3(signature = (study, material, progress=None, allow_large=false))]
+pub fn run_plate(
+    py: Python<'_>,
+    study: String,
+    material: &MaterialCard,
+    progress: Option<Py<PyAny>>,
+    allow_large: bool,
+) -> PyResult<Results> {
+    run_beside(py, progress, |watch| {
+        let file = Path::new("plate");
+        let study = Study::of_file(file, study, budget(allow_large))?;
+        let ready = plate::ready(study.with_card(material.watched(watch)));
+        let told = |what: &str| watch.tell(what);
+        let results = ready.compute(Progress::to(&told))?;
+        Ok(Results::new(results, file.into(), None, true))
+    })
+}
+
+/// Computes all models of a specimen whose study has the text `study`, and compares them.
+#[pyfunction]
+#[pyo3(signature = (study, material, mesh=None, progress=None, allow_large=false))]
+pub fn run_specimen(
+    py: Python<'_>,
+    study: String,
+    material: &MaterialCard,
+    mesh: Option<&GivenMesh>,
+    progress: Option<Py<PyAny>>,
+    allow_large: bool,
+) -> PyResult<Results> {
+    run_beside(py, progress, |watch| {
+        let (title, read, warnings) = read_specimen(&study, mesh, allow_large)?;
+        let start = Instant::now();
+        let told = |what: &str| watch.tell(what);
+        let read = read.with_card(material.watched(watch));
+        let outcome = specimen::compute(&read, Progress::to(&told))?;
+        let results = gelbench::results::Results {
+            name: "specimen".into(),
+            title,
+            kind: specimen::KIND,
+            text: study,
+            defaults: Vec::new(),
+            read_warnings: warnings.iter().map(ToString::to_string).collect(),
+            outcome,
+            seconds: start.elapsed().as_secs_f64(),
+        };
+        Ok(Results::new(results, "specimen".into(), None, true))
+    })
+}
+
+fn read_specimen(
+    study: &str,
+    mesh: Option<&GivenMesh>,
+    allow_large: bool,
+) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
+    let (case, file, budget) = (specimen_kind(), Path::new("specimen"), budget(allow_large));
+    match mesh {
+        Some(GivenMesh(mesh)) => specimen::load_on(mesh, case, file, study, budget),
+        None => specimen::load(case, file, study, budget),
+    }
+}
+
+/// A mesh of the caller's.
+#[pyclass(frozen, module = "gelbench._core")]
+pub struct GivenMesh(MeshData);
+
+#[pymethods]
+impl GivenMesh {
+    /// Places of the nodes, cells by VTK's numbers of their kinds, groups of nodes and of lines.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        places: PyReadonlyArray2<'_, f64>,
+        cells: Vec<(u8, PyReadonlyArray2<'_, i64>)>,
+        nodes: BTreeMap<String, PyReadonlyArray1<'_, i64>>,
+        lines: BTreeMap<String, PyReadonlyArray2<'_, i64>>,
+    ) -> PyResult<Self> {
+        let count = places.shape()[0];
+        let number = |node: &i64| usize::try_from(*node).ok().filter(|node| *node < count);
+        let numbers = |nodes: &[i64]| {
+            let wrong = nodes.iter().find(|node| number(node).is_none());
+            let message = |node| format!("the mesh has no node {node}: it has {count}");
+            match wrong {
+                Some(node) => Err(exception(py, &input(message(node), "nodes count from 0"))),
+                None => Ok(nodes.iter().filter_map(number).collect::<Vec<_>>()),
+            }
+        };
+        let mut data = MeshData {
+            places: places
+                .as_slice()?
+                .chunks_exact(3)
+                .map(|place| [place[0], place[1], place[2]])
+                .collect(),
+            ..MeshData::default()
+        };
+        for (kind, points) in cells {
+            let shape = shape(kind).map_err(|error| exception(py, &error))?;
+            for own in points.as_slice()?.chunks(points.shape()[1].max(1)) {
+                data.cells.push((shape, numbers(own)?));
+            }
+        }
+        for (name, own) in nodes {
+            data.nodes.insert(name, numbers(own.as_slice()?)?);
+        }
+        for (name, own) in lines {
+            let ends = numbers(own.as_slice()?)?;
+            let ends = ends.chunks_exact(2).map(|ends| [ends[0], ends[1]]);
+            data.lines.insert(name, ends.collect());
+        }
+        Ok(Self(data))
+    }
+}
+
+/// The kind of a cell by VTK's number.
+fn shape(kind: u8) -> Result<CellShape, Error> {
+    Ok(match kind {
+        5 => CellShape::Triangle3,
+        9 => CellShape::Quad4,
+        22 => CellShape::Triangle6,
+        23 => CellShape::Quad8,
+        28 => CellShape::Quad9,
+        other => {
+            let message = format!("cells of VTK's kind {other} are not known");
+            let hint = "take triangles of 3 or 6 nodes (5, 22) and quadrilaterals of 4, 8 or 9 (9, 23, 28)";
+            return Err(input(message, hint));
+        }
+    })
+}
+
+fn specimen_kind() -> &'static Kind {
+    let mut kinds = validation::CASES.iter();
+    let found = kinds.find(|kind| kind.kind == specimen::KIND);
+    found.expect("specimens are a kind of studies")
+}
+
+/// Solves one model of a specimen whose study has the text `study`, on the mesh given if there is one.
+#[pyfunction]
+#[pyo3(signature = (study, material, model, mesh=None, progress=None, allow_large=false))]
+pub fn solve_specimen(
+    py: Python<'_>,
+    study: &str,
+    material: &MaterialCard,
+    model: &str,
+    mesh: Option<&GivenMesh>,
+    progress: Option<Py<PyAny>>,
+    allow_large: bool,
+) -> PyResult<Solution> {
+    let kind = model_kind(model).map_err(|error| exception(py, &error))?;
+    let work = |watch: &Arc<Watch>| {
+        let (_, read, _) = read_specimen(study, mesh, allow_large)?;
+        let read = read.with_card(material.watched(watch));
+        let told = |what: &str| watch.tell(what);
+        let found = specimen::one_model(&read, kind, Progress::to(&told))?;
+        let groups = read.groups().into_iter().map(str::to_owned).collect();
+        Ok((found, read.problem.thickness, groups))
+    };
+    let (found, thickness, groups) = run_beside(py, progress, work)?;
+    let law = Arc::clone(&material.card.law);
+    Solution::new(py, found, Material { law, thickness }, groups)
+}
+
+/// Computes a study file of any kind.
+#[pyfunction]
+#[pyo3(signature = (path, progress=None, allow_large=false))]
+pub fn run(
+    py: Python<'_>,
+    path: PathBuf,
+    progress: Option<Py<PyAny>>,
+    allow_large: bool,
+) -> PyResult<Results> {
+    run_beside(py, progress, |watch| {
+        let ready = validation::read(&path, budget(allow_large))?;
+        let (folder, with_report) = (ready.folder.clone(), ready.report);
+        let told = |what: &str| watch.tell(what);
+        let results = ready.compute(Progress::to(&told))?;
+        Ok(Results::new(results, path, folder, with_report))
+    })
+}
+
+/// A text with a unit as a number in `unit`: mm, N, MPa or ratios without one.
+#[pyfunction]
+pub fn quantity(py: Python<'_>, text: &str, unit: &str) -> PyResult<f64> {
+    let known = [
+        ("mm", Dimension::Length),
+        ("N", Dimension::Force),
+        ("MPa", Dimension::Stress),
+    ];
+    let dimension = known.iter().find(|(name, _)| *name == unit);
+    let dimension = dimension.map_or(Dimension::Ratio, |(_, dimension)| *dimension);
+    units::parse(text, dimension)
+        .map_err(|fault| exception(py, &refused(format!("\"{text}\": {fault}"))))
+}
+
+/// Reads a study file of any kind and tells what it will compute, and what deserves attention.
+#[pyfunction]
+#[pyo3(signature = (path, allow_large=false))]
+pub fn check(py: Python<'_>, path: PathBuf, allow_large: bool) -> PyResult<(String, Vec<String>)> {
+    let found = py.detach(|| {
+        let ready = validation::read(&path, budget(allow_large))?;
+        let warnings = ready.warnings.iter().map(ToString::to_string).collect();
+        Ok((ready.about, warnings))
+    });
+    found.map_err(|error: Error| exception(py, &error))
+}

@@ -1,0 +1,145 @@
+//! From test curves to laws, and from recordings to springs and dashpots.
+
+use std::collections::BTreeMap;
+
+use gelbench::calibration::{self, Bounds, FitSettings, Provenance, TestData, Weighting};
+use gelbench::document::{Statements, Table};
+use gelbench::error::{Error, suggestion};
+use gelbench::identification::{
+    Argument, Form, IdentificationSettings, Recording, Shape, identify as identified, law_text,
+};
+use gelbench::material::Card;
+use gelbench::material::registry::{LAWS, Law};
+use gelbench::output;
+use gelbench::results::{
+    Drawing, fit_json, fit_picture, identification_json, identification_picture,
+};
+use pyo3::prelude::*;
+
+use crate::errors::{input, refused};
+use crate::material::MaterialCard;
+use crate::running::run;
+
+/// JSON, card or law, picture.
+type Fitted = (String, MaterialCard, Vec<u8>);
+
+/// What is said of all tests: key and value.
+type Said = BTreeMap<String, String>;
+
+/// Fits a law, or the best of all, to tests by their names and tables.
+#[pyfunction]
+#[pyo3(signature = (tests, law, name, said, weighting, bounds, starts, progress=None))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "each is a keyword of gelbench.fit"
+)]
+pub fn fit(
+    py: Python<'_>,
+    tests: Vec<(String, String)>,
+    law: Option<String>,
+    name: String,
+    said: Said,
+    weighting: &str,
+    bounds: Bounds,
+    starts: u16,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Fitted> {
+    run(py, progress, |watch| {
+        let reading: Statements = said.into_iter().collect();
+        let read = tests.iter();
+        let read = read.map(|(name, table)| TestData::parse(name, table, &reading));
+        let tests_read = read.collect::<Result<Vec<_>, Error>>()?;
+        let settings = FitSettings {
+            weighting: chosen("weighting", weighting, &Weighting::NAMES)?,
+            bounds,
+            starts: starts.into(),
+        };
+        let fit = match law {
+            Some(name) => {
+                watch.tell(&name);
+                calibration::fit(named(&name)?, &tests_read, &settings)?
+            }
+            None => {
+                watch.tell("all laws");
+                let (fits, _) = calibration::rank(&tests_read, &settings);
+                let stable = fits.iter().position(|fit| fit.quality.is_stable());
+                let best = fits.into_iter().nth(stable.unwrap_or(0));
+                best.ok_or_else(|| input("no law could be fitted", "look at the data"))?
+            }
+        };
+        let provenance = Provenance {
+            files: tests.into_iter().map(|(name, _)| name).collect(),
+            reading,
+        };
+        let text = calibration::card_text(&fit, &tests_read, &provenance);
+        let card = Card::parse(&name, &format!("{name}.toml"), &text)?;
+        let json = fit_json(&fit, &tests_read).to_string();
+        let picture = drawn(&fit_picture(&fit, &tests_read))?;
+        Ok((json, MaterialCard::of(card), picture))
+    })
+}
+
+fn named(name: &str) -> Result<&'static Law, Error> {
+    Law::named(name).ok_or_else(|| {
+        let known: Vec<_> = LAWS.iter().map(|law| law.name).collect();
+        input(
+            format!("there is no law `{name}`"),
+            suggestion(name, &known, "laws:"),
+        )
+    })
+}
+
+fn chosen<T: Copy>(what: &str, name: &str, names: &[(&'static str, T)]) -> Result<T, Error> {
+    let found = names.iter().find(|(known, _)| *known == name);
+    found.map(|(_, choice)| *choice).ok_or_else(|| {
+        let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
+        let hint = format!("it must be one of {}", known.join(", "));
+        input(format!("{what} `{name}` is not known"), hint)
+    })
+}
+
+fn drawn(drawing: &Drawing) -> Result<Vec<u8>, Error> {
+    output::png(drawing).map_err(|fault| refused(fault.to_string()))
+}
+
+const SHAPES: [(&str, Shape); 3] = [
+    ("free", Shape::Free),
+    ("increasing", Shape::Increasing),
+    ("decreasing", Shape::Decreasing),
+];
+
+const ARGUMENTS: [(&str, Argument); 2] =
+    [("extension", Argument::Extension), ("rate", Argument::Rate)];
+
+/// Finds K(·) and D(·) in a recording by its name and table: JSON, text of the law, picture.
+#[pyfunction]
+#[pyo3(signature = (recording, said, forms, shapes, damping_over, progress=None))]
+pub fn identify(
+    py: Python<'_>,
+    recording: (String, String),
+    said: Said,
+    forms: [String; 2],
+    shapes: [String; 2],
+    damping_over: &str,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(String, String, Vec<u8>)> {
+    run(py, progress, |watch| {
+        let (name, table) = recording;
+        let read = Recording::of_table(&Table::parse(&name, &table)?, &said.into_iter().collect())?;
+        let form = |text: &String| Form::parse(text).map_err(|fault| refused(fault.to_string()));
+        let [stiffness, damping] = &forms;
+        let [of_stiffness, of_damping] = &shapes;
+        let settings = IdentificationSettings {
+            forms: [form(stiffness)?, form(damping)?],
+            shapes: [
+                chosen("stiffness_shape", of_stiffness, &SHAPES)?,
+                chosen("damping_shape", of_damping, &SHAPES)?,
+            ],
+            argument: chosen("damping_over", damping_over, &ARGUMENTS)?,
+        };
+        let found = identified(&read, settings, &|what| watch.tell(what))?;
+        let json = identification_json(&found, &read, &name).to_string();
+        let picture = drawn(&identification_picture(&found, &read))?;
+        Ok((json, law_text(&found, &read, &name), picture))
+    })
+}

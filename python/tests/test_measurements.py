@@ -1,0 +1,104 @@
+"""Test curves, recordings and measured fields: the figures of the command."""
+
+import json
+
+import gelbench as gb
+import numpy as np
+import pytest
+
+
+def test_a_fit_has_the_commands_figures_to_the_bit(command, root, tmp_path):
+    data = root / "materials/data/pva_10_uniaxial.csv"
+    code, _, told = command("materials", "fit", data, "--law", "yeoh", "--name", "gel", "--output", tmp_path, cwd=root)
+    assert code == 0, told
+    theirs = json.loads((tmp_path / "gel.json").read_text())
+    fit = gb.fit(data, "yeoh", name="gel")
+    own = dict(fit.json)
+    own.pop("data"), theirs.pop("data")
+    assert own == theirs
+    assert (tmp_path / "gel.png").read_bytes() == fit.picture
+    card = gb.Material.from_card(tmp_path / "gel.toml")
+    assert card.stress(1.5) == fit.material.stress(1.5)
+
+
+def test_arrays_and_tables_are_fitted_alike():
+    pandas = pytest.importorskip("pandas")
+    truth = gb.Material.from_card("pva-10-yeoh")
+    stretch = np.linspace(1.02, 1.9, 60)
+    stress = truth.stress(stretch) + np.random.default_rng(0).normal(scale=2e-4, size=stretch.size)
+    said = dict(test="uniaxial", stress="nominal", strain="stretch")
+    array = gb.fit(np.column_stack([stretch, stress]), "yeoh", **said)
+    table = gb.fit(pandas.DataFrame({"stretch [-]": stretch, "stress [MPa]": stress}), "yeoh", **said)
+    assert array.parameters == table.parameters
+    assert array.verdict == "white noise"
+    for key, own in array.parameters.items():
+        low, high = own.interval
+        width = high - low
+        assert low - width < truth.parameters[key].value < high + width
+    assert np.sqrt(np.diag(array.covariance)) == pytest.approx([own.standard_error for own in array.parameters.values()])
+
+
+@pytest.mark.parametrize(
+    "data",
+    [np.ones((3, 3)), [[1.0, np.nan]] * 20, {"stretch [-]": [1.0, 1.1], "stress [MPa]": [0.0]}, "no_such_file.csv"],
+)
+def test_data_that_are_none_are_refused(data):
+    with pytest.raises(gb.InputError):
+        gb.fit(data, "yeoh", test="uniaxial", stress="nominal", strain="stretch")
+
+
+def test_a_recording_is_identified_as_by_the_command(command, root, tmp_path):
+    data = root / "examples/spring_dashpot.csv"
+    arguments = ["--stiffness", "polynomial-3", "--damping", "constant"]
+    code, _, told = command("identify", data, *arguments, "--output", tmp_path / "out", cwd=root)
+    if code:
+        pytest.fail(told)
+    theirs = json.loads((tmp_path / "out/spring_dashpot.json").read_text())
+    own = dict(gb.identify(data, stiffness="polynomial-3", damping="constant").json)
+    own.pop("data", None), theirs.pop("data", None)
+    assert own == theirs
+
+
+@pytest.fixture(scope="module")
+def corrected(root):
+    return gb.correct(root / "examples/measured_plate.csv", "pva-10", "2 mm", conditions=root / "examples/measured_plate.toml")
+
+
+def test_measured_markers_are_corrected_as_by_the_command(command, root, tmp_path, corrected):
+    code, _, told = command(
+        "correct", "examples/measured_plate.csv", "--material", "pva-10", "--thickness", "2 mm",
+        "--study", "examples/measured_plate.toml", "--output", tmp_path / "out", cwd=root,
+    )  # fmt: skip
+    theirs = json.loads((tmp_path / "out/report.json").read_text())
+    own = dict(corrected.json)
+    own.pop("times_s"), theirs.pop("times_s")
+    assert own == theirs, told
+    corrected.write(tmp_path / "own")
+    for path in (tmp_path / "out").rglob("*"):
+        if path.suffix in (".vtu", ".csv", ".pvd"):
+            assert (tmp_path / "own" / path.relative_to(tmp_path / "out")).read_bytes() == path.read_bytes(), path
+
+
+def test_a_correction_has_forces_with_intervals_and_a_verdict(corrected):
+    assert corrected.explained
+    force = corrected.forces["right"][0]
+    assert force.interval[0] < force.value < force.interval[1]
+    assert 0.2 < corrected.noise < 0.3
+    assert corrected.field.displacement.shape == (len(corrected.field.points), 2)
+
+
+def test_markers_in_arrays_are_those_of_the_file(root, corrected):
+    pandas = pytest.importorskip("pandas")
+    table = pandas.read_csv(root / "examples/measured_plate.csv", comment="#")
+    table = table[table["frame"] == table["frame"].max()]
+    own = gb.correct(
+        table[["x [mm]", "y [mm]", "ux [mm]", "uy [mm]"]].to_numpy(), "pva-10", 2.0,
+        free=["top", "bottom"], rigid=["left", "right"], robust="tukey", edge_gap=0,
+    )  # fmt: skip
+    assert own.forces["right"][0].value == pytest.approx(corrected.forces["right"][0].value, rel=1e-6)
+
+
+@pytest.mark.parametrize("markers", [np.ones(4), np.ones((5, 3)), np.full((30, 4), np.nan), "no_such_file.csv"])
+def test_markers_that_are_none_are_refused(markers):
+    with pytest.raises(gb.InputError):
+        gb.correct(markers, "pva-10", 2.0, free=["top", "bottom"])

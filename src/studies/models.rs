@@ -1,0 +1,39 @@
+//! One model of a study alone.
+
+use crate::corrector::Multipliers;
+use crate::error::Error;
+use crate::problem::Solution;
+
+/// A model of a plate or a specimen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelKind {
+    /// The lattice of springs.
+    MassSpring,
+    /// The field of the springs, corrected.
+    Corrected,
+    /// The finite elements, on the finest mesh of the study.
+    FiniteElement,
+}
+
+impl ModelKind {
+    /// All models with their names.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("mass-spring", Self::MassSpring),
+        ("corrected", Self::Corrected),
+        ("finite-element", Self::FiniteElement),
+    ];
+}
+
+/// What one model finds without the others.
+#[derive(Debug)]
+pub struct OneModel {
+    /// Its equilibria, one at each load factor or stretch that it reaches.
+    pub solution: Solution,
+    /// The force that is measured in each of them, in N: that on the moving grip of a plate, or on the measured group of a
+    /// specimen along the axis of its larger component.
+    pub forces: Vec<f64>,
+    /// The multipliers of the correction of each, condition after condition; none where nothing is told of them.
+    pub multipliers: Vec<Vec<Multipliers>>,
+    /// Why it has no equilibrium at the others.
+    pub ends: Vec<Error>,
+}
