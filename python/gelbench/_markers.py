@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -68,8 +67,7 @@ class Correction(Results):
 
     @property
     def _last(self) -> dict[str, Any]:
-        models: dict[str, Any] = self.json["steps"][-1]["models"]
-        found: dict[str, Any] = models["corrected"]
+        found: dict[str, Any] = self.json["steps"][-1]["corrected"]
         return found
 
     def _repr_html_(self) -> str:
@@ -217,6 +215,8 @@ def correct(
     if files is not None:
         name = Path(conditions or files[0]).stem
         return Correction(*_core.correct(name, files, card(own), size, what, options, told))
+    import tempfile
+
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "markers.csv"
         file.write_text(table(markers, "markers", COLUMNS)[1], encoding="utf-8")

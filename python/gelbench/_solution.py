@@ -237,6 +237,11 @@ class Solution(Sequence[State]):
         return self._core.thickness
 
     @property
+    def seconds(self) -> float:
+        """Time that the library took [s]."""
+        return self._core.seconds
+
+    @property
     def factors(self) -> Floats:
         """Load factors that were reached; stretches of a plate."""
         return np.array(self._core.factors())

@@ -168,7 +168,9 @@ def _factors(factors: Factors | None, default: Sequence[float]) -> list[str]:
     if isinstance(given, str) or np.ndim(given) == 0:
         given = [given]
     if not all(isinstance(one, str) for one in given):
-        finite(floats(np.atleast_1d([0.0 if isinstance(one, str) else one for one in given]), "factors", (None,)), "factors")
+        # A study takes either texts or numbers alone.
+        plain = [number(one, "", "factors") if isinstance(one, str) else one for one in given]
+        given = finite(floats(plain, "factors", (None,)), "factors")
     return [text(one, "", "factors") for one in given]
 
 

@@ -63,7 +63,8 @@ class Fit:
     """A law fitted to test data."""
 
     def __init__(self, found: tuple[str, _core.MaterialCard, bytes]) -> None:
-        text, own, self._picture = found
+        text, own, picture = found
+        self._picture: bytes = picture
         self.json: dict[str, Any] = json.loads(text)
         """Everything in figures, as ``gelbench materials fit`` writes it."""
         self.material = Material(own)
@@ -220,7 +221,10 @@ class Identification:
     """Spring and dashpot functions K(·) and D(·) found in a recording."""
 
     def __init__(self, found: tuple[str, str, bytes]) -> None:
-        text, self.law, self._picture = found
+        text, law, picture = found
+        self.law: str = law
+        """The functions as TOML, as ``gelbench identify`` writes them."""
+        self._picture: bytes = picture
         self.json: dict[str, Any] = json.loads(text)
         """Everything in figures, as ``gelbench identify`` writes it."""
 

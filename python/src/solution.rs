@@ -22,6 +22,8 @@ use crate::running::caught;
 pub struct Material {
     pub law: Arc<dyn HyperelasticLaw>,
     pub thickness: f64,
+    /// The time that the library took, in s.
+    pub seconds: f64,
 }
 
 /// The equilibria of one model, and the mesh that they live on.
@@ -108,6 +110,11 @@ impl Solution {
     }
 
     #[getter]
+    fn seconds(&self) -> f64 {
+        self.material.seconds
+    }
+
+    #[getter]
     fn ends(&self, py: Python<'_>) -> Vec<Py<PyAny>> {
         self.ends.iter().map(|end| end.clone_ref(py)).collect()
     }
@@ -178,7 +185,7 @@ impl Solution {
     fn arrays<'py>(&self, py: Python<'py>, step: usize) -> PyResult<Arrays<'py>> {
         let displacement = self.state(step)?.displacement.bind(py).readonly();
         let displacement = displacement.as_slice()?;
-        let Material { law, thickness } = &self.material;
+        let Material { law, thickness, .. } = &self.material;
         let grid = caught(py, || {
             let sheet = Sheet {
                 law: &**law,

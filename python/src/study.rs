@@ -57,13 +57,19 @@ pub fn solve_plate(
         let study = Study::of_file(Path::new("plate"), study, budget(allow_large))?;
         let study = study.with_card(material.watched(watch));
         let told = |what: &str| watch.tell(what);
+        let start = Instant::now();
         let found = one_model(&study, kind, Progress::to(&told));
-        Ok((found, study.problem.thickness))
+        Ok((found, study.problem.thickness, start.elapsed()))
     };
-    let (found, thickness) = run_beside(py, progress, work)?;
+    let (found, thickness, took) = run_beside(py, progress, work)?;
     let groups = ["left", "right"].map(str::to_owned).to_vec();
     let law = Arc::clone(&material.card.law);
-    Solution::new(py, found, Material { law, thickness }, groups)
+    let material = Material {
+        law,
+        thickness,
+        seconds: took.as_secs_f64(),
+    };
+    Solution::new(py, found, material, groups)
 }
 
 /// Computes all models of a plate whose study has the text `study`, and compares them.
@@ -219,13 +225,19 @@ pub fn solve_specimen(
         let (_, read, _) = read_specimen(study, mesh, allow_large)?;
         let read = read.with_card(material.watched(watch));
         let told = |what: &str| watch.tell(what);
+        let start = Instant::now();
         let found = specimen::one_model(&read, kind, Progress::to(&told))?;
         let groups = read.groups().into_iter().map(str::to_owned).collect();
-        Ok((found, read.problem.thickness, groups))
+        Ok((found, read.problem.thickness, start.elapsed(), groups))
     };
-    let (found, thickness, groups) = run_beside(py, progress, work)?;
+    let (found, thickness, took, groups) = run_beside(py, progress, work)?;
     let law = Arc::clone(&material.card.law);
-    Solution::new(py, found, Material { law, thickness }, groups)
+    let material = Material {
+        law,
+        thickness,
+        seconds: took.as_secs_f64(),
+    };
+    Solution::new(py, found, material, groups)
 }
 
 /// Computes a study file of any kind.

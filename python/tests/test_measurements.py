@@ -69,10 +69,11 @@ def test_measured_markers_are_corrected_as_by_the_command(command, root, tmp_pat
         "correct", "examples/measured_plate.csv", "--material", "pva-10", "--thickness", "2 mm",
         "--study", "examples/measured_plate.toml", "--output", tmp_path / "out", cwd=root,
     )  # fmt: skip
+    assert code == 0, told
     theirs = json.loads((tmp_path / "out/report.json").read_text())
     own = dict(corrected.json)
     own.pop("times_s"), theirs.pop("times_s")
-    assert own == theirs, told
+    assert own == theirs
     corrected.write(tmp_path / "own")
     for path in (tmp_path / "out").rglob("*"):
         if path.suffix in (".vtu", ".csv", ".pvd"):
@@ -102,3 +103,16 @@ def test_markers_in_arrays_are_those_of_the_file(root, corrected):
 def test_markers_that_are_none_are_refused(markers):
     with pytest.raises(gb.InputError):
         gb.correct(markers, "pva-10", 2.0, free=["top", "bottom"])
+
+
+def test_a_force_that_the_field_cannot_have_is_told_and_no_interval_is_given(root):
+    pandas = pytest.importorskip("pandas")
+    table = pandas.read_csv(root / "examples/measured_plate.csv", comment="#")
+    table = table[table["frame"] == 1].drop(columns="frame")
+    found = gb.correct(
+        table, "pva-10", "2 mm", free=["top", "bottom"], rigid=["left", "right"], edge_gap=0,
+        force={"right": {"x": "6.5 N", "x_deviation": 0.065}},
+    )  # fmt: skip
+    assert not found.explained and not found.passed
+    assert found.forces["right"][0].interval is None
+    assert any("6.5" in doubt for doubt in found.doubts)

@@ -149,7 +149,7 @@ def test_a_path_that_ends_tells_where_why_and_what_was_reached():
     with pytest.raises(gb.SolveError) as caught:
         strip.solve("finite-element", [1e-5, 1.0])
     error = caught.value
-    assert error.load_factor == 1.0 and error.model == "finite elements"
+    assert error.load_factor == 1.0 and error.model.startswith("finite elements")
     assert error.cause and error.advice and error.step.startswith("load factor 1")
     assert str(error).endswith(error.cause)
     assert len(error.solution) == 1 and error.solution.factors[0] == 1e-5
@@ -225,14 +225,14 @@ def test_ten_thousand_calls_leave_nothing_behind():
     resource = pytest.importorskip("resource")
     material = gb.Material.from_card("pva-10")
     stretch = np.linspace(1.0, 2.0, 100)
-    tiny = gb.Plate(15, 5, 2, material, cells=(3, 1), settings={"finite_element": {"cells": [12, 4]}})
+    tiny = gb.Plate(15, 5, 2, material, cells=(4, 2), settings={"finite_element": {"cells": [8, 4]}})
 
     def calls(count):
         for _ in range(count):
             material.stress(stretch)
         for _ in range(count // 100):
             solution = tiny.solve("mass-spring", 0.1)
-            assert solution.displacement.shape == (8, 2)
+            assert solution.displacement.shape == (15, 2)
             with pytest.raises(gb.InputError):
                 tiny.solve("mass-spring", -2.0)
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -86,10 +86,31 @@ impl Raw {
         if self.cells.is_empty() {
             return Err("holds no triangles or quadrilaterals".into());
         }
-        let used = self.used();
+        let (nodes, names) = self.nodes(unit)?;
+        let sized = check_size(nodes.iter().copied());
+        sized.map_err(|measures| format!("has nodes that {measures}"))?;
+        let cells: Vec<_> = self
+            .cells
+            .iter()
+            .map(|(shape, own)| {
+                let own: Vec<usize> = own.iter().map(|name| names[name]).collect();
+                (*shape, counter_clockwise(*shape, own, &nodes))
+            })
+            .collect();
+        let mut mesh = Mesh::new(nodes, cells);
+        name_sides(&mut mesh);
+        self.name_points(&mut mesh, &names);
+        self.name_lines(&mut mesh, &names);
+        self.name_sets(&mut mesh, &names)?;
+        self.name_areas(&mut mesh);
+        Ok(mesh)
+    }
+
+    /// The nodes of the cells in mm, and their numbers in the mesh by those of the file.
+    fn nodes(&self, unit: f64) -> Result<(Vec<[f64; 2]>, Numbers), Unreadable> {
         let (mut nodes, mut names) = (Vec::new(), HashMap::new());
         let mut height: Option<f64> = None;
-        for name in used {
+        for name in self.used() {
             let Some([x, y, z]) = self.places.get(&name) else {
                 return Err(
                     format!("has a cell with the node {name}, which it does not hold").into(),
@@ -108,18 +129,10 @@ impl Raw {
             names.insert(name, nodes.len());
             nodes.push([unit * x, unit * y]);
         }
-        let sized = check_size(nodes.iter().copied());
-        sized.map_err(|measures| format!("has nodes that {measures}"))?;
-        let cells: Vec<_> = self
-            .cells
-            .iter()
-            .map(|(shape, own)| {
-                let own: Vec<usize> = own.iter().map(|name| names[name]).collect();
-                (*shape, counter_clockwise(*shape, own, &nodes))
-            })
-            .collect();
-        let mut mesh = Mesh::new(nodes, cells);
-        name_sides(&mut mesh);
+        Ok((nodes, names))
+    }
+
+    fn name_points(&self, mesh: &mut Mesh, names: &Numbers) {
         for (name, ends) in &self.points {
             let nodes = ends.iter().filter_map(|node| names.get(node).copied());
             let nodes: Vec<usize> = nodes.collect();
@@ -127,6 +140,9 @@ impl Raw {
                 mesh.put_group(name, nodes, Vec::new());
             }
         }
+    }
+
+    fn name_lines(&self, mesh: &mut Mesh, names: &Numbers) {
         let edges: HashMap<[usize; 2], Vec<usize>> = mesh
             .boundary()
             .iter()
@@ -141,9 +157,12 @@ impl Raw {
             let own: Vec<Vec<usize>> = own.collect();
             match own.is_empty() {
                 false => mesh.name_edges(name, own),
-                true => name_inner_lines(&mut mesh, name, &ends),
+                true => name_inner_lines(mesh, name, &ends),
             }
         }
+    }
+
+    fn name_sets(&self, mesh: &mut Mesh, names: &Numbers) -> Result<(), Unreadable> {
         for (name, set) in &self.sets {
             let nodes = set.iter().filter_map(|node| names.get(node).copied());
             let nodes: BTreeSet<usize> = nodes.collect();
@@ -152,6 +171,10 @@ impl Raw {
             }
             mesh.name_nodes(name, &nodes);
         }
+        Ok(())
+    }
+
+    fn name_areas(&self, mesh: &mut Mesh) {
         for (name, cells) in &self.areas {
             let is_part = cells.len() < mesh.cell_count();
             let is_edge = mesh
@@ -164,9 +187,11 @@ impl Raw {
                 mesh.put_group(name, nodes, Vec::new());
             }
         }
-        Ok(mesh)
     }
 }
+
+/// The numbers of nodes in the mesh by those of the file.
+type Numbers = HashMap<u64, usize>;
 
 /// Names the nodes of lines on the sheet, with the middle ones: sides of cells that are no part of the boundary.
 fn name_inner_lines(mesh: &mut Mesh, name: &str, ends: &BTreeSet<[usize; 2]>) {
