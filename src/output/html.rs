@@ -77,7 +77,7 @@ fn explore(explorer: &Explorer) -> Markup {
                 div.wide { table id="explorer-forces" {} }
             }
             p {
-                "The colours of a step are those of all models, without the outermost hundredth of the nodes at each end. Point at the \
+                "The colours of a step are those of all models, without the outermost hundredth of the area at each end. Point at the \
                  sheet to read values at the same place of all models; drag over the curve to change the step. " (explorer.note)
             }
         }

@@ -48,13 +48,33 @@
         box[2 + (n % 2)] = Math.max(box[2 + (n % 2)], places[n]);
       }
     });
-  // The range of colours at a step, of all models: all but a fiftieth of the nodes.
+  const area = (model, t) => {
+    const [[ax, ay], [bx, by], [cx, cy]] = [0, 1, 2].map((corner) => model.triangles[t + corner]).map((n) => [model.points[2 * n], model.points[2 * n + 1]]);
+    return Math.abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax));
+  };
+  // The range of colours at a step, of all models: without a hundredth of the area at each end.
+  const ranges = new Map();
   const range = (step) => {
+    const key = state.field + "|" + step;
+    if (!ranges.has(key)) ranges.set(key, rangeAt(step));
+    return ranges.get(key);
+  };
+  const rangeAt = (step) => {
     const ends = data.models.map((model) => {
       const all = field(model, state.field, step);
       if (!all) return null;
-      const known = all.filter(Number.isFinite).sort();
-      return known.length ? [known[Math.floor(0.01 * (known.length - 1))], known[Math.ceil(0.99 * (known.length - 1))]] : null;
+      const parts = [];
+      for (let t = 0; t < model.triangles.length; t += 3) {
+        const value = (all[model.triangles[t]] + all[model.triangles[t + 1]] + all[model.triangles[t + 2]]) / 3;
+        if (Number.isFinite(value)) parts.push([value, area(model, t)]);
+      }
+      parts.sort((a, b) => a[0] - b[0]);
+      const whole = parts.reduce((sum, part) => sum + part[1], 0);
+      const within = (share) => {
+        let passed = 0;
+        return (parts.find((part) => (passed += part[1]) >= share * whole) || [NaN])[0];
+      };
+      return parts.length ? [within(0.01), within(0.99)] : null;
     });
     const found = ends.filter(Boolean);
     let [low, high] = [Math.min(...found.map((end) => end[0])), Math.max(...found.map((end) => end[1]))];
