@@ -14,6 +14,10 @@ use common::{root, words};
 const NOT_RUN: &[(&str, &str)] = &[
     ("cargo install", "installs the program that is tested"),
     (
+        "cargo run",
+        "opens the workbench, which has tests of its own",
+    ),
+    (
         "cargo bench",
         "measures times for minutes, with 7 GB of memory",
     ),

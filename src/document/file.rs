@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use super::given::given;
 use super::inputs;
 
 /// Bytes of a study, of a card or of conditions at most.
@@ -31,6 +32,13 @@ pub enum FileFault {
 /// # Errors
 /// A [`FileFault`].
 pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileFault> {
+    let limited = |bytes: Vec<u8>| match bytes.len() as u64 > most {
+        true => Err(FileFault::TooLarge(most >> 20)),
+        false => Ok(bytes),
+    };
+    if let Some(bytes) = given(path) {
+        return limited(bytes);
+    }
     // Before it is opened, for opening waits until somebody writes into a pipe.
     let about = std::fs::metadata(path)?;
     if !about.is_file() {
@@ -39,10 +47,7 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileFault> {
     inputs::note(path);
     let mut bytes = Vec::new();
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
-    match bytes.len() as u64 > most {
-        true => Err(FileFault::TooLarge(most >> 20)),
-        false => Ok(bytes),
-    }
+    limited(bytes)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Line charts as data: what is drawn, not how.
 
+use serde::{Deserialize, Serialize};
+
 /// Colours that most people tell apart (Okabe and Ito).
 pub const PALETTE: [[u8; 3]; 6] = [
     [0, 114, 178],
@@ -11,7 +13,7 @@ pub const PALETTE: [[u8; 3]; 6] = [
 ];
 
 /// How numbers lie on an axis or a colour bar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Scale {
     /// Evenly.
     Linear,
@@ -22,7 +24,7 @@ pub enum Scale {
 }
 
 /// One axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Axis {
     /// What is shown, with its unit.
     pub label: String,
@@ -56,7 +58,7 @@ impl Axis {
 }
 
 /// How a line is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Stroke {
     /// A line with a marker at each point.
     Marked,
@@ -73,7 +75,7 @@ pub enum Stroke {
 }
 
 /// One line of a chart.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Line {
     /// Its name in the legend; an empty one is left out there.
     pub label: String,
@@ -127,7 +129,7 @@ impl Line {
 }
 
 /// A line chart.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct LineChart {
     /// Heading.
     pub title: String,

@@ -1,11 +1,13 @@
 //! Drawings as data: charts, fields, fields that move, outlines.
 
+use serde::{Deserialize, Serialize};
+
 use super::surface::edge_lines;
 use super::{Animation, FieldFigure, LineChart};
 use crate::mesh::{Group, Mesh};
 
 /// What a picture shows.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Drawing {
     /// Charts one below the other, with their heights in points.
     Charts(Vec<(LineChart, u32)>),
@@ -18,7 +20,7 @@ pub enum Drawing {
 }
 
 /// A mesh at rest by its lines, in mm.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct MeshFigure {
     /// Heading.
     pub title: String,
@@ -29,7 +31,7 @@ pub struct MeshFigure {
 }
 
 /// A group of a mesh: lines along its edges, or points, which are lines of one place twice.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct NamedLines {
     /// Its name.
     pub name: String,

@@ -1,11 +1,13 @@
 //! Fields on deformed meshes as data, and the meshes themselves.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Scale, Surface};
 use crate::finite_element::error_estimate::EnergyError;
 use crate::mesh::Mesh;
 
 /// The values of a field on a surface.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Values {
     /// At its points: the field is interpolated between them.
     AtPoints(Vec<f64>),
@@ -14,7 +16,7 @@ pub enum Values {
 }
 
 /// One plate.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Panel {
     /// Its name.
     pub label: String,
@@ -81,7 +83,7 @@ impl Panel {
 
 /// Plates above each other, in true proportions, on one colour scale: dark to light, or blue over white at zero to red
 /// where the values have both signs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct FieldFigure {
     /// Heading.
     pub title: String,
@@ -134,7 +136,7 @@ impl FieldFigure {
 }
 
 /// One picture of an animation.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Frame {
     /// Time in s, shown in the title.
     pub time: f64,
@@ -143,7 +145,7 @@ pub struct Frame {
 }
 
 /// Plates that move, all frames in true proportions, at one place and on one colour scale.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Animation {
     /// Heading.
     pub title: String,

@@ -1,9 +1,11 @@
 //! Deformed meshes as triangles, which a picture can shade.
 
+use serde::{Deserialize, Serialize};
+
 use crate::mesh::{CellShape, Mesh, NodalField};
 
 /// Triangles on the deformed mesh, and its edge deformed and at rest; all places in mm.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Surface {
     /// Where the values are.
     pub points: Vec<[f64; 2]>,

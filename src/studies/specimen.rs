@@ -18,7 +18,7 @@ mod results;
 mod statement;
 mod warnings;
 
-pub use problem::{Refinement, Specimen};
+pub use problem::{Outline, Refinement, Specimen};
 use results::end::{End, tell};
 use results::models::Models;
 pub use results::{fields, finest_mesh, force_with_error, one_model};

@@ -11,19 +11,26 @@ pub const HALVINGS: usize = 2;
 
 /// What is meshed, and how.
 pub enum Outline {
-    /// A shape by its measures: cells across, cells of the lattice, finite elements.
+    /// A shape by its measures.
     Shape {
+        /// The shape.
         shape: Shape,
+        /// Cells of the lattice across it.
         cells: usize,
+        /// Their kind.
         lattice: CellShape,
+        /// The finite elements.
         element: CellShape,
     },
-    /// The mesh of a file, the finite elements on it, whether straight edges are meant where they turn as a curve's, and how
-    /// often the finite elements' cells are halved, up to [`HALVINGS`].
+    /// The mesh of a file.
     File {
+        /// The mesh.
         mesh: Box<Mesh>,
+        /// The finite elements on it.
         element: CellShape,
+        /// Whether straight edges are meant where they turn as a curve's.
         polygons: bool,
+        /// How often the finite elements' cells are halved, up to two times.
         halvings: usize,
     },
 }

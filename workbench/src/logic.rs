@@ -1,0 +1,14 @@
+//! What the workbench does, apart from how it looks: every state a value, every action a value.
+
+pub mod background;
+pub mod deviations;
+pub mod engine;
+pub mod field;
+pub mod history;
+pub mod kind;
+pub mod material;
+pub mod report;
+pub mod scene;
+pub mod studies;
+pub mod study;
+pub mod table;

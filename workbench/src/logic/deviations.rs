@@ -1,0 +1,62 @@
+//! How far a model is from the finite elements with the grip at the same place, in percent.
+
+use gelbench::compare::area_weighted_percent;
+use gelbench::mesh::{Mesh, NodalField};
+
+use super::engine::Solved;
+use super::scene::{Grip, Scene};
+
+/// Deviation of one model from the finite elements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Displacement in relative L2, in %.
+    pub displacement: f64,
+    /// Departure from the field that is linear between the grips, in relative L2, in %.
+    pub departure: f64,
+    /// Force on the grip, signed where it acts along X alone, in %.
+    pub force: f64,
+}
+
+impl Deviation {
+    /// Of a model on the lattice; nothing where the sheet is at rest, or the elements' field on the lattice is not known.
+    pub fn of(scene: &Scene, lattice: &Mesh, model: &Solved, elements: &Solved) -> Option<Self> {
+        let (found, expected) = (&model.displacement[..], elements.on_lattice.as_deref()?);
+        if scene.grip == Grip::default() || found.len() != expected.len() {
+            return None;
+        }
+        let areas = lattice.corner_areas();
+        let linear = linear_between_grips(scene, lattice);
+        let departure = expected.weighted_distance(&linear, &areas);
+        Some(Self {
+            displacement: area_weighted_percent(lattice, found, expected),
+            departure: 100.0 * found.weighted_distance(expected, &areas) / departure,
+            force: force_percent(model.force, elements.force),
+        })
+    }
+}
+
+/// 100 (F/F₀ − 1) where both forces act along X, 100 |F − F₀|/|F₀| else.
+fn force_percent([x, y]: [f64; 2], [x0, y0]: [f64; 2]) -> f64 {
+    match y0.abs() < 1e-9 * x0.abs() {
+        true => 100.0 * (x / x0 - 1.0),
+        false => 100.0 * (x - x0).hypot(y - y0) / x0.hypot(y0),
+    }
+}
+
+/// The displacement of the right grip times X over the length, in mm.
+fn linear_between_grips(scene: &Scene, lattice: &Mesh) -> Vec<f64> {
+    let lines = scene.grip.lines(scene.axis());
+    let at = |place: &[f64; 2]| lines.map(|line| place[0] / scene.size[0] * line.at(*place));
+    lattice.nodes.iter().flat_map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forces_across_are_measured_as_vectors() {
+        assert!((force_percent([11.0, 0.0], [10.0, 0.0]) - 10.0).abs() < 1e-12);
+        assert!((force_percent([3.0, 4.5], [3.0, 4.0]) - 10.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,202 @@
+//! Solves one model of a scene after the other as its grip moves: what runs beside the drawing.
+//!
+//! Plates are corrected by the climb as long as the grip is on its way: to a thousandth of the discretisation error, from
+//! the state before. Once it rests, and for the other models and shapes, Newton's method goes on from the state before
+//! to 1e-10 of the reaction, so that the result is the same whatever way led there.
+
+use serde::{Deserialize, Serialize};
+use web_time::Instant;
+
+use gelbench::error::Error;
+use gelbench::results::nodal_states;
+use gelbench::solve::compliance;
+
+use super::background::Worker;
+use super::scene::{Colour, Grip, Model, Scene};
+
+mod bodies;
+mod path;
+mod plate;
+
+pub use bodies::meshes;
+use bodies::{Bodies, Body};
+
+/// What is to be solved.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Task {
+    /// Its number; answers carry it.
+    pub number: u64,
+    /// The sheet, its grip, and what colours it.
+    pub scene: Scene,
+    /// The model.
+    pub model: Model,
+    /// Whether the grip rests, and the result shall be exact.
+    pub settled: bool,
+    /// The springs' displacements at the same place of the grip, where the multipliers of their correction are wanted.
+    pub springs: Option<Vec<f64>>,
+}
+
+/// A solved model.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Solved {
+    /// ux, uy of node after node in mm.
+    pub displacement: Vec<f64>,
+    /// What colours the nodes.
+    pub colour: Colour,
+    /// Its value at each node; empty where it is a distance, which needs two models.
+    pub values: Vec<f64>,
+    /// Force on the right grip in N.
+    pub force: [f64; 2],
+    /// Moment on the right grip about its middle as it is, in N mm.
+    pub moment: f64,
+    /// Finite elements: their displacements at the nodes of the lattice in mm.
+    pub on_lattice: Option<Vec<f64>>,
+    /// Multipliers of the correction at each node in mm²/N; nothing where they were not wanted.
+    pub multipliers: Option<Vec<f64>>,
+}
+
+/// Why there is no result, in the library's words.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Fault {
+    /// What is wrong, and where.
+    pub message: String,
+    /// What to try; may be empty.
+    pub advice: String,
+}
+
+/// What came of a task.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Answer {
+    /// The task.
+    pub number: u64,
+    /// The model.
+    pub model: Model,
+    /// Where the grip was.
+    pub grip: Grip,
+    /// Whether the result is exact.
+    pub settled: bool,
+    /// The result.
+    pub result: Result<Solved, Fault>,
+    /// Computing time in s.
+    pub seconds: f64,
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self {
+            message: error.to_string(),
+            advice: error.advice().unwrap_or_default().to_owned(),
+        }
+    }
+}
+
+/// The models of the last scene, each in its last state.
+#[derive(Default)]
+pub struct Engine {
+    scene: Option<Scene>,
+    bodies: Option<Bodies>,
+}
+
+impl Worker for Engine {
+    type Question = Task;
+    type Answer = Answer;
+    const NAME: &'static str = "engine";
+
+    fn answer(&mut self, task: &Task) -> Answer {
+        let begun = Instant::now();
+        let result = self.solve(task);
+        Answer {
+            number: task.number,
+            model: task.model,
+            grip: task.scene.grip,
+            settled: task.settled,
+            result: result.map_err(Fault::from),
+            seconds: begun.elapsed().as_secs_f64(),
+        }
+    }
+}
+
+impl Engine {
+    fn solve(&mut self, task: &Task) -> Result<Solved, Error> {
+        let known = self.scene.as_ref();
+        if !known.is_some_and(|known| known.same_sheet(&task.scene)) {
+            (self.scene, self.bodies) = (None, None);
+            self.bodies = Some(Bodies::of(&task.scene)?);
+            self.scene = Some(task.scene.clone());
+        }
+        let bodies = self.bodies.as_mut().expect("bodies were made");
+        let (grip, colour) = (task.scene.grip, task.scene.look.colour);
+        let sheet = bodies.sheet.clone();
+        let body = bodies.body(task.model)?;
+        let force = body.follow(&sheet, grip, task.settled)?;
+        let (force, moment) = body.reaction(&sheet, grip, force);
+        let values = values(body, &sheet, colour);
+        let multipliers = match &task.springs {
+            Some(springs) => Some(multipliers(body, &sheet, grip, springs)?),
+            None => None,
+        };
+        let displacement = body.displacement.clone();
+        let (mesh, lattice) = (&bodies.made(task.model).mesh, &bodies.lattice);
+        let on_lattice =
+            (task.model == Model::Elements).then(|| mesh.displacement_on(&displacement, lattice));
+        Ok(Solved {
+            displacement,
+            colour,
+            values,
+            force,
+            moment,
+            on_lattice,
+            multipliers,
+        })
+    }
+}
+
+/// What colours the nodes.
+fn values(body: &Body, sheet: &bodies::Sheet, colour: Colour) -> Vec<f64> {
+    let states = || nodal_states(&*sheet.law, &body.mesh, &body.displacement).into_iter();
+    match colour {
+        Colour::Displacement => {
+            let vectors = body.displacement.chunks_exact(2);
+            vectors.map(|u| u[0].hypot(u[1])).collect()
+        }
+        Colour::Stretch => states().map(|state| state.stretches[0]).collect(),
+        Colour::Stress => states().map(|state| state.von_mises()).collect(),
+        Colour::Distance => Vec::new(),
+    }
+}
+
+/// ψ of the correction of the springs' field ū to the corrected one u: K ψ = ū − u at the nodes between the grips, the
+/// derivative of the smallest ½ ‖u − ū‖² by the forces there, in mm²/N.
+fn multipliers(
+    body: &Body,
+    sheet: &bodies::Sheet,
+    grip: Grip,
+    springs: &[f64],
+) -> Result<Vec<f64>, Error> {
+    let corrected = &body.displacement;
+    if springs.len() != corrected.len() {
+        return Ok(vec![0.0; corrected.len()]);
+    }
+    let model = body.model(sheet, grip)?;
+    let change: Vec<f64> = springs.iter().zip(corrected).map(|(s, u)| s - u).collect();
+    let found = compliance(&model, (1.0, corrected), &change);
+    found.map_err(|fault| Error::Solve {
+        model: "multipliers".into(),
+        step: grip.describe(),
+        fault,
+    })
+}
+
+impl Grip {
+    /// `(45, 0) mm turned by 2°`, for messages.
+    pub fn describe(self) -> String {
+        let [x, y] = self.displacement;
+        format!(
+            "({x:.3}, {y:.3}) mm turned by {:.2}°",
+            self.angle.to_degrees()
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,109 @@
+//! From one place of the grip to another: Newton's method that goes on from the state before.
+
+use gelbench::error::Error;
+use gelbench::problem::Model;
+use gelbench::solve::{Attendance, Loading, NewtonSettings, Potential, State, follow};
+
+use super::bodies::{Body, Sheet};
+use crate::logic::scene::Grip;
+
+const NEWTON: NewtonSettings = NewtonSettings {
+    tolerance: 1e-10,
+    max_iterations: 40,
+};
+
+/// Load factors of a path from rest.
+const FROM_REST: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+
+/// A sheet whose grip goes from where it was at load factor 0 to where it shall be at 1.
+struct OnTheWay<'a> {
+    model: &'a Model<'a>,
+    held: Vec<bool>,
+    /// The field before.
+    from: &'a [f64],
+    /// What the motion of the grip changes of it, linear between the grips.
+    change: Vec<f64>,
+}
+
+impl Loading for OnTheWay<'_> {
+    fn held(&self) -> Vec<bool> {
+        self.held.clone()
+    }
+
+    fn impose(&self, factor: f64, displacement: &mut [f64]) {
+        for (unknown, _) in self.held.iter().enumerate().filter(|(_, held)| **held) {
+            displacement[unknown] = self.from[unknown] + factor * self.change[unknown];
+        }
+    }
+
+    fn potential(&self, _: f64) -> Box<dyn Potential + '_> {
+        self.model.potential(1.0)
+    }
+
+    fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
+        let (at, field) = previous.map_or((0.0, self.from), |state| {
+            (state.factor, &state.displacement)
+        });
+        let parts = field.iter().zip(&self.change);
+        Some(
+            parts
+                .map(|(u, change)| u + (factor - at) * change)
+                .collect(),
+        )
+    }
+
+    fn describe(&self, element: usize) -> String {
+        self.model.describe(element)
+    }
+
+    fn describe_unknown(&self, unknown: usize) -> String {
+        self.model.describe_unknown(unknown)
+    }
+}
+
+/// The equilibrium with the grip at a place: from the state before, else in load steps from rest.
+///
+/// # Errors
+/// [`Error::Solve`] where neither leads there.
+pub fn reach(body: &Body, sheet: &Sheet, grip: Grip) -> Result<Vec<f64>, Error> {
+    let rest = vec![0.0; body.displacement.len()];
+    let before = (body.grip(), &body.displacement[..]);
+    let near = on_the_way(body, sheet, before, grip, &[1.0]);
+    near.or_else(|_| on_the_way(body, sheet, (Grip::default(), &rest), grip, &FROM_REST))
+}
+
+fn on_the_way(
+    body: &Body,
+    sheet: &Sheet,
+    (before, from): (Grip, &[f64]),
+    grip: Grip,
+    factors: &[f64],
+) -> Result<Vec<f64>, Error> {
+    let model = body.model(sheet, grip)?;
+    let way = OnTheWay {
+        held: model.held(),
+        change: between_grips(body, sheet, before, grip),
+        model: &model,
+        from,
+    };
+    let states = follow(&way, factors, NEWTON, Attendance::told(&|_| ()));
+    let states = states.map_err(|end| Error::Solve {
+        model: "sheet".into(),
+        step: format!("the grip at {}", grip.describe()),
+        fault: end.fault,
+    });
+    Ok(states?
+        .pop()
+        .expect("one for each load factor")
+        .displacement)
+}
+
+/// What the grip's motion changes, falling to zero at the left grip in proportion to X.
+fn between_grips(body: &Body, sheet: &Sheet, before: Grip, grip: Grip) -> Vec<f64> {
+    let [earlier, later] = [before, grip].map(|grip| grip.lines(sheet.axis));
+    let change = |place: &[f64; 2]| {
+        let share = place[0] / sheet.length;
+        [0, 1].map(|axis| share * (later[axis].at(*place) - earlier[axis].at(*place)))
+    };
+    body.mesh.nodes.iter().flat_map(change).collect()
+}

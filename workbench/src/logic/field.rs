@@ -1,0 +1,350 @@
+//! Measured fields: files of markers are looked at, then corrected, beside the drawing.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+use web_time::Instant;
+
+use gelbench::budget::Budget;
+use gelbench::corrector::estimation::{Answer, EdgeCondition, FieldEstimate};
+use gelbench::document::with_files;
+use gelbench::error::{Diagnostic, Error};
+use gelbench::markers::{ChosenColumns, Frame, ReadSettings};
+use gelbench::mesh::{CellShape, Mesh};
+use gelbench::output::vtk;
+use gelbench::results::{Drawing, Panel, mesh_outlines, nodal_states};
+use gelbench::studies::markers::written::{self, FrameFiles};
+use gelbench::studies::markers::{ComparedFrames, Conditions, MarkerStudy, MeshSource, Request};
+use gelbench::units::{Dimension, parse};
+
+use super::background::Worker;
+use super::engine::Fault;
+use super::report::Report;
+use super::scene::CardFile;
+use super::studies::{NamedFile, paths};
+
+/// What is known of an edge.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
+pub enum Edge {
+    /// Nothing is said: the data decide.
+    Unnamed,
+    /// No traction acts on it.
+    Free,
+    /// It moved as a rigid body.
+    Rigid,
+    /// Its displacement is unknown.
+    Unknown,
+}
+
+impl Edge {
+    /// All of them with their names.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("the data decide", Self::Unnamed),
+        ("free", Self::Free),
+        ("rigid", Self::Rigid),
+        ("unknown", Self::Unknown),
+    ];
+}
+
+/// A measured field and what is said of it, texts as a user writes them.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct FieldQuestion {
+    /// The files of the field.
+    pub files: Vec<NamedFile>,
+    /// The material.
+    pub card: CardFile,
+    /// Thickness at rest, such as `2 mm`.
+    pub thickness: String,
+    /// The length of the files' unit or pixel where they do not say it; may be empty.
+    pub unit: String,
+    /// Columns by what they hold, such as `x=x_px,y=y_px,ux=u,uy=v`; may be empty.
+    pub columns: String,
+    /// Whether y points down in the files, where that is not as their layout says.
+    pub downwards: Option<bool>,
+    /// How far inside of the edge the outermost markers lie; may be empty.
+    pub edge_gap: String,
+    /// Size of the cells; may be empty.
+    pub cell_size: String,
+    /// The edges by name.
+    pub edges: BTreeMap<String, Edge>,
+    /// Whether the field is corrected, or only looked at.
+    pub correct: bool,
+}
+
+/// What is seen of the files before they are corrected.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Preview {
+    /// Layout, columns, units and axes in words.
+    pub understood: Vec<String>,
+    /// Where the mesh comes from.
+    pub mesh: String,
+    /// The mesh and its edges by name.
+    pub drawing: Drawing,
+    /// Names of the edges.
+    pub edges: Vec<String>,
+    /// Places of the markers of the last frame, and where they were found, in mm.
+    pub markers: Vec<[[f64; 2]; 2]>,
+    /// What deserves attention.
+    pub warnings: Vec<String>,
+}
+
+/// A corrected frame.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct CorrectedFrame {
+    /// Its number.
+    pub number: usize,
+    /// Displacement, stress, thickness and their standard errors on the deformed sheet, with what they show.
+    pub fields: Vec<(String, Panel)>,
+    /// Place and residual of every marker in mm, and its weight: 1 for a marker like the others, 0 for one far off.
+    pub residuals: Vec<([f64; 2], [f64; 2], f64)>,
+    /// The verdict in words.
+    pub verdict: String,
+    /// Whether the data are explained.
+    pub explained: bool,
+    /// Force on each edge that is not free: name, x, y with their 95 % intervals in N.
+    pub forces: Vec<(String, [[f64; 3]; 2])>,
+}
+
+/// What came of a question.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct FieldAnswer {
+    /// What is seen of the files.
+    pub preview: Preview,
+    /// The frames and the report, once they are corrected.
+    pub corrected: Option<(Vec<CorrectedFrame>, Report)>,
+}
+
+/// Looks at measured fields and corrects them.
+#[derive(Default)]
+pub struct FieldCorrector;
+
+impl Worker for FieldCorrector {
+    type Question = FieldQuestion;
+    type Answer = Result<FieldAnswer, Fault>;
+    const NAME: &'static str = "corrector";
+
+    fn answer(&mut self, question: &FieldQuestion) -> Result<FieldAnswer, Fault> {
+        let own = (
+            question.card.reference(),
+            question.card.text.clone().into_bytes(),
+        );
+        let files: Vec<NamedFile> = question.files.iter().cloned().chain([own]).collect();
+        with_files(paths(&files), || answer(question)).map_err(Fault::from)
+    }
+}
+
+fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
+    let begun = Instant::now();
+    let study = MarkerStudy::prepare(request(question)?)?;
+    let preview = preview(&study);
+    if !question.correct {
+        return Ok(FieldAnswer {
+            preview,
+            corrected: None,
+        });
+    }
+    let mut compared = ComparedFrames::default();
+    for frame in &study.series.frames {
+        compared.push(frame, study.estimate_frame(frame)?);
+    }
+    let estimates = compared.into_estimates();
+    let name = question.files.first().map_or("field", |(name, _)| name);
+    let seconds = begun.elapsed().as_secs_f64();
+    let results = written::results(
+        &study,
+        &estimates,
+        (name.to_owned(), String::new()),
+        seconds,
+    );
+    let mut report = Report::from(results);
+    let frames = || study.series.frames.iter().zip(&estimates);
+    for (frame, estimate) in frames() {
+        let files = FrameFiles::new(&study, frame, estimate);
+        let grids = files
+            .grids
+            .iter()
+            .map(|grid| (format!("{}.vtu", grid.name), vtk::grid(&grid.grid)));
+        let tables = files
+            .tables
+            .iter()
+            .map(|(name, text)| (name.clone(), text.clone().into_bytes()));
+        report.files.extend(grids.chain(tables));
+    }
+    let corrected = frames()
+        .map(|(frame, estimate)| corrected(&study, frame, estimate))
+        .collect();
+    Ok(FieldAnswer {
+        preview,
+        corrected: Some((corrected, report)),
+    })
+}
+
+/// A length that a user writes; nothing where the text is empty.
+fn length(what: &str, text: &str) -> Result<Option<f64>, Error> {
+    if text.trim().is_empty() {
+        return Ok(None);
+    }
+    let read = parse(text.trim(), Dimension::Length);
+    read.map(Some)
+        .map_err(|fault| Error::input(format!("{what} {fault}"), "such as \"2 mm\""))
+}
+
+fn request(question: &FieldQuestion) -> Result<Request, Error> {
+    let thickness = length("the thickness", &question.thickness)?;
+    let thickness = thickness.filter(|value| *value > 0.0).ok_or_else(|| {
+        Error::input(
+            "the thickness at rest is not said",
+            "write it with its unit, such as \"2 mm\"",
+        )
+    })?;
+    let columns = question
+        .columns
+        .split(',')
+        .filter(|column| !column.trim().is_empty());
+    let columns = ChosenColumns::parse(columns).map_err(|fault| Error::Input(vec![fault]))?;
+    let condition = |edge: &Edge| match edge {
+        Edge::Unnamed => None,
+        Edge::Free => Some(EdgeCondition::Free),
+        Edge::Rigid => Some(EdgeCondition::Rigid),
+        Edge::Unknown => Some(EdgeCondition::Unknown),
+    };
+    let edges = question.edges.iter();
+    let edges = edges.filter_map(|(name, edge)| Some((name.clone(), condition(edge)?)));
+    Ok(Request {
+        files: question
+            .files
+            .iter()
+            .map(|(name, _)| PathBuf::from(name))
+            .collect(),
+        reading: ReadSettings {
+            unit: unit(&question.unit)?,
+            columns,
+            downwards: question.downwards,
+            ..ReadSettings::default()
+        },
+        material: question.card.reference(),
+        thickness,
+        mesh: MeshSource::Data,
+        cell_size: length("the size of cells", &question.cell_size)?,
+        shape: CellShape::Triangle6,
+        holes: true,
+        conditions: Conditions {
+            edges: edges.collect(),
+            edge_gap: length("the gap to the edge", &question.edge_gap)?,
+            ..Conditions::default()
+        },
+        forces: None,
+        budget: Budget::USUAL,
+    })
+}
+
+/// A unit such as `mm`, or the length of a pixel such as `0.05 mm`.
+fn unit(text: &str) -> Result<Option<f64>, Error> {
+    let text = text.trim();
+    let begins_with_number = text.starts_with(|first: char| first.is_ascii_digit() || first == '.');
+    match text.is_empty() || begins_with_number {
+        true => length("the unit", text),
+        false => length("the unit", &format!("1 {text}")),
+    }
+}
+
+/// The mesh with its edges.
+fn outlines(mesh: &Mesh) -> Drawing {
+    let mut drawing = mesh_outlines("", mesh);
+    if let Drawing::Mesh(figure) = &mut drawing {
+        figure.groups.retain(|group| group.name != "boundary");
+    }
+    drawing
+}
+
+/// The names of a mesh's edges; the whole boundary is none.
+fn edges(mesh: &Mesh) -> Vec<String> {
+    let names = mesh.groups().keys().filter(|name| *name != "boundary");
+    names.cloned().collect()
+}
+
+fn words(found: &[Diagnostic]) -> Vec<String> {
+    found.iter().map(ToString::to_string).collect()
+}
+
+fn preview(study: &MarkerStudy) -> Preview {
+    let understood = &study.understood;
+    let column = |taken: &gelbench::markers::ColumnTaken| {
+        let unit = taken
+            .unit
+            .map(|unit| format!(" in {unit} mm, {}", taken.unit_source));
+        format!(
+            "{} from {}{}",
+            taken.holds,
+            taken.head,
+            unit.unwrap_or_default()
+        )
+    };
+    let columns = understood.columns.iter().map(column);
+    let axes = [Some(understood.axes()), understood.places()];
+    let last = study.series.frames.last();
+    let markers = last.map_or(&[][..], |frame| &frame.markers);
+    Preview {
+        understood: [understood.layout.to_owned()]
+            .into_iter()
+            .chain(columns)
+            .chain(axes.into_iter().flatten().map(str::to_owned))
+            .collect(),
+        mesh: study.mesh_origin.clone(),
+        drawing: outlines(&study.mesh),
+        edges: edges(&study.mesh),
+        markers: markers
+            .iter()
+            .map(|marker| {
+                let found = [0, 1].map(|axis| marker.place[axis] + marker.displacement[axis]);
+                [marker.place, found]
+            })
+            .collect(),
+        warnings: words(&study.warnings),
+    }
+}
+
+fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> CorrectedFrame {
+    let (mesh, u) = (&study.mesh, &estimate.displacement[..]);
+    let law = study.law(estimate);
+    let states = nodal_states(&*law, mesh, u);
+    let at_nodes = |name: &str, value: &dyn Fn(usize) -> f64| {
+        (name.to_owned(), Panel::at_nodes(name, mesh, u, value))
+    };
+    let size = |values: &[f64], node: usize| values[2 * node].hypot(values[2 * node + 1]);
+    let residuals = frame.markers.iter().zip(&estimate.markers);
+    let residual = |(marker, found): (
+        &gelbench::markers::Marker,
+        &Option<gelbench::corrector::estimation::MarkerEstimate>,
+    )| {
+        let found = found.as_ref()?;
+        Some((marker.place, found.residual, found.trust))
+    };
+    let forces = estimate.forces.iter().map(|force| {
+        let axes = force
+            .force
+            .map(|along| [along.value, along.interval[0], along.interval[1]]);
+        (force.edge.clone(), axes)
+    });
+    CorrectedFrame {
+        number: frame.number,
+        fields: vec![
+            at_nodes("displacement [mm]", &|node| size(u, node)),
+            at_nodes("standard error of the displacement [mm]", &|node| {
+                size(&estimate.displacement_error, node)
+            }),
+            at_nodes("von Mises stress [MPa]", &|node| states[node].von_mises()),
+            at_nodes("larger principal stretch [–]", &|node| {
+                states[node].stretches[0]
+            }),
+            at_nodes("thickness [mm]", &|node| {
+                study.thickness * states[node].stretches[2]
+            }),
+        ],
+        residuals: residuals.filter_map(residual).collect(),
+        verdict: estimate.verdict.answer.words().to_owned(),
+        explained: estimate.verdict.answer != Answer::NotExplained,
+        forces: forces.collect(),
+    }
+}

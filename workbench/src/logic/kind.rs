@@ -1,0 +1,110 @@
+//! What a dropped file is: it finds its view by itself.
+
+use gelbench::calibration::{KEYS, TestData};
+use gelbench::document::Statements;
+use gelbench::document::with_files;
+use gelbench::markers::{ReadSettings, read};
+use std::path::PathBuf;
+
+/// What a file may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A study of a sheet between two grips, or a card.
+    Sheet,
+    /// A study of another kind.
+    Study,
+    /// Data of a material test.
+    Test,
+    /// A measured field.
+    Field,
+    /// Anything else that a study may name.
+    Other,
+}
+
+/// Kinds of studies that are sheets between two grips.
+const SHEETS: [&str; 2] = ["plate", "specimen"];
+
+impl Kind {
+    /// By the name of a file and its text, where it is one.
+    pub fn of(name: &str, text: Option<&str>) -> Self {
+        let ending = name.rsplit('.').next().unwrap_or_default().to_lowercase();
+        match (ending.as_str(), text) {
+            ("toml", Some(text)) => Self::of_toml(text),
+            ("vtu" | "vtk" | "pvd" | "frd", _) => Self::Field,
+            ("csv" | "txt" | "tsv" | "dat", Some(text)) => Self::of_table(name, text),
+            // Tables in other encodings are measured fields: those of cameras.
+            ("csv" | "txt" | "tsv" | "dat", None) => Self::Field,
+            _ => Self::Other,
+        }
+    }
+
+    /// Whether a text is a material card.
+    pub fn is_card(text: &str) -> bool {
+        let table = text.parse::<toml::Table>();
+        table.is_ok_and(|table| table.contains_key("law"))
+    }
+
+    fn of_toml(text: &str) -> Self {
+        let table = text.parse::<toml::Table>().unwrap_or_default();
+        let kind = table.get("kind").and_then(toml::Value::as_str);
+        match kind {
+            Some(kind) if !SHEETS.contains(&kind) => Self::Study,
+            _ => Self::Sheet,
+        }
+    }
+
+    /// A table that is read as markers is a field; one that says what was tested, or has two columns, is a test.
+    fn of_table(name: &str, text: &str) -> Self {
+        let first = text
+            .lines()
+            .find(|line| !line.trim_start().starts_with('#'));
+        let first = first.unwrap_or_default();
+        let columns = first.split([',', ';', '\t']).count();
+        let states = |key: &&str| {
+            text.lines().any(|line| {
+                line.trim_start_matches('#')
+                    .trim_start()
+                    .starts_with(&format!("{key}:"))
+            })
+        };
+        let is_test = KEYS.iter().any(|key| states(&key)) || columns < 4;
+        let path = PathBuf::from(name);
+        let as_field = || {
+            let files = [(path.clone(), text.as_bytes().to_vec())];
+            with_files(files, || {
+                read(std::slice::from_ref(&path), &ReadSettings::default()).is_ok()
+            })
+        };
+        let as_test = || TestData::parse(name, text, &Statements::new()).is_ok();
+        match is_test || (!as_field() && as_test()) {
+            true => Self::Test,
+            false => Self::Field,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_find_their_view() {
+        let field = include_str!("../../../examples/measured_plate.csv");
+        let test = include_str!("../../../materials/data/treloar_1944_uniaxial.csv");
+        let motion = include_str!("../../../examples/released_plate.toml");
+        let card = include_str!("../../../materials/neo-hooke.toml");
+        for (name, text, kind) in [
+            ("measured.csv", field, Kind::Field),
+            ("test.csv", test, Kind::Test),
+            ("bare.csv", "strain,stress\n0.1,0.2\n", Kind::Test),
+            ("px.csv", "a,b,c,d\n1,2,3,4\n", Kind::Field),
+            ("motion.toml", motion, Kind::Study),
+            ("card.toml", card, Kind::Sheet),
+            ("short.toml", "[plate]\nwidth = \"4 cm\"\n", Kind::Sheet),
+            ("mesh.msh", "$MeshFormat\n", Kind::Other),
+        ] {
+            assert_eq!(Kind::of(name, Some(text)), kind, "{name}");
+        }
+        assert_eq!(Kind::of("camera.csv", None), Kind::Field);
+    }
+}

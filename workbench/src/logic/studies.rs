@@ -1,0 +1,102 @@
+//! Studies of any kind, run beside the drawing from files that lie in memory.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use gelbench::budget::Budget;
+use gelbench::document::with_files;
+use gelbench::studies::Progress;
+use gelbench::validation;
+
+use super::background::Worker;
+use super::engine::Fault;
+use super::report::Report;
+
+/// A file by its name.
+pub type NamedFile = (String, Vec<u8>);
+
+/// A study and the files that it may name.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct StudyQuestion {
+    /// The name of the study among the files.
+    pub study: String,
+    /// All files.
+    pub files: Vec<NamedFile>,
+}
+
+/// Runs studies.
+#[derive(Default)]
+pub struct Runner;
+
+impl Worker for Runner {
+    type Question = StudyQuestion;
+    type Answer = Result<Report, Fault>;
+    const NAME: &'static str = "runner";
+
+    fn answer(&mut self, question: &StudyQuestion) -> Result<Report, Fault> {
+        with_files(paths(&question.files), || {
+            let study = validation::read(Path::new(&question.study), Budget::USUAL)?;
+            study.compute(Progress::silent()).map(Report::from)
+        })
+        .map_err(Fault::from)
+    }
+}
+
+/// Files by the paths that the library finds them by.
+pub fn paths(files: &[NamedFile]) -> impl Iterator<Item = (PathBuf, Vec<u8>)> + '_ {
+    files
+        .iter()
+        .map(|(name, content)| (PathBuf::from(name), content.clone()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::logic::report::Part;
+
+    fn run(study: &str, text: &str, others: &[NamedFile]) -> Result<Report, Fault> {
+        let own = (study.to_owned(), text.as_bytes().to_vec());
+        let files = others.iter().cloned().chain([own]).collect();
+        let study = study.to_owned();
+        Runner.answer(&StudyQuestion { study, files })
+    }
+
+    #[test]
+    fn a_study_from_memory_has_tables_pictures_and_fields() {
+        let text = include_str!("../../../examples/nonlinear_spring.toml");
+        let report = run("spring.toml", text, &[]).unwrap();
+        assert!(
+            report
+                .parts
+                .iter()
+                .any(|part| matches!(part, Part::Table(..)))
+        );
+        assert!(
+            report
+                .parts
+                .iter()
+                .any(|part| matches!(part, Part::Picture(..)))
+        );
+        let text = "kind = \"plate\"\n[plate]\ncells = [12, 4]\n[load]\nstretches = [\"20 %\"]\n[tolerances]\ndisplacement = \"5 %\"\ndeparture = \"50 %\"\nforce = \"5 %\"\n";
+        let report = run("plate.toml", text, &[]).unwrap();
+        assert!(
+            report.files.iter().any(|(name, _)| name.ends_with(".vtu")),
+            "{:?}",
+            report.told
+        );
+    }
+
+    #[test]
+    fn a_card_that_a_study_names_is_found_among_the_files_and_nowhere_else() {
+        let card = gelbench::material::registry::CARDS[1].1.as_bytes().to_vec();
+        let text = "kind = \"plate\"\n[plate]\ncells = [12, 4]\n[material]\ncard = \"own.toml\"\n[load]\nstretches = [\"10 %\"]\n";
+        assert!(run("plate.toml", text, &[("own.toml".into(), card)]).is_ok());
+        assert!(
+            run("plate.toml", text, &[])
+                .unwrap_err()
+                .message
+                .contains("own.toml")
+        );
+    }
+}

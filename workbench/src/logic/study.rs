@@ -1,0 +1,336 @@
+//! The scene as a study that `gelbench run` takes, and a study as a scene.
+//!
+//! A plate that is only stretched is a study of plates; whatever else two grips do is a study of specimens. How the
+//! scene is shown stands in a comment, which gelbench does not read.
+
+use std::path::Path;
+
+use gelbench::budget::Budget;
+use gelbench::error::Error;
+use gelbench::material::Card;
+use gelbench::mesh::Shape;
+use gelbench::problem::Support;
+use gelbench::studies::{Kind, plate, specimen};
+use gelbench::units::Linear;
+use gelbench::validation::case_of;
+
+use super::scene::{CardFile, Grip, Look, Outline, Scene};
+
+/// What a comment with the look begins with.
+const LOOK: &str = "# shown: ";
+
+impl Scene {
+    /// The study, with the name of its card.
+    pub fn study(&self) -> String {
+        self.study_of(&self.card.reference(), self.grip)
+    }
+
+    /// The study of another card or grip.
+    pub(super) fn study_of(&self, card: &str, grip: Grip) -> String {
+        let look = serde_json::to_string(&self.look).expect("a look is plain data");
+        let only_stretched = grip.displacement[1] == 0.0 && grip.angle == 0.0;
+        let body = match self.outline {
+            Outline::Plate if only_stretched && grip.displacement[0] != 0.0 => {
+                self.plate(card, grip.displacement[0] / self.size[0])
+            }
+            _ => self.specimen(card, grip),
+        };
+        format!("# A study of the workbench.\n{LOOK}{look}\n{body}")
+    }
+
+    fn plate(&self, card: &str, stretch: f64) -> String {
+        let ([length, width], [nx, ny]) = (self.size, self.cells);
+        format!(
+            "kind = \"plate\"\ntitle = \"Clamped plate\"\n\n\
+             [plate]\nlength = \"{length} mm\"\nwidth = \"{width} mm\"\nthickness = \"{} mm\"\ncells = [{nx}, {ny}]\n\n\
+             [material]\ncard = \"{card}\"\n\n[load]\nstretches = [{stretch}]\n",
+            self.thickness
+        )
+    }
+
+    fn specimen(&self, card: &str, grip: Grip) -> String {
+        let [length, width] = self.size;
+        let (shape, measures) = match self.outline {
+            Outline::Plate => ("strip", String::new()),
+            Outline::Hole { diameter } => (
+                "strip-with-hole",
+                format!("hole_diameter = \"{diameter} mm\"\n"),
+            ),
+            Outline::Notches { depth, length } => (
+                "notched-strip",
+                format!("notch_depth = \"{depth} mm\"\nnotch_length = \"{length} mm\"\n"),
+            ),
+            Outline::DogBone {
+                narrow_length,
+                narrow_width,
+                shoulder,
+            } => (
+                "dog-bone",
+                format!(
+                    "narrow_length = \"{narrow_length} mm\"\nnarrow_width = \"{narrow_width} mm\"\nshoulder_length = \"{shoulder} mm\"\n"
+                ),
+            ),
+        };
+        let [x, y] = grip.lines(0.0).map(|line| written(&line));
+        format!(
+            "kind = \"specimen\"\ntitle = \"Sheet between two grips\"\n\n[material]\ncard = \"{card}\"\n\n\
+             [specimen]\nshape = \"{shape}\"\nlength = \"{length} mm\"\nwidth = \"{width} mm\"\n{measures}\
+             thickness = \"{} mm\"\ncells = {}\n\n\
+             [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\n\
+             [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"{x}\"\ny = \"{y}\"\n\n\
+             [path]\nfactors = [0.25, 0.5, 0.75, 1.0]\nmeasured_group = \"right\"\n",
+            self.thickness, self.cells[1]
+        )
+    }
+
+    /// The scene of a study; cards that it names by a path are looked for in `folder`, then among `cards`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault of the study, or where it is none of a sheet between two grips.
+    pub fn open(file: &Path, text: &str, cards: &[CardFile]) -> Result<Self, Error> {
+        let (text, own) = with_known_card(text, cards);
+        let shown = text.lines().find_map(|line| line.strip_prefix(LOOK));
+        let look = shown.and_then(|look| serde_json::from_str(look).ok());
+        let scene = match case_of(&file.display().to_string(), &text)? {
+            None => of_plate(file, text)?,
+            Some(kind) if kind.kind == specimen::KIND => of_specimen(kind, file, &text)?,
+            Some(kind) => {
+                return Err(Error::input(
+                    format!(
+                        "a study of the kind `{}` is no sheet between two grips",
+                        kind.kind
+                    ),
+                    "run it in the view Study, or with `gelbench run`",
+                ));
+            }
+        };
+        Ok(Self {
+            card: own.unwrap_or(scene.card),
+            look: look.unwrap_or(scene.look),
+            ..scene
+        })
+    }
+}
+
+impl Grip {
+    /// The displacements of the right grip's points as they are at rest, linear in Y:
+    ///
+    /// ```text
+    /// ux = dx − sin α (Y − Y₀),   uy = dy + (cos α − 1)(Y − Y₀)                          [mm]
+    /// ```
+    pub fn lines(self, axis: f64) -> [Linear; 2] {
+        let (sine, cosine) = self.angle.sin_cos();
+        let [x, y] = self.displacement;
+        [(x, -sine), (y, cosine - 1.0)].map(|(middle, slope)| Linear {
+            at_origin: middle - slope * axis,
+            slope: [0.0, slope],
+        })
+    }
+
+    /// The rigid motion that such displacements are; `None` where they are none.
+    fn of_lines([x, y]: [Linear; 2]) -> Option<Self> {
+        let angle = (-x.slope[1]).atan2(1.0 + y.slope[1]);
+        let rigid = x.slope[1].hypot(1.0 + y.slope[1]) - 1.0;
+        let straight = x.slope[0] == 0.0 && y.slope[0] == 0.0;
+        (straight && rigid.abs() < 1e-9).then_some(Self {
+            displacement: [x.at_origin, y.at_origin],
+            angle,
+        })
+    }
+}
+
+/// `12 mm + 0.1 * Y`, as studies take it.
+fn written(line: &Linear) -> String {
+    let slope = line.slope[1];
+    match slope {
+        0.0 => format!("{} mm", line.at_origin),
+        _ => {
+            let sign = if slope < 0.0 { '-' } else { '+' };
+            format!("{} mm {sign} {} * Y", line.at_origin, slope.abs())
+        }
+    }
+}
+
+/// The study with a shipped card in place of one that it names by its file, and that one.
+fn with_known_card(text: &str, cards: &[CardFile]) -> (String, Option<CardFile>) {
+    let unchanged = || (text.to_owned(), None);
+    let Ok(mut table) = text.parse::<toml::Table>() else {
+        return unchanged();
+    };
+    let material = table
+        .get_mut("material")
+        .and_then(toml::Value::as_table_mut);
+    let Some(named) = material.and_then(|material| material.get_mut("card")) else {
+        return unchanged();
+    };
+    let own = |card: &&CardFile| Some(card.reference().as_str()) == named.as_str();
+    let Some(own) = cards.iter().filter(|card| !card.is_shipped()).find(own) else {
+        return unchanged();
+    };
+    *named = "neo-hooke".into();
+    let comments = text.lines().filter(|line| line.starts_with(LOOK));
+    let comments: String = comments.map(|line| format!("{line}\n")).collect();
+    (format!("{comments}{table}"), Some(own.clone()))
+}
+
+fn card_file(card: Card) -> CardFile {
+    CardFile {
+        name: card.name.trim_end_matches(".toml").to_owned(),
+        text: card.text,
+    }
+}
+
+fn of_plate(file: &Path, text: String) -> Result<Scene, Error> {
+    let study = plate::Study::of_file(file, text, Budget::USUAL)?;
+    let stretch = study.problem.stretches.last().copied().unwrap_or(0.0);
+    Ok(Scene {
+        outline: Outline::Plate,
+        size: study.problem.size,
+        thickness: study.problem.thickness,
+        cells: study.cells,
+        grip: Grip {
+            displacement: [stretch * study.problem.size[0], 0.0],
+            angle: 0.0,
+        },
+        card: card_file(study.card),
+        look: Look {
+            ..Scene::default().look
+        },
+    })
+}
+
+fn of_specimen(kind: &Kind, file: &Path, text: &str) -> Result<Scene, Error> {
+    let (_, read, _) = specimen::load(kind, file, text, Budget::USUAL)?;
+    let other = |what: &str| Error::input(what, "run it in the view Study, or with `gelbench run`");
+    let specimen::Outline::Shape { shape, cells, .. } = read.outline else {
+        return Err(other("the specimen is a mesh of a file"));
+    };
+    let (outline, size) = match shape {
+        Shape::Strip { size } => (Outline::Plate, size),
+        Shape::StripWithHole { size, radius } => {
+            let diameter = 2.0 * radius;
+            (Outline::Hole { diameter }, size)
+        }
+        Shape::NotchedStrip {
+            size,
+            depth,
+            half_length,
+        } => {
+            let length = 2.0 * half_length;
+            (Outline::Notches { depth, length }, size)
+        }
+        Shape::DogBone {
+            size,
+            narrow: [narrow_length, narrow_width],
+            shoulder,
+        } => (
+            Outline::DogBone {
+                narrow_length,
+                narrow_width,
+                shoulder,
+            },
+            size,
+        ),
+        Shape::RingSector { .. } => return Err(other("a sector of a ring has no two grips")),
+    };
+    let grip = grip_of(&read.problem.supports).filter(|_| read.problem.loads.is_empty());
+    let grip = grip.ok_or_else(|| {
+        other("the specimen is not held by a clamp `left` and a rigid grip `right` alone")
+    })?;
+    let along = (size[0] / size[1] * cells as f64).round() as usize;
+    Ok(Scene {
+        outline,
+        size,
+        thickness: read.problem.thickness,
+        cells: [along.next_multiple_of(2).max(2), cells],
+        card: card_file(read.card),
+        grip,
+        look: Scene::default().look,
+    })
+}
+
+/// The motion of the right grip, where the left one is a clamp and there are no others.
+fn grip_of(supports: &[(String, Support)]) -> Option<Grip> {
+    let support = |name: &str| Some(supports.iter().find(|(group, _)| group == name)?.1);
+    let lines = match support("right")? {
+        Support::Displacement([Some(x), Some(y)]) => [x, y].map(Linear::constant),
+        Support::LinearDisplacement([Some(x), Some(y)]) => [x, y],
+        _ => return None,
+    };
+    let clamp = support("left")? == Support::Displacement([Some(0.0); 2]);
+    (clamp && supports.len() == 2).then(|| Grip::of_lines(lines))?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scenes() -> Vec<Scene> {
+        let grips = [
+            ([30.0, 0.0], 0.0),
+            ([12.5, 4.0], 0.0),
+            ([20.0, -3.0], 0.3),
+            ([0.0, 0.0], -1e-7),
+        ];
+        let plain = Scene::default();
+        let outlines = Outline::all(plain.size).map(|(_, outline)| outline);
+        let pairs = outlines
+            .iter()
+            .flat_map(|outline| grips.map(|grip| (*outline, grip)));
+        let scene = |(outline, (displacement, angle))| Scene {
+            outline,
+            grip: Grip {
+                displacement,
+                angle,
+            },
+            ..plain.clone()
+        };
+        pairs.map(scene).collect()
+    }
+
+    #[test]
+    fn a_saved_scene_opens_as_it_was() {
+        for scene in scenes() {
+            let text = scene.study();
+            let opened = Scene::open(Path::new("saved.toml"), &text, &[]).unwrap();
+            let turned = (opened.grip.angle - scene.grip.angle).abs();
+            assert!(turned < 1e-9, "{text}");
+            assert_eq!(
+                Scene {
+                    grip: scene.grip,
+                    ..opened.clone()
+                },
+                scene,
+                "{text}"
+            );
+            assert_eq!(opened.grip.displacement, scene.grip.displacement, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_study_with_a_card_of_its_own_opens_where_the_card_is_known() {
+        let mut scene = Scene::default();
+        scene.card.name = "my gel".into();
+        scene.card.text.push_str("\n# changed\n");
+        let text = scene.study();
+        assert!(text.contains("card = \"my gel.toml\""), "{text}");
+        assert_eq!(
+            Scene::open(Path::new("saved.toml"), &text, &[scene.card.clone()]).unwrap(),
+            scene
+        );
+        let fault = Scene::open(Path::new("saved.toml"), &text, &[]).unwrap_err();
+        assert!(fault.to_string().contains("my gel.toml"), "{fault}");
+    }
+
+    #[test]
+    fn faults_and_other_kinds_are_told_with_a_remedy() {
+        let open = |text: &str| {
+            Scene::open(Path::new("x.toml"), text, &[])
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(open("kind = \"plate\"\n[plate]\nlenght = \"3 cm\"").contains("lenght"));
+        let example = include_str!("../../../examples/released_plate.toml");
+        assert!(open(example).contains("no sheet between two grips"));
+    }
+}

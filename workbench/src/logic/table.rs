@@ -1,0 +1,381 @@
+//! The table: what lies on it, what was found of it, what is still to be solved. It draws nothing and waits for nothing.
+
+use std::collections::BTreeMap;
+
+use gelbench::mesh::Mesh;
+
+use super::deviations::Deviation;
+use super::engine::{Answer, Fault, Solved, Task, meshes};
+use super::history::History;
+use super::scene::{CardFile, Colour, Grip, Model, Scene};
+
+/// What a user does.
+#[derive(Clone, Debug)]
+pub enum Action {
+    /// Changes the scene; those of one gesture are one step back together.
+    Change {
+        /// The scene as it shall be.
+        scene: Box<Scene>,
+        /// Whether something is held while it changes, such as the grip.
+        gesture: bool,
+    },
+    /// Lets go of what was held.
+    EndGesture,
+    /// Takes a step back.
+    Undo,
+    /// Takes it again.
+    Redo,
+    /// Opens a study or a card.
+    Open {
+        /// The name of the file.
+        file: String,
+        /// What it holds.
+        text: String,
+    },
+}
+
+/// A result with the place of the grip that it belongs to.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    /// Where the grip was.
+    pub grip: Grip,
+    /// Whether it is exact.
+    pub settled: bool,
+    /// What was found.
+    pub solved: Solved,
+    /// Computing time in s.
+    pub seconds: f64,
+}
+
+/// What decides whether a model is to be solved anew.
+#[derive(Clone, Debug, PartialEq)]
+struct Asked {
+    scene: Scene,
+    settled: bool,
+    multipliers: bool,
+}
+
+/// The table.
+pub struct Table {
+    scene: History<Scene>,
+    sheet: Scene,
+    meshes: Result<[Mesh; 2], Fault>,
+    shown: [Option<Shown>; 3],
+    faults: [Option<Fault>; 3],
+    asked: [Option<Asked>; 3],
+    deviations: [Option<Deviation>; 2],
+    /// Force along X over stretch of each model, by the stretch in ten thousandths.
+    curves: [BTreeMap<i64, f64>; 3],
+    /// What the curves were pulled with: motion across and turn.
+    pulled: ([f64; 2], f64),
+    numbers: u64,
+    oldest: u64,
+    revision: u64,
+    sheets: usize,
+    holding: bool,
+    cards: Vec<CardFile>,
+    message: Option<Fault>,
+}
+
+impl Table {
+    /// With a scene on it.
+    pub fn new(scene: Scene) -> Self {
+        Self {
+            meshes: meshes(&scene).map_err(Fault::from),
+            sheet: scene.clone(),
+            scene: History::new(scene),
+            shown: [None, None, None],
+            faults: [None, None, None],
+            asked: [None, None, None],
+            deviations: [None; 2],
+            curves: Default::default(),
+            pulled: ([0.0; 2], 0.0),
+            numbers: 0,
+            oldest: 0,
+            revision: 0,
+            sheets: 0,
+            holding: false,
+            cards: Vec::new(),
+            message: None,
+        }
+    }
+
+    /// The scene as it is.
+    pub fn scene(&self) -> &Scene {
+        self.scene.now()
+    }
+
+    /// The meshes of the lattice and of the finite elements, or why there are none.
+    pub fn meshes(&self) -> Result<&[Mesh; 2], &Fault> {
+        self.meshes.as_ref()
+    }
+
+    /// The mesh of a model; `None` where the scene has none.
+    pub fn mesh(&self, model: Model) -> Option<&Mesh> {
+        let [lattice, elements] = self.meshes.as_ref().ok()?;
+        Some(match model {
+            Model::Elements => elements,
+            _ => lattice,
+        })
+    }
+
+    /// The newest result of a model.
+    pub fn shown(&self, model: Model) -> Option<&Shown> {
+        self.shown[model as usize].as_ref()
+    }
+
+    /// Why a model has no newer result.
+    pub fn fault(&self, model: Model) -> Option<&Fault> {
+        self.faults[model as usize].as_ref()
+    }
+
+    /// What springs or corrected springs deviate from the finite elements.
+    pub fn deviation(&self, model: Model) -> Option<&Deviation> {
+        self.deviations.get(model as usize)?.as_ref()
+    }
+
+    /// Stretch and force of a model as they were pulled.
+    pub fn curve(&self, model: Model) -> Vec<[f64; 2]> {
+        let points = self.curves[model as usize].iter();
+        points
+            .map(|(at, force)| [*at as f64 * 1e-4, *force])
+            .collect()
+    }
+
+    /// Counts what changes how the models look.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Counts the meshes.
+    pub fn sheet_number(&self) -> usize {
+        self.sheets
+    }
+
+    /// What the last action had to say.
+    pub fn message(&self) -> Option<&Fault> {
+        self.message.as_ref()
+    }
+
+    /// Whether there is something to take back, and to take again.
+    pub fn steps(&self) -> [bool; 2] {
+        [self.scene.can_undo(), self.scene.can_redo()]
+    }
+
+    /// Cards of the user's that are known.
+    pub fn cards(&self) -> &[CardFile] {
+        &self.cards
+    }
+
+    /// Whether all models that are wanted are exact and where the grip is.
+    pub fn is_settled(&self) -> bool {
+        let grip = self.scene().grip;
+        let at_rest = |model: Model| {
+            let shown = self.shown(model);
+            shown.is_some_and(|shown| shown.settled && shown.grip == grip)
+                || self.fault(model).is_some()
+        };
+        !self.holding && self.wanted().all(at_rest)
+    }
+
+    /// Lets go of what was held, where something was.
+    pub fn let_go(&mut self) {
+        if self.holding {
+            self.act(Action::EndGesture);
+        }
+    }
+
+    /// Does what a user does.
+    pub fn act(&mut self, action: Action) {
+        self.message = None;
+        match action {
+            Action::Change { scene, gesture } => {
+                self.holding = gesture;
+                self.scene.change(*scene, gesture);
+            }
+            Action::EndGesture => {
+                self.holding = false;
+                self.scene.end_gesture();
+            }
+            Action::Undo => self.scene.undo(),
+            Action::Redo => self.scene.redo(),
+            Action::Open { file, text } => {
+                if let Err(error) = self.open(&file, &text) {
+                    self.message = Some(error.into());
+                }
+            }
+        }
+        self.revision += 1;
+        self.lay_out();
+    }
+
+    /// Meshes a new sheet; what was found of the old one is put away.
+    fn lay_out(&mut self) {
+        let scene = self.scene.now();
+        let pulled = ([0.0, scene.grip.displacement[1]], scene.grip.angle);
+        if pulled != self.pulled {
+            self.pulled = pulled;
+            self.curves = Default::default();
+        }
+        if scene.same_sheet(&self.sheet) {
+            return;
+        }
+        let same_mesh = scene.outline == self.sheet.outline
+            && scene.size == self.sheet.size
+            && scene.cells == self.sheet.cells;
+        if !same_mesh || self.meshes.is_err() {
+            self.meshes = meshes(scene).map_err(Fault::from);
+            self.shown = [None, None, None];
+            self.sheets += 1;
+        }
+        self.sheet = scene.clone();
+        self.faults = [None, None, None];
+        self.deviations = [None; 2];
+        self.curves = Default::default();
+        self.oldest = self.numbers + 1;
+    }
+
+    /// The models that are solved: those that are shown, and those that they are compared with.
+    fn wanted(&self) -> impl Iterator<Item = Model> + '_ {
+        let look = self.scene().look;
+        let wanted = move |model: &Model| {
+            look.models[*model as usize]
+                || *model == Model::Elements
+                || (*model == Model::Springs && look.multipliers)
+        };
+        Model::ALL.into_iter().filter(wanted)
+    }
+
+    /// What is to be solved now that was not asked for yet.
+    pub fn tasks(&mut self) -> Vec<Task> {
+        if self.meshes.is_err() {
+            return Vec::new();
+        }
+        let models: Vec<Model> = self.wanted().collect();
+        models
+            .into_iter()
+            .filter_map(|model| self.task(model))
+            .collect()
+    }
+
+    fn task(&mut self, model: Model) -> Option<Task> {
+        let scene = self.scene();
+        let plain = Scene::default().look;
+        let colour = scene.look.colour;
+        let mut asked = scene.clone();
+        asked.look = super::scene::Look { colour, ..plain };
+        let settled = model != Model::Corrected || !self.holding;
+        let springs = self
+            .springs_at_grip()
+            .filter(|_| settled && model == Model::Corrected && scene.look.multipliers);
+        let springs = springs.map(|solved| solved.displacement.clone());
+        let asked = Asked {
+            scene: asked,
+            settled,
+            multipliers: springs.is_some(),
+        };
+        let slot = &mut self.asked[model as usize];
+        if slot.as_ref() == Some(&asked) {
+            return None;
+        }
+        let scene = asked.scene.clone();
+        *slot = Some(asked);
+        self.numbers += 1;
+        Some(Task {
+            number: self.numbers,
+            scene,
+            model,
+            settled,
+            springs,
+        })
+    }
+
+    fn springs_at_grip(&self) -> Option<&Solved> {
+        let shown = self.shown(Model::Springs)?;
+        (shown.grip == self.scene().grip).then_some(&shown.solved)
+    }
+
+    /// Takes what came of a task; what belongs to another sheet is put away.
+    pub fn take(&mut self, answer: Answer) {
+        if answer.number < self.oldest {
+            return;
+        }
+        let index = answer.model as usize;
+        self.revision += 1;
+        match answer.result {
+            Err(fault) => self.faults[index] = Some(fault),
+            Ok(solved) => {
+                self.faults[index] = None;
+                let stretch = answer.grip.displacement[0] / self.scene().size[0];
+                let pulled = ([0.0, answer.grip.displacement[1]], answer.grip.angle);
+                if pulled == self.pulled {
+                    let at = (stretch * 1e4).round() as i64;
+                    self.curves[index].insert(at, solved.force[0]);
+                }
+                self.shown[index] = Some(Shown {
+                    grip: answer.grip,
+                    settled: answer.settled,
+                    solved,
+                    seconds: answer.seconds,
+                });
+            }
+        }
+        self.compare();
+    }
+
+    /// Asks again for what was not answered, as after a stop.
+    pub fn forget_tasks(&mut self) {
+        self.oldest = self.numbers + 1;
+    }
+
+    /// Compares the models that have the grip where the finite elements have it.
+    fn compare(&mut self) {
+        let Some(elements) = self.shown(Model::Elements) else {
+            return;
+        };
+        let Ok([lattice, _]) = &self.meshes else {
+            return;
+        };
+        let scene = Scene {
+            grip: elements.grip,
+            ..self.scene().clone()
+        };
+        let of = |model: Model| {
+            let shown = self
+                .shown(model)
+                .filter(|shown| shown.grip == elements.grip)?;
+            Deviation::of(&scene, lattice, &shown.solved, &elements.solved)
+        };
+        self.deviations = [Model::Springs, Model::Corrected].map(of);
+    }
+
+    /// What colours the nodes of a model, and whether it belongs to the place that the model is shown at.
+    pub fn values(&self, model: Model) -> Option<Vec<f64>> {
+        let shown = self.shown(model)?;
+        let solved = &shown.solved;
+        if self.scene().look.colour != Colour::Distance {
+            let fits = solved.values.len() * 2 == solved.displacement.len();
+            return fits.then(|| solved.values.clone());
+        }
+        if model == Model::Elements {
+            return Some(vec![0.0; solved.displacement.len() / 2]);
+        }
+        let elements = self
+            .shown(Model::Elements)
+            .filter(|other| other.grip == shown.grip)?;
+        let expected = elements.solved.on_lattice.as_ref()?;
+        let pairs = solved
+            .displacement
+            .chunks_exact(2)
+            .zip(expected.chunks_exact(2));
+        Some(
+            pairs
+                .map(|(u, v)| (u[0] - v[0]).hypot(u[1] - v[1]))
+                .collect(),
+        )
+    }
+}
+
+mod open;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,47 @@
+//! Studies and cards that are laid on the table.
+
+use std::path::Path;
+
+use gelbench::error::Error;
+use gelbench::material::Card;
+
+use super::{Action, Table};
+use crate::logic::scene::{CardFile, Scene};
+
+impl Table {
+    pub(super) fn open(&mut self, file: &str, text: &str) -> Result<(), Error> {
+        let table = text.parse::<toml::Table>().unwrap_or_default();
+        if !table.contains_key("law") {
+            let scene = Scene::open(Path::new(file), text, &self.cards)?;
+            self.scene.change(scene, false);
+            return Ok(());
+        }
+        let name = Path::new(file)
+            .file_stem()
+            .map_or_else(String::new, |stem| stem.to_string_lossy().into());
+        let card = Card::parse(&name, file, text)?;
+        self.put_card(CardFile {
+            name: card.name,
+            text: card.text,
+        });
+        Ok(())
+    }
+
+    /// Takes a card and makes the sheet of it.
+    pub fn put_card(&mut self, card: CardFile) {
+        self.take_card(card, false);
+    }
+
+    /// The same while something may be held, such as a slider of a parameter.
+    pub fn take_card(&mut self, card: CardFile, gesture: bool) {
+        if !card.is_shipped() {
+            self.cards.retain(|known| known.name != card.name);
+            self.cards.push(card.clone());
+        }
+        let scene = Box::new(Scene {
+            card,
+            ..self.scene().clone()
+        });
+        self.act(Action::Change { scene, gesture });
+    }
+}

@@ -1,0 +1,104 @@
+//! The workbench on the desktop: `gelbench-workbench [FILE …] [--frames NUMBER] [--dark | --light]`.
+
+#[cfg(target_arch = "wasm32")]
+fn main() {}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn main() -> std::process::ExitCode {
+    desktop::main()
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+mod desktop {
+    use std::process::ExitCode;
+
+    use eframe::egui::{Theme, ViewportBuilder};
+    use gelbench_workbench::logic::scene::Scene;
+    use gelbench_workbench::measure::Measure;
+    use gelbench_workbench::views::app::Workbench;
+
+    const USAGE: &str = "gelbench-workbench [FILE …] [--frames NUMBER] [--size WIDTHxHEIGHT] [--dark | --light]\n\n\
+        Opens the workbench with studies and cards on the table.\n\
+        --frames  pulls by itself, times so many frames, and ends";
+
+    #[derive(Default)]
+    struct Options {
+        files: Vec<String>,
+        frames: usize,
+        size: Option<[f32; 2]>,
+        theme: Option<Theme>,
+    }
+
+    pub fn main() -> ExitCode {
+        let options = match read(std::env::args().skip(1)) {
+            Ok(options) => options,
+            Err(fault) => {
+                eprintln!("{fault}\n\n{USAGE}");
+                return ExitCode::from(2);
+            }
+        };
+        let size = options.size.unwrap_or([1200.0, 800.0]);
+        let window = eframe::NativeOptions {
+            viewport: ViewportBuilder::default()
+                .with_inner_size(size)
+                .with_title("gelbench"),
+            ..Default::default()
+        };
+        let run = eframe::run_native(
+            "gelbench",
+            window,
+            Box::new(|context| {
+                if let Some(theme) = options.theme {
+                    context.egui_ctx.set_theme(theme);
+                }
+                let mut bench = Workbench::new(&context.egui_ctx, Scene::default());
+                for file in &options.files {
+                    bench.open(file, &std::fs::read(file)?);
+                }
+                if options.frames > 0 {
+                    bench = bench.measuring(Measure::of(options.frames));
+                }
+                Ok(Box::new(bench))
+            }),
+        );
+        match run {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("the window cannot be opened: {error}");
+                ExitCode::FAILURE
+            }
+        }
+    }
+
+    fn read(arguments: impl Iterator<Item = String>) -> Result<Options, String> {
+        let mut options = Options::default();
+        let mut arguments = arguments;
+        while let Some(argument) = arguments.next() {
+            let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
+            match argument.as_str() {
+                "--frames" => {
+                    options.frames = value()?.parse().map_err(|_| "--frames needs a number")?
+                }
+                "--size" => {
+                    let text = value()?;
+                    let parts: Vec<f32> = text
+                        .split('x')
+                        .filter_map(|part| part.parse().ok())
+                        .collect();
+                    options.size = Some(
+                        parts
+                            .try_into()
+                            .map_err(|_| "--size needs two numbers, such as 1400x900")?,
+                    );
+                }
+                "--dark" => options.theme = Some(Theme::Dark),
+                "--light" => options.theme = Some(Theme::Light),
+                option if option.starts_with("--") => {
+                    return Err(format!("there is no option {option}"));
+                }
+                file => options.files.push(file.to_owned()),
+            }
+        }
+        Ok(options)
+    }
+}

@@ -1,0 +1,309 @@
+//! The program: panels around the table, keys, files, and the models that are solved beside the drawing.
+
+use std::sync::Arc;
+
+use eframe::egui::{self, CentralPanel, Key, KeyboardShortcut, Modifiers, Panel, Ui};
+
+use super::field::Fields;
+use super::material::Materials;
+use super::sheet::Sheets;
+use super::study::{Studies, plain};
+use super::{files, fonts};
+use crate::logic::background::{Background, Wake};
+use crate::logic::engine::Engine;
+use crate::logic::kind::Kind;
+use crate::logic::material::TestFile;
+use crate::logic::scene::Scene;
+use crate::logic::table::{Action, Table};
+use crate::measure::Measure;
+
+mod inbox;
+mod panels;
+
+use inbox::Inbox;
+
+const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
+const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
+
+/// Fits, corrects or runs what is shown.
+const RUN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Enter);
+
+/// The views.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tab {
+    /// Sheets that are pulled.
+    Sheet,
+    /// Cards, their parameters, and fits.
+    Material,
+    /// Measured fields.
+    Field,
+    /// Studies of any kind.
+    Study,
+}
+
+impl Tab {
+    const ALL: [(&'static str, Self); 4] = [
+        ("sheet", Self::Sheet),
+        ("material", Self::Material),
+        ("measured field", Self::Field),
+        ("study", Self::Study),
+    ];
+}
+
+/// The workbench.
+pub struct Workbench {
+    /// What lies on the table.
+    pub table: Table,
+    engines: [Background<Engine>; 3],
+    sheets: Sheets,
+    tab: Tab,
+    materials: Materials,
+    fields: Fields,
+    studies: Studies,
+    inbox: Inbox,
+    guided: Option<usize>,
+    shows_guide: bool,
+    shows_controls: Option<bool>,
+    told: String,
+    grip_at: Option<egui::Pos2>,
+    measure: Option<Measure>,
+}
+
+impl Workbench {
+    /// With a scene on the table; `context` is told when something was solved.
+    pub fn new(context: &egui::Context, scene: Scene) -> Self {
+        fonts::install(context);
+        let context = context.clone();
+        let wake: Wake = Arc::new(move || context.request_repaint());
+        let background = || Background::new(Arc::clone(&wake));
+        Self {
+            engines: [background(), background(), background()],
+            sheets: Sheets::default(),
+            tab: Tab::Sheet,
+            materials: Materials::new(Arc::clone(&wake)),
+            fields: Fields::new(Arc::clone(&wake), scene.card.clone()),
+            table: Table::new(scene),
+            studies: Studies::new(Arc::clone(&wake)),
+            inbox: Inbox::default(),
+            guided: None,
+            shows_guide: true,
+            shows_controls: None,
+            told: String::new(),
+            grip_at: None,
+            measure: None,
+        }
+    }
+
+    /// The same, pulling by itself and measuring its frames.
+    #[must_use]
+    pub fn measuring(self, measure: Measure) -> Self {
+        Self {
+            measure: Some(measure),
+            ..self
+        }
+    }
+
+    /// What the frames took, where they are measured and all were drawn.
+    pub fn measured(&self) -> Option<String> {
+        self.measure.as_ref()?.report()
+    }
+
+    /// Takes a file as if it were dropped.
+    pub fn open(&mut self, name: &str, content: &[u8]) {
+        let text = std::str::from_utf8(content).ok().map(str::to_owned);
+        self.guided = None;
+        match (Kind::of(name, text.as_deref()), text) {
+            (Kind::Test, Some(text)) => {
+                let name = plain(name);
+                self.materials.put(TestFile { name, text });
+                self.tab = Tab::Material;
+            }
+            (Kind::Field, _) => {
+                self.fields.take_card(&self.table.scene().card);
+                self.fields.put((plain(name), content.to_vec()));
+                self.tab = Tab::Field;
+            }
+            (Kind::Sheet, Some(text)) => self.lay(name, text),
+            (Kind::Study, Some(text)) => {
+                self.studies.put(name, text);
+                self.tab = Tab::Study;
+            }
+            _ => {
+                self.studies.put_file(name, content.to_vec());
+                self.tab = Tab::Study;
+            }
+        }
+    }
+
+    /// Lays a study of a sheet on the table, or a card; what the table does not take is a study to be run.
+    fn lay(&mut self, name: &str, text: String) {
+        let is_card = Kind::is_card(&text);
+        let file = name.to_owned();
+        self.studies.put_file(name, text.clone().into_bytes());
+        self.table.act(Action::Open {
+            file,
+            text: text.clone(),
+        });
+        match self.table.message() {
+            None => self.told = format!("{name} lies on the table"),
+            Some(_) if is_card => (),
+            Some(_) => self.studies.put(name, text),
+        }
+        self.tab = Tab::Sheet;
+    }
+
+    /// The view that is shown.
+    pub fn tab(&self) -> Tab {
+        self.tab
+    }
+
+    /// Where the grip is on the screen, in points.
+    pub fn grip_at(&self) -> Option<egui::Pos2> {
+        self.grip_at
+    }
+
+    /// Shows a view.
+    pub fn turn_to(&mut self, tab: Tab) {
+        self.tab = tab;
+    }
+
+    /// Measured fields.
+    pub fn fields(&self) -> &Fields {
+        &self.fields
+    }
+
+    /// Studies of any kind.
+    pub fn studies(&self) -> &Studies {
+        &self.studies
+    }
+
+    /// Materials and fits.
+    pub fn materials(&self) -> &Materials {
+        &self.materials
+    }
+
+    /// Draws a frame.
+    pub fn show(&mut self, ui: &mut Ui) {
+        self.receive(ui.ctx());
+        self.keys(ui);
+        Panel::top("bar").show(ui, |ui| self.bar(ui));
+        match self.tab {
+            Tab::Sheet => self.sheet_tab(ui),
+            Tab::Material => {
+                CentralPanel::default().show(ui, |ui| self.materials.show(ui, &mut self.table));
+                if !ui.input(|input| input.pointer.any_down()) {
+                    self.table.let_go();
+                }
+            }
+            Tab::Field => {
+                self.fields.take_card(&self.table.scene().card);
+                CentralPanel::default().show(ui, |ui| self.fields.show(ui));
+            }
+            Tab::Study => drop(CentralPanel::default().show(ui, |ui| self.studies.show(ui))),
+        }
+        self.send();
+    }
+
+    /// Takes what was dropped and what was solved.
+    fn receive(&mut self, context: &egui::Context) {
+        for file in context.input(|input| input.raw.dropped_files.clone()) {
+            inbox::read(&file, &self.inbox, context);
+        }
+        let arrived = self
+            .inbox
+            .lock()
+            .map(|mut files| std::mem::take(&mut *files));
+        for (name, content) in arrived.unwrap_or_default() {
+            self.open(&name, &content);
+        }
+        for engine in &mut self.engines {
+            for answer in engine.answers() {
+                self.table.take(answer);
+            }
+        }
+        self.materials.receive();
+        self.fields.receive();
+        self.studies.receive();
+        if let Some(measure) = &mut self.measure {
+            measure.frame(&mut self.table);
+            context.request_repaint();
+        }
+    }
+
+    fn send(&mut self) {
+        for task in self.table.tasks() {
+            self.engines[task.model as usize].ask(task);
+        }
+    }
+
+    fn keys(&mut self, ui: &Ui) {
+        let pressed =
+            |shortcut: &KeyboardShortcut| ui.input_mut(|input| input.consume_shortcut(shortcut));
+        let redo = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+        if pressed(&redo) || pressed(&REDO) {
+            self.table.act(Action::Redo);
+        }
+        if pressed(&UNDO) {
+            self.table.act(Action::Undo);
+        }
+        if pressed(&SAVE) {
+            self.save();
+        }
+        if pressed(&RUN) {
+            match self.tab {
+                Tab::Sheet => (),
+                Tab::Material => self.materials.fit(),
+                Tab::Field => self.fields.correct(),
+                Tab::Study => self.studies.run(),
+            }
+        }
+        if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.stop();
+        }
+    }
+
+    /// Stops what is being solved; what is changed next is solved anew.
+    fn stop(&mut self) {
+        let busy = self.is_busy();
+        self.engines.iter_mut().for_each(Background::stop);
+        self.materials.stop();
+        self.fields.stop();
+        self.studies.stop();
+        self.table.forget_tasks();
+        if busy {
+            self.told = "stopped; what is changed next is computed anew".to_owned();
+        }
+    }
+
+    fn is_busy(&self) -> bool {
+        let sheets = self.engines.iter().any(Background::is_busy);
+        sheets || self.materials.is_busy() || self.fields.is_busy() || self.studies.is_busy()
+    }
+
+    fn save(&mut self) {
+        let scene = self.table.scene().clone();
+        let study = files::save("workbench.toml", scene.study().as_bytes());
+        let card = (!scene.card.is_shipped())
+            .then(|| files::save(&scene.card.reference(), scene.card.text.as_bytes()));
+        let told = [Some(study), card].into_iter().flatten();
+        self.told = told
+            .map(|told| told.unwrap_or_else(|fault| fault))
+            .collect::<Vec<_>>()
+            .join("; ");
+    }
+}
+
+impl eframe::App for Workbench {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        self.show(ui);
+        #[cfg(target_arch = "wasm32")]
+        crate::page::tell(self);
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Some(report) = self.measured() {
+            println!("{report}");
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+            self.measure = None;
+        }
+    }
+}

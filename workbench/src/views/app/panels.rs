@@ -1,0 +1,182 @@
+//! The panels around the table.
+
+use eframe::egui::{self, CentralPanel, Panel, RichText, ScrollArea, Theme, Ui};
+
+use super::{Tab, Workbench};
+use crate::logic::scene::{Model, Scene};
+use crate::logic::table::Action;
+use crate::views::guide::SCENES;
+use crate::views::{chart, controls, figures, guide};
+
+/// Text sizes that are offered, as factors.
+const TEXT_SIZES: [(&str, f32); 4] = [
+    ("small", 0.85),
+    ("medium", 1.0),
+    ("large", 1.25),
+    ("very large", 1.6),
+];
+
+/// The width below which the panel of the controls is folded at first.
+const NARROW: f32 = 640.0;
+
+impl Workbench {
+    pub(super) fn sheet_tab(&mut self, ui: &mut Ui) {
+        if self.shows_guide {
+            Panel::top("guide").show(ui, |ui| self.guide(ui));
+        }
+        let wide = ui.available_width() > NARROW;
+        if self.shows_controls.unwrap_or(wide) {
+            Panel::left("controls").default_size(250.0).show(ui, |ui| {
+                ScrollArea::vertical().show(ui, |ui| self.controls(ui));
+            });
+        }
+        let height = (0.38 * ui.available_height()).min(260.0);
+        Panel::bottom("figures")
+            .default_size(height)
+            .resizable(true)
+            .show(ui, |ui| {
+                ScrollArea::both().show(ui, |ui| self.figures(ui));
+            });
+        CentralPanel::default().show(ui, |ui| self.sheets(ui));
+    }
+
+    pub(super) fn bar(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new("gelbench").strong());
+            for (name, tab) in Tab::ALL {
+                ui.selectable_value(&mut self.tab, tab, name);
+            }
+            ui.separator();
+            let open = self.shows_controls.unwrap_or(true);
+            if ui.selectable_label(open, "controls").clicked() {
+                self.shows_controls = Some(!open);
+            }
+            if ui.selectable_label(self.shows_guide, "guide").clicked() {
+                self.shows_guide = !self.shows_guide;
+            }
+            ui.separator();
+            let [undo, redo] = self.table.steps();
+            if ui
+                .add_enabled(undo, egui::Button::new("undo"))
+                .on_hover_text("Ctrl+Z")
+                .clicked()
+            {
+                self.table.act(Action::Undo);
+            }
+            if ui
+                .add_enabled(redo, egui::Button::new("redo"))
+                .on_hover_text("Ctrl+Y")
+                .clicked()
+            {
+                self.table.act(Action::Redo);
+            }
+            let hint =
+                "Ctrl+S: the study that `gelbench run` takes, and its card where it is your own";
+            if ui.button("save study").on_hover_text(hint).clicked() {
+                self.save();
+            }
+            ui.separator();
+            let dark = ui.visuals().dark_mode;
+            let other = if dark { "light" } else { "dark" };
+            if ui
+                .button(other)
+                .on_hover_text(format!("{other} background"))
+                .clicked()
+            {
+                ui.ctx()
+                    .set_theme(if dark { Theme::Light } else { Theme::Dark });
+            }
+            let zoom = ui.ctx().zoom_factor();
+            let known = TEXT_SIZES.iter().find(|(_, factor)| *factor == zoom);
+            let shown = known.map_or("other", |(name, _)| name);
+            egui::ComboBox::from_label("text")
+                .selected_text(shown)
+                .width(70.0)
+                .show_ui(ui, |ui| {
+                    for (name, factor) in TEXT_SIZES {
+                        if ui.selectable_label(zoom == factor, name).clicked() {
+                            ui.ctx().set_zoom_factor(factor);
+                        }
+                    }
+                });
+            if self.is_busy() {
+                ui.separator();
+                if ui.button("stop").on_hover_text("Escape").clicked() {
+                    self.stop();
+                }
+            }
+        });
+    }
+
+    fn guide(&mut self, ui: &mut Ui) {
+        if let Some(number) = guide::show(ui, self.guided) {
+            self.guided = Some(number);
+            self.change((SCENES[number].scene)(), false);
+        }
+    }
+
+    fn change(&mut self, scene: Scene, gesture: bool) {
+        let scene = Box::new(scene);
+        self.table.act(Action::Change { scene, gesture });
+    }
+
+    fn controls(&mut self, ui: &mut Ui) {
+        let (scene, held) = controls::show(ui, &self.table);
+        if scene != *self.table.scene() {
+            self.change(scene, held);
+        } else if !held && !ui.input(|input| input.pointer.any_down()) {
+            self.table.let_go();
+        }
+    }
+
+    fn sheets(&mut self, ui: &mut Ui) {
+        if let Err(fault) = self.table.meshes() {
+            figures::fault(ui, fault);
+            return;
+        }
+        let Some(held) = self.sheets.show(ui, &self.table) else {
+            ui.label("No model is shown: choose one under `Shown`.");
+            return;
+        };
+        self.grip_at = Some(held.at);
+        if let Some(grip) = held.to {
+            let scene = Scene {
+                grip,
+                ..self.table.scene().clone()
+            };
+            self.change(scene, held.holding);
+        }
+        if held.released {
+            self.table.act(Action::EndGesture);
+        }
+    }
+
+    fn figures(&mut self, ui: &mut Ui) {
+        if !self.told.is_empty() {
+            ui.label(&self.told);
+        }
+        if let Some(message) = self.table.message() {
+            figures::fault(ui, message);
+        }
+        for model in Model::ALL {
+            if let Some(found) = self.table.fault(model) {
+                ui.label(RichText::new(model.name()).strong());
+                figures::fault(ui, found);
+            }
+        }
+        let height = ui.available_height().clamp(130.0, 230.0);
+        let curve = figures::curve(&self.table);
+        if ui.available_width() < 640.0 {
+            figures::table(ui, &self.table);
+            chart::show(ui, "force over stretch", &curve, height);
+            return;
+        }
+        ui.horizontal_top(|ui| {
+            let width = (0.45 * ui.available_width()).clamp(220.0, 520.0);
+            ui.allocate_ui(egui::vec2(width, height), |ui| {
+                chart::show(ui, "force over stretch", &curve, height);
+            });
+            ui.vertical(|ui| figures::table(ui, &self.table));
+        });
+    }
+}

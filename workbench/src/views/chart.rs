@@ -1,0 +1,92 @@
+//! A chart as the library describes it, drawn to be zoomed and asked.
+
+use eframe::egui::{Color32, Ui};
+use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoints, Points, Polygon};
+
+use gelbench::results::{LineChart, Scale, Stroke};
+
+/// The height from which a chart has room for its legend.
+const LEGEND: f32 = 140.0;
+
+/// Draws a chart of some height; `name` tells it apart from others.
+pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
+    let of_x = scaled(chart.x.scale);
+    let of_y = scaled(chart.y.scale);
+    let label = |axis: &gelbench::results::Axis| match axis.scale {
+        Scale::Logarithmic => format!("log₁₀ {}", axis.label),
+        _ => axis.label.clone(),
+    };
+    let mut plot = Plot::new(name.to_owned());
+    if height > LEGEND {
+        plot = plot.legend(Legend::default().position(Corner::LeftTop));
+    }
+    let plot = plot
+        .height(height)
+        .x_axis_label(label(&chart.x))
+        .y_axis_label(label(&chart.y))
+        .allow_scroll(false);
+    plot.show(ui, |plot| {
+        if let Some(([low, high], name)) = &chart.band {
+            let values = chart.lines.iter().flat_map(|line| &line.points);
+            let heights = values.map(|point| of_y(point[1]));
+            if let Some([least, most]) = super::colours::range(heights) {
+                let corners = [[*low, least], [*high, least], [*high, most], [*low, most]];
+                let area: PlotPoints = corners.iter().map(|[x, y]| [of_x(*x), *y]).collect();
+                let shade = Color32::from_rgba_unmultiplied(128, 128, 128, 30);
+                plot.polygon(
+                    Polygon::new(name.clone(), area)
+                        .fill_color(shade)
+                        .stroke((0.0, shade)),
+                );
+            }
+        }
+        for line in &chart.lines {
+            let [r, g, b] = line.colour;
+            let ink = Color32::from_rgb(r, g, b);
+            let places = || -> PlotPoints<'_> {
+                let places = line.points.iter().map(|[x, y]| [of_x(*x), of_y(*y)]);
+                places
+                    .filter(|place| place.iter().all(|part| part.is_finite()))
+                    .collect()
+            };
+            let through = |width: f32| {
+                Line::new(line.label.clone(), places())
+                    .color(ink)
+                    .width(width)
+            };
+            match line.stroke {
+                Stroke::Points => plot.points(
+                    Points::new(line.label.clone(), places())
+                        .color(ink)
+                        .radius(2.5),
+                ),
+                Stroke::Filled => {
+                    let pale = Color32::from_rgba_unmultiplied(r, g, b, 50);
+                    plot.polygon(
+                        Polygon::new(line.label.clone(), places())
+                            .fill_color(pale)
+                            .stroke((0.0, pale)),
+                    );
+                }
+                Stroke::Dashed => plot.line(through(1.5).style(LineStyle::dashed_dense())),
+                Stroke::Thin => plot.line(through(0.8)),
+                Stroke::Solid => plot.line(through(2.0)),
+                Stroke::Marked => {
+                    plot.line(through(1.5));
+                    plot.points(
+                        Points::new(line.label.clone(), places())
+                            .color(ink)
+                            .radius(3.0),
+                    );
+                }
+            }
+        }
+    });
+}
+
+fn scaled(scale: Scale) -> fn(f64) -> f64 {
+    match scale {
+        Scale::Logarithmic => f64::log10,
+        Scale::Linear | Scale::Interval => |value| value,
+    }
+}

@@ -1,0 +1,181 @@
+//! The panel beside the sheet: what it is, what it is made of, where its grip is, what is shown.
+
+use eframe::egui::{ComboBox, DragValue, RichText, Slider, Ui};
+
+use gelbench::material::registry::CARDS;
+
+use crate::logic::scene::{CardFile, Colour, Layout, Model, Outline, Scene};
+use crate::logic::table::Table;
+
+/// Cells across a sheet that are offered.
+const CELLS: [usize; 2] = [4, 120];
+
+/// Shows all controls; the scene as it shall be, and whether something is held.
+pub fn show(ui: &mut Ui, table: &Table) -> (Scene, bool) {
+    let mut scene = table.scene().clone();
+    let mut held = false;
+    let mut hold = |response: eframe::egui::Response| held |= response.dragged();
+    ui.heading("Sheet");
+    outline(ui, &mut scene, &mut hold);
+    ui.add_space(6.0);
+    ui.heading("Material");
+    card(ui, &mut scene, table.cards());
+    ui.add_space(6.0);
+    ui.heading("Right grip");
+    grip(ui, &mut scene, &mut hold);
+    ui.add_space(6.0);
+    ui.heading("Shown");
+    look(ui, &mut scene);
+    (scene, held)
+}
+
+type Hold<'a> = dyn FnMut(eframe::egui::Response) + 'a;
+
+fn length(ui: &mut Ui, name: &str, value: &mut f64, hold: &mut Hold) {
+    ui.horizontal(|ui| {
+        let label = ui.label(name);
+        let drag = DragValue::new(value)
+            .speed(0.1)
+            .range(0.01..=10_000.0)
+            .suffix(" mm");
+        hold(ui.add(drag).labelled_by(label.id));
+    });
+}
+
+fn outline(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
+    ComboBox::from_label("shape")
+        .selected_text(scene.outline.name())
+        .show_ui(ui, |ui| {
+            for (name, outline) in Outline::all(scene.size) {
+                let chosen = scene.outline.name() == name;
+                if ui.selectable_label(chosen, name).clicked() && !chosen {
+                    scene.outline = outline;
+                }
+            }
+        });
+    let [along, across] = &mut scene.size;
+    length(ui, "length", along, hold);
+    length(ui, "width", across, hold);
+    length(ui, "thickness", &mut scene.thickness, hold);
+    match &mut scene.outline {
+        Outline::Plate => (),
+        Outline::Hole { diameter } => length(ui, "diameter of the hole", diameter, hold),
+        Outline::Notches {
+            depth,
+            length: long,
+        } => {
+            length(ui, "depth of a notch", depth, hold);
+            length(ui, "length of a notch", long, hold);
+        }
+        Outline::DogBone {
+            narrow_length,
+            narrow_width,
+            shoulder,
+        } => {
+            length(ui, "narrow length", narrow_length, hold);
+            length(ui, "narrow width", narrow_width, hold);
+            length(ui, "length of a shoulder", shoulder, hold);
+        }
+    }
+    let mut cells = scene.cells[1];
+    let slider = Slider::new(&mut cells, CELLS[0]..=CELLS[1])
+        .step_by(2.0)
+        .logarithmic(true);
+    let response = ui.add(slider.text("cells across"));
+    if response.changed() {
+        let along = scene.size[0] / scene.size[1] * cells as f64;
+        // Pairs of cells, no longer than the springs allow.
+        scene.cells = [
+            (along / 2.0).round().max(1.0) as usize * 2,
+            cells.next_multiple_of(2),
+        ];
+    }
+    hold(response);
+}
+
+fn card(ui: &mut Ui, scene: &mut Scene, own: &[CardFile]) {
+    ComboBox::from_label("card")
+        .selected_text(&scene.card.name)
+        .show_ui(ui, |ui| {
+            for (name, _) in CARDS {
+                if ui
+                    .selectable_label(scene.card.name == *name, *name)
+                    .clicked()
+                {
+                    scene.card = CardFile::shipped(name).expect("a shipped card");
+                }
+            }
+            for card in own {
+                if ui
+                    .selectable_label(scene.card.name == card.name, &card.name)
+                    .clicked()
+                {
+                    scene.card = card.clone();
+                }
+            }
+        });
+}
+
+fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
+    let length = scene.size[0];
+    let mut stretch = 100.0 * scene.stretch();
+    let slider = Slider::new(&mut stretch, -20.0..=150.0)
+        .suffix(" %")
+        .clamping(eframe::egui::SliderClamping::Never);
+    let response = ui.add(slider.text("stretch"));
+    if response.changed() {
+        scene.grip.displacement[0] = stretch / 100.0 * length;
+    }
+    hold(response);
+    let across = Slider::new(
+        &mut scene.grip.displacement[1],
+        -0.4 * length..=0.4 * length,
+    );
+    hold(ui.add(across.suffix(" mm").text("across")));
+    let mut degrees = scene.grip.angle.to_degrees();
+    let response = ui.add(
+        Slider::new(&mut degrees, -60.0..=60.0)
+            .suffix(" °")
+            .text("turn"),
+    );
+    if response.changed() {
+        scene.grip.angle = degrees.to_radians();
+    }
+    hold(response);
+    if ui
+        .button("straight")
+        .on_hover_text("takes motion across and turn back")
+        .clicked()
+    {
+        scene.grip.displacement[1] = 0.0;
+        scene.grip.angle = 0.0;
+    }
+    scene.grip = scene.grip.within(scene);
+}
+
+fn look(ui: &mut Ui, scene: &mut Scene) {
+    let look = &mut scene.look;
+    for model in Model::ALL {
+        ui.checkbox(&mut look.models[model as usize], model.name());
+    }
+    ui.horizontal(|ui| {
+        ui.selectable_value(&mut look.layout, Layout::Beside, "by themselves");
+        ui.selectable_value(&mut look.layout, Layout::Over, "one over the other");
+    });
+    ComboBox::from_label("colour")
+        .selected_text(look.colour.name())
+        .width(140.0)
+        .show_ui(ui, |ui| {
+            for colour in Colour::ALL {
+                ui.selectable_value(&mut look.colour, colour, colour.name());
+            }
+        });
+    ui.checkbox(&mut look.multipliers, "multipliers as arrows")
+        .on_hover_text("where the springs contradict the physics: the derivative of the smallest ½‖u − ū‖² by the forces at the nodes");
+    ui.checkbox(&mut look.cells, "cells");
+    ui.label(
+        RichText::new("Pull the bar at the right end, or its knob to turn it.")
+            .small()
+            .weak(),
+    );
+}

@@ -1,0 +1,98 @@
+//! What is read off the table: forces, deviations, the curve that is pulled.
+
+use eframe::egui::{Grid, RichText, Ui};
+
+use gelbench::results::{Axis, Line, LineChart, PALETTE, Stroke};
+
+use crate::logic::engine::Fault;
+use crate::logic::scene::Model;
+use crate::logic::table::Table;
+
+/// Force over stretch of all models that are shown.
+pub fn curve(table: &Table) -> LineChart {
+    let shown = |model: &Model| table.scene().look.models[*model as usize];
+    let line = |model: Model| {
+        let colour = PALETTE[match model {
+            Model::Springs => 1,
+            Model::Corrected => 0,
+            Model::Elements => 2,
+        }];
+        Line::new(model.name(), table.curve(model), colour, Stroke::Marked)
+    };
+    let lines = Model::ALL.into_iter().filter(shown).map(line).collect();
+    let x = Axis::linear("stretch [–]");
+    LineChart::new("", x, Axis::linear("force along X [N]"), lines)
+}
+
+/// The figures of all models in a table.
+pub fn table(ui: &mut Ui, table: &Table) {
+    Grid::new("figures")
+        .striped(true)
+        .num_columns(6)
+        .show(ui, |ui| {
+            for head in [
+                "",
+                "force x, y [N]",
+                "moment [N mm]",
+                "displacement [%]",
+                "departure [%]",
+                "force [%]",
+            ] {
+                ui.label(RichText::new(head).small());
+            }
+            ui.end_row();
+            for model in Model::ALL {
+                row(ui, table, model);
+            }
+        });
+    ui.label(
+        RichText::new(
+            "Deviations from the finite elements: of the displacement, of its departure from the motion that is linear \
+             between the grips (the strict measure), of the force.",
+        )
+        .small()
+        .weak(),
+    );
+}
+
+fn row(ui: &mut Ui, table: &Table, model: Model) {
+    ui.label(model.name());
+    match table.shown(model) {
+        Some(shown) => {
+            let [x, y] = shown.solved.force;
+            ui.monospace(format!("{:9.4} {:9.4}", rounded(x, 4), rounded(y, 4)));
+            ui.monospace(format!("{:9.2}", rounded(shown.solved.moment, 2)));
+        }
+        None => {
+            ui.label("…");
+            ui.label("");
+        }
+    }
+    match table.deviation(model) {
+        Some(found) => {
+            ui.monospace(format!("{:8.4}", found.displacement));
+            ui.monospace(format!("{:8.3}", found.departure));
+            ui.monospace(format!("{:+8.3}", found.force));
+        }
+        None => {
+            for _ in 0..3 {
+                ui.label("");
+            }
+        }
+    }
+    ui.end_row();
+}
+
+/// A number with so many decimals, and no minus before zero.
+fn rounded(value: f64, decimals: i32) -> f64 {
+    let unit = 10_f64.powi(decimals);
+    (value * unit).round() / unit + 0.0
+}
+
+/// A fault in the library's words, with its remedy.
+pub fn fault(ui: &mut Ui, fault: &Fault) {
+    ui.colored_label(ui.visuals().error_fg_color, &fault.message);
+    if !fault.advice.is_empty() {
+        ui.label(format!("What to try: {}", fault.advice));
+    }
+}

@@ -1,0 +1,19 @@
+//! Letters: those of egui, and for mathematics those of DejaVu Sans.
+
+use std::sync::Arc;
+
+use eframe::egui::{Context, FontData, FontDefinitions};
+
+const NAME: &str = "symbols";
+const SYMBOLS: &[u8] = include_bytes!("../../fonts/dejavu-sans-symbols.ttf");
+
+/// Lets all texts take from DejaVu Sans what egui's own letters lack.
+pub fn install(context: &Context) {
+    let mut fonts = FontDefinitions::default();
+    let data = Arc::new(FontData::from_static(SYMBOLS));
+    fonts.font_data.insert(NAME.to_owned(), data);
+    for family in fonts.families.values_mut() {
+        family.push(NAME.to_owned());
+    }
+    context.set_fonts(fonts);
+}

@@ -1,0 +1,338 @@
+//! Materials: a card with its curves, parameters that are moved, and laws fitted to dropped tests.
+
+use eframe::egui::{Button, ComboBox, DragValue, Grid, RichText, ScrollArea, TextEdit, Ui, vec2};
+
+use gelbench::calibration::KEYS;
+use gelbench::material::Card;
+use gelbench::material::registry::{CARDS, LAWS, MARLOW_TABLE};
+use gelbench::results::material_chart;
+
+use super::{chart, figures, files};
+use crate::logic::background::{Background, Wake};
+use crate::logic::engine::Fault;
+use crate::logic::material::{FitQuestion, Fitted, Fitter, Ranking, TestFile, stable_ranges};
+use crate::logic::scene::CardFile;
+use crate::logic::table::Table;
+
+/// The state of the view.
+pub struct Materials {
+    question: FitQuestion,
+    fitter: Background<Fitter>,
+    found: Option<Result<Ranking, Fault>>,
+    chosen: usize,
+    told: String,
+    /// The card that the curves are of, as it was read last.
+    read: Option<(CardFile, Result<Card, Fault>)>,
+}
+
+impl Materials {
+    /// Without tests.
+    pub fn new(wake: Wake) -> Self {
+        Self {
+            question: FitQuestion::default(),
+            fitter: Background::new(wake),
+            found: None,
+            chosen: 0,
+            told: String::new(),
+            read: None,
+        }
+    }
+
+    /// Takes a file of test data.
+    pub fn put(&mut self, file: TestFile) {
+        self.question.tests.retain(|known| known.name != file.name);
+        self.question.tests.push(file);
+        (self.found, self.chosen) = (None, 0);
+    }
+
+    /// Takes what was fitted.
+    pub fn receive(&mut self) {
+        if let Some(answer) = self.fitter.answers().pop() {
+            self.found = Some(answer);
+            self.chosen = 0;
+        }
+    }
+
+    /// Whether something is being fitted.
+    pub fn is_busy(&self) -> bool {
+        self.fitter.is_busy()
+    }
+
+    /// Stops fitting.
+    pub fn stop(&mut self) {
+        self.fitter.stop();
+    }
+
+    /// Fits the tests that are there.
+    pub fn fit(&mut self) {
+        if !self.question.tests.is_empty() {
+            self.fitter.ask(self.question.clone());
+        }
+    }
+
+    /// What was fitted last.
+    pub fn found(&self) -> Option<&Result<Ranking, Fault>> {
+        self.found.as_ref()
+    }
+
+    /// Shows the view.
+    pub fn show(&mut self, ui: &mut Ui, table: &mut Table) {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let wide = ui.available_width() > 900.0;
+            if wide {
+                ui.columns(2, |columns| {
+                    self.card(&mut columns[0], table);
+                    self.tests(&mut columns[1], table);
+                });
+            } else {
+                self.card(ui, table);
+                ui.separator();
+                self.tests(ui, table);
+            }
+        });
+    }
+
+    fn card(&mut self, ui: &mut Ui, table: &mut Table) {
+        ui.heading("Card");
+        let file = table.scene().card.clone();
+        ui.horizontal_wrapped(|ui| {
+            ComboBox::from_label("card")
+                .selected_text(&file.name)
+                .show_ui(ui, |ui| {
+                    for (name, _) in CARDS {
+                        if ui.selectable_label(file.name == *name, *name).clicked() {
+                            table
+                                .take_card(CardFile::shipped(name).expect("a shipped card"), false);
+                        }
+                    }
+                    for own in table.cards().to_vec() {
+                        if ui
+                            .selectable_label(file.name == own.name, &own.name)
+                            .clicked()
+                        {
+                            table.take_card(own, false);
+                        }
+                    }
+                });
+            if ui.button("save card").clicked() {
+                let saved = files::save(
+                    &format!("{}.toml", file.name.trim_end_matches(".toml")),
+                    file.text.as_bytes(),
+                );
+                self.told = saved.unwrap_or_else(|fault| fault);
+            }
+        });
+        if !self.told.is_empty() {
+            ui.label(&self.told);
+        }
+        if self.read.as_ref().is_none_or(|(known, _)| *known != file) {
+            self.read = Some((file.clone(), file.read().map_err(Fault::from)));
+        }
+        let Some((_, read)) = &self.read else { return };
+        let card = match read {
+            Ok(card) => card,
+            Err(fault) => {
+                figures::fault(ui, fault);
+                return;
+            }
+        };
+        ui.label(RichText::new(&card.title).strong());
+        ui.label(card.formula);
+        parameters(ui, &file, card, table);
+        for (name, [low, high]) in stable_ranges(card) {
+            ui.label(format!(
+                "stable (Drucker) in {name} tests for λ = {low:.3} … {high:.3}"
+            ));
+        }
+        chart::show(ui, "curves of the card", &material_chart(card), 300.0);
+        ui.label(
+            RichText::new(format!("{} {}", card.citation, card.doi))
+                .small()
+                .weak(),
+        );
+    }
+
+    fn tests(&mut self, ui: &mut Ui, table: &mut Table) {
+        ui.heading("Fit to tests");
+        if self.question.tests.is_empty() {
+            ui.label("Drop the CSV of a test here: stretch or strain, and stress or force.");
+        }
+        let mut gone = None;
+        for (number, file) in self.question.tests.iter().enumerate() {
+            ui.horizontal(|ui| {
+                ui.label(&file.name);
+                if ui.small_button("take away").clicked() {
+                    gone = Some(number);
+                }
+            });
+        }
+        if let Some(number) = gone {
+            self.question.tests.remove(number);
+            self.found = None;
+        }
+        if self.question.tests.is_empty() {
+            return;
+        }
+        self.reading(ui);
+        self.law(ui);
+        match &self.found {
+            None => (),
+            Some(Err(fault)) => {
+                figures::fault(ui, fault);
+                ui.label("What the file does not say is stated above.");
+            }
+            Some(Ok(ranking)) => {
+                ranked(ui, ranking, &mut self.chosen);
+                if let Some(fit) = ranking.fits.get(self.chosen) {
+                    result(ui, fit, table);
+                }
+            }
+        }
+    }
+
+    fn reading(&mut self, ui: &mut Ui) {
+        ui.collapsing("what the files do not say", |ui| {
+            Grid::new("reading").num_columns(2).show(ui, |ui| {
+                for key in KEYS {
+                    let label = ui.label(key);
+                    let mut value = self.question.reading.get(key).cloned().unwrap_or_default();
+                    let edit = TextEdit::singleline(&mut value)
+                        .desired_width(140.0)
+                        .hint_text(hint(key));
+                    if ui.add(edit).labelled_by(label.id).changed() {
+                        self.question.reading.remove(key);
+                        if !value.trim().is_empty() {
+                            self.question.reading.insert(key.to_owned(), value);
+                        }
+                    }
+                    ui.end_row();
+                }
+            });
+        });
+    }
+
+    fn law(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            let law = &mut self.question.law;
+            let name = law.clone().unwrap_or_else(|| "all laws".to_owned());
+            ComboBox::from_label("law")
+                .selected_text(name)
+                .show_ui(ui, |ui| {
+                    ui.selectable_value(law, None, "all laws");
+                    for known in LAWS.iter().filter(|known| known.name != MARLOW_TABLE) {
+                        ui.selectable_value(law, Some(known.name.to_owned()), known.name);
+                    }
+                });
+            if ui
+                .add_enabled(!self.fitter.is_busy(), Button::new("fit"))
+                .clicked()
+            {
+                self.fitter.ask(self.question.clone());
+            }
+            if self.fitter.is_busy() {
+                ui.spinner();
+                ui.label("fitting; Escape stops it");
+            }
+        });
+    }
+}
+
+fn hint(key: &str) -> &'static str {
+    match key {
+        "test" => "uniaxial, planar, …",
+        "stress measure" => "nominal or cauchy",
+        "strain measure" => "stretch, nominal, …",
+        "stress unit" => "kPa, MPa, N …",
+        "strain unit" => "-, %, mm …",
+        "direction" => "1 or 2",
+        "strain ratio" => "0.5",
+        "area" => "10 mm^2",
+        _ => "50 mm",
+    }
+}
+
+/// Sliders of the parameters: from a tenth to the tenfold of a stress, over the usual values of others.
+fn parameters(ui: &mut Ui, file: &CardFile, card: &Card, table: &mut Table) {
+    Grid::new("parameters").num_columns(2).show(ui, |ui| {
+        for parameter in &card.parameters {
+            let label = ui.label(parameter.key);
+            let mut value = parameter.value;
+            let speed = 0.005 * parameter.value.abs().max(1e-6);
+            let unit = parameter.unit().trim_matches('–');
+            let drag = DragValue::new(&mut value)
+                .speed(speed)
+                .max_decimals(8)
+                .suffix(format!(" {unit}"));
+            let response = ui.add_sized(vec2(130.0, 20.0), drag).labelled_by(label.id);
+            if response.changed()
+                && let Some(moved) = file.with_parameter(card, parameter.key, value)
+            {
+                table.take_card(moved, response.dragged());
+            }
+            ui.end_row();
+        }
+    });
+}
+
+fn ranked(ui: &mut Ui, ranking: &Ranking, chosen: &mut usize) {
+    Grid::new("ranking")
+        .striped(true)
+        .num_columns(5)
+        .show(ui, |ui| {
+            for head in ["law", "AICc", "RMSE [MPa]", "NMAD [%]", "over the data"] {
+                ui.label(RichText::new(head).small());
+            }
+            ui.end_row();
+            for (number, fit) in ranking.fits.iter().enumerate() {
+                if ui.selectable_label(*chosen == number, &fit.law).clicked() {
+                    *chosen = number;
+                }
+                ui.monospace(format!("{:.2}", fit.aicc));
+                ui.monospace(format!("{:.3e}", fit.rmse));
+                ui.monospace(format!("{:.3}", fit.nmad_percent));
+                ui.label(if fit.stable { "stable" } else { "unstable" });
+                ui.end_row();
+            }
+        });
+    for reason in &ranking.without {
+        ui.label(RichText::new(reason).small().weak());
+    }
+}
+
+fn result(ui: &mut Ui, fit: &Fitted, table: &mut Table) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(&fit.law).strong());
+        if ui.button("make the sheet of it").clicked() {
+            let name = format!("fitted-{}", fit.law);
+            table.put_card(CardFile {
+                name,
+                text: fit.card.clone(),
+            });
+        }
+    });
+    ui.label(&fit.formula);
+    Grid::new("fitted").num_columns(3).show(ui, |ui| {
+        for [key, value, uncertainty] in &fit.parameters {
+            ui.label(key);
+            ui.monospace(value);
+            ui.label(uncertainty);
+            ui.end_row();
+        }
+    });
+    if !fit.verdict.is_empty() {
+        ui.label(format!("left over: {}", fit.verdict));
+    }
+    for (name, [low, high]) in &fit.ranges {
+        ui.label(format!(
+            "stable in {name} tests for λ = {low:.3} … {high:.3}"
+        ));
+    }
+    for warning in &fit.warnings {
+        ui.colored_label(ui.visuals().warn_fg_color, warning);
+    }
+    for (number, drawn) in fit.charts.iter().enumerate() {
+        ui.label(RichText::new(&drawn.title).small());
+        let height = if number == 0 { 260.0 } else { 150.0 };
+        chart::show(ui, &format!("fit {number}"), drawn, height);
+    }
+}

@@ -1,0 +1,188 @@
+//! A report on the screen: tables, charts, fields and meshes as the library describes them.
+
+use std::sync::Arc;
+
+use eframe::egui::{Grid, Mesh as Triangles, Rect, RichText, Sense, Shape, Stroke, Ui, vec2};
+
+use gelbench::results::{Drawing, FieldFigure, MeshFigure, PALETTE, Panel, Scale, Values};
+
+use super::colours::{colour, range};
+use super::surface::View;
+use super::{chart, sheet};
+use crate::logic::report::{Part, Report};
+
+/// Rows of a table that are shown.
+const ROWS: usize = 200;
+
+/// Shows a report; `name` tells its charts apart from those of others.
+pub fn show(ui: &mut Ui, name: &str, report: &Report) {
+    ui.heading(&report.title);
+    let (verdict, ink) = match report.passed {
+        true => ("passed", ui.visuals().strong_text_color()),
+        false => ("not passed", ui.visuals().error_fg_color),
+    };
+    ui.colored_label(
+        ink,
+        format!("{verdict}, computed in {:.1} s", report.seconds),
+    );
+    for sentence in &report.told {
+        ui.label(sentence);
+    }
+    for (number, part) in report.parts.iter().enumerate() {
+        show_part(ui, &format!("{name} {number}"), part);
+    }
+}
+
+fn show_part(ui: &mut Ui, name: &str, part: &Part) {
+    match part {
+        Part::Heading(1, text) => drop(ui.heading(text)),
+        Part::Heading(_, text) => {
+            ui.add_space(8.0);
+            ui.label(RichText::new(text).strong().size(16.0));
+        }
+        Part::Paragraph(text) => drop(ui.label(text)),
+        Part::Code(text) => drop(ui.monospace(text)),
+        Part::Table(head, rows) => table(ui, name, head, rows),
+        Part::Picture(drawing, caption) => {
+            picture(ui, name, drawing);
+            ui.label(RichText::new(caption).small().weak());
+        }
+    }
+}
+
+fn table(ui: &mut Ui, name: &str, head: &[String], rows: &[Vec<String>]) {
+    let shown = Grid::new(name.to_owned())
+        .striped(true)
+        .num_columns(head.len());
+    shown.show(ui, |ui| {
+        for cell in head {
+            ui.label(RichText::new(cell).small().strong());
+        }
+        ui.end_row();
+        for row in rows.iter().take(ROWS) {
+            for cell in row {
+                ui.label(cell);
+            }
+            ui.end_row();
+        }
+    });
+    if rows.len() > ROWS {
+        ui.label(format!("… and {} rows more", rows.len() - ROWS));
+    }
+}
+
+/// Draws a picture of the library's.
+pub fn picture(ui: &mut Ui, name: &str, drawing: &Drawing) {
+    match drawing {
+        Drawing::Charts(charts) => {
+            for (number, (chart, height)) in charts.iter().enumerate() {
+                ui.label(RichText::new(&chart.title).small().strong());
+                let height = (0.6 * *height as f32).clamp(120.0, 300.0);
+                chart::show(ui, &format!("{name} {number}"), chart, height);
+            }
+        }
+        Drawing::Field(figure) => field(ui, figure),
+        Drawing::Animation(moving) => {
+            let Some(frame) = moving.frames.last() else {
+                return;
+            };
+            ui.label(format!("{}, at {} s", moving.title, frame.time));
+            panels(ui, &moving.quantity, Scale::Linear, &frame.panels);
+        }
+        Drawing::Mesh(figure) => drop(mesh(ui, figure)),
+    }
+}
+
+fn field(ui: &mut Ui, figure: &FieldFigure) {
+    ui.label(RichText::new(&figure.title).small().strong());
+    panels(ui, &figure.quantity, figure.scale, &figure.panels);
+}
+
+/// Fields one below the other on one colour scale.
+pub fn panels(ui: &mut Ui, quantity: &str, scale: Scale, panels: &[Panel]) {
+    let shown: fn(f64) -> f64 = match scale {
+        Scale::Logarithmic => f64::log10,
+        _ => |value| value,
+    };
+    let values = panels.iter().flat_map(Panel::corners).flatten().map(shown);
+    let range = range(values).unwrap_or([0.0, 1.0]);
+    for panel in panels {
+        ui.label(&panel.label);
+        let lines = panel.surface.outline.iter().chain(&panel.surface.rest);
+        let (view, area) = room(ui, lines.flatten().chain(&panel.surface.points));
+        let painter = ui.painter().with_clip_rect(area);
+        painter.add(Shape::Mesh(Arc::new(surface(panel, view, |value| {
+            colour(shown(value), range)
+        }))));
+        let ink = ui.visuals().text_color();
+        for line in &panel.surface.outline {
+            let places = line.iter().map(|place| view.at(*place)).collect();
+            painter.add(Shape::line(places, Stroke::new(1.0, ink)));
+        }
+    }
+    let (bar, _) =
+        ui.allocate_exact_size(vec2(ui.available_width().min(600.0), 34.0), Sense::hover());
+    let name = match scale {
+        Scale::Logarithmic => format!("log₁₀ {quantity}"),
+        _ => quantity.to_owned(),
+    };
+    sheet::colour_bar(ui, &name, range, bar);
+}
+
+fn surface(panel: &Panel, view: View, ink: impl Fn(f64) -> eframe::egui::Color32) -> Triangles {
+    let mut drawn = Triangles::default();
+    let points = &panel.surface.points;
+    match &panel.values {
+        Values::AtPoints(values) => {
+            for (place, value) in points.iter().zip(values) {
+                drawn.colored_vertex(view.at(*place), ink(*value));
+            }
+            drawn.indices = panel.surface.triangles.iter().flatten().copied().collect();
+        }
+        Values::InCells(values) => {
+            for (triangle, cell) in panel.surface.triangles.iter().zip(&panel.surface.cells) {
+                let first = drawn.vertices.len() as u32;
+                for point in triangle {
+                    drawn.colored_vertex(
+                        view.at(points[*point as usize]),
+                        ink(values[*cell as usize]),
+                    );
+                }
+                drawn.add_triangle(first, first + 1, first + 2);
+            }
+        }
+    }
+    drawn
+}
+
+/// Room for places in true proportions, as wide as there is and at most half as high.
+pub fn room<'a>(ui: &mut Ui, places: impl Iterator<Item = &'a [f64; 2]> + Clone) -> (View, Rect) {
+    let along = |axis: usize| range(places.clone().map(|place| place[axis])).unwrap_or([0.0, 1.0]);
+    let ([left, right], [bottom, top]) = (along(0), along(1));
+    let width = ui.available_width().min(760.0);
+    let height = width * ((top - bottom) / (right - left).max(1e-9)) as f32 + 12.0;
+    let (area, _) = ui.allocate_exact_size(vec2(width, height.clamp(40.0, 420.0)), Sense::hover());
+    (
+        View::fit([[left, bottom], [right, top]], area.shrink(6.0)),
+        area,
+    )
+}
+
+/// A mesh and the names of its edges, each in a colour; the view, so that more can be drawn on it.
+pub fn mesh(ui: &mut Ui, figure: &MeshFigure) -> View {
+    let (view, area) = room(ui, figure.cells.iter().flatten());
+    let painter = ui.painter().with_clip_rect(area.expand(8.0));
+    let faint = Stroke::new(0.5, ui.visuals().text_color().gamma_multiply(0.4));
+    let places = |line: &[[f64; 2]]| line.iter().map(|place| view.at(*place)).collect();
+    for cell in &figure.cells {
+        painter.add(Shape::closed_line(places(cell), faint));
+    }
+    for (number, group) in figure.groups.iter().enumerate() {
+        let [r, g, b] = PALETTE[number % PALETTE.len()];
+        let ink = eframe::egui::Color32::from_rgb(r, g, b);
+        for line in &group.lines {
+            painter.add(Shape::line(places(line), Stroke::new(3.0, ink)));
+        }
+    }
+    view
+}

@@ -1,0 +1,332 @@
+//! The sheets of the models, each by itself or one over the other.
+
+use std::sync::Arc;
+
+use eframe::egui::{
+    Align2, Color32, FontId, Mesh as Triangles, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui,
+    pos2, vec2,
+};
+
+use gelbench::mesh::Mesh;
+
+use super::colours::{colour, most_of};
+use super::grip::{self, Held};
+use super::surface::{View, draw, triangles};
+use crate::logic::scene::{Layout, Model, Scene};
+use crate::logic::table::Table;
+
+/// Multipliers that are drawn at most.
+const ARROWS: usize = 300;
+
+/// What was drawn last: it is drawn again where nothing changed.
+#[derive(Default)]
+pub struct Sheets {
+    drawn: [Option<Drawn>; 3],
+    triangles: [Option<(usize, Vec<u32>)>; 3],
+    range: Option<(u64, [f64; 2])>,
+    /// The largest stretch and motion across that the view has room for.
+    room: [f64; 2],
+}
+
+/// Where and how one sheet is drawn.
+struct Place<'a> {
+    ui: &'a Ui,
+    painter: Painter,
+    table: &'a Table,
+    view: View,
+    range: [f64; 2],
+    /// Whether another one lies below.
+    outline_only: bool,
+}
+
+struct Drawn {
+    revision: u64,
+    view: View,
+    range: [f64; 2],
+    surface: Arc<Triangles>,
+}
+
+impl Sheets {
+    /// Draws what is on the table into all the room that there is; what was done to the grip, where there is one to be seen.
+    pub fn show(&mut self, ui: &mut Ui, table: &Table) -> Option<Held> {
+        let mut held: Option<Held> = None;
+        let (area, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+        let models: Vec<Model> = Model::ALL
+            .into_iter()
+            .filter(|model| table.scene().look.models[*model as usize])
+            .collect();
+        let range = self.range(table, &models);
+        let bar = Rect::from_min_max(pos2(area.left(), area.bottom() - 34.0), area.max);
+        let sheets = Rect::from_min_max(area.min, pos2(area.right(), bar.top()));
+        for (number, model) in models.iter().enumerate() {
+            let over = table.scene().look.layout == Layout::Over;
+            let count = if over { 1 } else { models.len() };
+            let height = sheets.height() / count as f32;
+            let top = sheets.top() + if over { 0.0 } else { number as f32 * height };
+            let own = Rect::from_min_size(pos2(sheets.left(), top), vec2(sheets.width(), height));
+            let line = if over { 15.0 * number as f32 } else { 0.0 };
+            let place = Place {
+                ui,
+                painter: ui.painter().with_clip_rect(own),
+                table,
+                view: self.view(table.scene(), own.shrink2(vec2(14.0, 26.0))),
+                range,
+                outline_only: over && number > 0,
+            };
+            self.sheet(&place, *model);
+            label(&place, *model, own.min + vec2(6.0, 4.0 + line));
+            if number == 0 || !over {
+                let own = grip::show(ui, table.scene(), place.view, model.name());
+                if held.is_none() || own.to.is_some() || own.holding || own.released {
+                    held = Some(own);
+                }
+            }
+        }
+        colour_bar(ui, table.scene().look.colour.name(), range, bar);
+        if !held.as_ref().is_some_and(|held| held.holding) {
+            self.room = room(table.scene());
+        }
+        held
+    }
+
+    /// The range of the colours of all models that are shown, as it was found when they last changed.
+    fn range(&mut self, table: &Table, models: &[Model]) -> [f64; 2] {
+        if let Some((_, range)) = self.range.filter(|(known, _)| *known == table.revision()) {
+            return range;
+        }
+        let values = models.iter().filter_map(|model| table.values(*model));
+        let range = most_of(values.flatten()).unwrap_or([0.0, 1.0]);
+        self.range = Some((table.revision(), range));
+        range
+    }
+
+    /// The part of the plane that is seen: it grows while the grip is pulled, and does not move under it.
+    fn view(&mut self, scene: &Scene, screen: Rect) -> View {
+        let now = room(scene);
+        self.room = [0, 1].map(|axis| f64::max(self.room[axis], now[axis]));
+        let [length, width] = scene.size;
+        let (axis, across) = (scene.axis(), 0.5 * width + self.room[1]);
+        let right = length * (1.0 + self.room[0]);
+        View::fit([[0.0, axis - across], [right, axis + across]], screen)
+    }
+
+    fn sheet(&mut self, place: &Place, model: Model) {
+        let table = place.table;
+        let (Some(mesh), Some(shown)) = (table.mesh(model), table.shown(model)) else {
+            return;
+        };
+        let displacement = &shown.solved.displacement;
+        if displacement.len() != 2 * mesh.nodes.len() {
+            return;
+        }
+        if !place.outline_only {
+            place
+                .painter
+                .add(Shape::Mesh(self.surface(place, model, mesh)));
+        }
+        let ink = match table.scene().look.layout {
+            Layout::Over => model_colour(model),
+            Layout::Beside => place.ui.visuals().text_color(),
+        };
+        let lines = Lines {
+            place,
+            mesh,
+            displacement,
+        };
+        lines.outline(Stroke::new(1.5, ink));
+        if table.scene().look.cells && !place.outline_only {
+            lines.cells();
+        }
+        if model == Model::Springs && table.scene().look.multipliers {
+            lines.multipliers();
+        }
+    }
+
+    fn surface(&mut self, place: &Place, model: Model, mesh: &Mesh) -> Arc<Triangles> {
+        let Place {
+            table, view, range, ..
+        } = *place;
+        let slot = &mut self.drawn[model as usize];
+        let known = slot.as_ref().filter(|drawn| {
+            (drawn.revision, drawn.view, drawn.range) == (table.revision(), view, range)
+        });
+        if let Some(drawn) = known {
+            return Arc::clone(&drawn.surface);
+        }
+        let nodes = mesh.nodes.len();
+        let corners = &mut self.triangles[model as usize];
+        if corners
+            .as_ref()
+            .is_none_or(|(sheet, _)| *sheet != table.sheet_number())
+        {
+            *corners = Some((table.sheet_number(), triangles(mesh)));
+        }
+        let (_, corners) = corners.as_ref().expect("triangles were made");
+        let values = table.values(model).unwrap_or_else(|| vec![f64::NAN; nodes]);
+        let displacement = table
+            .shown(model)
+            .map_or(&[][..], |shown| &shown.solved.displacement);
+        let surface = draw(mesh, corners, displacement, view, |node| {
+            colour(values[node], range)
+        });
+        let surface = Arc::new(surface);
+        *slot = Some(Drawn {
+            revision: table.revision(),
+            view,
+            range,
+            surface: Arc::clone(&surface),
+        });
+        surface
+    }
+}
+
+/// The stretch and the motion across that a scene needs room for, in lengths and in mm.
+fn room(scene: &Scene) -> [f64; 2] {
+    let Scene { size, grip, .. } = scene;
+    let stretch = scene.stretch().max(0.3) + 0.1;
+    let turned = 0.5 * size[1] * grip.angle.sin().abs() / size[0];
+    let across = grip.displacement[1].abs();
+    [stretch + turned, across]
+}
+
+/// The colour of a model's lines, in charts and where models lie over each other.
+pub fn model_colour(model: Model) -> Color32 {
+    let [r, g, b] = gelbench::results::PALETTE[match model {
+        Model::Springs => 1,
+        Model::Corrected => 0,
+        Model::Elements => 2,
+    }];
+    Color32::from_rgb(r, g, b)
+}
+
+fn label(place: &Place, model: Model, at: Pos2) {
+    let Place { table, ui, .. } = place;
+    let follows = match table.shown(model) {
+        Some(shown) if shown.grip == table.scene().grip => "",
+        _ if table.fault(model).is_some() => " – no solution here, see below",
+        _ => " – follow …",
+    };
+    let ink = match table.scene().look.layout {
+        Layout::Over => model_colour(model),
+        Layout::Beside => ui.visuals().strong_text_color(),
+    };
+    let text = format!("{}{follows}", model.name());
+    let font = FontId::proportional(13.0);
+    place.painter.text(at, Align2::LEFT_TOP, text, font, ink);
+}
+
+/// The lines on a deformed mesh.
+struct Lines<'a> {
+    place: &'a Place<'a>,
+    mesh: &'a Mesh,
+    displacement: &'a [f64],
+}
+
+impl Lines<'_> {
+    /// Where a node is, in mm.
+    fn moved(&self, node: usize) -> [f64; 2] {
+        [0, 1].map(|axis| self.mesh.nodes[node][axis] + self.displacement[2 * node + axis])
+    }
+
+    fn at(&self, node: usize) -> Pos2 {
+        self.place.view.at(self.moved(node))
+    }
+
+    fn outline(&self, stroke: Stroke) {
+        for edge in self.mesh.boundary() {
+            let nodes = [Some(&edge[0]), edge.get(2), Some(&edge[1])];
+            let points = nodes.into_iter().flatten().map(|node| self.at(*node));
+            self.place
+                .painter
+                .add(Shape::line(points.collect(), stroke));
+        }
+    }
+
+    fn cells(&self) {
+        let ink = self.place.ui.visuals().text_color().gamma_multiply(0.35);
+        for cell in 0..self.mesh.cell_count() {
+            let corners = &self.mesh.cell(cell)[..self.mesh.shape(cell).corners()];
+            let points = corners.iter().map(|node| self.at(*node)).collect();
+            let line = Shape::closed_line(points, Stroke::new(0.5, ink));
+            self.place.painter.add(line);
+        }
+    }
+
+    /// Arrows of the multipliers at some of the nodes; the longest is a seventh of the width.
+    fn multipliers(&self) {
+        let Place {
+            table,
+            ui,
+            painter,
+            view,
+            ..
+        } = self.place;
+        let corrected = table.shown(Model::Corrected);
+        let found = corrected.and_then(|shown| shown.solved.multipliers.as_ref());
+        let Some(values) = found.filter(|values| values.len() == self.displacement.len()) else {
+            return;
+        };
+        let sizes = values.chunks_exact(2).map(|value| value[0].hypot(value[1]));
+        let longest = sizes.fold(0.0, f64::max);
+        if longest <= 0.0 {
+            return;
+        }
+        let scale = 0.15 * table.scene().size[1] / longest;
+        let every = self.mesh.nodes.len().div_ceil(ARROWS).max(1);
+        let stroke = Stroke::new(1.3, ui.visuals().error_fg_color);
+        for node in (0..self.mesh.nodes.len()).step_by(every) {
+            let from = self.moved(node);
+            let to = [0, 1].map(|axis| from[axis] + scale * values[2 * node + axis]);
+            let way = view.at(to) - view.at(from);
+            if way.length() > 1.5 {
+                painter.arrow(view.at(from), way, stroke);
+            }
+        }
+    }
+}
+
+/// Draws the scale of the colours with what it shows.
+pub fn colour_bar(ui: &Ui, name: &str, [low, high]: [f64; 2], area: Rect) {
+    let painter = ui.painter();
+    let bar = Rect::from_min_size(area.min + vec2(6.0, 4.0), vec2(area.width() - 12.0, 10.0));
+    let mut surface = Triangles::default();
+    const PARTS: u32 = 32;
+    for part in 0..=PARTS {
+        let share = part as f32 / PARTS as f32;
+        let x = bar.left() + share * bar.width();
+        let ink = colour(f64::from(share), [0.0, 1.0]);
+        surface.colored_vertex(pos2(x, bar.top()), ink);
+        surface.colored_vertex(pos2(x, bar.bottom()), ink);
+        if part > 0 {
+            let first = 2 * (part - 1);
+            surface.add_triangle(first, first + 1, first + 2);
+            surface.add_triangle(first + 1, first + 3, first + 2);
+        }
+    }
+    painter.add(Shape::mesh(surface));
+    let ink = ui.visuals().text_color();
+    let font = || FontId::proportional(12.0);
+    let below = bar.bottom() + 2.0;
+    let number = gelbench::results::number;
+    painter.text(
+        pos2(bar.left(), below),
+        Align2::LEFT_TOP,
+        number(low),
+        font(),
+        ink,
+    );
+    painter.text(
+        pos2(bar.center().x, below),
+        Align2::CENTER_TOP,
+        name,
+        font(),
+        ink,
+    );
+    painter.text(
+        pos2(bar.right(), below),
+        Align2::RIGHT_TOP,
+        number(high),
+        font(),
+        ink,
+    );
+}

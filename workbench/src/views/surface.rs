@@ -1,0 +1,129 @@
+//! The triangles between the nodes of a mesh, and where they are on the screen.
+
+use eframe::egui::{Color32, Mesh as Triangles, Pos2, Rect, epaint::Vertex, pos2};
+
+use gelbench::mesh::Mesh;
+
+/// The nodes of the triangles that cover a mesh: between all nodes of quadrilaterals with nine, else between corners.
+pub fn triangles(mesh: &Mesh) -> Vec<u32> {
+    let mut all = Vec::new();
+    for cell in 0..mesh.cell_count() {
+        let nodes = mesh.cell(cell);
+        let shape = mesh.shape(cell);
+        let natural = shape.natural_nodes();
+        let at = |x: f64, y: f64| natural.iter().position(|node| *node == [x, y]);
+        let mut quadrilateral = |corners: [Option<usize>; 4]| {
+            let [a, b, c, d] = corners.map(|local| local.map(|local| nodes[local] as u32));
+            if let (Some(a), Some(b), Some(c), Some(d)) = (a, b, c, d) {
+                all.extend([a, b, c, a, c, d]);
+            }
+        };
+        if natural.len() == 9 {
+            for (x, y) in [(-1.0, -1.0), (0.0, -1.0), (-1.0, 0.0), (0.0, 0.0)] {
+                let (right, above) = (x + 1.0, y + 1.0);
+                quadrilateral([at(x, y), at(right, y), at(right, above), at(x, above)]);
+            }
+            continue;
+        }
+        for last in 2..shape.corners() {
+            all.extend([0, last - 1, last].map(|local| nodes[local] as u32));
+        }
+    }
+    all
+}
+
+/// From mm to the screen: Y up, the same scale along both axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    origin: Pos2,
+    scale: f32,
+}
+
+impl View {
+    /// Fits a rectangle of the sheet's plane, in mm, into one of the screen.
+    pub fn fit([[left, bottom], [right, top]]: [[f64; 2]; 2], screen: Rect) -> Self {
+        let [width, height] = [right - left, top - bottom].map(|size| size.max(1e-9) as f32);
+        let scale = (screen.width() / width)
+            .min(screen.height() / height)
+            .max(1e-6);
+        let middle = [0.5 * (left + right), 0.5 * (bottom + top)].map(|place| place as f32);
+        Self {
+            origin: pos2(
+                screen.center().x - scale * middle[0],
+                screen.center().y + scale * middle[1],
+            ),
+            scale,
+        }
+    }
+
+    /// Where a place in mm is.
+    pub fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
+        pos2(
+            self.origin.x + self.scale * x as f32,
+            self.origin.y - self.scale * y as f32,
+        )
+    }
+
+    /// What a way on the screen is in mm.
+    pub fn way(&self, on_screen: eframe::egui::Vec2) -> [f64; 2] {
+        [on_screen.x, -on_screen.y].map(|way| f64::from(way / self.scale))
+    }
+}
+
+/// A deformed mesh on the screen, its nodes coloured.
+pub fn draw(
+    mesh: &Mesh,
+    triangles: &[u32],
+    displacement: &[f64],
+    view: View,
+    colour: impl Fn(usize) -> Color32,
+) -> Triangles {
+    let nodes = mesh
+        .nodes
+        .iter()
+        .zip(displacement.chunks_exact(2))
+        .enumerate();
+    let vertices = nodes.map(|(node, ([x, y], u))| Vertex {
+        pos: view.at([x + u[0], y + u[1]]),
+        uv: eframe::egui::epaint::WHITE_UV,
+        color: colour(node),
+    });
+    Triangles {
+        vertices: vertices.collect(),
+        indices: triangles.to_vec(),
+        ..Triangles::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gelbench::mesh::{CellShape, Shape};
+
+    #[test]
+    fn the_triangles_cover_the_sheet_once() {
+        let shape = Shape::Strip { size: [3.0, 1.0] };
+        for (name, kind) in CellShape::NAMES {
+            let mesh = shape.mesh(2, kind);
+            let area = |t: &[u32]| {
+                let [a, b, c] = [t[0], t[1], t[2]].map(|node| mesh.nodes[node as usize]);
+                0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+            };
+            let triangles = triangles(&mesh);
+            let all: f64 = triangles.chunks_exact(3).map(area).sum();
+            assert!((all - 3.0).abs() < 1e-12, "{name}: {all}");
+            let used: std::collections::BTreeSet<_> = triangles.iter().collect();
+            assert!(kind != CellShape::Quad9 || used.len() == mesh.nodes.len());
+        }
+    }
+
+    #[test]
+    fn a_way_on_the_screen_is_the_way_of_the_places() {
+        let screen = Rect::from_min_max(pos2(10.0, 20.0), pos2(310.0, 120.0));
+        let view = View::fit([[0.0, 0.0], [150.0, 40.0]], screen);
+        let way = view.at([30.0, 20.0]) - view.at([20.0, 15.0]);
+        let [x, y] = view.way(way);
+        assert!((x - 10.0).abs() < 1e-4 && (y - 5.0).abs() < 1e-4);
+        assert!(screen.contains(view.at([0.0, 0.0])) && screen.contains(view.at([150.0, 40.0])));
+    }
+}

@@ -1,0 +1,353 @@
+//! Chromium without a display, told what to do over its own protocol, and a server for the page.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Value, json};
+use tungstenite::{Message, WebSocket};
+
+/// How long something may take to come about.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// What makes Chromium run without a display, with WebGL by SwiftShader, and ask nobody anything.
+const FLAGS: [&str; 12] = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--hide-scrollbars",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--remote-debugging-port=0",
+];
+
+/// A browser with the page open.
+pub struct Browser {
+    child: Child,
+    folder: PathBuf,
+    socket: WebSocket<TcpStream>,
+    messages: u64,
+    loaded: Duration,
+    loaded_at: Instant,
+}
+
+fn page_folder() -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    root.join("target/page")
+}
+
+fn chromium() -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    let places =
+        std::env::split_paths(&path).flat_map(|folder| names.map(|name| folder.join(name)));
+    places.into_iter().find(|place| place.is_file())
+}
+
+impl Browser {
+    /// The page in a window of a size in points, in the dark; nothing where it cannot be had, which is said.
+    pub fn open(size: [u32; 2]) -> Option<Self> {
+        Self::start(size, "", false)
+    }
+
+    /// The same in the light or in the dark.
+    pub fn open_in(size: [u32; 2], light: bool) -> Option<Self> {
+        Self::start(size, "", light)
+    }
+
+    /// The page with a study on its table, pulling by itself for so many frames.
+    pub fn open_with(size: [u32; 2], study: &str, frames: usize) -> Option<Self> {
+        let escaped: String = study.bytes().map(|byte| format!("%{byte:02x}")).collect();
+        Self::start(size, &format!("?frames={frames}#{escaped}"), false)
+    }
+
+    fn start(size: [u32; 2], rest: &str, light: bool) -> Option<Self> {
+        let (Some(program), true) = (chromium(), page_folder().join("index.html").is_file()) else {
+            eprintln!(
+                "skipped: there is no Chromium, or no page; `workbench/page/build` makes the page"
+            );
+            return None;
+        };
+        let port = serve(page_folder());
+        let folder =
+            std::env::temp_dir().join(format!("gelbench-page-{}-{port}", std::process::id()));
+        let child = Command::new(program)
+            .args(FLAGS)
+            .arg(format!("--user-data-dir={}", folder.display()))
+            .arg(format!("--window-size={},{}", size[0], size[1]))
+            .arg("about:blank")
+            .stderr(Stdio::null())
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("Chromium starts");
+        let socket = connect(&folder);
+        let mut browser = Self {
+            child,
+            folder,
+            socket,
+            messages: 0,
+            loaded: Duration::ZERO,
+            loaded_at: Instant::now(),
+        };
+        browser.call(
+            "Emulation.setDeviceMetricsOverride",
+            &json!({
+                "width": size[0], "height": size[1], "deviceScaleFactor": 1, "mobile": false
+            }),
+        );
+        let scheme = if light { "light" } else { "dark" };
+        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
+        browser.call(
+            "Emulation.setEmulatedMedia",
+            &json!({ "features": features }),
+        );
+        let begun = Instant::now();
+        browser.call(
+            "Page.navigate",
+            &json!({ "url": format!("http://127.0.0.1:{port}/{rest}") }),
+        );
+        browser.until(|told| told.is_object());
+        (browser.loaded, browser.loaded_at) = (begun.elapsed(), Instant::now());
+        Some(browser)
+    }
+
+    /// How long it took until the first frame was drawn.
+    pub fn loaded(&self) -> Duration {
+        self.loaded
+    }
+
+    /// How long ago that was.
+    pub fn since_loaded(&self) -> Duration {
+        self.loaded_at.elapsed()
+    }
+
+    /// Calls a method of the browser's protocol.
+    fn call(&mut self, method: &str, parameters: &Value) -> Value {
+        self.messages += 1;
+        let number = self.messages;
+        let text = json!({ "id": number, "method": method, "params": parameters }).to_string();
+        self.socket
+            .send(Message::text(text))
+            .expect("the browser listens");
+        loop {
+            let message = self.socket.read().expect("the browser answers");
+            let Ok(text) = message.to_text() else {
+                continue;
+            };
+            let Ok(answer) = serde_json::from_str::<Value>(text) else {
+                continue;
+            };
+            if answer["id"] == json!(number) {
+                assert!(answer["error"].is_null(), "{method}: {answer}");
+                return answer["result"].clone();
+            }
+        }
+    }
+
+    fn evaluate(&mut self, script: &str) -> Value {
+        let found = self.call(
+            "Runtime.evaluate",
+            &json!({ "expression": script, "returnByValue": true }),
+        );
+        found["result"]["value"].clone()
+    }
+
+    /// What the page tells, as soon as something holds of it.
+    pub fn until(&mut self, holds: impl Fn(&Value) -> bool) -> Value {
+        self.until_within(PATIENCE, holds)
+    }
+
+    /// The same with another patience.
+    pub fn until_within(&mut self, patience: Duration, holds: impl Fn(&Value) -> bool) -> Value {
+        let begun = Instant::now();
+        loop {
+            let told = self.evaluate("window.gelbench ? window.gelbench.told() : null");
+            if told.is_object() && holds(&told) {
+                return told;
+            }
+            if begun.elapsed() > patience {
+                let page = self.evaluate("document.body.innerText");
+                panic!("it does not come about: {told}; the page says {page}");
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Drags with the mouse in ten steps.
+    pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) {
+        let mut mouse = |kind: &str, [x, y]: [f64; 2], buttons: u32| {
+            let button = if kind == "mouseMoved" && buttons == 0 {
+                "none"
+            } else {
+                "left"
+            };
+            self.call("Input.dispatchMouseEvent", &json!({
+                "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1
+            }));
+            std::thread::sleep(Duration::from_millis(30));
+        };
+        mouse("mouseMoved", from, 0);
+        mouse("mousePressed", from, 1);
+        for step in 1..=10 {
+            let share = f64::from(step) / 10.0;
+            mouse(
+                "mouseMoved",
+                [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])),
+                1,
+            );
+        }
+        mouse("mouseReleased", to, 0);
+    }
+
+    /// Presses a key with Control.
+    pub fn press_with_control(&mut self, key: &str) {
+        for kind in ["keyDown", "keyUp"] {
+            self.call(
+                "Input.dispatchKeyEvent",
+                &json!({ "type": kind, "modifiers": 2, "key": key, "code": key }),
+            );
+        }
+    }
+
+    /// Drops a file on the page.
+    pub fn drop_file(&mut self, name: &str, text: &str) {
+        let script = format!(
+            "{{ const files = new DataTransfer(); files.items.add(new File([{}], {})); \
+             const drop = (kind) => document.querySelector('canvas').dispatchEvent(\
+             new DragEvent(kind, {{ dataTransfer: files, bubbles: true, cancelable: true }})); drop('dragover'); drop('drop'); }}",
+            json!(text),
+            json!(name)
+        );
+        self.evaluate(&script);
+    }
+
+    /// Leaves a picture, where somebody wants to look at it.
+    pub fn picture(&mut self, name: &str) {
+        let Some(folder) = std::env::var_os("GELBENCH_SCREENSHOTS") else {
+            return;
+        };
+        std::thread::sleep(Duration::from_millis(300));
+        let taken = self.call("Page.captureScreenshot", &json!({ "format": "png" }));
+        let data = taken["data"].as_str().unwrap_or_default();
+        let path = Path::new(&folder).join(format!("{name}.png"));
+        let picture = STANDARD.decode(data).expect("a picture");
+        std::fs::write(path, picture).expect("a folder for pictures");
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        drop(self.child.kill());
+        drop(self.child.wait());
+        drop(std::fs::remove_dir_all(&self.folder));
+    }
+}
+
+/// The first page of the browser whose data are in a folder, as soon as it says where it listens.
+fn connect(folder: &Path) -> WebSocket<TcpStream> {
+    let begun = Instant::now();
+    let port = loop {
+        let text = std::fs::read_to_string(folder.join("DevToolsActivePort"));
+        if let Some(port) = text
+            .ok()
+            .and_then(|text| text.lines().next().map(str::to_owned))
+        {
+            break port;
+        }
+        assert!(
+            begun.elapsed() < PATIENCE,
+            "Chromium does not say where it listens"
+        );
+        std::thread::sleep(Duration::from_millis(50));
+    };
+    let address = format!("127.0.0.1:{port}");
+    let list = get(&address, "/json/list");
+    let pages: Value = serde_json::from_str(&list).expect("a list of pages");
+    let page = pages
+        .as_array()
+        .and_then(|pages| pages.iter().find(|page| page["type"] == "page"));
+    let url = page.expect("a page")["webSocketDebuggerUrl"]
+        .as_str()
+        .expect("its address")
+        .to_owned();
+    let stream = TcpStream::connect(&address).expect("the browser listens");
+    let (socket, _) = tungstenite::client(url, stream).expect("a web socket");
+    socket
+}
+
+fn get(address: &str, path: &str) -> String {
+    let mut stream = TcpStream::connect(address).expect("the browser listens");
+    write!(
+        stream,
+        "GET {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n"
+    )
+    .expect("a request");
+    let mut reader = BufReader::new(stream);
+    let mut length = 0;
+    loop {
+        let mut line = String::new();
+        reader.read_line(&mut line).expect("a head");
+        if let Some(value) = line.to_lowercase().strip_prefix("content-length:") {
+            length = value.trim().parse().expect("a length");
+        }
+        if line.trim().is_empty() {
+            break;
+        }
+    }
+    let mut body = vec![0; length];
+    reader.read_exact(&mut body).expect("a body");
+    String::from_utf8(body).expect("text")
+}
+
+/// Serves a folder to this machine; the port.
+fn serve(folder: PathBuf) -> u16 {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = listener.local_addr().expect("an address").port();
+    std::thread::spawn(move || {
+        for stream in listener.incoming().flatten() {
+            let folder = folder.clone();
+            std::thread::spawn(move || drop(answer(stream, &folder)));
+        }
+    });
+    port
+}
+
+fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
+    let mut line = String::new();
+    BufReader::new(stream.try_clone()?).read_line(&mut line)?;
+    let asked = line.split_whitespace().nth(1).unwrap_or("/");
+    let name = asked
+        .split('?')
+        .next()
+        .unwrap_or_default()
+        .trim_start_matches('/');
+    let name = if name.is_empty() { "index.html" } else { name };
+    let kind = match name.rsplit('.').next() {
+        Some("html") => "text/html",
+        Some("js") => "text/javascript",
+        Some("wasm") => "application/wasm",
+        _ => "application/octet-stream",
+    };
+    let found = std::fs::read(folder.join(name));
+    let status = if found.is_ok() {
+        "200 OK"
+    } else {
+        "404 Not Found"
+    };
+    let body = found.unwrap_or_default();
+    write!(
+        stream,
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n",
+        body.len()
+    )?;
+    stream.write_all(&body)
+}

@@ -1,0 +1,178 @@
+//! The page in a browser without a display: it loads, the grip is pulled, files are dropped, and the figures are those of the
+//! desktop. It needs Chromium and the page in `target/page` (`workbench/page/build`); where one of them is missing the test
+//! says so and is skipped. With `GELBENCH_SCREENSHOTS=FOLDER` it leaves pictures of all views there.
+
+use std::time::{Duration, Instant};
+
+use gelbench_workbench::logic::background::Worker;
+use gelbench_workbench::logic::engine::{Engine, Task};
+use gelbench_workbench::logic::field::{Edge, FieldCorrector, FieldQuestion};
+use gelbench_workbench::logic::material::{FitQuestion, Fitter, TestFile};
+use gelbench_workbench::logic::scene::{CardFile, Model, Scene};
+use serde_json::{Value, json};
+
+mod browser;
+use browser::Browser;
+
+/// How far figures may differ between the browser and the desktop, relative to themselves.
+const SAME: f64 = 1e-9;
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+/// The force of a model with the study that the page tells, computed here.
+fn native(study: &str, model: Model) -> [f64; 2] {
+    let scene = Scene::open("page.toml".as_ref(), study, &[]).unwrap();
+    let task = Task {
+        number: 1,
+        scene,
+        model,
+        settled: true,
+        springs: None,
+    };
+    Engine::default().answer(&task).result.unwrap().force
+}
+
+fn compare_forces(told: &Value) {
+    let study = told["study"].as_str().unwrap();
+    for (name, model) in ["springs", "corrected", "elements"]
+        .into_iter()
+        .zip(Model::ALL)
+    {
+        let here = native(study, model);
+        let there = &told[name]["force"];
+        assert!(
+            same(there[0].as_f64().unwrap(), here[0]),
+            "{name}: {there} in the browser, {here:?} here"
+        );
+    }
+}
+
+fn settled(told: &Value) -> bool {
+    told["settled"] == json!(true)
+}
+
+#[test]
+fn the_page_loads_follows_the_hand_and_finds_what_the_desktop_finds() {
+    let Some(mut page) = Browser::open([1400, 900]) else {
+        return;
+    };
+    let loaded = page.loaded();
+    let told = page.until(settled);
+    println!(
+        "loaded in {:.2} s, solved {:.2} s after that",
+        loaded.as_secs_f64(),
+        page.since_loaded().as_secs_f64()
+    );
+    assert!(loaded < Duration::from_secs(10), "{loaded:?}");
+    compare_forces(&told);
+    page.picture("sheet_dark_1400");
+
+    let at = [0, 1].map(|axis| told["grip_at"][axis].as_f64().unwrap());
+    let before = told["stretch"].as_f64().unwrap();
+    page.drag(at, [at[0] + 90.0, at[1] - 15.0]);
+    let pulled =
+        page.until(|told| settled(told) && told["stretch"].as_f64().unwrap() > before + 0.05);
+    compare_forces(&pulled);
+    page.picture("sheet_pulled");
+    page.press_with_control("z");
+    let back = page.until(|told| settled(told) && told["stretch"] == json!(before));
+    assert_eq!(back["study"], told["study"]);
+    tests_are_fitted(&mut page);
+    fields_are_corrected(&mut page);
+}
+
+fn tests_are_fitted(page: &mut Browser) {
+    let text = include_str!("../../materials/data/treloar_1944_uniaxial.csv");
+    page.drop_file("treloar_1944_uniaxial.csv", text);
+    page.until(|told| told["tab"] == json!("Material"));
+    page.press_with_control("Enter");
+    let told = page.until(|told| told["fits"].is_array());
+    let question = FitQuestion {
+        tests: vec![TestFile {
+            name: "treloar_1944_uniaxial.csv".into(),
+            text: text.into(),
+        }],
+        ..FitQuestion::default()
+    };
+    let here = Fitter.answer(&question).unwrap();
+    let laws: Vec<&str> = here.fits.iter().map(|fit| fit.law.as_str()).collect();
+    let there = told["fits"].as_array().unwrap();
+    let there: Vec<&str> = there.iter().map(|fit| fit[0].as_str().unwrap()).collect();
+    assert_eq!(there, laws);
+    page.picture("material");
+}
+
+fn fields_are_corrected(page: &mut Browser) {
+    let text = include_str!("../../examples/measured_plate.csv");
+    page.drop_file("measured_plate.csv", text);
+    page.until(|told| told["tab"] == json!("Field"));
+    page.press_with_control("Enter");
+    let told = page.until(|told| told["verdicts"].is_array());
+    let question = FieldQuestion {
+        files: vec![("measured_plate.csv".into(), text.into())],
+        card: CardFile::shipped("pva-10").unwrap(),
+        thickness: "2 mm".into(),
+        unit: String::new(),
+        columns: String::new(),
+        downwards: None,
+        edge_gap: String::new(),
+        cell_size: String::new(),
+        edges: ["bottom", "left", "right", "top"]
+            .map(|name| (name.to_owned(), Edge::Unnamed))
+            .into(),
+        correct: true,
+    };
+    let here = FieldCorrector.answer(&question).unwrap();
+    let (frames, _) = here.corrected.unwrap();
+    for (frame, there) in frames.iter().zip(told["verdicts"].as_array().unwrap()) {
+        assert_eq!(there[0], json!(frame.verdict));
+        for (number, (edge, forces)) in frame.forces.iter().enumerate() {
+            let value = there[1][number][1][0][0].as_f64().unwrap();
+            assert!(
+                (value - forces[0][0]).abs() < 1e-7 * forces[0][0].abs(),
+                "{edge}: {value} {forces:?}"
+            );
+        }
+    }
+    page.picture("measured_field");
+}
+
+#[test]
+fn the_page_is_seen_whole_in_every_size_and_light() {
+    for (size, light) in [([800, 700], false), ([800, 700], true), ([1400, 900], true)] {
+        let Some(mut page) = Browser::open_in(size, light) else {
+            return;
+        };
+        page.until(settled);
+        page.picture(&format!(
+            "sheet_{}_{}",
+            if light { "light" } else { "dark" },
+            size[0]
+        ));
+    }
+}
+
+#[test]
+#[ignore = "minutes: frame times of three sizes"]
+fn frames_are_timed() {
+    for cells in [[54, 18], [118, 40], [172, 58], [346, 116]] {
+        let scene = Scene {
+            cells,
+            ..Scene::default()
+        };
+        let Some(mut page) = Browser::open_with([1200, 800], &scene.study(), 600) else {
+            return;
+        };
+        let begun = Instant::now();
+        let told = page.until_within(Duration::from_secs(240), |told| told["frames"].is_string());
+        println!(
+            "{} × {} cells: {} ({:.0} s)",
+            cells[0],
+            cells[1],
+            told["frames"],
+            begun.elapsed().as_secs_f64()
+        );
+    }
+}
