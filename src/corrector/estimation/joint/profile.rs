@@ -7,10 +7,10 @@ use super::direction::Direction;
 use crate::statistics::Estimate;
 
 /// How near the likelihood at an end has to be: part of the reach.
-const NEAR: f64 = 0.03;
+const NEAR: f64 = 0.05;
 
 /// Ends that are tried on one side.
-const MOST_ENDS: usize = 5;
+const MOST_ENDS: usize = 3;
 
 /// Where the search has ended, with what the intervals follow from.
 pub struct Ends<'a> {
