@@ -67,7 +67,7 @@ impl Kind {
                     .starts_with(&format!("{key}:"))
             })
         };
-        let is_test = KEYS.iter().any(|key| states(key)) || columns < 4;
+        let is_test = KEYS.iter().any(states) || columns < 4;
         let path = PathBuf::from(name);
         let as_field = || {
             let files = [(path.clone(), text.as_bytes().to_vec())];
