@@ -18,6 +18,10 @@ const NOT_RUN: &[(&str, &str)] = &[
         "opens the workbench, which has tests of its own",
     ),
     (
+        "pip install",
+        "builds gelbench for Python, which python/check does",
+    ),
+    (
         "cargo bench",
         "measures times for minutes, with 7 GB of memory",
     ),

@@ -161,7 +161,7 @@ fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
     let (folder, output) = (place.path(), &place.path().join("c"));
     run(folder, CORRECT);
     let whole = results(output);
-    assert_eq!(whole.len(), 4 * 5 + 2 + 1 + 10, "{:?}", whole.keys());
+    assert_eq!(whole.len(), 4 * 5 + 3 + 1 + 12, "{:?}", whole.keys());
     fs::remove_dir_all(output).unwrap();
 
     let first = |of: &str| first_partial(output).map(|partial| partial.join(of));

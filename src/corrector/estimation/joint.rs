@@ -103,7 +103,7 @@ fn outcome(
     let scales = &descent.settled_scales(&course);
     let whole = course.information();
     let directions = directions(&whole, scales);
-    if !directions.iter().any(Direction::is_determined) {
+    if course.ended.is_none() && !directions.iter().any(Direction::is_determined) {
         return Err(Error::input(
             "the data determine no parameter of the law",
             "measure a force with a deviation, say more of the edges, or take frames with larger strains",
