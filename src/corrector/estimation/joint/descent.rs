@@ -99,7 +99,7 @@ impl<'a> Descent<'a> {
         let states = match found {
             Ok(found) => {
                 let all = directions(&found.information(), &scales);
-                if all.iter().all(Direction::is_determined) {
+                if found.ended.is_some() || all.iter().all(Direction::is_determined) {
                     return Ok(found);
                 }
                 found.states
