@@ -39,7 +39,7 @@ pub type Drawn = Result<Vec<u8>, Diagnostic>;
 /// A drawing as a PNG for a screen.
 ///
 /// # Errors
-/// As [`picture`].
+/// [`PictureFault`] where it cannot be drawn.
 pub fn png(drawing: &Drawing) -> Result<Vec<u8>, PictureFault> {
     picture(drawing, PictureFormat::Png, &PictureStyle::default())
 }
