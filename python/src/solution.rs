@@ -1,9 +1,10 @@
 //! The equilibria of one model.
 
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use gelbench::corrector::Multipliers;
-use gelbench::material::HyperelasticLaw;
+use gelbench::material::{Card, HyperelasticLaw};
 use gelbench::mesh::Mesh;
 use gelbench::problem::{DeformedSheet, GroupState};
 use gelbench::results::{Grid, Sheet};
@@ -24,6 +25,16 @@ pub struct Material {
     pub thickness: f64,
     /// The time that the library took, in s.
     pub seconds: f64,
+}
+
+impl Material {
+    pub fn new(card: &Card, thickness: f64, took: Duration) -> Self {
+        Self {
+            law: Arc::clone(&card.law),
+            thickness,
+            seconds: took.as_secs_f64(),
+        }
+    }
 }
 
 /// The equilibria of one model, and the mesh that they live on.

@@ -63,12 +63,7 @@ pub fn solve_plate(
     };
     let (found, thickness, took) = run_beside(py, progress, work)?;
     let groups = ["left", "right"].map(str::to_owned).to_vec();
-    let law = Arc::clone(&material.card.law);
-    let material = Material {
-        law,
-        thickness,
-        seconds: took.as_secs_f64(),
-    };
+    let material = Material::new(&material.card, thickness, took);
     Solution::new(py, found, material, groups)
 }
 
@@ -231,12 +226,7 @@ pub fn solve_specimen(
         Ok((found, read.problem.thickness, start.elapsed(), groups))
     };
     let (found, thickness, took, groups) = run_beside(py, progress, work)?;
-    let law = Arc::clone(&material.card.law);
-    let material = Material {
-        law,
-        thickness,
-        seconds: took.as_secs_f64(),
-    };
+    let material = Material::new(&material.card, thickness, took);
     Solution::new(py, found, material, groups)
 }
 

@@ -2,7 +2,7 @@
 
 use super::identity;
 use super::terminal::{Outcome, print_report, warn};
-use crate::studies::markers::{MarkerStudy, SHOWN, worst_answer};
+use crate::studies::markers::{MarkerStudy, worst_answer};
 use crate::studies::name;
 use crate::studies::sections::read_text;
 
@@ -37,7 +37,5 @@ pub fn run(options: Options) -> Outcome {
     };
     let (estimates, results) = correct(&field, (told, &inputs), &folder)?;
     print_report(|| results.json())?;
-    let doubts = field.all_doubts(&estimates);
-    warn(&doubts[..doubts.len().min(SHOWN)]);
     Ok(exit_code(worst_answer(&estimates), results.passed()))
 }

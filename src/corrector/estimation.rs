@@ -41,6 +41,7 @@ mod judge;
 mod knowledge;
 mod linear_model;
 mod linearise;
+mod marker_rows;
 mod mesh_error;
 mod noise;
 mod observations;

@@ -267,6 +267,11 @@ impl Card {
             .iter()
             .find(|parameter| parameter.key == key)
             .map(|parameter| parameter.value)
+            .or_else(|| match key {
+                "poisson_ratio" => self.poisson_ratio,
+                "bulk_modulus" => self.volume.map(|volume| volume.bulk_modulus),
+                _ => None,
+            })
     }
 
     /// The published tension curve σ₀ + A e^{b ε} behind the card as nominal stress in MPa, with its

@@ -12,7 +12,7 @@ use crate::markers::Frame;
 use crate::output::{self, ResultFolder};
 use crate::results::{NamedGrid, Results};
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
-use crate::studies::markers::{ComparedFrames, MarkerStudy};
+use crate::studies::markers::{ComparedFrames, MarkerStudy, SHOWN};
 use crate::studies::pictures::Pictures;
 
 /// The exit code of an answer, and of whether all that is required is met.
@@ -55,15 +55,23 @@ pub fn correct(
     let warnings = output::write(&results, true, &mut results_folder)?;
     drop(progress);
     warn(&warnings);
-    let files = results_folder.finish()?;
+    finish(results_folder, &results)?;
+    let doubts = field.all_doubts(&estimates);
+    warn(&doubts[..doubts.len().min(SHOWN)]);
+    Ok((estimates, results))
+}
+
+/// Moves the files of results into their folder, and prints what was found.
+pub fn finish(folder: ResultFolder, results: &Results) -> Result<(), Error> {
+    let path = folder.path().to_owned();
+    let files = folder.finish()?;
     tell_files(&files);
     print(&format!(
         "{}{} files in {}\n",
         results.outcome.summary,
         files.len(),
-        folder.display()
-    ))?;
-    Ok((estimates, results))
+        path.display()
+    ))
 }
 
 /// The exit code where the data are not explained.

@@ -3,19 +3,19 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::frames::{Told, correct, exit_code};
+use super::frames::{Told, correct, exit_code, finish};
 use super::options::Options;
 use super::request::request;
 use crate::command::identity;
 use crate::command::interrupt;
-use crate::command::progress::{Progress, tell_files};
-use crate::command::terminal::{Outcome, print, print_report, warn};
+use crate::command::progress::Progress;
+use crate::command::terminal::{Outcome, print_report, warn};
 use crate::corrector::estimation::JointSettings;
 use crate::error::Error;
 use crate::material::Card;
 use crate::output::{self, ResultFolder};
 use crate::studies::markers::joint::{CorrectedSpecimen, JointStudy, NamedSpecimen, results};
-use crate::studies::markers::{Conditions, MarkerStudy, Request, SHOWN, worst_answer};
+use crate::studies::markers::{Conditions, MarkerStudy, Request, worst_answer};
 use crate::studies::name;
 
 /// Finds the parameters, corrects, prints, and writes.
@@ -57,19 +57,8 @@ pub fn run(options: Options) -> Outcome {
     let seconds = start.elapsed().as_secs_f64();
     let results = results(&study, &found, &corrected, seconds);
     warn(&output::write(&results, true, &mut results_folder)?);
-    let files = results_folder.finish()?;
-    tell_files(&files);
+    finish(results_folder, &results)?;
     print_report(|| results.json())?;
-    print(&format!(
-        "{}{} files in {}\n",
-        results.outcome.summary,
-        files.len(),
-        folder.display()
-    ))?;
-    for specimen in &corrected {
-        let doubts = specimen.study.all_doubts(&specimen.estimates);
-        warn(&doubts[..doubts.len().min(SHOWN)]);
-    }
     let all = corrected
         .into_iter()
         .flat_map(|specimen| specimen.estimates);

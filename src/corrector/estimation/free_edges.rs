@@ -3,6 +3,7 @@
 use super::equations::Equations;
 use super::field_estimate::EdgeForce;
 use super::knowledge::EdgeCondition;
+use super::regression::weighted_square;
 use super::search::{MOST_STEPS, NearestField};
 use super::task::{Edge, Task};
 use crate::error::Error;
@@ -87,18 +88,8 @@ impl NearestField<'_> {
     }
 
     /// Σ w ω r² with the trust ω of another search.
-    fn misfit(&self, other: &NearestField) -> f64 {
-        let residual = self.fit.residual.as_slice().chunks_exact(2);
-        let weights = self
-            .equations
-            .task
-            .observations
-            .weights
-            .iter()
-            .zip(&other.trade.trust);
-        residual
-            .zip(weights)
-            .map(|(r, (weight, trust))| weight * trust * (r[0] * r[0] + r[1] * r[1]))
-            .sum()
+    pub fn misfit(&self, other: &NearestField) -> f64 {
+        let weights = &self.observations().weights;
+        weighted_square(&self.fit.residual, weights, &other.trade.trust)
     }
 }

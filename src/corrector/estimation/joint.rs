@@ -34,7 +34,6 @@ mod frame;
 mod left_out;
 mod profile;
 mod reduced;
-mod spread;
 #[cfg(test)]
 mod tests;
 
@@ -62,8 +61,8 @@ pub fn estimate_jointly(
         .collect();
     let judged = judged?;
     let mut descent = Descent::new(judged.iter().collect(), law);
-    let course = descent.find(told)?;
-    outcome(&descent, course, settings, told)
+    let found = descent.find(told)?;
+    outcome(&descent, found, settings, told)
 }
 
 /// Whether a force was measured in any frame.
@@ -89,7 +88,7 @@ pub fn check_joint_frames(frames: &[JointFrame]) -> Result<(), Error> {
 /// All that follows where the search ends.
 fn outcome(
     descent: &Descent,
-    course: Course,
+    (course, scales): (Course, Vec<f64>),
     settings: &JointSettings,
     told: Told,
 ) -> Result<JointEstimate, Error> {
@@ -100,16 +99,15 @@ fn outcome(
         .map(|(frame, state)| frame.say(&descent.law, &course.values, state))
         .collect();
     let says = says?;
-    let scales = &descent.settled_scales(&course);
     let whole = course.information();
-    let directions = directions(&whole, scales);
+    let directions = directions(&whole, &scales);
     if course.ended.is_none() && !directions.iter().any(Direction::is_determined) {
         return Err(Error::input(
             "the data determine no parameter of the law",
             "measure a force with a deviation, say more of the edges, or take frames with larger strains",
         ));
     }
-    let inverse = direction::inverse(&directions, scales, VAGUE);
+    let inverse = direction::inverse(&directions, &scales, VAGUE);
     let common = frame::common_noise(&descent.frames, &says);
     let covariance = covariance(&says, &inverse, common);
     told("intervals");

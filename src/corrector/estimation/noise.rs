@@ -10,9 +10,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::field_estimate::MarkerEstimate;
 use super::judge::Judgement;
+use super::marker_rows::MarkerRows;
 use super::regression::Trade;
 use super::search::NearestField;
-use crate::statistics::{Sites, Whitening, robust_deviation};
+use crate::statistics::{Sites, robust_deviation};
 
 /// Noise farther from what was stated than this factor contradicts it, if it is by four standard errors too.
 const OFF: f64 = 1.25;
@@ -58,20 +59,12 @@ impl NearestField<'_> {
         let noise = judged.noise?;
         let observations = self.observations();
         let sites = Sites::new(observations.places.clone());
-        let whitening = Whitening::new(&sites, &noise.correlation);
-        let design = &self.linear.design;
-        let scale = |row: usize| {
-            let weight = observations.weights[row / 2] * self.trade.trust[row / 2];
-            (weight / self.trade.variance).sqrt()
+        let rows = MarkerRows {
+            design: &self.linear.design,
+            weights: &observations.weights,
+            trade: &self.trade,
         };
-        let root = design.column_iter().flat_map(|column| {
-            let scaled: Vec<f64> = (0..column.len())
-                .map(|row| scale(row) * column[row])
-                .collect();
-            whitening.apply_inverse_transposed(&scaled)
-        });
-        let root = DMatrix::from_iterator(design.nrows(), design.ncols(), root);
-        let middle = root.tr_mul(&root) * noise.variance + &self.fit.held;
+        let middle = rows.spread(&noise, &sites) + &self.fit.held;
         let independent = noise.correlation.independent(sites.places());
         self.fit.covariance = &self.fit.covariance * middle * &self.fit.covariance;
         Some((2.0 * independent - self.fit.effective).max(LEAST))

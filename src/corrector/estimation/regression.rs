@@ -174,11 +174,7 @@ impl Regression<'_> {
     pub fn equations(&self, trade: &Trade) -> NormalEquations {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
         let (matrix, target, _) = self.system(&self.normal(&trade.trust), &forms, trade);
-        let rows = self.residual.as_slice().chunks_exact(2);
-        let weights = self.weights.iter().zip(&trade.trust);
-        let data = rows
-            .zip(weights)
-            .map(|(r, (weight, trust))| weight * trust * (r[0] * r[0] + r[1] * r[1]));
+        let data = weighted_square(self.residual, self.weights, &trade.trust);
         let rough = self.priors.iter().zip(&trade.smoothing);
         let rough = rough.map(|(prior, smoothing)| {
             let square: f64 = prior.values.iter().map(|value| value * value).sum();
@@ -187,7 +183,7 @@ impl Regression<'_> {
         NormalEquations {
             matrix,
             target,
-            misfit: data.sum::<f64>() / trade.variance + rough.sum::<f64>(),
+            misfit: data / trade.variance + rough.sum::<f64>(),
             fact_misfit: self.facts.1.norm_squared(),
         }
     }
@@ -262,6 +258,14 @@ impl Regression<'_> {
             .map(|(r, weight)| (weight * (r[0] * r[0] + r[1] * r[1])).sqrt())
             .collect()
     }
+}
+
+/// Σ w ω r² of markers with two residuals each.
+pub fn weighted_square(residual: &DVector<f64>, weights: &[f64], trust: &[f64]) -> f64 {
+    let rows = residual.as_slice().chunks_exact(2);
+    rows.zip(weights.iter().zip(trust))
+        .map(|(r, (weight, trust))| weight * trust * (r[0] * r[0] + r[1] * r[1]))
+        .sum()
 }
 
 /// ‖ρ + Bδ‖² of a prior.

@@ -32,7 +32,7 @@ pub struct Descent<'a> {
     pub frames: Vec<&'a Judged<'a>>,
     pub law: RegressedLaw,
     /// What every parameter is measured by, where it is known which combinations are determined; else it follows the search.
-    pub scales: Option<Vec<f64>>,
+    scales: Option<Vec<f64>>,
 }
 
 /// Where the search is.
@@ -84,12 +84,12 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Finds the parameters: all that the data determine at all, then, where some combinations came out as vague, the others alone, those
+    /// Finds the parameters, and what each is measured by: all that the data determine at all, then, where some combinations came out as vague, the others alone, those
     /// staying at their first values.
     ///
     /// # Errors
     /// As [`Self::descend`].
-    pub fn find(&mut self, told: Told) -> Result<Course, Error> {
+    pub fn find(&mut self, told: Told) -> Result<(Course, Vec<f64>), Error> {
         self.scale()?;
         let start = self.law.start();
         let found = self.descend(Course::of_start(start.clone()), None, told);
@@ -100,7 +100,7 @@ impl<'a> Descent<'a> {
             Ok(found) => {
                 let all = directions(&found.information(), &scales);
                 if found.ended.is_some() || all.iter().all(Direction::is_determined) {
-                    return Ok(found);
+                    return Ok((found, scales));
                 }
                 found.states
             }
@@ -110,7 +110,7 @@ impl<'a> Descent<'a> {
             states,
             ..Course::of_start(start)
         };
-        self.descend(begin, None, told)
+        Ok((self.descend(begin, None, told)?, scales))
     }
 
     /// Takes the stiffness at which the search begins from the measured forces, where the law can be scaled.
@@ -256,12 +256,6 @@ impl<'a> Descent<'a> {
             WITHIN * scale.min(value - low).min(high - value)
         });
         most.collect()
-    }
-
-    /// What every parameter is measured by at the end of a course.
-    pub fn settled_scales(&self, course: &Course) -> Vec<f64> {
-        let settled = self.scales.clone();
-        settled.unwrap_or_else(|| self.scales_at(&course.values))
     }
 
     /// What every parameter is measured by: the larger of its value and its first value.

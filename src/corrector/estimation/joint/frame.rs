@@ -8,6 +8,7 @@ use super::super::equations::{Equations, Place};
 use super::super::free_edges;
 use super::super::knowledge::{Knowledge, MeasuredForce, Specimen};
 use super::super::linear_model::Model;
+use super::super::marker_rows::MarkerRows;
 use super::super::observations::Observations;
 use super::super::outline::{self, Segment};
 use super::super::regressed_law::RegressedLaw;
@@ -17,7 +18,6 @@ use super::super::search::{MOST_STEPS, NearestField, TRADING};
 use super::super::task::{Edge, Task};
 use super::found::{JointFrame, Step};
 use super::reduced::{Order, Ordered, Reduced};
-use super::spread::MarkerRows;
 use crate::error::{Diagnostic, Error};
 use crate::statistics::{CorrelatedNoise, Sites};
 
@@ -170,7 +170,7 @@ impl Judged<'_> {
     ) -> Result<State, Error> {
         self.with_field(law, values, from, |found| {
             let (place, trade) = (place(&found), found.trade.clone());
-            let (equations, _) = self.law_equations(found, law, values, &place, &trade)?;
+            let (equations, _) = self.law_equations(found, law, values)?;
             let reduced = Reduced::new(&equations, values.len())?;
             Ok(State {
                 information: reduced.information,
@@ -203,12 +203,12 @@ impl Judged<'_> {
                 });
             let rms: f64 = found.trade.variance;
             let markers_deviance = match observations.known_noise {
-                true => self.weighted_square(&found) * independent / (2.0 * markers),
+                true => found.misfit(&found) * independent / (2.0 * markers),
                 false => independent * rms.ln(),
             };
             let effective = found.fit.effective;
-            let (place, trade) = (place(&found), found.trade.clone());
-            let (equations, design) = self.law_equations(found, law, values, &place, &trade)?;
+            let trade = found.trade.clone();
+            let (equations, design) = self.law_equations(found, law, values)?;
             let reduced = Reduced::new(&equations, values.len())?;
             let forces = reduced.force_misfit;
             let rows = MarkerRows {
@@ -294,27 +294,22 @@ impl Judged<'_> {
         found: NearestField,
         law: &RegressedLaw,
         values: &[f64],
-        place: &Place,
-        trade: &Trade,
     ) -> Result<(Ordered, DMatrix<f64>), Error> {
         let knowledge = self.ground.knowledge(Some(law.beginning_at(values)), true);
-        let specimen = self.ground.specimen(law, values);
-        let first = found.equations.motion.parameters();
-        drop(found);
-        let task = Task {
-            specimen: &specimen,
-            observations: &self.observations,
-            knowledge: &knowledge,
-        };
-        let mut equations = Equations::new(&task, &self.edges)?;
-        let mut place = place.clone();
+        let mut place = place(&found);
+        let NearestField {
+            mut equations,
+            trade,
+            ..
+        } = found;
+        equations.task.knowledge = &knowledge;
+        let first = equations.motion.parameters();
         place
             .parameters
             .splice(first..first, values.iter().copied());
-        equations.balance(&mut place)?;
         let linear = equations.linearise(&place)?;
         let normal = equations.with_regression((&place, true), &linear, |regression| {
-            regression.equations(trade)
+            regression.equations(&trade)
         });
         let order = Order {
             first,
@@ -323,14 +318,6 @@ impl Judged<'_> {
         };
         let design = order.columns(&linear.design);
         Ok((order.of(normal), design))
-    }
-
-    fn weighted_square(&self, found: &NearestField) -> f64 {
-        let rows = found.fit.residual.as_slice().chunks_exact(2);
-        let weights = self.observations.weights.iter().zip(&found.trade.trust);
-        rows.zip(weights)
-            .map(|(r, (weight, trust))| weight * trust * (r[0] * r[0] + r[1] * r[1]))
-            .sum()
     }
 
     /// What is left of the markers that are trusted, by their numbers.

@@ -275,11 +275,7 @@ fn determined(estimate: &JointEstimate) -> [Block; 3] {
 
 /// The value of a parameter on the card.
 fn first_value(card: &Card, key: &str) -> String {
-    let stated = match key {
-        "poisson_ratio" => card.poisson_ratio,
-        "bulk_modulus" => card.volume.map(|volume| volume.bulk_modulus),
-        key => card.parameter(key),
-    };
+    let stated = card.parameter(key);
     stated.map_or(String::new(), |value| format!("{value:.6}"))
 }
 

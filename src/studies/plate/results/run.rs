@@ -28,12 +28,7 @@ pub fn progress_steps(study: &Study) -> usize {
 /// # Errors
 /// [`Error::Solve`] of the first model where no model has any solution.
 pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
-    let mut run = Run {
-        study,
-        progress,
-        times: Vec::new(),
-        ends: Vec::new(),
-    };
+    let mut run = Run::new(study, progress);
     let plate = &study.problem;
     let springs = MassSpring::new(plate, study.cells, study.lattice);
     let uncorrected = run.solve("mass-spring", &springs.model(plate), study.mass_spring);
@@ -90,12 +85,7 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
 
 /// One model of a study alone.
 pub fn one_model(study: &Study, kind: ModelKind, progress: Progress) -> OneModel {
-    let mut run = Run {
-        study,
-        progress,
-        times: Vec::new(),
-        ends: Vec::new(),
-    };
+    let mut run = Run::new(study, progress);
     let plate = &study.problem;
     if kind == ModelKind::FiniteElement {
         let [.., finest] = study.finite_elements();
@@ -149,7 +139,16 @@ struct Run<'a> {
     ends: Vec<Error>,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
+    fn new(study: &'a Study, progress: Progress<'a>) -> Self {
+        Self {
+            study,
+            progress,
+            times: Vec::new(),
+            ends: Vec::new(),
+        }
+    }
+
     /// Solves a model at the study's stretches, as far as there are solutions.
     fn solve(&mut self, name: &'static str, model: &Model, settings: NewtonSettings) -> Solution {
         let states = self.timed(name, |run| {

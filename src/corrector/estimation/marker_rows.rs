@@ -1,8 +1,8 @@
-//! How far the score of a frame scatters by the noise of its markers.
+//! The derivatives of the markers over their noise, and what the noise that was found makes of them.
 
 use nalgebra::DMatrix;
 
-use super::super::regression::Trade;
+use super::regression::Trade;
 use crate::statistics::{CorrelatedNoise, Sites, Whitening};
 
 /// The derivatives of the markers, two rows each, with their weights.
