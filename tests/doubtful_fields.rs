@@ -318,3 +318,46 @@ fn half_of_the_markers_lost_gives_no_interval_that_lies() {
         "{low} {high}"
     );
 }
+
+#[test]
+fn cells_become_smaller_until_their_own_error_is_a_small_part_of_the_intervals() {
+    let text = second_frame(|_| true);
+    let coarse = ["--cell-size", "25 mm", "--edge-gap", "0 mm"];
+    let share = |report: &Value| {
+        let frame = &report["steps"][0]["corrected"];
+        number(frame, &["mesh_error_dominates_area_percent"])
+    };
+    let (_, before) = corrected(&text, &coarse, NOT_EXPLAINED);
+    assert!(share(&before) > 20.0, "{}", share(&before));
+    let (_, after) = corrected(&text, &[&coarse[..], &["--refine"]].concat(), 0);
+    assert!(share(&after) <= 5.0, "{}", share(&after));
+    let [_, low, high] = right_force(&after);
+    assert!(low < FORCE && FORCE < high, "{low} … {high}");
+}
+
+#[test]
+fn cells_that_are_given_are_not_made_smaller() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("plate.csv"), second_frame(|_| true)).unwrap();
+    let usual = [
+        "correct",
+        "plate.csv",
+        "--material",
+        "pva-10",
+        "--thickness",
+        "2 mm",
+        "--refine",
+    ];
+    let said = |more: &[&str]| {
+        let done = gelbench(folder.path(), &[&usual[..], more].concat()).code(2);
+        words(&done.get_output().stderr)
+    };
+    let together = said(&["--together"]);
+    assert!(
+        together.contains("--refine") && together.contains("--together"),
+        "{together}"
+    );
+    let mesh = root().join("validation/measured/skin_forearm/skin_mesh.msh");
+    let given = said(&["--mesh", mesh.to_str().unwrap()]);
+    assert!(given.contains("leave out --refine"), "{given}");
+}

@@ -110,6 +110,7 @@ def correct(
     outline: PathLike | None = None,
     forces: PathLike | None = None,
     cell_size: Quantity | None = None,
+    refine: bool = False,
     cells: str = "triangle6",
     holes: bool = True,
     progress: Progress | None = None,
@@ -147,7 +148,7 @@ def correct(
         A file that says what is known instead of the arguments from `free` to `fit`.
     unit, array, grid, columns, ignore_columns, encoding, y_axis, places
         How files are read: the options of ``gelbench correct``.
-    mesh, mesh_unit, merge_nodes, allow, outline, cell_size, cells, holes
+    mesh, mesh_unit, merge_nodes, allow, outline, cell_size, refine, cells, holes
         The specimen's mesh or outline, and how it is meshed: likewise. `mesh_unit` is a length's unit.
     forces : path, optional
         A testing machine's table beside the frames; `conditions` names its columns.
@@ -205,6 +206,7 @@ def correct(
         "outline": _path(outline),
         "forces": _path(forces),
         "cell_size": None if cell_size is None else number(cell_size, "mm", "cell_size"),
+        "refine": refine,
         "cells": cells,
         "holes": holes,
         "allow_large": allow_large,

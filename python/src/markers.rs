@@ -40,6 +40,7 @@ pub struct Options {
     outline: Option<PathBuf>,
     forces: Option<PathBuf>,
     cell_size: Option<f64>,
+    refine: bool,
     cells: String,
     holes: bool,
     allow_large: bool,
@@ -159,7 +160,10 @@ pub fn correct(
             files: files.clone(),
         };
         let start = Instant::now();
-        let study = MarkerStudy::prepare_with(card, request)?;
+        let study = match options.refine {
+            true => MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what))?,
+            false => MarkerStudy::prepare_with(card, request)?,
+        };
         let mut compared = ComparedFrames::default();
         for frame in &study.series.frames {
             watch.tell(&format!("frame {}", frame.number));

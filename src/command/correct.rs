@@ -1,7 +1,11 @@
 //! `gelbench correct`: a measured displacement field made to satisfy the physics.
 
+use std::path::Path;
+
 use super::identity;
+use super::progress::Progress;
 use super::terminal::{Outcome, print_report, warn};
+use crate::material::Card;
 use crate::studies::markers::{MarkerStudy, worst_answer};
 use crate::studies::name;
 use crate::studies::sections::read_text;
@@ -27,7 +31,16 @@ pub fn run(options: Options) -> Outcome {
     let name = name(study.unwrap_or(&options.fields[0]));
     let said = format!("{options:?}");
     let pictures = options.pictures.chosen();
-    let field = MarkerStudy::prepare(request(options)?)?;
+    let refine = options.refine;
+    let request = request(options)?;
+    let field = match refine {
+        true => {
+            let progress = Progress::of(0);
+            let card = Card::load(&request.material, Path::new("."))?;
+            MarkerStudy::prepare_refined(card, request, &|what| progress.tell(what))?
+        }
+        false => MarkerStudy::prepare(request)?,
+    };
     warn(&field.warnings);
     let told = Told {
         name,

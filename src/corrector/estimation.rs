@@ -67,6 +67,7 @@ pub use joint::{
     VAGUE, check_joint_frames, estimate_jointly,
 };
 pub use knowledge::{EdgeCondition, Knowledge, MeasuredForce, Physics, Specimen, Unnamed};
+pub use mesh_error::MOST_REFINED_CELLS;
 pub use regressed_law::RegressedLaw;
 pub use robust::Robust;
 pub use transfer::transfer;

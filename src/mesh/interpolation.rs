@@ -7,14 +7,16 @@ use super::geometry::determinant;
 impl Mesh {
     /// The area of all cells in mm².
     pub fn area(&self) -> f64 {
-        let of_cell = |cell: usize| {
-            let points = self.shape(cell).product_quadrature(&GAUSS_3);
-            let parts = points
-                .into_iter()
-                .map(|(point, weight)| weight * self.gradients(cell, point).1);
-            parts.sum::<f64>()
-        };
-        (0..self.cell_count()).map(of_cell).sum()
+        (0..self.cell_count())
+            .map(|cell| self.cell_area(cell))
+            .sum()
+    }
+
+    /// The area of a cell in mm².
+    pub fn cell_area(&self, cell: usize) -> f64 {
+        let points = self.shape(cell).product_quadrature(&GAUSS_3).into_iter();
+        let parts = points.map(|(point, weight)| weight * self.gradients(cell, point).1);
+        parts.sum()
     }
 
     /// The area in mm² that belongs to each node: that of a cell to its corners in equal parts.

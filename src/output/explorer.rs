@@ -161,7 +161,11 @@ fn label(name: &str) -> String {
         .iter()
         .find_map(|(end, unit)| Some((name.strip_suffix(end)?, format!(" [{unit}]"))));
     let (words, unit) = found.unwrap_or((&name, String::new()));
-    format!("{}{unit}", words.replace('_', " "))
+    let words = words
+        .replace('_', " ")
+        .replace("mises", "Mises")
+        .replace("cauchy", "Cauchy");
+    format!("{words}{unit}")
 }
 
 fn model(series: &GridSeries, shown: &[f64]) -> Value {
@@ -315,7 +319,7 @@ mod tests {
     fn names_of_arrays_are_words_with_units() {
         assert_eq!(
             label("von_mises_stress_at_nodes_MPa"),
-            "von mises stress [MPa]"
+            "von Mises stress [MPa]"
         );
         assert_eq!(label("grip_force_N"), "grip force [N]");
         assert_eq!(label("wrinkling"), "wrinkling");

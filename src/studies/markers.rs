@@ -28,6 +28,7 @@ mod json;
 mod machine;
 mod quantities;
 mod reading;
+mod refined;
 mod report;
 mod request;
 mod specimen_file;
@@ -40,6 +41,7 @@ pub use alike::ComparedFrames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use machine::{ForceColumn, FrameForces};
+pub use refined::COARSE;
 pub use report::SHOWN;
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;
@@ -55,6 +57,8 @@ pub struct MarkerStudy {
     pub thickness: f64,
     /// The specimen's mesh.
     pub mesh: Mesh,
+    /// Size of its cells in mm, where they were made.
+    pub cell_size: Option<f64>,
     /// Where the mesh comes from, in words.
     pub mesh_origin: String,
     /// The mesh that the field came on, where it is brought onto another one: then it is a computed field without
@@ -99,6 +103,7 @@ impl MarkerStudy {
         field.warnings.extend(told);
         let SpecimenMesh {
             mut mesh,
+            cell_size,
             origin,
             mut warnings,
             mut doubts,
@@ -135,6 +140,7 @@ impl MarkerStudy {
             card,
             thickness: request.thickness,
             mesh,
+            cell_size,
             mesh_origin: origin,
             coarse,
             series: placed.series,

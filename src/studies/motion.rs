@@ -11,6 +11,7 @@ use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::results::Outcome;
 use crate::studies::{Computation, Kind, Progress};
 
+mod between;
 mod corrected;
 mod files;
 mod functions;

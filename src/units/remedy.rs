@@ -112,6 +112,17 @@ fn meant(unit: &str, dimension: Dimension) -> Option<&'static str> {
         .map(|(symbol, _)| *symbol)
         .or_else(in_other_case)
         .or_else(|| nearest(unit, dimension.units().filter(|known| known.len() > 2)))
+        .or_else(|| {
+            let words = SPELLINGS.iter().filter(|(symbol, _)| of_dimension(symbol));
+            let words =
+                words.flat_map(|(symbol, own)| own.iter().map(move |word| (*word, *symbol)));
+            let words: Vec<_> = words.filter(|(word, _)| word.len() > 3).collect();
+            let near = nearest(&lower, words.iter().map(|(word, _)| *word))?;
+            words
+                .iter()
+                .find(|(word, _)| *word == near)
+                .map(|(_, symbol)| *symbol)
+        })
 }
 
 /// The readings of a text whose number has a comma: a decimal point, and thousands where three digits follow.
@@ -174,6 +185,7 @@ mod tests {
                 "did you mean `in`? Write \"3 in\"",
             ),
             ("3 Inches", Dimension::Length, "did you mean `in`?"),
+            ("3 milimeter", Dimension::Length, "did you mean `mm`?"),
             ("3 CM", Dimension::Length, "did you mean `cm`?"),
             ("3 kpa", Dimension::Stress, "did you mean `kPa`?"),
             ("3 newton", Dimension::Force, "did you mean `N`?"),

@@ -112,6 +112,9 @@ pub struct Options {
     /// about 20,000]
     #[arg(long, value_name = "LENGTH", value_parser = size)]
     pub cell_size: Option<f64>,
+    /// Halve the cells of a mesh that is made until its own error is a small part of the intervals of stress
+    #[arg(long, conflicts_with_all = ["together", "specimen", "laws"])]
+    pub refine: bool,
     /// Kind of the cells of a mesh that is made
     #[arg(long, value_enum, default_value = "triangle6")]
     pub cells: Cells,

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::knowledge::{EdgeCondition, MeasuredForce};
 use super::robust::Robust;
 use super::verdict::{Answer, Verdict};
+use crate::mesh::Mesh;
 use crate::statistics::Estimate;
 
 /// The field nearest to the markers.
@@ -103,6 +104,27 @@ impl FieldEstimate {
     pub fn is_explained(&self) -> bool {
         self.verdict.answer != Answer::NotExplained
     }
+
+    /// The share of the area on which the mesh's own error is the larger part of the error of stress, and more than a hundredth
+    /// of the root mean square of the stress.
+    pub fn coarse_share(&self, mesh: &Mesh) -> f64 {
+        const MATTERS: f64 = 0.01;
+        let square = |stress: &[f64; 4]| stress.iter().map(|value| value * value).sum::<f64>();
+        let areas: Vec<f64> = (0..self.cells.len())
+            .map(|cell| mesh.cell_area(cell))
+            .collect();
+        let whole: f64 = areas.iter().sum();
+        let parts = self.cells.iter().zip(&areas);
+        let mean = parts
+            .clone()
+            .map(|(cell, area)| square(&cell.first_piola_kirchhoff_stress) * area / whole)
+            .sum::<f64>();
+        let coarse = parts.filter(|(cell, _)| {
+            let own = cell.mesh_error.powi(2);
+            own > 0.5 * square(&cell.stress_error) && own > MATTERS.powi(2) * mean
+        });
+        coarse.map(|(_, area)| area / whole).sum()
+    }
 }
 
 /// The rule by which data and smoothness are traded.
@@ -120,6 +142,8 @@ pub struct StressEstimate {
     /// gradient of the field on cells half as large, or the recovered gradient of the mesh's field u where the mesh is too large for
     /// that.
     pub stress_error: [f64; 4],
+    /// √(e : e), the mesh's own part of them in MPa.
+    pub mesh_error: f64,
     /// Thickness of the deformed sheet in mm.
     pub thickness: f64,
     /// Its standard error in mm.

@@ -13,11 +13,15 @@
 //! determined, and stay as the card has them, but for a common factor of all stresses. Jₖ = Sₖ where the noise of the markers is white; else that of the noise found; Jₖ' is the markers' part of it. ρ is the
 //! correlation of what is left of a marker in one frame and the next: noise of the picture at rest is common to all frames.
 //!
+//! The error of the meshes themselves is what the equilibria on cells half as large, at the same motions of the edges, make of the
+//! right-hand sides: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::mesh_error) has d, G and d_F of one frame).
+//! ± 1.96 e is added to the intervals as if it were noise; it is alike in all frames, so that more of them do not make it less.
+//!
 //! # References
 //! L. Kish, Survey Sampling, Wiley 1965 (the factor 1 + ρ (K − 1)); D. J. Venzon, S. H. Moolgavkar, Appl. Stat. 37, 87 (1988),
 //! doi:10.2307/2347496 (profile likelihood).
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::regressed_law::RegressedLaw;
@@ -25,6 +29,7 @@ use crate::error::{Diagnostic, Error};
 use crate::statistics::{normal_reach, student_reach};
 use descent::{Course, Descent};
 use direction::directions;
+use found::Step;
 use frame::{Ground, Judged, Say};
 
 mod descent;
@@ -111,6 +116,8 @@ fn outcome(
     let common = frame::common_noise(&descent.frames, &says);
     let covariance = covariance(&says, &inverse, common);
     told("intervals");
+    let mesh = mesh_error(&says, &inverse);
+    let holds_mesh_error = mesh.is_some();
     let sum = |value: fn(&Say) -> f64| says.iter().map(value).sum::<f64>();
     let determined = directions.iter().filter(|one| one.is_determined()).count() as f64;
     let effective = sum(|say| say.effective) + determined;
@@ -119,6 +126,7 @@ fn outcome(
         course: &course,
         inverse: &inverse,
         covariance: &covariance,
+        mesh: &mesh.unwrap_or(DVector::zeros(scales.len())),
         reach: reach(descent, sum(|say| say.independent) - effective),
         directions: &directions,
     };
@@ -129,6 +137,7 @@ fn outcome(
         law: descent.law.beginning_at(&course.values),
         parameters,
         directions,
+        holds_mesh_error,
         frames,
         common,
         misfit: course.misfit(),
@@ -147,6 +156,13 @@ fn covariance(says: &[Say], inverse: &DMatrix<f64>, common: f64) -> DMatrix<f64>
         sum + &say.spread + &say.spread_of_markers * alike
     });
     inverse * sum * inverse
+}
+
+/// S⁻¹ Σ tₖ of the right-hand sides that the meshes' own errors make, as alike in all frames as their meshes are.
+fn mesh_error(says: &[Say], inverse: &DMatrix<f64>) -> Option<Step> {
+    let targets = says.iter().map(|say| say.mesh.as_ref());
+    let sum = targets.sum::<Option<Step>>()?;
+    Some(inverse * sum)
 }
 
 /// Half the width of a 95 % interval in standard errors, with so many degrees of freedom of the noise.

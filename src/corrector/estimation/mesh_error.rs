@@ -16,8 +16,10 @@ use std::collections::BTreeSet;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
+use super::equations::Equations;
 use super::knowledge::EdgeCondition;
-use super::linearise::dot;
+use super::linearise::{Linear, dot};
+use super::regression::Trade;
 use super::search::NearestField;
 use super::task::Edge;
 use crate::mesh::Mesh;
@@ -25,7 +27,7 @@ use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{Newton, NewtonSettings, Sum};
 
 /// Meshes with more cells are not refined.
-pub const MOST_CELLS: usize = 25_000;
+pub const MOST_REFINED_CELLS: usize = 25_000;
 
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-8,
@@ -45,6 +47,15 @@ pub struct MeshError {
     pub gradients: Vec<[f64; 4]>,
     /// Of the force of each body in N, in the order of the bodies.
     pub forces: Vec<[f64; 2]>,
+}
+
+/// What the refined mesh says otherwise at the same motion of the edges.
+pub struct MeshDifference {
+    fine: Fine,
+    /// H d, two numbers a marker.
+    markers: Vec<f64>,
+    /// Of each body.
+    forces: Vec<[f64; 2]>,
 }
 
 /// The equilibrium on the refined mesh.
@@ -72,23 +83,41 @@ impl Fine {
 }
 
 impl NearestField<'_> {
-    /// The mesh's own error; `None` where the mesh is too large to be refined, or the refined one has no equilibrium.
-    pub fn mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
+    /// What a mesh of cells half as large says otherwise; `None` where the mesh is too large to be refined, or the refined one has
+    /// no equilibrium.
+    pub fn mesh_difference(&self, edges: &[Edge]) -> Option<MeshDifference> {
         let mesh = self.equations.task.specimen.mesh;
-        if mesh.cell_count() > MOST_CELLS {
+        if mesh.cell_count() > MOST_REFINED_CELLS {
             return None;
         }
         let fine = self.refined(mesh, edges)?;
-        let there = fine.mesh.displacement_on(&fine.displacement, mesh);
-        let difference: Vec<f64> = there.iter().zip(&self.field).map(|(a, b)| a - b).collect();
         let observations = self.equations.task.observations;
         let nearby = observations.interpolation.multiply(&self.field);
         let places = observations.places.iter();
         let markers =
             places.flat_map(|place| fine.mesh.displacement_at(&fine.displacement, *place));
-        let at_markers: Vec<f64> = markers.zip(nearby).map(|(a, b)| a - b).collect();
-        let forces = self.force_differences(&fine);
-        let change = self.regressed(&at_markers, &forces);
+        Some(MeshDifference {
+            markers: markers.zip(nearby).map(|(a, b)| a - b).collect(),
+            forces: self.force_differences(&fine),
+            fine,
+        })
+    }
+
+    /// The mesh's own error, where the difference is known.
+    pub fn mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
+        let mesh = self.equations.task.specimen.mesh;
+        let found = self.mesh_difference(edges)?;
+        let target = self
+            .equations
+            .mesh_target(&found, (&self.linear, &self.trade));
+        let change = &self.fit.covariance * target;
+        let MeshDifference {
+            fine,
+            markers: at_markers,
+            forces,
+        } = found;
+        let there = fine.mesh.displacement_on(&fine.displacement, mesh);
+        let difference: Vec<f64> = there.iter().zip(&self.field).map(|(a, b)| a - b).collect();
         let along = |values: &[f64], slopes: &dyn Fn(usize) -> f64| -> Vec<f64> {
             let whole = values.iter().enumerate();
             whole.map(|(row, value)| value + slopes(row)).collect()
@@ -187,24 +216,30 @@ impl NearestField<'_> {
         }
         all
     }
+}
 
-    /// δp.
-    fn regressed(&self, at_markers: &[f64], forces: &[[f64; 2]]) -> DVector<f64> {
-        let weights = &self.equations.task.observations.weights;
-        let weight = |row: usize| weights[row / 2] * self.trade.trust[row / 2];
-        let weighted = at_markers.iter().enumerate();
-        let weighted = weighted.map(|(row, d)| -weight(row) * d / self.trade.variance);
-        let weighted = DVector::from_iterator(at_markers.len(), weighted);
-        let mut target = self.linear.design.tr_mul(&weighted);
-        let measured = self.equations.task.knowledge.facts().iter().enumerate();
+impl Equations<'_> {
+    /// −AᵀWHd/v − Gᵀd_F/σ.
+    pub fn mesh_target(
+        &self,
+        difference: &MeshDifference,
+        (linear, trade): (&Linear, &Trade),
+    ) -> DVector<f64> {
+        let weights = &self.task.observations.weights;
+        let weight = |row: usize| weights[row / 2] * trade.trust[row / 2];
+        let weighted = difference.markers.iter().enumerate();
+        let weighted = weighted.map(|(row, d)| -weight(row) * d / trade.variance);
+        let weighted = DVector::from_iterator(difference.markers.len(), weighted);
+        let mut target = linear.design.tr_mul(&weighted);
+        let measured = self.task.knowledge.facts().iter().enumerate();
         for (row, measured) in measured {
-            let own = self.equations.bodies.iter().zip(forces);
+            let own = self.bodies.iter().zip(&difference.forces);
             let own = own.filter(|(body, _)| body.name == measured.edge);
             let off: f64 = own.map(|(_, force)| force[measured.axis]).sum();
-            let slopes = self.linear.facts.0.row(row).transpose();
+            let slopes = linear.facts.0.row(row).transpose();
             target -= slopes * (off / measured.standard_deviation);
         }
-        &self.fit.covariance * target
+        target
     }
 }
 

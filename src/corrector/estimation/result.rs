@@ -181,6 +181,7 @@ impl NearestField<'_> {
         Ok(StressEstimate {
             first_piola_kirchhoff_stress: stress.into(),
             stress_error: std::array::from_fn(stress_error),
+            mesh_error: stress_off.norm(),
             thickness,
             thickness_error: self.error(&rows[4]).hypot(thickness_off),
         })

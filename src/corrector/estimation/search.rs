@@ -70,13 +70,15 @@ impl<'a> Equations<'a> {
         trading: usize,
         most: usize,
     ) -> Result<NearestField<'a>, Error> {
-        let (mut moved, mut last, mut share) = (f64::NAN, f64::INFINITY, 1.0);
+        let (mut last, mut share) = (f64::INFINITY, 1.0);
+        let (mut moved, mut wanted) = (f64::NAN, f64::NAN);
         for steps in 1..=most {
             let linear = self.linearise(&place)?;
             let fit = self.regress((&place, steps > trading), &linear, &mut trade)?;
             let change = combined(&linear.still, &linear.sensitivities, fit.step.as_slice());
             let close = self.close(&trade, &place.field);
-            moved = largest(&change) / largest(&place.field);
+            let scale = largest(&place.field);
+            (moved, wanted) = (largest(&change) / scale, close / scale);
             // Steps that do not become shorter swing about the nearest field.
             if steps > trading && fit.length > 0.5 * last && share > SHORTEST {
                 share *= 0.5;
@@ -104,7 +106,7 @@ impl<'a> Equations<'a> {
         Err(solve(SolveFault::Stalled {
             iterations: most,
             residual: moved,
-            tolerance: MOVEMENT,
+            tolerance: wanted,
         }))
     }
 

@@ -226,6 +226,7 @@ fn state(specimen: &Specimen, field: &[f64], cell: usize) -> Result<StressEstima
     Ok(StressEstimate {
         first_piola_kirchhoff_stress: stress.into(),
         stress_error: [0.0; 4],
+        mesh_error: 0.0,
         thickness: specimen.thickness * specimen.law.thickness_stretch(&kinematics),
         thickness_error: 0.0,
     })

@@ -46,15 +46,15 @@ fn reading(understood: &Understood) -> Value {
 }
 
 /// The figures of one frame.
-pub fn step(frame: &Frame, estimate: &FieldEstimate) -> Step {
-    let models = [("corrected".to_owned(), of_frame(frame, estimate))];
+pub fn step(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Step {
+    let models = [("corrected".to_owned(), of_frame(field, frame, estimate))];
     Step {
         at: frame.number as f64,
         models: models.into_iter().collect(),
     }
 }
 
-fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
+fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Value {
     let of = |found: &Estimate| of_estimate(found, estimate.is_explained());
     let forces = estimate.forces.iter().map(|force| {
         json!({
@@ -93,6 +93,7 @@ fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Value {
         "verdict": verdict::json(estimate),
         "steps": estimate.steps,
         "errors_hold_the_mesh": estimate.holds_mesh_error,
+        "mesh_error_dominates_area_percent": 100.0 * estimate.coarse_share(&field.mesh),
         "residual_correlation": estimate.whiteness.as_ref().map(|found| json!({
             "of_neighbours": found.correlation,
             "of_components": found.of_components,

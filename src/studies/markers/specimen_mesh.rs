@@ -23,6 +23,8 @@ const LEAST_ACROSS: f64 = 12.0;
 /// A mesh and what it was made from.
 pub(super) struct SpecimenMesh {
     pub mesh: Mesh,
+    /// Size of the cells in mm, where they were made.
+    pub cell_size: Option<f64>,
     pub origin: String,
     pub warnings: Vec<Diagnostic>,
     pub doubts: Vec<Diagnostic>,
@@ -34,6 +36,7 @@ impl SpecimenMesh {
     fn known(mesh: Mesh, origin: String) -> Self {
         Self {
             mesh,
+            cell_size: None,
             origin,
             warnings: Vec::new(),
             doubts: Vec::new(),
@@ -97,9 +100,12 @@ fn in_outline(request: &Request, path: &Path, field: &MarkerFiles) -> Result<Spe
     })?;
     let markers = field.series.places().len() as f64;
     let spacing = (outline.area() / markers).sqrt();
-    let mesh = made(request, &outline, spacing, field.series.frames.len())?;
+    let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!("made inside the outline of {}", path.display());
-    Ok(SpecimenMesh::known(mesh, origin))
+    Ok(SpecimenMesh {
+        cell_size: Some(size),
+        ..SpecimenMesh::known(mesh, origin)
+    })
 }
 
 /// The mesh that the field came on.
@@ -139,7 +145,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     let spacing = found.spacing;
     let edge = EdgePlace::of(request, &field.understood, spacing);
     let (outline, edge) = edge.outline(outline, spacing).map_err(refuse)?;
-    let mesh = made(request, &outline, spacing, field.series.frames.len())?;
+    let (mesh, size) = made(request, &outline, spacing, field.series.frames.len())?;
     let origin = format!(
         "made inside the outline of the markers, which are about {spacing:.4} mm apart{}",
         edge.origin()
@@ -151,6 +157,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     };
     Ok(SpecimenMesh {
         mesh,
+        cell_size: Some(size),
         origin,
         warnings,
         doubts: found.doubts.into_iter().map(doubt).collect(),
@@ -158,9 +165,14 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     })
 }
 
-/// A mesh inside an outline. Without a wish its cells are as long as the markers' spacing, but at least 12 go across
+/// A mesh inside an outline, and the size of its cells in mm. Without a wish its cells are as long as the markers' spacing, but at least 12 go across
 /// the specimen and at most about 20,000 are made.
-fn made(request: &Request, outline: &Outline, spacing: f64, frames: usize) -> Result<Mesh, Error> {
+fn made(
+    request: &Request,
+    outline: &Outline,
+    spacing: f64,
+    frames: usize,
+) -> Result<(Mesh, f64), Error> {
     // Of a triangle with edges of length 1.
     let cell_area = 3f64.sqrt() / 4.0;
     let smallest = |cells: f64| (outline.area() / (cells * cell_area)).sqrt();
@@ -191,7 +203,7 @@ fn made(request: &Request, outline: &Outline, spacing: f64, frames: usize) -> Re
         &format!("a mesh of cells of {size} mm"),
         remedy,
     )?;
-    Ok(outline.mesh(size, request.shape))
+    Ok((outline.mesh(size, request.shape), size))
 }
 
 /// What so many frames on a mesh will use.

@@ -54,7 +54,7 @@ pub fn results_with(
         material: Some(Material::from(&field.card)),
         along: "frame",
         steps: frames()
-            .map(|(frame, own)| json::step(frame, own))
+            .map(|(frame, own)| json::step(field, frame, own))
             .collect(),
         blocks: report::blocks(field, estimates),
         figures: figures.unwrap_or_default(),

@@ -1,5 +1,6 @@
 //! Pictures, grids and tables of a motion.
 
+use super::between::with_cubics;
 use super::corrected::CorrectedMotion;
 use super::problem::{MovingPlate, Probe};
 use super::solution::ModelMotion;
@@ -40,6 +41,16 @@ impl ModelMotion {
     /// Pairs of figures of all instants.
     fn points(&self, pair: impl Fn(&Instant) -> [f64; 2]) -> Vec<[f64; 2]> {
         self.history.instants.iter().map(pair).collect()
+    }
+
+    /// Time, displacement along the plate and velocity of a probe, at the instants and between them.
+    fn course(&self, probe: &Probe) -> Vec<[f64; 3]> {
+        let instants = self.history.instants.iter().map(|now| {
+            let [displacement, velocity] =
+                [&now.displacement, &now.velocity].map(|field| self.at(field, probe)[0]);
+            [now.time, displacement, velocity]
+        });
+        with_cubics(&instants.collect::<Vec<_>>())
     }
 
     fn at(&self, values: &[f64], probe: &Probe) -> [f64; 2] {
@@ -128,19 +139,17 @@ fn brief(time: f64) -> String {
 /// Velocity over displacement of a probe, part of the motion after part.
 fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     const SHADES: [[u8; 3]; 4] = [[253, 174, 107], [230, 109, 59], [166, 54, 3], [60, 20, 0]];
-    let points = model
-        .points(|now| [&now.displacement, &now.velocity].map(|field| model.at(field, probe)[0]));
-    let times = model.history.times();
+    let points = model.course(probe);
     let length = points.len().div_ceil(SHADES.len()).max(2);
     let starts = (0..points.len().saturating_sub(1)).step_by(length);
     let lines = starts.zip(SHADES).map(|(start, colour)| {
         // Each part begins where the one before ends.
         let end = (start + length).min(points.len() - 1);
-        let [from, to] = [start, end].map(|instant| brief(times[instant]));
+        let [from, to] = [start, end].map(|point| brief(points[point][0]));
         let label = format!("{from} – {to} s");
         Line::new(
             label,
-            points[start..=end].iter().copied(),
+            points[start..=end].iter().map(|[_, x, v]| [*x, *v]),
             colour,
             Stroke::Thin,
         )
@@ -169,7 +178,10 @@ fn probes(
         let between = Line::new(label, points, colour, Stroke::Marked);
         lines.extend((!between.points.is_empty()).then_some(between));
         lines.extend(models.iter().zip(STROKES).map(|(model, stroke)| {
-            let points = model.points(|now| [now.time, model.at(&now.displacement, probe)[0]]);
+            let points = model
+                .course(probe)
+                .into_iter()
+                .map(|[time, x, _]| [time, x]);
             let label = format!("{}, {}", probe.name, model.name);
             Line::new(label, points, colour, stroke)
         }));

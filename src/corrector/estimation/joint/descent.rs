@@ -68,6 +68,11 @@ impl Course {
         own.fold(DVector::zeros(self.values.len()), |sum, own| sum + own)
     }
 
+    /// The length √(δᵀ Σ Sₖ δ) of a step in standard errors.
+    fn standard_errors(&self, step: &Step) -> f64 {
+        step.dot(&(self.information() * step)).max(0.0).sqrt()
+    }
+
     /// Σ Qₖ.
     pub fn misfit(&self) -> f64 {
         self.states.iter().map(|state| state.misfit).sum()
@@ -154,16 +159,13 @@ impl<'a> Descent<'a> {
         for step in 1..=MOST_STEPS {
             let settled = warm || step > TRADING;
             let change = self.step(&course, held);
-            length = change
-                .dot(&(course.information() * &change))
-                .max(0.0)
-                .sqrt();
+            length = course.standard_errors(&change);
             told(&format!("step {step}, {length:.1e} standard errors"));
             if length <= CLOSE && settled {
                 course.steps = step;
                 return Ok(course);
             }
-            match self.advance(&course, &change, settled) {
+            match self.advance(&course, &change, (settled, held)) {
                 Ok(next) => course = next,
                 Err(fault) => {
                     course.steps = step;
@@ -267,10 +269,18 @@ impl<'a> Descent<'a> {
             .collect()
     }
 
-    /// Takes the step, or as much of it as all frames can follow and, once smoothness and noise stay, makes the misfit less.
-    fn advance(&self, course: &Course, change: &Step, settled: bool) -> Result<Course, Error> {
+    /// Takes the step, or as much of it as all frames can follow and, once smoothness and noise stay, makes the misfit or the next
+    /// step less. Where much is left that the model does not explain, steps of the linearised frames end where the score vanishes,
+    /// which is close to the least misfit but not there: near it the misfit rises with steps that become shorter.
+    fn advance(
+        &self,
+        course: &Course,
+        change: &Step,
+        (settled, held): (bool, Option<usize>),
+    ) -> Result<Course, Error> {
         // What rounding and the searches of the frames leave of the misfit.
         const ROUGH: f64 = 1e-3;
+        let length = course.standard_errors(change);
         let mut share = 1.0;
         loop {
             let values = course.values.iter().zip(change.iter());
@@ -278,7 +288,11 @@ impl<'a> Descent<'a> {
                 .map(|(value, change)| value + share * change)
                 .collect();
             let next = self.moved(course, values, settled);
-            let worse = |next: &Course| settled && next.misfit() > course.misfit() + ROUGH;
+            let worse = |next: &Course| {
+                settled
+                    && next.misfit() > course.misfit() + ROUGH
+                    && next.standard_errors(&self.step(next, held)) >= length
+            };
             match next {
                 Ok(next) if !worse(&next) || share <= SHORTEST => return Ok(next),
                 Err(fault) if share <= SHORTEST => return Err(fault),

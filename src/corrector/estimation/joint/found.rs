@@ -52,6 +52,8 @@ pub struct JointEstimate {
     pub parameters: Vec<Estimate>,
     /// Combinations of parameters, the best determined first.
     pub directions: Vec<Direction>,
+    /// Whether the parameters' errors hold those of the meshes: not where a mesh is too large to be refined.
+    pub holds_mesh_error: bool,
     /// What was found of each frame.
     pub frames: Vec<FrameOutcome>,
     /// The correlation ρ of what is left in one frame and the next of its specimen.

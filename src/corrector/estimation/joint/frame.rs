@@ -2,13 +2,14 @@
 
 use std::collections::HashMap;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::super::equations::{Equations, Place};
 use super::super::free_edges;
 use super::super::knowledge::{Knowledge, MeasuredForce, Specimen};
 use super::super::linear_model::Model;
 use super::super::marker_rows::MarkerRows;
+use super::super::mesh_error::MeshDifference;
 use super::super::observations::Observations;
 use super::super::outline::{self, Segment};
 use super::super::regressed_law::RegressedLaw;
@@ -58,6 +59,8 @@ pub struct Say {
     pub spread_of_markers: DMatrix<f64>,
     /// −2 ln L of its independent values.
     pub deviance: f64,
+    /// What its mesh's own error adds to the score; `None` where that is not known.
+    pub mesh: Option<Step>,
     /// Parameters of its edges that the data determine.
     pub effective: f64,
     /// Independent values of its markers.
@@ -72,6 +75,15 @@ pub struct Foreign {
     pub forces: Vec<f64>,
     /// Root mean square of what is left of the components of trusted markers in mm.
     pub left: f64,
+}
+
+/// What follows from the equations linearised about a field, the law's parameters behind all others.
+struct AboutField {
+    normal: Ordered,
+    /// The derivatives of the markers.
+    design: DMatrix<f64>,
+    /// What the mesh's own error makes of the right-hand side.
+    mesh: Option<DVector<f64>>,
 }
 
 impl<'a> Ground<'a> {
@@ -170,7 +182,7 @@ impl Judged<'_> {
     ) -> Result<State, Error> {
         self.with_field(law, values, from, |found| {
             let (place, trade) = (place(&found), found.trade.clone());
-            let (equations, _) = self.law_equations(found, law, values)?;
+            let equations = self.law_equations(found, (law, values), None)?.normal;
             let reduced = Reduced::new(&equations, values.len())?;
             Ok(State {
                 information: reduced.information,
@@ -208,11 +220,13 @@ impl Judged<'_> {
             };
             let effective = found.fit.effective;
             let trade = found.trade.clone();
-            let (equations, design) = self.law_equations(found, law, values)?;
+            let difference = found.mesh_difference(&self.edges);
+            let about = self.law_equations(found, (law, values), difference.as_ref())?;
+            let equations = about.normal;
             let reduced = Reduced::new(&equations, values.len())?;
             let forces = reduced.force_misfit;
             let rows = MarkerRows {
-                design: &design,
+                design: &about.design,
                 weights: &self.observations.weights,
                 trade: &trade,
             };
@@ -222,6 +236,7 @@ impl Judged<'_> {
             Ok(Say {
                 spread: reduced.project(&spread),
                 spread_of_markers: reduced.project(&of_markers),
+                mesh: about.mesh.map(|target| reduced.score_of(&target)),
                 information: reduced.information,
                 deviance: markers_deviance + forces,
                 effective,
@@ -288,13 +303,13 @@ impl Judged<'_> {
         work(found)
     }
 
-    /// The normal equations about a field with the law's parameters among the unknowns, and the derivatives of the markers.
+    /// The equations about a field with the law's parameters among the unknowns.
     fn law_equations(
         &self,
         found: NearestField,
-        law: &RegressedLaw,
-        values: &[f64],
-    ) -> Result<(Ordered, DMatrix<f64>), Error> {
+        (law, values): (&RegressedLaw, &[f64]),
+        difference: Option<&MeshDifference>,
+    ) -> Result<AboutField, Error> {
         let knowledge = self.ground.knowledge(Some(law.beginning_at(values)), true);
         let mut place = place(&found);
         let NearestField {
@@ -316,8 +331,12 @@ impl Judged<'_> {
             law: values.len(),
             all: linear.design.ncols(),
         };
-        let design = order.columns(&linear.design);
-        Ok((order.of(normal), design))
+        let target = difference.map(|own| equations.mesh_target(own, (&linear, &trade)));
+        Ok(AboutField {
+            design: order.columns(&linear.design),
+            normal: order.of(normal),
+            mesh: target.map(|target| order.rows(&target)),
+        })
     }
 
     /// What is left of the markers that are trusted, by their numbers.

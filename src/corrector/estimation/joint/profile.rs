@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 
 use super::descent::{Course, Descent};
 use super::direction::Direction;
+use super::found::Step;
 use crate::statistics::Estimate;
 
 /// How near the likelihood at an end has to be: part of the reach.
@@ -22,6 +23,8 @@ pub struct Ends<'a> {
     pub covariance: &'a DMatrix<f64>,
     /// Half the width of an interval in standard errors.
     pub reach: f64,
+    /// What the meshes' own error makes of each parameter.
+    pub mesh: &'a Step,
     /// Combinations of parameters.
     pub directions: &'a [Direction],
 }
@@ -29,6 +32,7 @@ pub struct Ends<'a> {
 impl Ends<'_> {
     /// The values found with their intervals: where the misfit, the other parameters following, has risen by the square of the
     /// reach; by more where the noise correlates. Where no equilibrium is found on the way, the end is that of the standard error.
+    /// The meshes' own error is added as if it were noise.
     pub fn intervals(&self, profiles: bool) -> Vec<Estimate> {
         let estimate = |index: usize| {
             let value = self.course.values[index];
@@ -36,7 +40,8 @@ impl Ends<'_> {
                 return Estimate::exact(value);
             }
             let variance = self.covariance[(index, index)].max(0.0);
-            let mut estimate = Estimate::new(value, variance.sqrt(), self.reach);
+            let mesh = self.mesh[index];
+            let mut estimate = Estimate::new(value, variance.sqrt().hypot(mesh), self.reach);
             if profiles && variance > 0.0 {
                 let side = Side {
                     ends: self,
@@ -44,7 +49,10 @@ impl Ends<'_> {
                     wider: variance / self.inverse[(index, index)],
                 };
                 let first = self.reach * variance.sqrt();
-                estimate.interval = [-first, first].map(|first| side.end(first));
+                estimate.interval = [-first, first].map(|first| {
+                    let off = side.end(first) - value;
+                    value + off.hypot(self.reach * mesh).copysign(first)
+                });
             }
             estimate
         };

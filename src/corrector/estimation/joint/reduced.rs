@@ -36,6 +36,11 @@ impl Order {
         matrix.select_columns(&self.places())
     }
 
+    /// A vector in that order.
+    pub fn rows(&self, vector: &DVector<f64>) -> DVector<f64> {
+        vector.select_rows(&self.places())
+    }
+
     /// Equations in that order.
     pub fn of(&self, equations: NormalEquations) -> Ordered {
         let places = self.places();
@@ -44,7 +49,7 @@ impl Order {
                 .matrix
                 .select_columns(&places)
                 .select_rows(&places),
-            target: equations.target.select_rows(&places),
+            target: self.rows(&equations.target),
             ..equations
         }
     }
@@ -79,17 +84,20 @@ impl Reduced {
             _ => inverse(&own, LEAST_PIVOT).ok_or_else(|| solve(SolveFault::Singular))?,
         };
         let follow = &mixed * &covariance;
-        let of_edges = equations.target.rows(0, edges).into_owned();
-        let of_law: DVector<f64> = equations.target.rows(edges, law).into_owned();
-        let gained = (&follow * &of_edges, mixed);
-        let force_misfit = equations.fact_misfit - of_edges.dot(&(covariance * &of_edges));
+        let of_edges = equations.target.rows(0, edges);
+        let force_misfit = equations.fact_misfit - of_edges.dot(&(covariance * of_edges));
         Ok(Self {
-            information: part(edges, edges, (law, law)) - &follow * gained.1.transpose(),
-            score: of_law - gained.0,
+            information: part(edges, edges, (law, law)) - &follow * mixed.transpose(),
+            score: score(&follow, &equations.target),
             misfit: equations.misfit + force_misfit,
             force_misfit,
             follow,
         })
+    }
+
+    /// What another right-hand side makes of the score.
+    pub fn score_of(&self, target: &DVector<f64>) -> Step {
+        score(&self.follow, target)
     }
 
     /// [−M_θp M_pp⁻¹, 1] V [−M_θp M_pp⁻¹, 1]ᵀ.
@@ -100,4 +108,10 @@ impl Reduced {
         (0..law).for_each(|index| rows[(index, self.follow.ncols() + index)] = 1.0);
         &rows * matrix * rows.transpose()
     }
+}
+
+/// t_θ − M_θp M_pp⁻¹ t_p.
+fn score(follow: &DMatrix<f64>, target: &DVector<f64>) -> Step {
+    let (law, edges) = follow.shape();
+    target.rows(edges, law) - follow * target.rows(0, edges)
 }

@@ -203,3 +203,25 @@ fn a_single_frame_predicts_no_force() {
     let found = estimated(&series.frames(), &law.unwrap(), false);
     assert_eq!(found.prediction_error(), None);
 }
+
+#[test]
+fn the_error_of_coarse_cells_is_in_the_intervals() {
+    let mut series = Series::on([40, 20], &[0.2, 0.4, 0.6], [1e-3, 1e-6], 6);
+    series.mesh = Mesh::plate(SIZE, [10, 5], CellShape::Quad4);
+    let card = Card::load("meunier-yeoh", Path::new(".")).unwrap();
+    let law = RegressedLaw::of_card(&card, &["c10"]).unwrap();
+    let mut frames = series.frames();
+    for frame in &mut frames {
+        frame.knowledge.forces[0].standard_deviation *= 1e-2;
+    }
+    let truth = law.start()[0];
+    for profiles in [false, true] {
+        let found = estimated(&frames, &law, profiles);
+        assert!(found.holds_mesh_error);
+        let estimate = &found.parameters[0];
+        let [low, high] = estimate.interval;
+        assert!(low < truth && truth < high, "{truth} by {estimate:?}");
+        let off = (estimate.value - truth).abs();
+        assert!(high - low < 8.0 * off, "{truth} by {estimate:?}");
+    }
+}

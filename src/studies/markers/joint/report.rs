@@ -284,9 +284,13 @@ fn intervals(estimate: &JointEstimate, explained: bool) -> String {
         true => format!(
             "Markers that are far off are weighted by Tukey's weights, unless the conditions say otherwise. Intervals follow the profile \
              likelihood of all frames, with the noise that was found in each. What is left of a marker in \
-             one frame and the next correlates by {:.2}, by which frames count for less. They do not hold the mesh's own error: they are too \
-             narrow where that is not small beside the noise, see the corrected specimens.",
-            estimate.common
+             one frame and the next correlates by {:.2}, by which frames count for less. {}",
+            estimate.common,
+            match estimate.holds_mesh_error {
+                true => "They hold the error of the meshes, from the same equations on cells half as large.",
+                false => "They do not hold the error of the meshes, one of which has too many cells to be refined: they are too narrow \
+                          where that error is not small beside the noise.",
+            }
         ),
         false => "There are no intervals: law, thickness and conditions do not explain all frames, see the verdicts.".to_owned(),
     }

@@ -139,6 +139,7 @@ fn problem(
     let all = json!({
         "is_explained": explained,
         "parameters": parameters.collect::<Vec<_>>(),
+        "errors_hold_the_mesh": estimate.holds_mesh_error,
         "combinations": directions.collect::<Vec<_>>(),
         "laws": laws.collect::<Vec<_>>(),
         "forces": forces.collect::<Vec<_>>(),

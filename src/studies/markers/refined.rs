@@ -1,0 +1,72 @@
+//! Cells that are small enough for the data.
+
+use super::{MarkerStudy, Request};
+use crate::corrector::estimation::MOST_REFINED_CELLS;
+use crate::error::{Diagnostic, Error};
+use crate::markers::Frame;
+use crate::material::Card;
+
+/// Share of the area on which the mesh's own error may be the larger part of the error of stress.
+pub const COARSE: f64 = 0.05;
+
+impl MarkerStudy {
+    /// Reads everything but the material, as [`Self::prepare_with`], and halves the cells until, in the frame that moves most, the mesh's
+    /// own error is the larger part of the error of stress on [`COARSE`] of the area at most. Where that would take more cells
+    /// than can be refined, a warning says how far it came.
+    ///
+    /// # Errors
+    /// As [`Self::prepare`] and [`Self::estimate_frame`]; [`Error::Input`] where the mesh is not made inside an outline.
+    pub fn prepare_refined(
+        card: Card,
+        mut request: Request,
+        told: &dyn Fn(&str),
+    ) -> Result<Self, Error> {
+        let mut study = Self::prepare_with(card.clone(), request.clone())?;
+        loop {
+            let Some(size) = study.cell_size else {
+                return Err(Error::input(
+                    "cells are to become smaller, but the mesh is given",
+                    "leave out --refine (refine), or the mesh",
+                ));
+            };
+            told(&format!("cells of {size:.4} mm"));
+            let share = study
+                .estimate_frame(study.most_moved()?)?
+                .coarse_share(&study.mesh);
+            if share <= COARSE {
+                return Ok(study);
+            }
+            let coarse = |reason: &str| {
+                let message = format!(
+                    "on {:.0} % of the area the mesh's own error is still the larger part of the error of stress: {reason}",
+                    100.0 * share
+                );
+                Diagnostic::warning("", message)
+            };
+            if 4 * study.mesh.cell_count() > MOST_REFINED_CELLS {
+                let reason = format!("smaller cells than {size:.4} mm are too many");
+                study.warnings.push(coarse(&reason));
+                return Ok(study);
+            }
+            request.cell_size = Some(0.5 * size);
+            match Self::prepare_with(card.clone(), request.clone()) {
+                Ok(finer) => study = finer,
+                Err(fault) => {
+                    study.warnings.push(coarse(&fault.to_string()));
+                    return Ok(study);
+                }
+            }
+        }
+    }
+
+    /// The frame whose markers move most.
+    fn most_moved(&self) -> Result<&Frame, Error> {
+        let moved = |frame: &Frame| -> f64 {
+            let markers = frame.markers.iter().map(|marker| marker.displacement);
+            markers.map(|[x, y]| x * x + y * y).sum()
+        };
+        let frames = self.series.frames.iter();
+        let most = frames.max_by(|a, b| moved(a).total_cmp(&moved(b)));
+        most.ok_or_else(|| Error::input("there are no frames", "give a field with markers"))
+    }
+}

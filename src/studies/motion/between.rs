@@ -1,0 +1,57 @@
+//! What lies between the instants of a motion that are kept.
+
+/// Parts of the way from one instant to the next.
+const PARTS: usize = 12;
+
+/// Times in s, displacements in mm and velocities in mm/s at the instants and between them, on the cubics that have the displacement and
+/// the velocity of both of their ends:
+///
+/// ```text
+/// x(s) = (1 + 2s)(1 − s)² x₀ + s(1 − s)² h v₀ + s²(3 − 2s) x₁ − s²(1 − s) h v₁,   s = (t − t₀)/h,   v = dx/dt
+/// ```
+pub fn with_cubics(instants: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let between = instants.windows(2).flat_map(|pair| {
+        let [[t0, x0, v0], [t1, x1, v1]] = [pair[0], pair[1]];
+        let h = t1 - t0;
+        (0..PARTS).map(move |part| {
+            let s = part as f64 / PARTS as f64;
+            let r = 1.0 - s;
+            let x =
+                (1.0 + 2.0 * s) * r * r * x0 + s * r * r * h * v0 + s * s * (3.0 - 2.0 * s) * x1
+                    - s * s * r * h * v1;
+            let v =
+                6.0 * s * r * (x1 - x0) / h + r * (1.0 - 3.0 * s) * v0 + s * (3.0 * s - 2.0) * v1;
+            [t0 + s * h, x, v]
+        })
+    });
+    between.chain(instants.last().copied()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cubic_is_itself_and_an_oscillation_is_met_to_a_thousandth() {
+        let cubic = |t: f64| [t, 2.0 - t + 3.0 * t * t * t, -1.0 + 9.0 * t * t];
+        for [t, x, v] in with_cubics(&[0.0, 0.3, 1.0].map(cubic)) {
+            let [_, there, slope] = cubic(t);
+            assert!(
+                (x - there).abs() < 1e-12 && (v - slope).abs() < 1e-12,
+                "{t}"
+            );
+        }
+        let twenty_a_period: Vec<_> = (0..=20)
+            .map(|i| f64::from(i) * std::f64::consts::TAU / 20.0)
+            .map(|t| [t, t.sin(), t.cos()])
+            .collect();
+        let found = with_cubics(&twenty_a_period);
+        assert_eq!(found.len(), 20 * PARTS + 1);
+        for [t, x, v] in found {
+            assert!(
+                (x - t.sin()).abs() < 1e-4 && (v - t.cos()).abs() < 1e-3,
+                "{t}"
+            );
+        }
+    }
+}
