@@ -82,15 +82,34 @@ pub const LARGEST_ASPECT: f64 = 1.732;
 ///
 /// ν = ½ for a law with fibres.
 fn isotropic_shares(law: &dyn HyperelasticLaw) -> [f64; 2] {
-    let tangent = law.response(&Kinematics::rest()).tangent;
     let nu = match law.is_isotropic() {
-        true => tangent[(0, 3)] / tangent[(0, 0)],
+        true => in_plane_poisson_ratio(law),
         false => 0.5,
     };
     [
         4.0 / (3.0 * (1.0 + nu)),
         (3.0 * nu - 1.0) / (2.0 * (1.0 - nu * nu)),
     ]
+}
+
+/// The sheet's ν in its plane at small strain.
+fn in_plane_poisson_ratio(law: &dyn HyperelasticLaw) -> f64 {
+    let tangent = law.response(&Kinematics::rest()).tangent;
+    tangent[(0, 3)] / tangent[(0, 0)]
+}
+
+/// A word where springs alone stand for a sheet that changes its volume and has another ν in its plane than they have.
+pub fn warning(law: &dyn HyperelasticLaw) -> Option<String> {
+    const NEGLIGIBLE: f64 = 0.005;
+    law.bulk_modulus()?;
+    let nu = in_plane_poisson_ratio(law);
+    let off = (nu - 1.0 / 3.0).abs() > NEGLIGIBLE;
+    off.then(|| {
+        format!(
+            "Warning: springs alone have ν = ⅓, and the sheet has ν = {nu:.3} in its plane at small strain; an area term \
+             (`area_term` of a plate's lattice) gives them the sheet's ν"
+        )
+    })
 }
 
 impl MassSpring {

@@ -1,25 +1,34 @@
 //! Hyperelastic laws, the cards that hold their parameters, and the thin sheet made of them.
 //!
-//! A new law is one file that implements [`InvariantLaw`], or [`HyperelasticLaw`] where it is no law of
-//! invariants, and one entry in [`registry`].
+//! A new law is one file that implements [`InvariantLaw`], [`BodyLaw`] where the body changes its volume, or [`HyperelasticLaw`]
+//! where it is neither, and one entry in [`registry`].
 
 mod arruda_boyce;
+pub mod body;
 pub mod card;
 pub mod code;
+mod compressible_neo_hooke;
 pub mod curve;
 mod exponential;
+mod flory;
 mod fung_demiray;
 mod gent;
 mod holzapfel_gasser_ogden;
+mod invariant_law;
 pub mod invariants;
 pub mod law;
+mod linear_elastic;
+mod logarithm;
 pub mod marlow;
+mod measures;
 mod mooney_rivlin;
 mod neo_hooke;
 mod ogden;
+mod ogden_hill;
 pub mod parameters;
 mod polynomial;
 pub mod registry;
+mod saint_venant_kirchhoff;
 pub mod samples;
 pub mod scalar_function;
 pub mod sheet;
@@ -33,18 +42,24 @@ mod yeoh;
 mod battery;
 
 pub use arruda_boyce::ArrudaBoyce;
+pub use body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 pub use card::Card;
 pub use code::{Code, CodeLaw};
+pub use compressible_neo_hooke::CompressibleNeoHooke;
 pub use fung_demiray::FungDemiray;
 pub use gent::Gent;
 pub use holzapfel_gasser_ogden::HolzapfelGasserOgden;
+pub use invariant_law::InvariantLaw;
 pub use invariants::{EnergyDerivatives, Invariants};
-pub use law::{HyperelasticLaw, InvariantLaw};
+pub use law::HyperelasticLaw;
+pub use linear_elastic::LinearElastic;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hooke::NeoHooke;
 pub use ogden::Ogden;
+pub use ogden_hill::{FoamTerm, OgdenHill};
 pub use polynomial::Polynomial;
+pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use sheet::PlaneState;
 pub use veronda_westmann::VerondaWestmann;
-pub use volume::{Volume, VolumetricSheet};
+pub use volume::{Volume, VolumeEnergy};
 pub use yeoh::Yeoh;

@@ -1,13 +1,15 @@
 //! Sheets that change their volume: the clamped plate by another code, the incompressible limit, and whole studies.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
 use gelbench::finite_element::{Element, FiniteElements};
+use gelbench::material::samples;
 use gelbench::material::volume::bulk_modulus;
 use gelbench::material::{
-    HyperelasticLaw, MooneyRivlin, NeoHooke, PlaneState, Volume, VolumetricSheet, Yeoh,
+    HyperelasticLaw, MooneyRivlin, NeoHooke, PlaneState, Volume, VolumeEnergy, Yeoh,
 };
 use gelbench::problem::{ClampedPlate, Measures};
 use gelbench::solve::NewtonSettings;
@@ -42,9 +44,10 @@ fn sheet(name: &str, poisson_ratio: f64, plane: PlaneState) -> Arc<dyn Hyperelas
     let bulk_modulus = bulk_modulus(law.shear_modulus(), poisson_ratio);
     let volume = Volume {
         bulk_modulus,
+        energy: VolumeEnergy::Quadratic,
         plane,
     };
-    Arc::new(VolumetricSheet::new(law, volume).unwrap())
+    law.with_volume(volume).unwrap()
 }
 
 fn plate(law: Arc<dyn HyperelasticLaw>) -> ClampedPlate {
@@ -96,6 +99,56 @@ fn a_clamped_plate_that_changes_its_volume_is_that_of_another_code() {
     }
 }
 
+/// A law of a row of `volume_laws.csv`: its parameters are those of a card, with semicolons between them.
+fn law_of_row(row: &[&str]) -> Arc<dyn HyperelasticLaw> {
+    let law = samples::card(row[0], &row[1].replace("; ", "\n")).law;
+    let choice = |names: &[(&'static str, VolumeEnergy)], name: &str| {
+        let found = names.iter().find(|(known, _)| *known == name);
+        found.map(|(_, choice)| *choice)
+    };
+    let law = match choice(&VolumeEnergy::NAMES, row[2]) {
+        Some(energy) => {
+            let volume = Volume {
+                bulk_modulus: bulk_modulus(law.shear_modulus(), 0.3),
+                energy,
+                plane: PlaneState::Stress,
+            };
+            law.with_volume(volume).unwrap()
+        }
+        None => law,
+    };
+    match row[3] {
+        "plane-strain" => law.in_plane_strain().unwrap(),
+        _ => law,
+    }
+}
+
+#[test]
+fn a_clamped_plate_of_any_law_of_volume_change_is_that_of_two_other_codes() {
+    let text = include_str!("../validation/plate/volume_laws.csv");
+    let rows: Vec<Vec<&str>> = text
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .skip(1)
+        .map(|line| line.split(',').collect())
+        .collect();
+    let mut plates = BTreeMap::new();
+    for row in &rows {
+        let found = plates
+            .entry(&row[..4])
+            .or_insert_with(|| measured(law_of_row(row)));
+        let found = found[usize::from(row[5] == "0.5")];
+        for (found, expected) in found.iter().zip(&row[6..]) {
+            if expected.is_empty() {
+                continue;
+            }
+            let off = (found / expected.parse::<f64>().unwrap() - 1.0).abs();
+            assert!(off < 1e-6, "{row:?}: {found}, {off:.1e}");
+        }
+    }
+    assert_eq!((plates.len(), rows.len()), (21, 90));
+}
+
 /// Its difference falls as 1/κ, so 1 − 2 ν times ten is ten times as much.
 #[test]
 fn the_limit_of_plane_stress_is_the_sheet_that_keeps_its_volume() {
@@ -145,6 +198,43 @@ fn plates_run_in_all_models_in_both_plane_states() {
     assert_ne!(reports[0]["steps"], reports[1]["steps"]);
 }
 
+/// Cards of laws with a change of volume of their own run in all models, both plane states, and in specimens.
+#[test]
+fn laws_of_volume_change_run_in_studies() {
+    for law in [
+        "neo-hooke-simo-pister",
+        "blatz-ko",
+        "ogden-hill-2",
+        "linear-elastic",
+    ] {
+        for sheet in ["plane-stress", "plane-strain"] {
+            let folder = TempDir::new().unwrap();
+            study(folder.path(), sheet, "poisson_ratio = 0.4");
+            let (_, parameters) = samples::CHANGING_VOLUME
+                .iter()
+                .find(|(name, _)| *name == law)
+                .unwrap();
+            fs::write(
+                folder.path().join("own.toml"),
+                samples::card(law, parameters).text,
+            )
+            .unwrap();
+            let done = gelbench(folder.path(), &["run", "small.toml"]);
+            let printed = words(&done.get_output().stdout);
+            done.code(0);
+            assert_eq!(
+                printed.matches("pass").count(),
+                4,
+                "{law} {sheet}: {printed}"
+            );
+            assert!(printed.contains("ν = ⅓"), "{law} {sheet}: {printed}");
+            let report = folder.path().join("output/small/report.json");
+            let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
+            assert!(report["material"]["bulk_modulus_MPa"].as_f64().unwrap() > 0.0);
+        }
+    }
+}
+
 #[test]
 fn what_cannot_change_its_volume_is_told() {
     let told = |sheet: &str, volume: &str, replace: [&str; 2]| {
@@ -170,6 +260,18 @@ fn what_cannot_change_its_volume_is_told() {
     assert!(both.contains("one of them is enough"), "{both}");
     let half = told("plane-stress", "poisson_ratio = 0.5", ["", ""]);
     assert!(half.contains("between -0.9 and 0.4999"), "{half}");
+    let energy = told(
+        "plane-stress",
+        "poisson_ratio = 0.3\nenergy = \"cubic\"",
+        ["", ""],
+    );
+    assert!(energy.contains("simo-taylor"), "{energy}");
+    let own = told(
+        "plane-stress",
+        "poisson_ratio = 0.3",
+        ["law = \"neo-hooke\"", "law = \"blatz-ko\""],
+    );
+    assert!(own.contains("of its own"), "{own}");
     let unknown = told("thick", "poisson_ratio = 0.3", ["", ""]);
     assert!(unknown.contains("plane-strain"), "{unknown}");
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use gelbench::material::code::{Code, CodeLaw};
 use gelbench::material::law::TensionResponse;
 use gelbench::material::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
-use gelbench::material::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants};
+use gelbench::material::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants, Volume};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -129,8 +129,8 @@ impl HyperelasticLaw for PythonLaw {
         true
     }
 
-    fn of_invariants(self: Arc<Self>) -> Option<Arc<dyn InvariantLaw>> {
-        Some(Arc::clone(&self.0) as Arc<dyn InvariantLaw>)
+    fn with_volume(self: Arc<Self>, volume: Volume) -> Option<Arc<dyn HyperelasticLaw>> {
+        Arc::clone(&self.0).with_volume(volume)
     }
 
     fn shear_modulus(&self) -> f64 {
@@ -226,8 +226,16 @@ impl HyperelasticLaw for Watched {
         self.law.in_plane_strain()
     }
 
-    fn of_invariants(self: Arc<Self>) -> Option<Arc<dyn InvariantLaw>> {
-        Arc::clone(&self.law).of_invariants()
+    fn bulk_modulus(&self) -> Option<f64> {
+        self.law.bulk_modulus()
+    }
+
+    fn with_volume(self: Arc<Self>, volume: Volume) -> Option<Arc<dyn HyperelasticLaw>> {
+        Arc::clone(&self.law).with_volume(volume)
+    }
+
+    fn is_objective(&self) -> bool {
+        self.law.is_objective()
     }
 
     fn is_isotropic(&self) -> bool {

@@ -111,7 +111,16 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
     if law.name == MARLOW_TABLE {
         return take_curve(law, tests, settings, &misfit);
     }
-    let parameters = misfit.build(&[]).1.parameters;
+    let (unknown, entries) = misfit.build(&[]);
+    if unknown.bulk_modulus().is_some() && tests[0].stress_measure == StressMeasure::Cauchy {
+        let message = format!(
+            "{}: the area of a body that changes its volume does not follow from its stretch",
+            law.name
+        );
+        let hint = "give nominal stress: force over the area at rest";
+        return Err(Error::input(message, hint));
+    }
+    let parameters = entries.parameters;
     let bounds = limits(law, &parameters, &settings.bounds, misfit.stiffness())?;
     let points: usize = tests.iter().map(|test| test.observations.len()).sum();
     if points <= parameters.len() {
@@ -239,7 +248,7 @@ fn take_curve(
     })
 }
 
-/// All laws that can be fitted to some tests, the one with the smallest AICc first; laws that cannot be are
+/// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that cannot be are
 /// left out with their reasons. All have the effective points of the law with the least variance of residuals: how
 /// many points are independent is a matter of the noise, not of a law that misses them.
 pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
@@ -254,7 +263,11 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
     let eligible: Vec<&'static Law> = LAWS
         .iter()
         .filter(|law| law.name != MARLOW_TABLE)
-        .filter(|law| both_axes || law.with_values(&[], measure, MEASURE).0.is_isotropic())
+        .filter(|law| {
+            let own = law.with_values(&[], measure, MEASURE).0;
+            // How a body changes its volume is not in the stresses of the usual tests alone.
+            own.bulk_modulus().is_none() && (both_axes || own.is_isotropic())
+        })
         .collect();
     let outcomes: Vec<Result<Fit, Error>> = eligible
         .into_par_iter()

@@ -113,9 +113,12 @@ fn in_time(card: &Card) -> String {
     if let Some(density) = card.density {
         text += &format!("  density    {:.6} kg/m³\n", 1e12 * density);
     }
-    if let Some(volume) = card.volume {
-        let modulus = volume.bulk_modulus;
-        text += &format!("  volume     bulk modulus κ = {modulus:.6} MPa\n");
+    if let Some(modulus) = card.bulk_modulus() {
+        let energy = match card.volume {
+            Some(volume) => volume.energy.name(),
+            None => "of the law itself",
+        };
+        text += &format!("  volume     bulk modulus κ = {modulus:.6} MPa, energy {energy}\n");
     }
     let viscosity = &card.viscosity;
     if viscosity.shear_viscosity > 0.0 {

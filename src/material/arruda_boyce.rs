@@ -1,8 +1,9 @@
 //! The eight-chain law of Arruda and Boyce.
 
 use super::code::{Code, CodeLaw};
+use super::invariant_law::InvariantLaw;
 use super::invariants::{EnergyDerivatives, Invariants};
-use super::law::{HyperelasticLaw, InvariantLaw};
+use super::law::HyperelasticLaw;
 use super::parameters::Parameters;
 use crate::document::Bound;
 

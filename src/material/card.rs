@@ -8,12 +8,13 @@ use super::law::HyperelasticLaw;
 use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS, Law};
-use super::sheet::PlaneState;
 use super::viscosity::{Relaxation, ViscousMaterial};
-use super::volume::{Volume, bulk_modulus};
+use super::volume::Volume;
 use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
 use crate::units::Dimension;
+
+mod resistance;
 
 /// A material: law, parameters and provenance.
 #[derive(Clone, Debug)]
@@ -63,9 +64,6 @@ pub struct Card {
     /// The card's text as it was read.
     pub text: String,
 }
-
-/// The Poisson's ratios of a material that changes its volume.
-pub const POISSON_RATIO: Bound = Bound::Range(-0.9, 0.4999, "between -0.9 and 0.4999");
 
 /// What a card needs to be fitted again.
 #[derive(Clone, Debug)]
@@ -188,52 +186,6 @@ impl Card {
         }
     }
 
-    /// Reads how the material resists a change of volume.
-    fn resist(&mut self, section: &Section) {
-        let (bulk, ratio) = ("bulk_modulus", "poisson_ratio");
-        let bulk_modulus = match (section.has(bulk), section.has(ratio)) {
-            (false, true) => {
-                let stated = section.number(ratio, POISSON_RATIO);
-                self.poisson_ratio = Some(stated);
-                bulk_modulus(self.law.shear_modulus(), stated)
-            }
-            (true, true) => {
-                let hint = "each follows from the other and from the law's shear modulus";
-                section.fault(
-                    ratio,
-                    "and `bulk_modulus` are both given; one of them is enough",
-                    hint,
-                );
-                f64::NAN
-            }
-            (_, false) => section.quantity(bulk, Dimension::Stress, Bound::Positive),
-        };
-        section.unknown_keys();
-        let plane = PlaneState::Stress;
-        let volume = Volume {
-            bulk_modulus,
-            plane,
-        };
-        match volume.of(Arc::clone(&self.law)) {
-            Some(law) => (self.law, self.volume) = (law, Some(volume)),
-            None => section.fault(
-                bulk,
-                &format!("the law `{}` cannot take a change of volume", self.law_name),
-                "take a law of the invariants I₁ and I₂: neo-hooke, mooney-rivlin, yeoh, gent and others; laws of the principal \
-                 stretches and laws with fibres keep their volume",
-            ),
-        }
-    }
-
-    /// The same material in plane strain; `None` where its card states no resistance to a change of volume.
-    pub fn in_plane_strain(self) -> Option<Self> {
-        Some(Self {
-            law: self.law.in_plane_strain()?,
-            volume: self.volume.map(Volume::in_plane_strain),
-            ..self
-        })
-    }
-
     fn read_data(&mut self, data: &Section) {
         let stress = data.choice("stress_measure", &StressMeasure::NAMES);
         self.stress_measure = stress.unwrap_or(StressMeasure::Nominal);
@@ -269,7 +221,7 @@ impl Card {
             .map(|parameter| parameter.value)
             .or_else(|| match key {
                 "poisson_ratio" => self.poisson_ratio,
-                "bulk_modulus" => self.volume.map(|volume| volume.bulk_modulus),
+                "bulk_modulus" => self.bulk_modulus(),
                 _ => None,
             })
     }

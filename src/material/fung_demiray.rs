@@ -2,8 +2,9 @@
 
 use super::code::{Code, CodeLaw};
 use super::exponential::{exponential, exponential_less_one};
+use super::invariant_law::InvariantLaw;
 use super::invariants::{EnergyDerivatives, Invariants};
-use super::law::{HyperelasticLaw, InvariantLaw};
+use super::law::HyperelasticLaw;
 use super::parameters::Parameters;
 use crate::document::Bound;
 

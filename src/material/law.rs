@@ -3,15 +3,14 @@
 use std::sync::Arc;
 
 use nalgebra::Matrix4;
-use pulp::{Arch, NullaryFnOnce};
 
 use super::code::{Code, CodeLaw};
-use super::invariants::{EnergyDerivatives, Invariants};
 use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse, cofactor};
+use super::volume::Volume;
 
 /// A hyperelastic law, as a sheet in its plane sees it: incompressible and in plane stress unless it says otherwise.
 ///
-/// A law of the first two invariants is an [`InvariantLaw`], which needs scalars only and becomes a
+/// A law of the first two invariants is an [`InvariantLaw`](super::InvariantLaw), which needs scalars only and becomes a
 /// `HyperelasticLaw` by itself. Laws of the principal stretches and laws with fibres give the sheet's
 /// response themselves. The curves of the usual tests and the stable range are derived from it once for
 /// all laws, in [`super::curve`] and [`super::stability`].
@@ -118,12 +117,22 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// The law as one of the invariants I₁ and I₂ of a body that keeps its volume; `None` where it is none.
-    fn of_invariants(self: Arc<Self>) -> Option<Arc<dyn InvariantLaw>>
+    /// The initial bulk modulus κ in MPa; `None` for a law whose volume stays as it is.
+    fn bulk_modulus(&self) -> Option<f64> {
+        None
+    }
+
+    /// The law of a body that keeps its volume with a resistance to a change of it; `None` where there is no such law.
+    fn with_volume(self: Arc<Self>, _volume: Volume) -> Option<Arc<dyn HyperelasticLaw>>
     where
         Self: 'static,
     {
         None
+    }
+
+    /// Whether a rotation of the deformed sheet rotates its stress and changes nothing else.
+    fn is_objective(&self) -> bool {
+        true
     }
 
     /// Whether all directions of the sheet are alike.
@@ -153,161 +162,10 @@ pub struct TensionResponse {
     pub slope: f64,
 }
 
-/// An isotropic law Ψ(I₁, I₂).
-///
-/// A law whose Ψ₁₁ is unbounded at rest (as Marlow's) returns zero for it there: every use multiplies it
-/// by a factor that vanishes faster.
-pub trait InvariantLaw: Send + Sync + std::fmt::Debug {
-    /// Ψ and its derivatives at the given invariants.
-    fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives;
-
-    /// As [`HyperelasticLaw::in_code`].
-    fn in_code(&self, _code: Code, _bulk_modulus: f64) -> Option<CodeLaw> {
-        None
-    }
-}
-
 /// The components on and below the diagonal, column by column.
 #[inline(always)]
-fn lower_triangle(a: &Matrix4<f64>) -> [f64; 10] {
+pub(super) fn lower_triangle(a: &Matrix4<f64>) -> [f64; 10] {
     [
         a[0], a[1], a[2], a[3], a[5], a[6], a[7], a[10], a[11], a[15],
     ]
-}
-
-impl<L: InvariantLaw> HyperelasticLaw for L {
-    fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
-        Arch::new().dispatch(StressLoop {
-            law: self,
-            gradients,
-            stresses,
-        })
-    }
-
-    fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
-        Arch::new().dispatch(TangentLoop {
-            law: self,
-            gradients,
-            tangents,
-        })
-    }
-
-    fn of_invariants(self: Arc<Self>) -> Option<Arc<dyn InvariantLaw>>
-    where
-        Self: 'static,
-    {
-        Some(self)
-    }
-
-    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
-        kinematics.stress(&self.evaluate(kinematics.invariants))
-    }
-
-    fn response(&self, kinematics: &Kinematics) -> SheetResponse {
-        kinematics.response(&self.evaluate(kinematics.invariants))
-    }
-
-    /// ```text
-    /// P = 2 (Ψ₁ + Ψ₂/λ) (λ − λ⁻²),   I₁ = λ² + 2/λ,   I₂ = 2λ + λ⁻²
-    /// ```
-    fn tension(&self, _: [f64; 2], strain: f64) -> TensionResponse {
-        let x = strain;
-        let lambda = 1.0 + x;
-        let cubic = 3.0 + 3.0 * x + x * x;
-        let i1_minus_3 = x * x * (3.0 + x) / lambda;
-        let i2_minus_3 = x * x * (3.0 + 2.0 * x) / (lambda * lambda);
-        let w = self.evaluate(Invariants {
-            i1_minus_3,
-            i2_minus_3,
-        });
-        // λ − λ⁻² and its derivative; dI₁/dλ = 2 h, dI₂/dλ = 2 h/λ.
-        let h = x * cubic / (lambda * lambda);
-        let dh = 1.0 + 2.0 / lambda.powi(3);
-        let secant = w.d1 + w.d2 / lambda;
-        let secant_slope = 2.0 * h * (w.d11 + 2.0 * w.d12 / lambda + w.d22 / (lambda * lambda))
-            - w.d2 / (lambda * lambda);
-        TensionResponse {
-            energy: w.energy,
-            nominal_stress: 2.0 * secant * h,
-            slope: 2.0 * (secant * dh + secant_slope * h),
-        }
-    }
-
-    fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {
-        InvariantLaw::in_code(self, code, bulk_modulus)
-    }
-
-    /// μ₀ = 2 (Ψ₁ + Ψ₂) at rest.
-    fn shear_modulus(&self) -> f64 {
-        let rest = self.evaluate(Invariants {
-            i1_minus_3: 0.0,
-            i2_minus_3: 0.0,
-        });
-        2.0 * (rest.d1 + rest.d2)
-    }
-
-    fn youngs_modulus(&self) -> f64 {
-        3.0 * self.shear_modulus()
-    }
-}
-
-/// Straight-line code for each point: the compiler makes one instruction of several points, with the widest
-/// vectors that the machine has. No operation is fused with another, so that all machines give the same bits.
-struct StressLoop<'a, L> {
-    law: &'a L,
-    gradients: [&'a [f64]; 4],
-    stresses: [&'a mut [f64]; 4],
-}
-
-impl<L: InvariantLaw> NullaryFnOnce for StressLoop<'_, L> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        let points = self.gradients[0].len();
-        let [h11, h12, h21, h22] = self.gradients.map(|component| &component[..points]);
-        let [p11, p12, p21, p22] = self.stresses.map(|component| &mut component[..points]);
-        let mut inverted = 0_u64;
-        for point in 0..points {
-            let h = Gradient::new(h11[point], h12[point], h21[point], h22[point]);
-            let kinematics = Kinematics::unchecked(&h);
-            let (_, p) = kinematics.stress(&self.law.evaluate(kinematics.invariants));
-            (p11[point], p12[point]) = (p[0], p[1]);
-            (p21[point], p22[point]) = (p[2], p[3]);
-            inverted |= u64::from(!kinematics.is_admissible());
-        }
-        inverted == 0
-    }
-}
-
-/// As [`StressLoop`].
-struct TangentLoop<'a, L> {
-    law: &'a L,
-    gradients: [&'a [f64]; 4],
-    tangents: [&'a mut [f64]; 10],
-}
-
-impl<L: InvariantLaw> NullaryFnOnce for TangentLoop<'_, L> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        let points = self.gradients[0].len();
-        let [h11, h12, h21, h22] = self.gradients.map(|component| &component[..points]);
-        let [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] =
-            self.tangents.map(|component| &mut component[..points]);
-        let mut inverted = 0_u64;
-        for point in 0..points {
-            let h = Gradient::new(h11[point], h12[point], h21[point], h22[point]);
-            let kinematics = Kinematics::unchecked(&h);
-            let response = kinematics.response(&self.law.evaluate(kinematics.invariants));
-            let lower = lower_triangle(&response.tangent);
-            (a0[point], a1[point], a2[point]) = (lower[0], lower[1], lower[2]);
-            (a3[point], a4[point], a5[point]) = (lower[3], lower[4], lower[5]);
-            (a6[point], a7[point]) = (lower[6], lower[7]);
-            (a8[point], a9[point]) = (lower[8], lower[9]);
-            inverted |= u64::from(!kinematics.is_admissible());
-        }
-        inverted == 0
-    }
 }

@@ -27,8 +27,8 @@
 //! R. S. Marlow, in: Constitutive Models for Rubber III, Balkema (2003), p. 157, ISBN 90-5809-566-5
 
 use super::code::{Code, CodeLaw};
+use super::invariant_law::InvariantLaw;
 use super::invariants::{EnergyDerivatives, Invariants};
-use super::law::InvariantLaw;
 
 mod exponential;
 mod table;

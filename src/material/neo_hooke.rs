@@ -1,8 +1,9 @@
 //! The neo-Hooke law.
 
 use super::code::{Code, CodeLaw};
+use super::invariant_law::InvariantLaw;
 use super::invariants::{EnergyDerivatives, Invariants};
-use super::law::{HyperelasticLaw, InvariantLaw};
+use super::law::HyperelasticLaw;
 use super::parameters::Parameters;
 use super::polynomial::Polynomial;
 use crate::document::Bound;

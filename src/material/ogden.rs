@@ -1,9 +1,14 @@
 //! Ogden's law.
 
+use std::sync::Arc;
+
 use super::code::{Code, CodeLaw};
+use super::flory::{self, IsochoricLaw};
 use super::law::{HyperelasticLaw, TensionResponse};
+use super::measures::{Derivatives, Measures};
 use super::parameters::Parameters;
-use super::sheet::{Gradient, Kinematics, SheetResponse, cofactor, cofactor_derivative};
+use super::sheet::{Gradient, Kinematics, SheetResponse};
+use super::volume::Volume;
 use crate::document::Bound;
 
 /// Ogden's law: powers of the principal stretches.
@@ -70,10 +75,7 @@ impl Ogden {
         let convention = parameters.choice("convention", &conventions);
         let term = |[mu, alpha]: [&'static str; 2]| {
             let mu = parameters.stress(mu, Bound::Any);
-            let exponent = parameters.number(alpha, Bound::Within(-50.0, 50.0), [-8.0, 12.0]);
-            if exponent == 0.0 {
-                parameters.fault(alpha, "must not be zero", "a power of zero has no energy");
-            }
+            let exponent = parameters.exponent(alpha);
             match convention {
                 Convention::TwoMuByAlphaSquared => [mu, exponent],
                 Convention::MuByAlpha => [mu * exponent / 2.0, exponent],
@@ -85,50 +87,11 @@ impl Ogden {
     }
 }
 
-/// Ψ and its derivatives by m and z.
-#[derive(Default)]
-struct Derivatives {
-    energy: f64,
-    m: f64,
-    z: f64,
-    mm: f64,
-    mz: f64,
-    zz: f64,
-}
-
-/// m, z and their derivatives by F.
-struct Measures {
-    m: f64,
-    z: f64,
-    jacobian: f64,
-    cofactor: Gradient,
-    dm: Gradient,
-    dz: Gradient,
-}
-
-impl Measures {
-    fn new(kinematics: &Kinematics) -> Self {
-        let f = &kinematics.deformation_gradient;
-        let jacobian = kinematics.area_ratio();
-        let cofactor = cofactor(f);
-        // Half the squared norm of F − cof F is tr C − 2J.
-        let distortion = &kinematics.distortion;
-        let z = distortion.norm_squared() / (4.0 * jacobian);
-        Self {
-            m: kinematics.area_change.ln_1p(),
-            z,
-            jacobian,
-            cofactor,
-            dm: cofactor / jacobian,
-            dz: (distortion - z * cofactor) / jacobian,
-        }
-    }
-}
-
 impl Ogden {
-    fn derivatives(&self, m: f64, z: f64) -> Derivatives {
+    /// Ψ and its derivatives by m and z.
+    pub fn derivatives(&self, m: f64, z: f64) -> Derivatives {
         let mut sum = Derivatives::default();
-        let delta = (0.5 * z).sqrt().asinh();
+        let delta = half_difference(z);
         for [mu, alpha] in &self.terms {
             let half = 0.5 * alpha;
             let grown = half * m;
@@ -148,8 +111,13 @@ impl Ogden {
     }
 }
 
+/// δ, half the difference of the logarithmic stretches.
+pub fn half_difference(z: f64) -> f64 {
+    (0.5 * z).sqrt().asinh()
+}
+
 /// T − 1, T, T′ and T″ of the order `n` at z = 2 sinh²δ.
-fn chebyshev(n: f64, z: f64, delta: f64) -> (f64, f64, f64, f64) {
+pub fn chebyshev(n: f64, z: f64, delta: f64) -> (f64, f64, f64, f64) {
     let t_minus_1 = 2.0 * (n * delta).sinh().powi(2);
     let t = 1.0 + t_minus_1;
     let square = n * n;
@@ -165,32 +133,26 @@ fn chebyshev(n: f64, z: f64, delta: f64) -> (f64, f64, f64, f64) {
     (t_minus_1, t, dt, ddt)
 }
 
+impl IsochoricLaw for Ogden {
+    fn at(&self, s: f64, z: f64) -> Derivatives {
+        self.derivatives(s, z)
+    }
+}
+
 impl HyperelasticLaw for Ogden {
     fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
         let measures = Measures::new(kinematics);
-        let w = self.derivatives(measures.m, measures.z);
-        (w.energy, w.m * measures.dm + w.z * measures.dz)
+        let w = self.derivatives(kinematics.area_change.ln_1p(), measures.z);
+        (w.energy, measures.stress(&w))
     }
 
     fn response(&self, kinematics: &Kinematics) -> SheetResponse {
-        let at = Measures::new(kinematics);
-        let w = self.derivatives(at.m, at.z);
-        let mixed = at.dm * at.dz.transpose();
-        let turned = at.dz * at.cofactor.transpose();
-        let e = cofactor_derivative();
-        let identity = nalgebra::Matrix4::identity();
-        // ∂²m = 𝔼/J − ∂m ⊗ ∂m;  ∂²z = (𝟙 − 𝔼)/J − z 𝔼/J − (∂z ⊗ cof F + cof F ⊗ ∂z)/J
-        let d2m = e / at.jacobian - at.dm * at.dm.transpose();
-        let d2z = (identity - e * (1.0 + at.z) - turned - turned.transpose()) / at.jacobian;
-        SheetResponse {
-            energy: w.energy,
-            first_piola_kirchhoff_stress: w.m * at.dm + w.z * at.dz,
-            tangent: w.mm * at.dm * at.dm.transpose()
-                + w.mz * (mixed + mixed.transpose())
-                + w.zz * at.dz * at.dz.transpose()
-                + w.m * d2m
-                + w.z * d2z,
-        }
+        let measures = Measures::new(kinematics);
+        measures.response(&self.derivatives(kinematics.area_change.ln_1p(), measures.z))
+    }
+
+    fn with_volume(self: Arc<Self>, volume: Volume) -> Option<Arc<dyn HyperelasticLaw>> {
+        Some(flory::sheet(self, volume))
     }
 
     /// ```text

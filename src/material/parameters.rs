@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use super::volume::POISSON_RATIO;
 use crate::document::{Bound, Section, name_of};
 use crate::units::Dimension;
 
@@ -215,6 +216,23 @@ impl<'a> Parameters<'a> {
     /// A parameter without a dimension; the values of usual materials lie within `usual`.
     pub fn number(&self, key: &'static str, bound: Bound, usual: [f64; 2]) -> f64 {
         self.ask(key, Dimension::Ratio, bound, usual)
+    }
+
+    /// μ in MPa and ν of a body that changes its volume.
+    pub fn shear_modulus_and_ratio(&self) -> [f64; 2] {
+        [
+            self.stress("mu", Bound::Positive),
+            self.number("poisson_ratio", POISSON_RATIO, [0.0, 0.49]),
+        ]
+    }
+
+    /// The exponent of a power of the stretches: any number but zero.
+    pub fn exponent(&self, key: &'static str) -> f64 {
+        let exponent = self.number(key, Bound::Within(-50.0, 50.0), [-8.0, 12.0]);
+        if exponent == 0.0 {
+            self.fault(key, "must not be zero", "a power of zero has no energy");
+        }
+        exponent
     }
 
     /// An angle in rad.

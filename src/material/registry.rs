@@ -4,8 +4,9 @@ use super::law::HyperelasticLaw;
 use super::marlow::{ExponentialCurve, TableCurve};
 use super::parameters::{CardEntries, Parameters, StrainMeasure, StressMeasure};
 use super::{
-    ArrudaBoyce, FungDemiray, Gent, HolzapfelGasserOgden, MooneyRivlin, NeoHooke, Ogden,
-    Polynomial, VerondaWestmann, Yeoh,
+    ArrudaBoyce, CompressibleNeoHooke, FungDemiray, Gent, HolzapfelGasserOgden, LinearElastic,
+    MooneyRivlin, NeoHooke, Ogden, OgdenHill, Polynomial, SaintVenantKirchhoff, VerondaWestmann,
+    Yeoh,
 };
 
 /// A file of test data by its stem.
@@ -140,7 +141,50 @@ pub const LAWS: &[Law] = &[
         formula: "Ψ = μ/2 (I₁ − 3) + Σ k₁/(2 k₂) (e^(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1)",
         read: HolzapfelGasserOgden::from_card,
     },
+    Law {
+        name: "neo-hooke-simo-pister",
+        formula: "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/2 ln² J, Λ = 2μν/(1 − 2ν)",
+        read: CompressibleNeoHooke::simo_pister_from_card,
+    },
+    Law {
+        name: "neo-hooke-ciarlet",
+        formula: "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/4 (J² − 1 − 2 ln J), Λ = 2μν/(1 − 2ν)",
+        read: CompressibleNeoHooke::ciarlet_from_card,
+    },
+    Law {
+        name: "blatz-ko",
+        formula: "W = μ/2 f (I₁ − 3 + (J^(−2β) − 1)/β) + μ/2 (1 − f) (I₂/J² − 3 + (J^(2β) − 1)/β), β = ν/(1 − 2ν)",
+        read: OgdenHill::blatz_ko_from_card,
+    },
+    Law {
+        name: "ogden-hill-1",
+        formula: OGDEN_HILL,
+        read: OgdenHill::from_card::<1>,
+    },
+    Law {
+        name: "ogden-hill-2",
+        formula: OGDEN_HILL,
+        read: OgdenHill::from_card::<2>,
+    },
+    Law {
+        name: "ogden-hill-3",
+        formula: OGDEN_HILL,
+        read: OgdenHill::from_card::<3>,
+    },
+    Law {
+        name: "saint-venant-kirchhoff",
+        formula: "W = Λ/2 (tr E)² + μ E : E, E = (FᵀF − 1)/2, Λ = 2μν/(1 − 2ν)",
+        read: SaintVenantKirchhoff::from_card,
+    },
+    Law {
+        name: "linear-elastic",
+        formula: "W = Λ/2 (tr ε)² + μ ε : ε, ε = (H + Hᵀ)/2, Λ = 2μν/(1 − 2ν)",
+        read: LinearElastic::from_card,
+    },
 ];
+
+const OGDEN_HILL: &str =
+    "W = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3 + (J^(−αᵢ βᵢ) − 1)/βᵢ), βᵢ = νᵢ/(1 − 2νᵢ)";
 
 const OGDEN: &str = "Ψ = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)";
 

@@ -53,6 +53,39 @@ pub const SAMPLES: &[(&str, &str)] = &[
     ),
 ];
 
+/// Laws of bodies that change their volume, as [`SAMPLES`].
+pub const CHANGING_VOLUME: &[(&str, &str)] = &[
+    (
+        "neo-hooke-simo-pister",
+        "mu = \"0.05 MPa\"\npoisson_ratio = 0.3",
+    ),
+    (
+        "neo-hooke-ciarlet",
+        "mu = \"0.05 MPa\"\npoisson_ratio = 0.4",
+    ),
+    (
+        "blatz-ko",
+        "mu = \"0.05 MPa\"\nshare = 0.3\npoisson_ratio = 0.25",
+    ),
+    (
+        "ogden-hill-1",
+        "mu_1 = \"0.05 MPa\"\nalpha_1 = 3.5\nnu_1 = 0",
+    ),
+    (
+        "ogden-hill-2",
+        "mu_1 = \"0.04 MPa\"\nalpha_1 = 4\nnu_1 = 0.1\nmu_2 = \"0.01 MPa\"\nalpha_2 = -1.5\nnu_2 = 0.4",
+    ),
+    (
+        "ogden-hill-3",
+        "mu_1 = \"0.04 MPa\"\nalpha_1 = 1.3\nnu_1 = 0.45\nmu_2 = \"2 kPa\"\nalpha_2 = 5\nnu_2 = 0.2\nmu_3 = \"0.01 MPa\"\nalpha_3 = -2.5\nnu_3 = -0.1",
+    ),
+    (
+        "saint-venant-kirchhoff",
+        "mu = \"0.05 MPa\"\npoisson_ratio = 0.15",
+    ),
+    ("linear-elastic", "mu = \"0.05 MPa\"\npoisson_ratio = 0.3"),
+];
+
 /// A card of a law with parameters as a card states them.
 ///
 /// # Panics
@@ -87,5 +120,16 @@ pub fn all() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>)> {
     let names = CARDS.iter().chain(SAMPLES).map(|(name, _)| *name);
     names
         .zip(cards().into_iter().map(|card| card.law))
+        .collect()
+}
+
+/// A card of each of [`CHANGING_VOLUME`].
+///
+/// # Panics
+/// Never, as [`cards`].
+pub fn changing_volume() -> Vec<Card> {
+    let samples = CHANGING_VOLUME.iter();
+    samples
+        .map(|(law, parameters)| card(law, parameters))
         .collect()
 }

@@ -40,7 +40,7 @@ fn json(card: &Card) -> Value {
         "formula": card.formula,
         "parameters": parameters.chain(choices).collect::<Map<_, _>>(),
         "youngs_modulus_MPa": card.law.youngs_modulus(),
-        "bulk_modulus_MPa": card.volume.map(|volume| volume.bulk_modulus),
+        "bulk_modulus_MPa": card.bulk_modulus(),
         "sheet": card.law.plane_state().name(),
         "stretch_range": card.stretch_range,
         "fit_error_percent": card.fit_error_percent(),
@@ -67,8 +67,8 @@ fn statement(card: &Card) -> Vec<Block> {
             .iter()
             .map(|(key, name)| row(key, name.clone())),
     );
-    if let Some(volume) = card.volume {
-        let modulus = format!("{:.6} MPa; {}", volume.bulk_modulus, volume.plane.name());
+    if let Some(modulus) = card.bulk_modulus() {
+        let modulus = format!("{modulus:.6} MPa; {}", law.plane_state().name());
         rows.push(row("bulk modulus κ", modulus));
     }
     rows.extend([

@@ -4,12 +4,11 @@ use std::sync::Arc;
 
 use crate::document::Bound;
 use crate::error::{Diagnostic, suggestion};
-use crate::material::card;
 use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
 use crate::material::registry::Law;
 use crate::material::sheet::{Gradient, Kinematics};
-use crate::material::volume::bulk_modulus;
-use crate::material::{Card, HyperelasticLaw, Volume};
+use crate::material::volume::{self, bulk_modulus};
+use crate::material::{Card, HyperelasticLaw, PlaneState, Volume};
 use crate::units::Dimension;
 
 /// The law of a card with parameters to be found. What resists a change of volume is one of them where the card has it: its bulk
@@ -19,6 +18,7 @@ pub struct RegressedLaw {
     law: &'static Law,
     measures: (StressMeasure, StrainMeasure),
     volume: Option<Volume>,
+    plane: PlaneState,
     all: Vec<Parameter>,
     chosen: Vec<Parameter>,
     places: Vec<usize>,
@@ -53,6 +53,7 @@ impl RegressedLaw {
             law,
             measures: (card.stress_measure, card.strain_measure),
             volume: card.volume,
+            plane: card.law.plane_state(),
             all: card
                 .parameters
                 .iter()
@@ -187,9 +188,12 @@ impl RegressedLaw {
                 bulk_modulus,
                 ..volume
             };
-            volume.of(Arc::clone(&law))
+            Arc::clone(&law).with_volume(volume)
         });
-        resisting.unwrap_or(law)
+        match self.plane {
+            PlaneState::Strain if resisting.is_none() => law.in_plane_strain().unwrap_or(law),
+            _ => resisting.unwrap_or(law),
+        }
     }
 }
 
@@ -201,7 +205,7 @@ fn resistance(card: &Card) -> Option<Parameter> {
             key: POISSON_RATIO,
             value,
             dimension: Dimension::Ratio,
-            bound: card::POISSON_RATIO,
+            bound: volume::POISSON_RATIO,
             usual: [0.0, 0.5],
         },
         None => Parameter {

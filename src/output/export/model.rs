@@ -35,12 +35,16 @@ impl Export<'_> {
     }
 
     fn law(&self, code: Code) -> Result<CodeLaw, Diagnostic> {
-        if self.card.volume.is_some() {
+        if self.card.bulk_modulus().is_some() {
             let message = format!(
                 "the card `{}` changes its volume; sheets that keep it can be exported",
                 self.card.name
             );
-            return Err(Diagnostic::error("", message).hint("leave out the card's `[volume]`"));
+            let hint = match self.card.volume {
+                Some(_) => "leave out the card's `[volume]`",
+                None => "take a card whose law keeps its volume",
+            };
+            return Err(Diagnostic::error("", message).hint(hint));
         }
         let law = self.card.law.in_code(code, self.bulk_modulus(code));
         let known = law.filter(|law| code == Code::Abaqus || *law != CodeLaw::TensionCurve);

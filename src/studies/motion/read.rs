@@ -117,8 +117,12 @@ fn read_material(section: &Section, folder: &Path) -> Material {
         (false, Some(card)) => card.viscosity.clone(),
         (false, None) => ViscousMaterial::default(),
     };
-    if !viscosity.is_none() && card.as_ref().is_some_and(|card| card.volume.is_some()) {
-        let hint = "leave out the viscosity, or the card's `[volume]`";
+    if !viscosity.is_none()
+        && card
+            .as_ref()
+            .is_some_and(|card| card.bulk_modulus().is_some())
+    {
+        let hint = "leave out the viscosity, or take a card that keeps its volume";
         let message =
             "the viscous stress is that of a sheet that keeps its volume, and this card's does not";
         section.fault("card", message, hint);

@@ -1,5 +1,6 @@
 //! What a reader of a plate's figures must know about them.
 
+use crate::mass_spring;
 use crate::problem::ClampedPlate;
 use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
@@ -9,9 +10,12 @@ use crate::results::wrinkling;
 /// Reactions further from balance than this, relative to the largest, deserve a word.
 const BALANCED: f64 = 1e-9;
 
-/// The warnings about a run: compression, doubtful stability, reactions out of balance.
+/// The warnings about a run: a lattice of another ν, compression, doubtful stability, reactions out of balance.
 pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
     let mut all = Vec::new();
+    if !study.lattice.area_term {
+        all.extend(mass_spring::warning(&*study.problem.law));
+    }
     all.extend(compression(study, results));
     all.extend(instability(results));
     all.extend(imbalance(results));

@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Vector4};
 
 use super::problem::Specimen;
 use super::results::models::Models;
+use crate::mass_spring;
 use crate::material::Card;
 use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
@@ -25,7 +26,8 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     let compression = wrinkling::warning(&*specimen.problem.law, mesh, loads());
     let strained = loads().map(|(load, u)| (load, Strained::new(&specimen.card, mesh, u)));
     let strained: Vec<_> = strained.collect();
-    let mut all: Vec<String> = compression.into_iter().collect();
+    let lattice = mass_spring::warning(&*specimen.problem.law);
+    let mut all: Vec<String> = lattice.into_iter().chain(compression).collect();
     all.extend(beyond(&specimen.card, &strained));
     all.extend(unstable(&specimen.card, &strained));
     all

@@ -1,0 +1,116 @@
+//! The formulas of textbooks, by principal stretches.
+
+use super::*;
+use crate::material::volume::lame_modulus;
+
+/// ∂W/∂λᵢ of a body by its principal stretches, in MPa.
+pub type Principal = Box<dyn Fn([f64; 3]) -> [f64; 3]>;
+
+/// The textbook's stress of the energies that are sums of one function of each stretch and one of J.
+fn separable(
+    of_stretch: impl Fn(f64) -> f64 + 'static,
+    of_volume: impl Fn(f64) -> f64 + 'static,
+) -> Principal {
+    Box::new(move |stretches| {
+        let j: f64 = stretches.iter().product();
+        stretches.map(|stretch| of_stretch(stretch) + of_volume(j) * j / stretch)
+    })
+}
+
+/// Textbook formulas of all laws of [`samples::CHANGING_VOLUME`] and of a split law.
+pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
+    let law = |name: &str| {
+        let cards = samples::changing_volume();
+        let card = cards.into_iter().find(|card| card.name == name);
+        card.expect("a sample").law
+    };
+    let foam = |terms: &'static [[f64; 3]]| -> Principal {
+        separable(
+            move |l| {
+                terms
+                    .iter()
+                    .map(|[mu, alpha, _]| 2.0 * mu / alpha * l.powf(alpha - 1.0))
+                    .sum()
+            },
+            move |j| {
+                let term = |[mu, alpha, nu]: &[f64; 3]| {
+                    -2.0 * mu / alpha * j.powf(-alpha * nu / (1.0 - 2.0 * nu) - 1.0)
+                };
+                terms.iter().map(term).sum()
+            },
+        )
+    };
+    let (mu, simo, ciarlet) = (0.05, lame_modulus(0.05, 0.3), lame_modulus(0.05, 0.4));
+    let kirchhoff = lame_modulus(0.05, 0.15);
+    let logarithmic = Volume {
+        bulk_modulus: 0.2,
+        energy: VolumeEnergy::Logarithmic,
+        plane: PlaneState::Stress,
+    };
+    let split = Arc::new(crate::material::NeoHooke { c10: 0.5 * mu }).with_volume(logarithmic);
+    vec![
+        (
+            "neo-hooke-simo-pister",
+            law("neo-hooke-simo-pister"),
+            separable(move |l| mu * l, move |j| (simo * j.ln() - mu) / j),
+        ),
+        (
+            "neo-hooke-ciarlet",
+            law("neo-hooke-ciarlet"),
+            separable(
+                move |l| mu * l,
+                move |j| 0.5 * ciarlet * (j - 1.0 / j) - mu / j,
+            ),
+        ),
+        (
+            "blatz-ko",
+            law("blatz-ko"),
+            separable(
+                move |l| mu * (0.3 * l - 0.7 * l.powi(-3)),
+                move |j| mu * (0.7 - 0.3 * j.powi(-2)),
+            ),
+        ),
+        (
+            "ogden-hill-1",
+            law("ogden-hill-1"),
+            foam(&[[0.05, 3.5, 0.0]]),
+        ),
+        (
+            "ogden-hill-2",
+            law("ogden-hill-2"),
+            foam(&[[0.04, 4.0, 0.1], [0.01, -1.5, 0.4]]),
+        ),
+        (
+            "ogden-hill-3",
+            law("ogden-hill-3"),
+            foam(&[[0.04, 1.3, 0.45], [0.002, 5.0, 0.2], [0.01, -2.5, -0.1]]),
+        ),
+        (
+            "saint-venant-kirchhoff",
+            law("saint-venant-kirchhoff"),
+            Box::new(move |stretches| {
+                let strains = stretches.map(|stretch| 0.5 * (stretch * stretch - 1.0));
+                let trace: f64 = strains.iter().sum();
+                [0, 1, 2].map(|i| stretches[i] * (kirchhoff * trace + 2.0 * mu * strains[i]))
+            }),
+        ),
+        (
+            "linear-elastic",
+            law("linear-elastic"),
+            Box::new(move |stretches| {
+                let trace: f64 = stretches.iter().sum::<f64>() - 3.0;
+                stretches.map(|stretch| simo * trace + 2.0 * mu * (stretch - 1.0))
+            }),
+        ),
+        (
+            "neo-hooke, logarithmic",
+            split.expect("a law of invariants"),
+            Box::new(move |stretches| {
+                let j: f64 = stretches.iter().product();
+                let first: f64 = stretches.iter().map(|l| l * l).sum();
+                let scale = mu * j.powf(-2.0 / 3.0);
+                stretches.map(|l| scale * (l - first / (3.0 * l)) + 0.2 * j.ln() / l)
+            }),
+        ),
+    ]
+}

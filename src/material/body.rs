@@ -1,0 +1,361 @@
+//! Sheets made of an isotropic body that changes its volume.
+//!
+//! A law of such a body is a function of three numbers of a sheet's deformation, which are all zero at rest:
+//!
+//! ```text
+//! W(a, z, b),   a = ln J,   z = (tr C − 2J)/(2J) = cosh(ln λ₁/λ₂) − 1,   b = ln λ₃           [MPa = mJ/mm³]
+//! ```
+//!
+//! C = FᵀF and J = det F are those of the plane; J₃ = e^(a + b). In plane stress the thickness follows from the free surface, and is
+//! condensed; what is left is a law of a and z:
+//!
+//! ```text
+//! λ₃ P₃₃ = W_b = 0,   W̄_ij = W_ij − W_ib W_jb/W_bb                                          [MPa]
+//! ```
+//!
+//! In plane strain b = 0. [`Measures`] has stress and tangent of a law of a and z.
+//!
+//! Derivatives by a and b are sums of terms that vanish at rest, so no digit is lost at strains of 1e-8. At small strain, W_bb =
+//! κ + 4/3 μ and W_z = μ.
+//!
+//! # References
+//! J. C. Simo, R. L. Taylor, Comput. Methods Appl. Mech. Eng. 85, 273 (1991), doi:10.1016/0045-7825(91)90100-K
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use pulp::{Arch, NullaryFnOnce};
+
+use super::curve;
+use super::law::{HyperelasticLaw, TensionResponse, lower_triangle};
+use super::logarithm::logarithm_of_one_plus;
+use super::measures::{Derivatives, Measures};
+use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
+
+mod thickness;
+
+/// How a body is stretched: a, z and b.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyStretches {
+    /// a = ln J.
+    pub area: f64,
+    /// z = (tr C − 2J)/(2J).
+    pub shape: f64,
+    /// b = ln λ₃.
+    pub thickness: f64,
+}
+
+/// The energy per reference volume of a body and its derivatives by a, z and b, in MPa.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BodyDerivatives {
+    /// W.
+    pub energy: f64,
+    /// W_a.
+    pub a: f64,
+    /// W_z.
+    pub z: f64,
+    /// W_b.
+    pub b: f64,
+    /// W_aa.
+    pub aa: f64,
+    /// W_az.
+    pub az: f64,
+    /// W_ab.
+    pub ab: f64,
+    /// W_zz.
+    pub zz: f64,
+    /// W_zb.
+    pub zb: f64,
+    /// W_bb.
+    pub bb: f64,
+}
+
+/// An isotropic law of a body that changes its volume. [`BodySheet`] is the sheet made of it.
+pub trait BodyLaw: Clone + Send + Sync + Debug {
+    /// W and its derivatives.
+    fn evaluate(&self, at: BodyStretches) -> BodyDerivatives;
+}
+
+/// A sheet of a body that changes its volume, in plane stress or in plane strain.
+#[derive(Clone, Debug)]
+pub struct BodySheet<L> {
+    law: L,
+    plane: PlaneState,
+    /// −W_ab/W_bb at rest: ln λ₃ over ln J at small strain.
+    contraction: f64,
+}
+
+impl<L: BodyLaw> BodySheet<L> {
+    /// A sheet of a law.
+    pub fn new(law: L, plane: PlaneState) -> Self {
+        let rest = law.evaluate(BodyStretches::default());
+        Self {
+            law,
+            plane,
+            contraction: -rest.ab / rest.bb,
+        }
+    }
+
+    /// W and its derivatives where the sheet's surfaces are as its plane state wants them, with b.
+    #[inline(always)]
+    fn at<const N: usize>(&self, area: &[f64; N], shape: &[f64; N]) -> [f64; N] {
+        match self.plane {
+            PlaneState::Stress => self.free_surface(area, shape),
+            PlaneState::Strain => [0.0; N],
+        }
+    }
+
+    #[inline(always)]
+    fn evaluated(&self, area: f64, shape: f64, thickness: f64) -> BodyDerivatives {
+        self.law.evaluate(BodyStretches {
+            area,
+            shape,
+            thickness,
+        })
+    }
+
+    fn state(&self, kinematics: &Kinematics) -> (Measures, f64, BodyDerivatives) {
+        let measures = Measures::new(kinematics);
+        let area = logarithm_of_one_plus(kinematics.area_change);
+        let [thickness] = self.at(&[area], &[measures.z]);
+        (
+            measures,
+            thickness,
+            self.evaluated(area, measures.z, thickness),
+        )
+    }
+
+    /// The law of a and z that is left.
+    #[inline(always)]
+    fn condensed(&self, w: &BodyDerivatives) -> Derivatives {
+        let plain = Derivatives {
+            energy: w.energy,
+            m: w.a,
+            z: w.z,
+            mm: w.aa,
+            mz: w.az,
+            zz: w.zz,
+        };
+        match self.plane {
+            PlaneState::Stress => Derivatives {
+                mm: w.aa - w.ab * w.ab / w.bb,
+                mz: w.az - w.ab * w.zb / w.bb,
+                zz: w.zz - w.zb * w.zb / w.bb,
+                ..plain
+            },
+            PlaneState::Strain => plain,
+        }
+    }
+}
+
+impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+        let (measures, _, w) = self.state(kinematics);
+        (w.energy, measures.stress(&self.condensed(&w)))
+    }
+
+    fn response(&self, kinematics: &Kinematics) -> SheetResponse {
+        let (measures, _, w) = self.state(kinematics);
+        measures.response(&self.condensed(&w))
+    }
+
+    fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
+        Arch::new().dispatch(StressLoop {
+            sheet: self,
+            gradients,
+            stresses,
+        })
+    }
+
+    fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
+        Arch::new().dispatch(TangentLoop {
+            sheet: self,
+            gradients,
+            tangents,
+        })
+    }
+
+    fn tension(&self, _: [f64; 2], strain: f64) -> TensionResponse {
+        curve::tension(&|kinematics| self.response(kinematics), strain)
+    }
+
+    fn volume_ratio(&self, kinematics: &Kinematics) -> f64 {
+        kinematics.area_ratio() * self.thickness_stretch(kinematics)
+    }
+
+    fn thickness_stretch(&self, kinematics: &Kinematics) -> f64 {
+        self.state(kinematics).1.exp()
+    }
+
+    fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
+        match self.plane {
+            PlaneState::Stress => {
+                let (measures, thickness, w) = self.state(kinematics);
+                -thickness.exp() / w.bb * (w.ab * measures.dm + w.zb * measures.dz)
+            }
+            PlaneState::Strain => Gradient::zeros(),
+        }
+    }
+
+    fn thickness_stress(&self, kinematics: &Kinematics) -> f64 {
+        match self.plane {
+            PlaneState::Stress => 0.0,
+            PlaneState::Strain => self.state(kinematics).2.b / kinematics.area_ratio(),
+        }
+    }
+
+    fn plane_state(&self) -> PlaneState {
+        self.plane
+    }
+
+    fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
+        Some(Arc::new(Self {
+            plane: PlaneState::Strain,
+            ..self.clone()
+        }))
+    }
+
+    /// κ = W_bb − 4/3 μ at rest.
+    fn bulk_modulus(&self) -> Option<f64> {
+        let rest = self.evaluated(0.0, 0.0, 0.0);
+        Some(rest.bb - 4.0 / 3.0 * rest.z)
+    }
+
+    /// μ₀ = W_z at rest.
+    fn shear_modulus(&self) -> f64 {
+        self.evaluated(0.0, 0.0, 0.0).z
+    }
+}
+
+/// Points that find their thickness together.
+const LANES: usize = 16;
+
+/// Some points of a loop; behind the last one rest.
+struct Lanes {
+    gradients: [[f64; LANES]; 4],
+    area: [f64; LANES],
+    thickness: [f64; LANES],
+    admissible: bool,
+}
+
+impl Lanes {
+    #[inline(always)]
+    fn new<L: BodyLaw>(
+        sheet: &BodySheet<L>,
+        all: &[&[f64]; 4],
+        first: usize,
+        count: usize,
+    ) -> Self {
+        let mut gradients = [[0.0; LANES]; 4];
+        for (own, component) in gradients.iter_mut().zip(all) {
+            own[..count].copy_from_slice(&component[first..first + count]);
+        }
+        let [mut area, mut shape] = [[0.0; LANES]; 2];
+        let mut inverted = 0_u64;
+        for lane in 0..LANES {
+            let kinematics = Kinematics::unchecked(&gradients.map(|own| own[lane]).into());
+            inverted |= u64::from(!kinematics.is_admissible());
+            area[lane] = logarithm_of_one_plus(kinematics.area_change);
+            shape[lane] = Measures::new(&kinematics).z;
+        }
+        let admissible = inverted == 0;
+        let thickness = match admissible {
+            true => sheet.at(&area, &shape),
+            false => [f64::NAN; LANES],
+        };
+        Self {
+            gradients,
+            area,
+            thickness,
+            admissible,
+        }
+    }
+
+    #[inline(always)]
+    fn point<L: BodyLaw>(&self, sheet: &BodySheet<L>, lane: usize) -> (Measures, Derivatives) {
+        let h = self.gradients.map(|own| own[lane]).into();
+        let measures = Measures::new(&Kinematics::unchecked(&h));
+        let w = sheet.evaluated(self.area[lane], measures.z, self.thickness[lane]);
+        (measures, sheet.condensed(&w))
+    }
+}
+
+/// Straight-line code for each point, as for laws that keep their volume: no operation is fused with another, so that all
+/// machines give the same bits.
+struct StressLoop<'a, L> {
+    sheet: &'a BodySheet<L>,
+    gradients: [&'a [f64]; 4],
+    stresses: [&'a mut [f64]; 4],
+}
+
+impl<L: BodyLaw> NullaryFnOnce for StressLoop<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(mut self) -> bool {
+        let points = self.gradients[0].len();
+        for first in (0..points).step_by(LANES) {
+            let count = LANES.min(points - first);
+            let lanes = Lanes::new(self.sheet, &self.gradients, first, count);
+            if !lanes.admissible {
+                return false;
+            }
+            let mut found = [[0.0; LANES]; 4];
+            for lane in 0..LANES {
+                let (measures, w) = lanes.point(self.sheet, lane);
+                let stress = measures.stress(&w);
+                for component in 0..4 {
+                    found[component][lane] = stress[component];
+                }
+            }
+            store(&mut self.stresses, &found, first, count);
+        }
+        true
+    }
+}
+
+/// As [`StressLoop`].
+struct TangentLoop<'a, L> {
+    sheet: &'a BodySheet<L>,
+    gradients: [&'a [f64]; 4],
+    tangents: [&'a mut [f64]; 10],
+}
+
+impl<L: BodyLaw> NullaryFnOnce for TangentLoop<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(mut self) -> bool {
+        let points = self.gradients[0].len();
+        for first in (0..points).step_by(LANES) {
+            let count = LANES.min(points - first);
+            let lanes = Lanes::new(self.sheet, &self.gradients, first, count);
+            if !lanes.admissible {
+                return false;
+            }
+            let mut found = [[0.0; LANES]; 10];
+            for lane in 0..LANES {
+                let (measures, w) = lanes.point(self.sheet, lane);
+                let lower = lower_triangle(&measures.response(&w).tangent);
+                for component in 0..10 {
+                    found[component][lane] = lower[component];
+                }
+            }
+            store(&mut self.tangents, &found, first, count);
+        }
+        true
+    }
+}
+
+/// Copies what was found at `count` points to the places from `first` on.
+#[inline(always)]
+fn store<const N: usize>(
+    all: &mut [&mut [f64]; N],
+    found: &[[f64; LANES]; N],
+    first: usize,
+    count: usize,
+) {
+    for (all, found) in all.iter_mut().zip(found) {
+        all[first..first + count].copy_from_slice(&found[..count]);
+    }
+}

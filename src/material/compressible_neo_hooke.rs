@@ -1,0 +1,93 @@
+//! Neo-Hooke laws of bodies that change their volume.
+
+use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
+use super::exponential::second_quotient;
+use super::law::HyperelasticLaw;
+use super::parameters::Parameters;
+use super::sheet::PlaneState;
+use super::volume::{VolumeEnergy, lame_modulus};
+
+/// Neo-Hooke laws whose energy is not split into one of shape and one of volume.
+///
+/// ```text
+/// W = ½ μ (I₁ − 3 − 2 ln J₃) + Λ U(J₃),   I₁ = λ₁² + λ₂² + λ₃²,   J₃ = λ₁ λ₂ λ₃    [MPa = N·mm/mm³]
+/// neo-hooke-simo-pister   U = ½ ln² J₃
+/// neo-hooke-ciarlet       U = ¼ (J₃² − 1 − 2 ln J₃)
+/// ```
+///
+/// | symbol | card key | unit | admissible | meaning |
+/// |---|---|---|---|---|
+/// | μ | `mu` | MPa | > 0 | initial shear modulus |
+/// | ν | `poisson_ratio` | – | −0.9 … 0.4999 | initial Poisson's ratio; Λ = 2 μ ν/(1 − 2 ν) |
+///
+/// The third variant in use, ½ μ (Ī₁ − 3) + ½ κ ln² J₃ with the invariant of the shape alone, is the law `neo-hooke` with the volume
+/// energy `logarithmic`.
+///
+/// **Limits.** ν → ½ in plane stress: neo-Hooke with C₁₀ = ½ μ. Small strain: μ and Λ are Lamé's.
+/// **Not covered.** Above J₃ = e the logarithmic energy of Simo and Pister is not convex in J₃: its pressure falls as the body
+/// swells on.
+///
+/// # References
+/// J. C. Simo, K. S. Pister, Comput. Methods Appl. Mech. Eng. 46, 201 (1984), doi:10.1016/0045-7825(84)90062-8;
+/// P. G. Ciarlet, Mathematical Elasticity I, North-Holland (1988), section 4.10
+#[derive(Clone, Copy, Debug)]
+pub struct CompressibleNeoHooke {
+    /// μ in MPa.
+    pub shear_modulus: f64,
+    /// Lamé's first modulus Λ in MPa.
+    pub lame_modulus: f64,
+    /// U, with Λ for κ.
+    pub energy: VolumeEnergy,
+}
+
+impl CompressibleNeoHooke {
+    /// Reads the parameters of a card of the law with the energy of Simo and Pister.
+    pub fn simo_pister_from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
+        Self::from_card(parameters, VolumeEnergy::Logarithmic)
+    }
+
+    /// Reads the parameters of a card of the law with the energy of Ciarlet.
+    pub fn ciarlet_from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
+        Self::from_card(parameters, VolumeEnergy::SimoTaylor)
+    }
+
+    fn from_card(parameters: &Parameters, energy: VolumeEnergy) -> Box<dyn HyperelasticLaw> {
+        let [shear_modulus, poisson_ratio] = parameters.shear_modulus_and_ratio();
+        let law = Self {
+            shear_modulus,
+            lame_modulus: lame_modulus(shear_modulus, poisson_ratio),
+            energy,
+        };
+        Box::new(BodySheet::new(law, PlaneState::Stress))
+    }
+}
+
+impl BodyLaw for CompressibleNeoHooke {
+    /// ```text
+    /// ½ (I₁ − 3 − 2 ln J₃) = J z + (J − 1 − a) + ½ (λ₃² − 1 − 2 b)
+    /// ```
+    #[inline(always)]
+    fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
+        let (a, z, b) = (at.area, at.shape, at.thickness);
+        let mu = self.shear_modulus;
+        let area = a * a * second_quotient(a);
+        let across = 2.0 * b * b * second_quotient(2.0 * b);
+        // J − 1 and λ₃² − 1
+        let (change, square_change) = (a + area, 2.0 * (b + across));
+        let ratio = 1.0 + change;
+        let lame = self.lame_modulus;
+        let [u, du, ddu] = self.energy.derivatives(a + b).map(|u| lame * u);
+        BodyDerivatives {
+            energy: mu * (ratio * z + area + across) + u,
+            a: mu * (ratio * z + change) + du,
+            z: mu * ratio,
+            b: mu * square_change + du,
+            aa: mu * ratio * (1.0 + z) + ddu,
+            az: mu * ratio,
+            ab: ddu,
+            zz: 0.0,
+            zb: 0.0,
+            bb: 2.0 * mu * (1.0 + square_change) + ddu,
+        }
+    }
+}

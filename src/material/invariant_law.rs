@@ -1,0 +1,198 @@
+//! Laws of the first two invariants.
+
+use std::sync::Arc;
+
+use pulp::{Arch, NullaryFnOnce};
+
+use super::code::{Code, CodeLaw};
+use super::exponential::exponential_less_one;
+use super::flory::{self, IsochoricLaw};
+use super::invariants::{EnergyDerivatives, Invariants};
+use super::law::{HyperelasticLaw, TensionResponse, lower_triangle};
+use super::measures::Derivatives;
+use super::sheet::{Gradient, Kinematics, SheetResponse};
+use super::volume::Volume;
+
+/// An isotropic law Ψ(I₁, I₂).
+///
+/// A law whose Ψ₁₁ is unbounded at rest (as Marlow's) returns zero for it there: every use multiplies it
+/// by a factor that vanishes faster.
+pub trait InvariantLaw: Send + Sync + std::fmt::Debug {
+    /// Ψ and its derivatives at the given invariants.
+    fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives;
+
+    /// As [`HyperelasticLaw::in_code`].
+    fn in_code(&self, _code: Code, _bulk_modulus: f64) -> Option<CodeLaw> {
+        None
+    }
+}
+
+impl<L: InvariantLaw> HyperelasticLaw for L {
+    fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
+        Arch::new().dispatch(StressLoop {
+            law: self,
+            gradients,
+            stresses,
+        })
+    }
+
+    fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
+        Arch::new().dispatch(TangentLoop {
+            law: self,
+            gradients,
+            tangents,
+        })
+    }
+
+    fn with_volume(self: Arc<Self>, volume: Volume) -> Option<Arc<dyn HyperelasticLaw>>
+    where
+        Self: 'static,
+    {
+        Some(flory::sheet(self, volume))
+    }
+
+    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+        kinematics.stress(&self.evaluate(kinematics.invariants))
+    }
+
+    fn response(&self, kinematics: &Kinematics) -> SheetResponse {
+        kinematics.response(&self.evaluate(kinematics.invariants))
+    }
+
+    /// ```text
+    /// P = 2 (Ψ₁ + Ψ₂/λ) (λ − λ⁻²),   I₁ = λ² + 2/λ,   I₂ = 2λ + λ⁻²
+    /// ```
+    fn tension(&self, _: [f64; 2], strain: f64) -> TensionResponse {
+        let x = strain;
+        let lambda = 1.0 + x;
+        let cubic = 3.0 + 3.0 * x + x * x;
+        let i1_minus_3 = x * x * (3.0 + x) / lambda;
+        let i2_minus_3 = x * x * (3.0 + 2.0 * x) / (lambda * lambda);
+        let w = self.evaluate(Invariants {
+            i1_minus_3,
+            i2_minus_3,
+        });
+        // λ − λ⁻² and its derivative; dI₁/dλ = 2 h, dI₂/dλ = 2 h/λ.
+        let h = x * cubic / (lambda * lambda);
+        let dh = 1.0 + 2.0 / lambda.powi(3);
+        let secant = w.d1 + w.d2 / lambda;
+        let secant_slope = 2.0 * h * (w.d11 + 2.0 * w.d12 / lambda + w.d22 / (lambda * lambda))
+            - w.d2 / (lambda * lambda);
+        TensionResponse {
+            energy: w.energy,
+            nominal_stress: 2.0 * secant * h,
+            slope: 2.0 * (secant * dh + secant_slope * h),
+        }
+    }
+
+    fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {
+        InvariantLaw::in_code(self, code, bulk_modulus)
+    }
+
+    /// μ₀ = 2 (Ψ₁ + Ψ₂) at rest.
+    fn shear_modulus(&self) -> f64 {
+        let rest = self.evaluate(Invariants {
+            i1_minus_3: 0.0,
+            i2_minus_3: 0.0,
+        });
+        2.0 * (rest.d1 + rest.d2)
+    }
+
+    fn youngs_modulus(&self) -> f64 {
+        3.0 * self.shear_modulus()
+    }
+}
+
+/// With x = e^s:
+///
+/// ```text
+/// Ī₁ − 3 = 2 x z + (x − 1)² (2 x + 1)/x²,   Ī₂ − 3 = 2 z/x + (x − 1)² (x + 2)/x
+/// ```
+impl<L: InvariantLaw> IsochoricLaw for L {
+    #[inline(always)]
+    fn at(&self, s: f64, z: f64) -> Derivatives {
+        let d = exponential_less_one(s);
+        let x = 1.0 + d;
+        let square = x * x;
+        // x − x⁻²
+        let r = d * (1.0 + x + square) / square;
+        let w = self.evaluate(Invariants {
+            i1_minus_3: 2.0 * x * z + d * d * (2.0 * x + 1.0) / square,
+            i2_minus_3: 2.0 * z / x + d * d * (x + 2.0) / x,
+        });
+        let [s1, z1] = [2.0 * (x * z + r), 2.0 * x];
+        let [s2, z2] = [2.0 * (x * r - z / x), 2.0 / x];
+        let ss1 = z1 * (1.0 + z) + 4.0 / square;
+        let ss2 = z2 * (1.0 + z) + 4.0 * square;
+        Derivatives {
+            energy: w.energy,
+            m: w.d1 * s1 + w.d2 * s2,
+            z: w.d1 * z1 + w.d2 * z2,
+            mm: w.d11 * s1 * s1 + 2.0 * w.d12 * s1 * s2 + w.d22 * s2 * s2 + w.d1 * ss1 + w.d2 * ss2,
+            mz: w.d11 * s1 * z1 + w.d12 * (s1 * z2 + s2 * z1) + w.d22 * s2 * z2 + w.d1 * z1
+                - w.d2 * z2,
+            zz: w.d11 * z1 * z1 + 2.0 * w.d12 * z1 * z2 + w.d22 * z2 * z2,
+        }
+    }
+}
+
+/// Straight-line code for each point: the compiler makes one instruction of several points, with the widest
+/// vectors that the machine has. No operation is fused with another, so that all machines give the same bits.
+struct StressLoop<'a, L> {
+    law: &'a L,
+    gradients: [&'a [f64]; 4],
+    stresses: [&'a mut [f64]; 4],
+}
+
+impl<L: InvariantLaw> NullaryFnOnce for StressLoop<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let points = self.gradients[0].len();
+        let [h11, h12, h21, h22] = self.gradients.map(|component| &component[..points]);
+        let [p11, p12, p21, p22] = self.stresses.map(|component| &mut component[..points]);
+        let mut inverted = 0_u64;
+        for point in 0..points {
+            let h = Gradient::new(h11[point], h12[point], h21[point], h22[point]);
+            let kinematics = Kinematics::unchecked(&h);
+            let (_, p) = kinematics.stress(&self.law.evaluate(kinematics.invariants));
+            (p11[point], p12[point]) = (p[0], p[1]);
+            (p21[point], p22[point]) = (p[2], p[3]);
+            inverted |= u64::from(!kinematics.is_admissible());
+        }
+        inverted == 0
+    }
+}
+
+/// As [`StressLoop`].
+struct TangentLoop<'a, L> {
+    law: &'a L,
+    gradients: [&'a [f64]; 4],
+    tangents: [&'a mut [f64]; 10],
+}
+
+impl<L: InvariantLaw> NullaryFnOnce for TangentLoop<'_, L> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let points = self.gradients[0].len();
+        let [h11, h12, h21, h22] = self.gradients.map(|component| &component[..points]);
+        let [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] =
+            self.tangents.map(|component| &mut component[..points]);
+        let mut inverted = 0_u64;
+        for point in 0..points {
+            let h = Gradient::new(h11[point], h12[point], h21[point], h22[point]);
+            let kinematics = Kinematics::unchecked(&h);
+            let response = kinematics.response(&self.law.evaluate(kinematics.invariants));
+            let lower = lower_triangle(&response.tangent);
+            (a0[point], a1[point], a2[point]) = (lower[0], lower[1], lower[2]);
+            (a3[point], a4[point], a5[point]) = (lower[3], lower[4], lower[5]);
+            (a6[point], a7[point]) = (lower[6], lower[7]);
+            (a8[point], a9[point]) = (lower[8], lower[9]);
+            inverted |= u64::from(!kinematics.is_admissible());
+        }
+        inverted == 0
+    }
+}

@@ -1,0 +1,89 @@
+//! Area and shape of a sheet's deformation, and the response of a law of them.
+//!
+//! ```text
+//! m = ln J,   z = (tr C − 2J)/(2J) = cosh(ln λ₁/λ₂) − 1                                      [–]
+//! P = Ψ_m ∂m + Ψ_z ∂z,   ∂m = cof F/J,   ∂z = (F − cof F − z cof F)/J                      [MPa]
+//! ∂²m = 𝔼/J − ∂m ⊗ ∂m,   ∂²z = (𝟙 − 𝔼 − z 𝔼 − ∂z ⊗ cof F − cof F ⊗ ∂z)/J,   𝔼 = ∂ cof F/∂F
+//! ```
+//!
+//! Every isotropic law of a sheet is a function of m and z. Both are smooth where the two stretches are equal, so no eigenvectors
+//! are needed, and tr C − 2J is a sum of squares: no digit is lost near rest.
+
+use nalgebra::Matrix4;
+
+use super::sheet::{Gradient, Kinematics, SheetResponse, cofactor, cofactor_derivative};
+
+/// An energy and its derivatives by m and z.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Derivatives {
+    /// Ψ in mJ/mm³.
+    pub energy: f64,
+    /// Ψ_m in MPa.
+    pub m: f64,
+    /// Ψ_z in MPa.
+    pub z: f64,
+    /// Ψ_mm in MPa.
+    pub mm: f64,
+    /// Ψ_mz in MPa.
+    pub mz: f64,
+    /// Ψ_zz in MPa.
+    pub zz: f64,
+}
+
+/// z, and the derivatives of m and z by F.
+#[derive(Clone, Copy, Debug)]
+pub struct Measures {
+    /// z.
+    pub z: f64,
+    /// ∂m/∂F.
+    pub dm: Gradient,
+    /// ∂z/∂F.
+    pub dz: Gradient,
+    area_ratio: f64,
+    cofactor: Gradient,
+}
+
+impl Measures {
+    /// The measures of a state.
+    #[inline(always)]
+    pub fn new(kinematics: &Kinematics) -> Self {
+        let area_ratio = kinematics.area_ratio();
+        let cofactor = cofactor(&kinematics.deformation_gradient);
+        // Half the squared norm of F − cof F is tr C − 2J.
+        let distortion = &kinematics.distortion;
+        let z = distortion.norm_squared() / (4.0 * area_ratio);
+        Self {
+            z,
+            dm: cofactor / area_ratio,
+            dz: (distortion - z * cofactor) / area_ratio,
+            area_ratio,
+            cofactor,
+        }
+    }
+
+    /// P in MPa.
+    #[inline(always)]
+    pub fn stress(&self, w: &Derivatives) -> Gradient {
+        w.m * self.dm + w.z * self.dz
+    }
+
+    /// Energy, stress and tangent.
+    #[inline(always)]
+    pub fn response(&self, w: &Derivatives) -> SheetResponse {
+        let mixed = self.dm * self.dz.transpose();
+        let turned = self.dz * self.cofactor.transpose();
+        let e = cofactor_derivative();
+        let d2m = e / self.area_ratio - self.dm * self.dm.transpose();
+        let d2z = (Matrix4::identity() - e * (1.0 + self.z) - turned - turned.transpose())
+            / self.area_ratio;
+        SheetResponse {
+            energy: w.energy,
+            first_piola_kirchhoff_stress: self.stress(w),
+            tangent: w.mm * self.dm * self.dm.transpose()
+                + w.mz * (mixed + mixed.transpose())
+                + w.zz * self.dz * self.dz.transpose()
+                + w.m * d2m
+                + w.z * d2z,
+        }
+    }
+}
