@@ -36,6 +36,12 @@ pub enum Dimension {
     Acceleration,
     /// Internal unit MPa·s.
     Viscosity,
+    /// Internal unit K.
+    Temperature,
+    /// Internal unit mm³/mol.
+    MolarVolume,
+    /// Internal unit mol/mm³.
+    Concentration,
     /// Internal unit rad.
     Angle,
     /// A ratio, written as a bare number or in percent.
@@ -91,6 +97,13 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("mPa·s", Dimension::Viscosity, 1e-9),
     ("kPa·s", Dimension::Viscosity, 1e-3),
     ("MPa·s", Dimension::Viscosity, 1.0),
+    ("K", Dimension::Temperature, 1.0),
+    ("cm^3/mol", Dimension::MolarVolume, 1e3),
+    ("mm^3/mol", Dimension::MolarVolume, 1.0),
+    ("m^3/mol", Dimension::MolarVolume, 1e9),
+    ("mol/m^3", Dimension::Concentration, 1e-9),
+    ("mol/cm^3", Dimension::Concentration, 1e-3),
+    ("mol/mm^3", Dimension::Concentration, 1.0),
     ("rad", Dimension::Angle, 1.0),
     ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
     ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
@@ -99,7 +112,7 @@ const UNITS: &[(&str, Dimension, f64)] = &[
 
 impl Dimension {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::Length,
         Self::Area,
         Self::Force,
@@ -110,6 +123,9 @@ impl Dimension {
         Self::Frequency,
         Self::Acceleration,
         Self::Viscosity,
+        Self::Temperature,
+        Self::MolarVolume,
+        Self::Concentration,
         Self::Angle,
         Self::Ratio,
     ];
@@ -127,6 +143,9 @@ impl Dimension {
             Self::Frequency => "frequency",
             Self::Acceleration => "acceleration",
             Self::Viscosity => "viscosity",
+            Self::Temperature => "temperature",
+            Self::MolarVolume => "molar volume",
+            Self::Concentration => "concentration",
             Self::Angle => "angle",
             Self::Ratio => "ratio",
         }
@@ -153,6 +172,9 @@ impl Dimension {
             Self::Frequency => "Hz",
             Self::Acceleration => "mm/s^2",
             Self::Viscosity => "MPa·s",
+            Self::Temperature => "K",
+            Self::MolarVolume => "mm^3/mol",
+            Self::Concentration => "mol/mm^3",
             Self::Angle => "rad",
             Self::Ratio => "",
         }
@@ -171,6 +193,9 @@ impl Dimension {
             Self::Frequency => "\"2 Hz\"",
             Self::Acceleration => "\"9.81 m/s^2\"",
             Self::Viscosity => "\"50 Pa·s\"",
+            Self::Temperature => "\"298.15 K\"",
+            Self::MolarVolume => "\"18.07 cm^3/mol\"",
+            Self::Concentration => "\"20 mol/m^3\"",
             Self::Angle => "\"30 deg\"",
             Self::Ratio => "0.5 or \"50 %\"",
         }

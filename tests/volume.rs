@@ -227,10 +227,17 @@ fn laws_of_volume_change_run_in_studies() {
                 4,
                 "{law} {sheet}: {printed}"
             );
-            assert!(printed.contains("ν = ⅓"), "{law} {sheet}: {printed}");
             let report = folder.path().join("output/small/report.json");
             let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
             assert!(report["material"]["bulk_modulus_MPa"].as_f64().unwrap() > 0.0);
+            let warnings = report["warnings"].to_string();
+            // ν/(1 − ν) of ν = ¼ is that of the springs.
+            let equal = (law, sheet) == ("blatz-ko", "plane-strain");
+            assert_eq!(
+                !warnings.contains("ν = ⅓"),
+                equal,
+                "{law} {sheet}: {warnings}"
+            );
         }
     }
 }

@@ -234,6 +234,10 @@ impl HyperelasticLaw for Watched {
         Arc::clone(&self.law).with_volume(volume)
     }
 
+    fn statements(&self) -> Vec<(&'static str, String)> {
+        self.law.statements()
+    }
+
     fn is_objective(&self) -> bool {
         self.law.is_objective()
     }

@@ -115,10 +115,10 @@ fn in_time(card: &Card) -> String {
     }
     if let Some(modulus) = card.bulk_modulus() {
         let energy = match card.volume {
-            Some(volume) => volume.energy.name(),
-            None => "of the law itself",
+            Some(volume) => format!("{} energy", volume.energy.name()),
+            None => "of the law itself".to_owned(),
         };
-        text += &format!("  volume     bulk modulus κ = {modulus:.6} MPa, energy {energy}\n");
+        text += &format!("  volume     bulk modulus κ = {modulus:.6} MPa, {energy}\n");
     }
     let viscosity = &card.viscosity;
     if viscosity.shear_viscosity > 0.0 {
@@ -151,6 +151,9 @@ pub fn card(card: &Card) -> String {
     }
     for (key, name) in &card.choices {
         text += &format!("  parameter  {key} = {name}\n");
+    }
+    for (name, statement) in card.law.statements() {
+        text += &format!("  {name}: {statement}\n");
     }
     text += &format!("  moduli     {}\n", moduli(card));
     text += &in_time(card);

@@ -74,6 +74,11 @@ pub struct BodyDerivatives {
 pub trait BodyLaw: Clone + Send + Sync + Debug {
     /// W and its derivatives.
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives;
+
+    /// As [`HyperelasticLaw::statements`].
+    fn statements(&self) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
 }
 
 /// A sheet of a body that changes its volume, in plane stress or in plane strain.
@@ -215,6 +220,10 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
         }))
     }
 
+    fn statements(&self) -> Vec<(&'static str, String)> {
+        self.law.statements()
+    }
+
     /// κ = W_bb − 4/3 μ at rest.
     fn bulk_modulus(&self) -> Option<f64> {
         let rest = self.evaluated(0.0, 0.0, 0.0);
@@ -300,13 +309,10 @@ impl<L: BodyLaw> NullaryFnOnce for StressLoop<'_, L> {
             if !lanes.admissible {
                 return false;
             }
-            let mut found = [[0.0; LANES]; 4];
-            for lane in 0..LANES {
+            let mut found = [[0.0; 4]; LANES];
+            for (lane, own) in found.iter_mut().enumerate() {
                 let (measures, w) = lanes.point(self.sheet, lane);
-                let stress = measures.stress(&w);
-                for component in 0..4 {
-                    found[component][lane] = stress[component];
-                }
+                *own = measures.stress(&w).into();
             }
             store(&mut self.stresses, &found, first, count);
         }
@@ -333,13 +339,10 @@ impl<L: BodyLaw> NullaryFnOnce for TangentLoop<'_, L> {
             if !lanes.admissible {
                 return false;
             }
-            let mut found = [[0.0; LANES]; 10];
-            for lane in 0..LANES {
+            let mut found = [[0.0; 10]; LANES];
+            for (lane, own) in found.iter_mut().enumerate() {
                 let (measures, w) = lanes.point(self.sheet, lane);
-                let lower = lower_triangle(&measures.response(&w).tangent);
-                for component in 0..10 {
-                    found[component][lane] = lower[component];
-                }
+                *own = lower_triangle(&measures.response(&w).tangent);
             }
             store(&mut self.tangents, &found, first, count);
         }
@@ -351,11 +354,13 @@ impl<L: BodyLaw> NullaryFnOnce for TangentLoop<'_, L> {
 #[inline(always)]
 fn store<const N: usize>(
     all: &mut [&mut [f64]; N],
-    found: &[[f64; LANES]; N],
+    found: &[[f64; N]; LANES],
     first: usize,
     count: usize,
 ) {
-    for (all, found) in all.iter_mut().zip(found) {
-        all[first..first + count].copy_from_slice(&found[..count]);
+    for (component, all) in all.iter_mut().enumerate() {
+        for (place, own) in all[first..first + count].iter_mut().zip(found) {
+            *place = own[component];
+        }
     }
 }

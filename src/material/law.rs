@@ -135,6 +135,11 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         true
     }
 
+    /// What follows from the parameters and deserves to be read beside them: names and sentences.
+    fn statements(&self) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+
     /// Whether all directions of the sheet are alike.
     fn is_isotropic(&self) -> bool {
         true

@@ -256,6 +256,29 @@ impl<'a> Parameters<'a> {
         chosen.1
     }
 
+    /// A known condition of the material in its internal unit, which no fit looks for: what the card says, or `standard` where it
+    /// says nothing; a standard that is not a number must be said by a card.
+    pub fn condition(&self, key: &'static str, dimension: Dimension, standard: f64) -> f64 {
+        let value = match &self.origin {
+            Origin::Card(section) if section.has(key) || standard.is_nan() => match dimension {
+                Dimension::Ratio => section.number(key, Bound::Any),
+                _ => section.quantity(key, dimension, Bound::Positive),
+            },
+            _ => standard,
+        };
+        let unit = dimension.internal_unit();
+        let told = format!("{value} {unit}");
+        self.choices
+            .borrow_mut()
+            .push((key, told.trim_end().to_owned()));
+        value
+    }
+
+    /// Whether a card states a key.
+    pub fn states(&self, key: &'static str) -> bool {
+        matches!(&self.origin, Origin::Card(section) if section.has(key))
+    }
+
     /// A stress that a card may leave out and that does not act on the law.
     pub fn remark(&self, key: &'static str) {
         if let Origin::Card(section) = &self.origin

@@ -5,8 +5,8 @@ use super::marlow::{ExponentialCurve, TableCurve};
 use super::parameters::{CardEntries, Parameters, StrainMeasure, StressMeasure};
 use super::{
     ArrudaBoyce, CompressibleNeoHooke, FungDemiray, Gent, HolzapfelGasserOgden, LinearElastic,
-    MooneyRivlin, NeoHooke, Ogden, OgdenHill, Polynomial, SaintVenantKirchhoff, VerondaWestmann,
-    Yeoh,
+    MooneyRivlin, NeoHooke, Network, Ogden, OgdenHill, Polynomial, SaintVenantKirchhoff,
+    VerondaWestmann, Yeoh,
 };
 
 /// A file of test data by its stem.
@@ -180,6 +180,11 @@ pub const LAWS: &[Law] = &[
         name: "linear-elastic",
         formula: "W = Λ/2 (tr ε)² + μ ε : ε, ε = (H + Hᵀ)/2, Λ = 2μν/(1 − 2ν)",
         read: LinearElastic::from_card,
+    },
+    Law {
+        name: "flory-rehner",
+        formula: "W/φ = G₀/(2φ₀) (λ₁² + λ₂² + λ₃² − 3 − B ln J₀) + RT/V₁ ((Q − 1) ln(1 − 1/Q) + χ (1 − 1/Q) − Q ln a)",
+        read: Network::from_card,
     },
 ];
 

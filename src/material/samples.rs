@@ -84,6 +84,10 @@ pub const CHANGING_VOLUME: &[(&str, &str)] = &[
         "mu = \"0.05 MPa\"\npoisson_ratio = 0.15",
     ),
     ("linear-elastic", "mu = \"0.05 MPa\"\npoisson_ratio = 0.3"),
+    (
+        "flory-rehner",
+        "modulus = \"0.02 MPa\"\nchi = 0.45\npreparation_fraction = 0.1\nchains = \"affine\"",
+    ),
 ];
 
 /// A card of a law with parameters as a card states them.

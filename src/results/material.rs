@@ -71,6 +71,8 @@ fn statement(card: &Card) -> Vec<Block> {
         let modulus = format!("{modulus:.6} MPa; {}", law.plane_state().name());
         rows.push(row("bulk modulus κ", modulus));
     }
+    let statements = law.statements().into_iter();
+    rows.extend(statements.map(|(name, statement)| row(name, statement)));
     rows.extend([
         row(
             "initial Young's modulus E₀",

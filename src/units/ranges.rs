@@ -30,6 +30,9 @@ impl Dimension {
     /// | frequency | 1e-12 Hz | 1e12 Hz |
     /// | acceleration | 1e-12 mm/s² | 1e12 mm/s² |
     /// | viscosity | 1e-18 MPa·s | 1e12 MPa·s |
+    /// | temperature | 1 mK | 1e6 K |
+    /// | molar volume | 1e-3 mm³/mol | 1e12 mm³/mol |
+    /// | concentration | 1e-9 mol/m³ | 1e9 mol/m³ |
     /// | angle | 1e-12 rad | 1e6 rad |
     /// | ratio | 1e-100 | 1e100 |
     pub fn range(self) -> [f64; 2] {
@@ -43,6 +46,9 @@ impl Dimension {
             Self::Time => [1e-12, 1e11],
             Self::Frequency | Self::Acceleration => [1e-12, 1e12],
             Self::Viscosity => [1e-18, 1e12],
+            Self::Temperature => [1e-3, 1e6],
+            Self::MolarVolume => [1e-3, 1e12],
+            Self::Concentration => [1e-18, 1.0],
             Self::Angle => [1e-12, 1e6],
             Self::Ratio => [1e-100, 1e100],
         }

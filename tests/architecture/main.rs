@@ -52,7 +52,8 @@ const DOORS: &[(&str, &[&str])] = &[
     (
         "pulp::",
         &[
-            "src/material/law.rs",
+            "src/material/body.rs",
+            "src/material/invariant_law.rs",
             "src/multigrid/line.rs",
             "src/multigrid/stencil.rs",
             "src/corrector/climb/forces.rs",

@@ -55,9 +55,9 @@ fn root(function: impl Fn(f64) -> f64) -> f64 {
     let [mut low, mut high] = [0.2, 5.0];
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        match function(middle) < 0.0 {
-            true => low = middle,
-            false => high = middle,
+        match function(middle) >= 0.0 {
+            true => high = middle,
+            false => low = middle,
         }
     }
     0.5 * (low + high)
@@ -285,7 +285,7 @@ fn limits(poisson_ratio: f64) -> Vec<(String, [Arc<dyn HyperelasticLaw>; 2])> {
 /// The difference to the law that keeps its volume falls as 1/κ: stresses at two ratios extrapolate to its own.
 #[test]
 fn the_incompressible_limit_is_the_law_that_keeps_its_volume() {
-    for ((name, [near, exact]), (_, [nearer, _])) in limits(0.4999).into_iter().zip(limits(0.49995))
+    for ((name, [near, exact]), (_, [nearer, _])) in limits(0.4998).into_iter().zip(limits(0.4999))
     {
         for h in [
             [0.05, 0.01, -0.02, -0.03],
@@ -295,7 +295,7 @@ fn the_incompressible_limit_is_the_law_that_keeps_its_volume() {
             let [near, nearer, exact] =
                 [&near, &nearer, &exact].map(|law| stress(&**law, &gradient(h)));
             let off = |found: &Gradient| (found - exact).norm() / exact.norm();
-            assert!(off(&near) < 5e-4, "{name} {h:?}: {:.1e}", off(&near));
+            assert!(off(&nearer) < 5e-4, "{name} {h:?}: {:.1e}", off(&nearer));
             let limit = 2.0 * nearer - near;
             assert!(off(&limit) < 1e-6, "{name} {h:?}: {:.1e}", off(&limit));
         }

@@ -102,6 +102,7 @@ pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
                 stretches.map(|stretch| simo * trace + 2.0 * mu * (stretch - 1.0))
             }),
         ),
+        ("flory-rehner", law("flory-rehner"), gel()),
         (
             "neo-hooke, logarithmic",
             split.expect("a law of invariants"),
@@ -113,4 +114,20 @@ pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
             }),
         ),
     ]
+}
+
+/// The gel of the samples by its free energy per volume as prepared: strands stretched by λᵢ⁰ = λₛ λᵢ, and Flory and Huggins' mixing.
+/// Per volume of the freely swollen gel, ∂W/∂λᵢ = λₛ/λₛ³ ∂W⁰/∂λᵢ⁰.
+fn gel() -> Principal {
+    let (modulus, chi, fraction, osmotic) = (0.02, 0.45, 0.1, 8314.462618 * 298.15 / 18070.0);
+    let prepared = move |stretches: [f64; 3]| {
+        let j: f64 = stretches.iter().product();
+        let phi = fraction / j;
+        let mixing = osmotic * ((1.0 - phi).ln() + phi + chi * phi * phi);
+        stretches.map(|l| modulus * (l - 0.5 / l) + mixing * j / l)
+    };
+    let swollen = root(|l| prepared([l; 3])[0]);
+    Box::new(move |stretches| {
+        prepared(stretches.map(|l| swollen * l)).map(|p| p / (swollen * swollen))
+    })
 }

@@ -59,7 +59,7 @@ fn deviation(card: &Card, energy: &dyn Fn(&Sheet) -> f64) -> f64 {
 }
 
 /// The words of Abaqus, CalculiX and FEBio for every law of the registry; `None` where the code lacks it.
-const WORDS: [(&str, [Option<&str>; 3]); 24] = [
+const WORDS: [(&str, [Option<&str>; 3]); 25] = [
     (
         "neo-hooke",
         [Some("NEO HOOKE"), Some("NEO HOOKE"), Some("Mooney-Rivlin")],
@@ -123,6 +123,7 @@ const WORDS: [(&str, [Option<&str>; 3]); 24] = [
     ("ogden-hill-3", [None; 3]),
     ("saint-venant-kirchhoff", [None; 3]),
     ("linear-elastic", [None; 3]),
+    ("flory-rehner", [None; 3]),
 ];
 
 /// The stresses that a code's published formula gives for what is exported are the law's own to 1e-6; those of a curve of
