@@ -33,6 +33,7 @@ pub mod matrix;
 pub mod motion;
 pub mod plate;
 pub mod retained;
+pub mod shape_climb;
 pub mod specimen;
 mod step;
 mod system;

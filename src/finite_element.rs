@@ -103,14 +103,28 @@ impl FiniteElements {
         state: &State,
         recovery: &Recovery,
     ) -> Result<ErrorEstimate, SolveFault> {
-        let influence = self.model(plate).influence(state, Side::Right.name(), 0)?;
-        let solved = SheetSolution {
-            law: &*plate.law,
-            thickness: plate.thickness,
-            mesh: &self.mesh,
-            displacement: &state.displacement,
+        let mut one = self.estimates(plate, std::slice::from_ref(state), recovery);
+        one.swap_remove(0)
+    }
+
+    /// The same for each of some states.
+    pub fn estimates(
+        &self,
+        plate: &ClampedPlate,
+        states: &[State],
+        recovery: &Recovery,
+    ) -> Vec<Result<ErrorEstimate, SolveFault>> {
+        let influences = self.model(plate).influences(states, Side::Right.name(), 0);
+        let estimate = |(state, influence): (&State, Result<Vec<f64>, SolveFault>)| {
+            let solved = SheetSolution {
+                law: &*plate.law,
+                thickness: plate.thickness,
+                mesh: &self.mesh,
+                displacement: &state.displacement,
+            };
+            Ok(solved.estimate(recovery, &influence?))
         };
-        Ok(solved.estimate(recovery, &influence))
+        states.iter().zip(influences).map(estimate).collect()
     }
 
     /// Solves all stretches of the plate, one after the other.

@@ -2,14 +2,17 @@
 //!
 //! Nothing here knows any mechanics: an unknown is a number in a vector, an element is a term of a sum.
 
+mod aggregation;
 pub mod assembly;
 mod connectivity;
 pub mod dissection;
 mod ending;
+mod iterative;
 mod journal;
 pub mod krylov;
 mod loading;
 pub mod newton;
+mod nodal;
 pub mod path;
 mod pattern;
 pub mod potential;
@@ -20,9 +23,10 @@ pub mod vector;
 
 pub use assembly::Assembly;
 pub use connectivity::Connectivity;
+pub use iterative::{LinearSolver, WORTH_MULTIGRID};
 pub use journal::{Attendance, Journal, Milestone};
 pub use loading::{Loading, State};
-pub use newton::{Convergence, Newton, NewtonSettings};
+pub use newton::{Approach, Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
 pub use potential::{DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum};

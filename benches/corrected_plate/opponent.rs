@@ -67,7 +67,7 @@ impl<'a> Opponent<'a> {
         let elements = cells.map(|cells| cells / degree(element));
         let model = FiniteElements::new(problem, elements, element);
         let assembly = Assembly::new(model.energy(), &problem.held(&model.mesh));
-        let cholesky = assembly.analyse(model.energy());
+        let cholesky = assembly.analyse();
         Self {
             problem,
             grid: Grid::even(problem.size, cells),

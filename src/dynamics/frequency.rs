@@ -109,7 +109,7 @@ fn factorised(
     assembly
         .linearise(motion.energy, displacement, &mut residual, &mut stiffness)
         .map_err(|fault| motion.inverted(fault))?;
-    let cholesky = assembly.analyse(motion.energy);
+    let cholesky = assembly.analyse();
     let mut cholesky = cholesky?;
     let factor = cholesky.factorise(&stiffness);
     factor.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;

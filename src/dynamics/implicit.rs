@@ -251,7 +251,7 @@ impl BodyState {
 impl Stepper for Implicit {
     fn prepare(&mut self, motion: &Motion, held: &[bool]) -> Result<(), SolveFault> {
         let assembly = Assembly::new(motion.energy, held);
-        let cholesky = assembly.analyse(motion.energy);
+        let cholesky = assembly.analyse();
         let cholesky = cholesky?;
         self.system = Some((assembly, cholesky));
         self.factorised = None;

@@ -49,22 +49,20 @@ impl<L: IsochoricLaw> BodyLaw for FlorySplit<L> {
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
         let (a, z, b) = (at.area, at.shape, at.thickness);
-        const THIRD: f64 = 1.0 / 3.0;
-        let w = self.law.at(THIRD * (a - 2.0 * b), z);
+        let w = self.law.at((a - 2.0 * b) / 3.0, z);
         let kappa = self.volume.bulk_modulus;
         let [u, du, ddu] = self.volume.energy.derivatives(a + b).map(|u| kappa * u);
-        let (m, mz, mm) = (THIRD * w.m, THIRD * w.mz, THIRD * THIRD * w.mm);
         BodyDerivatives {
             energy: w.energy + u,
-            a: m + du,
+            a: w.m / 3.0 + du,
             z: w.z,
-            b: du - 2.0 * m,
-            aa: mm + ddu,
-            az: mz,
-            ab: ddu - 2.0 * mm,
+            b: du - w.m / 1.5,
+            aa: w.mm / 9.0 + ddu,
+            az: w.mz / 3.0,
+            ab: ddu - w.mm / 4.5,
             zz: w.zz,
-            zb: -2.0 * mz,
-            bb: 4.0 * mm + ddu,
+            zb: -w.mz / 1.5,
+            bb: w.mm / 2.25 + ddu,
         }
     }
 }

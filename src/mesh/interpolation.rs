@@ -4,6 +4,31 @@ use super::cell_shape::GAUSS_3;
 use super::cells::Mesh;
 use super::geometry::determinant;
 
+/// The nodes of a mesh as combinations of those of another one.
+#[derive(Clone, Debug)]
+pub struct Interpolation {
+    /// Where the terms of each node begin.
+    starts: Vec<usize>,
+    /// Nodes of the other mesh with their shares.
+    terms: Vec<(usize, f64)>,
+}
+
+impl Interpolation {
+    /// ux, uy of node after node, from those of the other mesh.
+    pub fn apply(&self, displacement: &[f64]) -> Vec<f64> {
+        let at = |ends: &[usize]| {
+            let terms = self.terms[ends[0]..ends[1]].iter();
+            terms.fold([0.0; 2], |[x, y], (node, share)| {
+                [
+                    x + share * displacement[2 * node],
+                    y + share * displacement[2 * node + 1],
+                ]
+            })
+        };
+        self.starts.windows(2).flat_map(at).collect()
+    }
+}
+
 impl Mesh {
     /// The area of all cells in mm².
     pub fn area(&self) -> f64 {
@@ -65,6 +90,18 @@ impl Mesh {
         nodes
             .flat_map(|node| self.displacement_at(displacement, *node))
             .collect()
+    }
+
+    /// Where the nodes of another mesh of the specimen are in this one, to interpolate many fields.
+    pub fn interpolation_on(&self, other: &Self) -> Interpolation {
+        let (mut starts, mut terms) = (vec![0], Vec::new());
+        for node in &other.nodes {
+            let (cell, local) = self.locate(*node);
+            let values = self.shape(cell).values(local);
+            terms.extend(self.cell(cell).iter().copied().zip(values));
+            starts.push(terms.len());
+        }
+        Interpolation { starts, terms }
     }
 
     /// Gradients ∂Nₐ/∂X of a cell's shape functions in 1/mm, and the Jacobian of its map in mm², at a reference

@@ -7,8 +7,10 @@ use super::rigid::free_motions;
 use super::ties::TiedPotential;
 use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mesh::Mesh;
+use crate::solve::vector::add_scaled;
 use crate::solve::{
-    Attendance, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow, influence,
+    Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State, Tangent,
+    compliance, follow, influence,
 };
 
 /// Names an element or the end of a path.
@@ -30,6 +32,9 @@ pub struct Model<'a> {
     pub(super) stiffness: f64,
     /// The field at load factor 1 of which every first guess is a multiple; `None` where the tangent predicts it.
     guess: Option<Vec<f64>>,
+    /// Fields near the equilibria at some load factors.
+    near: Vec<(f64, Vec<f64>)>,
+    linear_solver: LinearSolver,
     /// What the load factor is called in messages.
     describe_end: fn(&PathEnd) -> String,
 }
@@ -52,6 +57,8 @@ impl<'a> Model<'a> {
             loads,
             stiffness,
             guess: None,
+            near: Vec::new(),
+            linear_solver: LinearSolver::Automatic,
             describe_end: PathEnd::describe,
         }
     }
@@ -80,6 +87,36 @@ impl<'a> Model<'a> {
     pub fn guessing(self, field: Vec<f64>) -> Self {
         Self {
             guess: Some(field),
+            ..self
+        }
+    }
+
+    /// With first guesses, where they are known, from equilibria u of another mesh of the same problem, such as a coarser one:
+    ///
+    /// ```text
+    /// I uₖ + (sₖ / sₖ₋₁) (vₖ₋₁ − I uₖ₋₁)
+    /// ```
+    ///
+    /// I interpolates on this mesh, v is its own equilibrium at the load factor s before. Where no equilibrium is found from one
+    /// of them the path goes on in shorter steps, as without them.
+    #[must_use]
+    pub fn near(self, mesh: &Mesh, states: &[State]) -> Self {
+        let interpolation = mesh.interpolation_on(self.mesh);
+        let near = states.iter().map(|state| {
+            let field = interpolation.apply(&state.displacement);
+            (state.factor, field)
+        });
+        Self {
+            near: near.collect(),
+            ..self
+        }
+    }
+
+    /// With systems solved as wanted.
+    #[must_use]
+    pub fn solved_by(self, linear_solver: LinearSolver) -> Self {
+        Self {
+            linear_solver,
             ..self
         }
     }
@@ -191,6 +228,41 @@ impl<'a> Model<'a> {
         name: &str,
         axis: usize,
     ) -> Result<Vec<f64>, SolveFault> {
+        let mut one = self.influences(std::slice::from_ref(state), name, axis);
+        one.swap_remove(0)
+    }
+
+    /// The same at each of some states, whose tangents have one pattern.
+    ///
+    /// # Panics
+    /// As [`Self::influence`].
+    pub fn influences(
+        &self,
+        states: &[State],
+        name: &str,
+        axis: usize,
+    ) -> Vec<Result<Vec<f64>, SolveFault>> {
+        let Some(first) = states.first() else {
+            return Vec::new();
+        };
+        let (potential, held) = (self.potential(first.factor), self.held());
+        match Tangent::new(&*potential, &held, self.linear_solver) {
+            Err(fault) => vec![Err(fault); states.len()],
+            Ok(mut tangent) => {
+                let states = states.iter();
+                let influence = |state| self.influence_by(&mut tangent, state, name, axis);
+                states.map(influence).collect()
+            }
+        }
+    }
+
+    fn influence_by(
+        &self,
+        tangent: &mut Tangent,
+        state: &State,
+        name: &str,
+        axis: usize,
+    ) -> Result<Vec<f64>, SolveFault> {
         let Constraints { held, ties, forces } = &self.constraints;
         let nodes = self.mesh.groups()[name].nodes.iter();
         let mut unknowns = nodes.map(|node| 2 * node + axis);
@@ -207,7 +279,6 @@ impl<'a> Model<'a> {
             unit[master] = 1.0;
             force = Some(unit);
         }
-        let at = (state.factor, &*state.displacement);
         if force.is_none() && motion.iter().all(|motion| *motion == 0.0) {
             // Nothing holds or pulls the group: a unit of force on it, shared as its mean displacement is.
             let mut unit = vec![0.0; motion.len()];
@@ -216,9 +287,10 @@ impl<'a> Model<'a> {
             }
             force = Some(unit);
         }
+        let at = (state.factor, &*state.displacement);
         let mut field = match force {
-            Some(force) => compliance(self, at, &force)?,
-            None => influence(self, at, &motion)?,
+            Some(force) => compliance(tangent, self, at, &force)?,
+            None => influence(tangent, self, at, &motion)?,
         };
         for (unknown, master) in ties {
             field[*unknown] = field[*master];
@@ -256,7 +328,25 @@ impl Loading for Model<'_> {
         }
     }
 
+    fn linear_solver(&self) -> LinearSolver {
+        self.linear_solver
+    }
+
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
+        let near = |factor: f64| {
+            let mut known = self.near.iter();
+            known.find(|(at, _)| *at == factor).map(|(_, field)| field)
+        };
+        if let Some(field) = near(factor) {
+            let mut guess = field.clone();
+            let before = previous.and_then(|own| Some((own, near(own.factor)?)));
+            if let Some((own, field)) = before {
+                let ratio = factor / own.factor;
+                add_scaled(&mut guess, ratio, &own.displacement);
+                add_scaled(&mut guess, -ratio, field);
+            }
+            return Some(guess);
+        }
         let first = self.guess.as_ref()?;
         let (ratio, field) = match previous {
             Some(previous) => (factor / previous.factor, &previous.displacement),

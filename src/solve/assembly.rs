@@ -17,6 +17,8 @@ pub struct Assembly {
     /// For each element, for each entry of its lower triangle, where it is added; `usize::MAX` for none.
     scatter: Vec<usize>,
     scatter_starts: Vec<usize>,
+    /// Where each free unknown is, if that is known of all.
+    places: Option<Vec<[f64; 2]>>,
 }
 
 const NOWHERE: usize = usize::MAX;
@@ -58,7 +60,10 @@ impl Assembly {
             }
             scatter_starts.push(scatter.len());
         }
+        let connectivity = potential.connectivity();
+        let places = free.iter().map(|unknown| connectivity.place(*unknown));
         Self {
+            places: places.collect(),
             free_index,
             free,
             pattern,
@@ -77,6 +82,11 @@ impl Assembly {
         self.free_index[unknown]
     }
 
+    /// Where each free unknown is, if that is known of all.
+    pub fn places(&self) -> Option<&[[f64; 2]]> {
+        self.places.as_deref()
+    }
+
     /// Pattern of the stiffness over the free unknowns.
     pub fn pattern(&self) -> &SymmetricPattern {
         &self.pattern
@@ -86,12 +96,10 @@ impl Assembly {
     ///
     /// # Errors
     /// [`FactorFault`] when the pattern cannot be analysed, which means out of memory.
-    pub fn analyse(&self, potential: &dyn Potential) -> Result<Cholesky, FactorFault> {
-        let connectivity = potential.connectivity();
-        let places = self.free.iter().map(|unknown| connectivity.place(*unknown));
-        match places.collect::<Option<Vec<_>>>() {
+    pub fn analyse(&self) -> Result<Cholesky, FactorFault> {
+        match &self.places {
             Some(places) if places.len() >= WORTH_DISSECTION => {
-                let order = dissection(&self.pattern, &places);
+                let order = dissection(&self.pattern, places);
                 Cholesky::analyse_in_order(self.pattern.clone(), &order)
             }
             _ => Cholesky::analyse(self.pattern.clone()),

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::iterative::LinearSolver;
 use super::newton::Convergence;
 use super::potential::Potential;
 
@@ -16,6 +17,11 @@ pub trait Loading {
 
     /// The potential at a load factor; its pattern must not depend on the factor.
     fn potential(&self, factor: f64) -> Box<dyn Potential + '_>;
+
+    /// How systems with the tangent are solved.
+    fn linear_solver(&self) -> LinearSolver {
+        LinearSolver::Automatic
+    }
 
     /// A first guess at a load factor; held unknowns are imposed afterwards. `None` where the linear
     /// prediction from the state before is the best guess.

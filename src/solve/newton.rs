@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::assembly::Assembly;
+use super::iterative::LinearSolver;
 use super::potential::{Inadmissible, Potential};
 use super::tangent::{Describe, Tangent, inverted};
-use super::vector::{dot, gather, largest};
+use super::vector::{dot, gather, largest, scale};
 use crate::error::SolveFault;
 
 /// When to stop.
@@ -46,6 +47,19 @@ impl Convergence {
     }
 }
 
+/// How near an approach has come, and what it took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// Tangents.
+    pub linearisations: usize,
+    /// Iterations, each with one cycle of multigrid.
+    pub iterations: usize,
+    /// The share of the first imbalance that is left.
+    pub left: f64,
+    /// The potential.
+    pub energy: f64,
+}
+
 /// A minimisation prepared for one potential and one set of held unknowns.
 pub struct Newton {
     /// The tangent factorised last.
@@ -84,8 +98,20 @@ impl Newton {
     /// # Errors
     /// [`SolveFault::Singular`] when the pattern cannot be analysed.
     pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Result<Self, SolveFault> {
+        Self::with_solver(potential, fixed, LinearSolver::Automatic)
+    }
+
+    /// The same, with systems solved as wanted.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_solver(
+        potential: &dyn Potential,
+        fixed: &[bool],
+        solver: LinearSolver,
+    ) -> Result<Self, SolveFault> {
         Ok(Self {
-            tangent: Tangent::new(potential, fixed)?,
+            tangent: Tangent::new(potential, fixed, solver)?,
             indefinite: None,
         })
     }
@@ -116,14 +142,41 @@ impl Newton {
         settings: NewtonSettings,
         describe: Describe,
     ) -> Result<Convergence, SolveFault> {
+        self.indefinite = None;
+        if self.tangent.iterative.is_some() {
+            let start = u.to_vec();
+            if let Some(log) = self.solve_inexactly(potential, u, residual, settings) {
+                return Ok(log);
+            }
+            u.copy_from_slice(&start);
+            let log = self.solve_directly(potential, u, residual, settings, describe)?;
+            // What a factor solves from the same start multigrid should have solved: these cells do not suit it.
+            self.tangent.iterative = None;
+            return Ok(log);
+        }
+        self.solve_directly(potential, u, residual, settings, describe)
+    }
+
+    /// Newton's method with a factor for every tangent.
+    fn solve_directly(
+        &mut self,
+        potential: &dyn Potential,
+        u: &mut [f64],
+        residual: &mut [f64],
+        settings: NewtonSettings,
+        describe: Describe,
+    ) -> Result<Convergence, SolveFault> {
         let mut log = Convergence::default();
         let mut stiffness = Vec::new();
-        self.indefinite = None;
         loop {
             let linearised =
                 (self.tangent.assembly).linearise(potential, u, residual, &mut stiffness);
             let energy = linearised.map_err(|fault| inverted(fault, describe))?;
-            let now = self.iterate(u, residual, energy, &mut stiffness, &mut log)?;
+            let mut now = self.measure(u, residual, energy, &stiffness, &mut log)?;
+            now.shifted = self.tangent.factorise(&mut stiffness)?;
+            if now.shifted && self.indefinite.is_none() {
+                self.indefinite = Some(u.to_vec());
+            }
             let before = log.residuals.iter().rev().nth(1);
             let stagnant = before.is_some_and(|before| now.relative > 0.5 * before);
             let converged =
@@ -158,13 +211,100 @@ impl Newton {
         }
     }
 
-    /// Logs a linearised state and factorises its stiffness.
-    fn iterate(
+    /// Newton's method with steps by multigrid, each as exact as its place on the way deserves. `None` where anything is not
+    /// as it should be: Newton's method with factors then finds the solution, or what is wrong.
+    fn solve_inexactly(
         &mut self,
+        potential: &dyn Potential,
+        u: &mut [f64],
+        residual: &mut [f64],
+        settings: NewtonSettings,
+    ) -> Option<Convergence> {
+        let mut log = Convergence::default();
+        let mut stiffness = Vec::new();
+        loop {
+            let assembly = &self.tangent.assembly;
+            let linearised = assembly.linearise(potential, u, residual, &mut stiffness);
+            let now = self.measure(u, residual, linearised.ok()?, &stiffness, &mut log);
+            let now = now.ok()?;
+            let Tangent {
+                assembly,
+                iterative,
+                ..
+            } = &mut self.tangent;
+            let iterative = iterative.as_mut()?;
+            iterative.take(assembly, &stiffness);
+            if now.relative <= settings.tolerance {
+                return iterative.is_definite().then_some(log);
+            }
+            if log.iterations() >= settings.max_iterations {
+                return None;
+            }
+            let mut right = gather(assembly.free(), residual);
+            scale(&mut right, -1.0);
+            let step = iterative.solve(&right, forcing(&log, settings.tolerance));
+            let step = step.ok()?;
+            let searched = self.search(potential, u, residual, now.energy, &step);
+            let (length, energy) = searched.ok()?;
+            log.cut_steps += usize::from(length < 1.0);
+            let after = self.relative_residual(residual, now.negligible * largest(u));
+            if now.relative <= SMALL && after <= settings.tolerance {
+                log.residuals.push(after);
+                log.energy = energy;
+                let iterative = self.tangent.iterative.as_mut()?;
+                return iterative.is_definite().then_some(log);
+            }
+        }
+    }
+
+    /// Moves the free entries of `u` towards a minimum of the potential by multigrid, until the imbalance stands for a share of the
+    /// first one, both measured as [`Iterative::weight`] does. `None` where there is no multigrid, or anything is not as it
+    /// should be.
+    pub fn approach(
+        &mut self,
+        potential: &dyn Potential,
+        u: &mut [f64],
+        residual: &mut [f64],
+        share: f64,
+    ) -> Option<Approach> {
+        const MOST: usize = 8;
+        let (mut stiffness, mut first) = (Vec::new(), None);
+        let before = self.tangent.iterative.as_ref()?.iterations;
+        for linearisations in 1..=MOST {
+            let assembly = &self.tangent.assembly;
+            let energy = assembly.linearise(potential, u, residual, &mut stiffness);
+            let mut right = gather(assembly.free(), residual);
+            scale(&mut right, -1.0);
+            let iterative = self.tangent.iterative.as_mut()?;
+            iterative.take(&self.tangent.assembly, &stiffness);
+            let weight = iterative.weight(&right)?;
+            let whole = *first.get_or_insert(weight);
+            let reduction = 0.5 * share * whole / weight;
+            let step = iterative.solve(&right, reduction.clamp(1e-10, 0.1)).ok()?;
+            let searched = self.search(potential, u, residual, energy.ok()?, &step);
+            let (_, energy) = searched.ok()?;
+            let left = gather(self.free(), residual);
+            let iterative = self.tangent.iterative.as_mut()?;
+            let left = iterative.weight(&left)? / whole.max(f64::MIN_POSITIVE);
+            if left <= share {
+                return iterative.is_definite().then(|| Approach {
+                    linearisations,
+                    iterations: iterative.iterations - before,
+                    left,
+                    energy,
+                });
+            }
+        }
+        None
+    }
+
+    /// Logs a linearised state.
+    fn measure(
+        &self,
         u: &[f64],
         residual: &[f64],
         energy: f64,
-        stiffness: &mut [f64],
+        stiffness: &[f64],
         log: &mut Convergence,
     ) -> Result<Iterate, SolveFault> {
         let diagonal = self.tangent.assembly.pattern().diagonal().iter();
@@ -176,15 +316,11 @@ impl Newton {
         }
         log.energy = energy;
         log.residuals.push(relative);
-        let shifted = self.tangent.factorise(stiffness)?;
-        if shifted && self.indefinite.is_none() {
-            self.indefinite = Some(u.to_vec());
-        }
         Ok(Iterate {
             energy,
             relative,
             negligible,
-            shifted,
+            shifted: false,
         })
     }
 
@@ -241,4 +377,18 @@ impl Newton {
             length *= 0.5;
         }
     }
+}
+
+/// How far the residual of a step's system has to fall: about as far as the step's own error leaves a residual, by that of the
+/// steps before, and no farther than the tolerance asks for.
+///
+/// # References
+/// S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17, 16 (1996), doi:10.1137/0917003
+fn forcing(log: &Convergence, tolerance: f64) -> f64 {
+    const FIRST: f64 = 1e-2;
+    let now = log.residuals[log.residuals.len() - 1];
+    let before = log.residuals.iter().rev().nth(1);
+    let quadratic = before.map_or(FIRST, |before| 0.5 * (now / before).powi(2));
+    let least = (0.2 * tolerance / now).max(1e-11);
+    quadratic.clamp(1e-6, FIRST).max(least).min(0.1)
 }

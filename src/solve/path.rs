@@ -110,13 +110,12 @@ pub fn follow(
 /// # Errors
 /// A [`SolveFault`] when the tangent is not positive definite.
 pub fn influence(
+    tangent: &mut Tangent,
     loading: &dyn Loading,
-    state: (f64, &[f64]),
+    (factor, displacement): (f64, &[f64]),
     motion: &[f64],
 ) -> Result<Vec<f64>, SolveFault> {
-    let (factor, displacement) = state;
     let potential = loading.potential(factor);
-    let mut tangent = Tangent::new(&*potential, &loading.held())?;
     let describe = |element| loading.describe(element);
     tangent.influence(&*potential, displacement, motion, &describe)
 }
@@ -128,13 +127,12 @@ pub fn influence(
 /// # Errors
 /// A [`SolveFault`] when the tangent is not positive definite.
 pub fn compliance(
+    tangent: &mut Tangent,
     loading: &dyn Loading,
-    state: (f64, &[f64]),
+    (factor, displacement): (f64, &[f64]),
     forces: &[f64],
 ) -> Result<Vec<f64>, SolveFault> {
-    let (factor, displacement) = state;
     let potential = loading.potential(factor);
-    let mut tangent = Tangent::new(&*potential, &loading.held())?;
     let describe = |element| loading.describe(element);
     tangent.respond(&*potential, displacement, forces, &describe)
 }
@@ -154,10 +152,12 @@ impl<'a> Path<'a> {
         settings: NewtonSettings,
         factor: f64,
     ) -> Result<Self, SolveFault> {
+        let (potential, solver) = (loading.potential(factor), loading.linear_solver());
+        let newton = Newton::with_solver(&*potential, &loading.held(), solver)?;
         Ok(Self {
             loading,
             settings,
-            newton: Newton::new(&*loading.potential(factor), &loading.held())?,
+            newton,
             step: f64::INFINITY,
         })
     }

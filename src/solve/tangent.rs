@@ -1,15 +1,21 @@
 //! The tangent of a potential, factorised: small changes of an equilibrium, and its softest mode.
 
 use super::assembly::Assembly;
+use super::iterative::{Iterative, LinearSolver};
 use super::potential::{Inadmissible, Potential, SkewCoupling};
 use super::sparse::{Cholesky, FactorFault};
 use super::vector::{difference, dot, gather, largest, norm, scale, spread};
 use crate::error::SolveFault;
 
-/// The tangent of a potential over its free unknowns, factorised at one state after the other.
+/// The tangent of a potential over its free unknowns, factorised at one state after the other, or solved by multigrid.
 pub struct Tangent {
     pub(super) assembly: Assembly,
-    cholesky: Cholesky,
+    /// Analysed when it is first needed.
+    cholesky: Option<Cholesky>,
+    /// Where there is one, and the tangent taken last has not been factorised.
+    pub(super) iterative: Option<Iterative>,
+    /// Whether the tangent taken last is in the factor.
+    factorised: bool,
     /// The part of the tangent factorised last that is not symmetric, over the free unknowns.
     skew: Vec<SkewCoupling>,
 }
@@ -22,14 +28,33 @@ impl Tangent {
     ///
     /// # Errors
     /// [`SolveFault::Singular`] when the pattern cannot be analysed.
-    pub fn new(potential: &dyn Potential, fixed: &[bool]) -> Result<Self, SolveFault> {
+    pub fn new(
+        potential: &dyn Potential,
+        fixed: &[bool],
+        solver: LinearSolver,
+    ) -> Result<Self, SolveFault> {
         let assembly = Assembly::new(potential, fixed);
-        let cholesky = assembly.analyse(potential);
-        Ok(Self {
-            cholesky: cholesky?,
+        let multigrid = solver.is_multigrid(assembly.free().len());
+        let iterative = multigrid.then(|| Iterative::new(&assembly, potential));
+        let mut tangent = Self {
+            iterative: iterative.flatten(),
+            cholesky: None,
+            factorised: false,
             assembly,
             skew: Vec::new(),
-        })
+        };
+        if tangent.iterative.is_none() {
+            tangent.analysed()?;
+        }
+        Ok(tangent)
+    }
+
+    /// The factor's memory, analysed when it is first needed.
+    fn analysed(&mut self) -> Result<&mut Cholesky, FactorFault> {
+        if self.cholesky.is_none() {
+            self.cholesky = Some(self.assembly.analyse()?);
+        }
+        Ok(self.cholesky.as_mut().expect("analysed above"))
     }
 
     /// The free unknowns, ascending.
@@ -48,8 +73,11 @@ impl Tangent {
         u: &[f64],
         describe: Describe,
     ) -> Result<Vec<f64>, SolveFault> {
-        let (residual, shifted) = self.factorise_at(potential, u, describe)?;
+        let (residual, mut shifted) = self.factorise_at(potential, u, describe)?;
         self.take_skew(potential, 1.0);
+        if !self.factorised && !self.iterative.as_mut().is_some_and(Iterative::is_definite) {
+            shifted = self.replace_by_factor()?;
+        }
         match shifted {
             true => Err(SolveFault::NotPositiveDefinite),
             false => Ok(residual),
@@ -63,18 +91,29 @@ impl Tangent {
     /// A [`SolveFault`] when the tangent is singular to working precision.
     pub fn changes(&mut self, residuals: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, SolveFault> {
         const TOGETHER: usize = 8;
+        const WORTH_FACTOR: usize = 8;
         let Some((first, others)) = residuals.split_first() else {
             return Ok(Vec::new());
         };
         if !self.skew.is_empty() {
             return residuals.iter().map(|own| self.change(own)).collect();
         }
+        if residuals.len() > WORTH_FACTOR {
+            self.replace_by_factor()?;
+        }
         let mut changes = vec![self.change(first)?];
+        if !self.factorised {
+            for own in others {
+                changes.push(self.change(own)?);
+            }
+            return Ok(changes);
+        }
         let free = self.assembly.free();
+        let cholesky = self.cholesky.as_mut().expect("factorised");
         for group in others.chunks(TOGETHER) {
             let right = group.iter().flat_map(|r| free.iter().map(|i| -r[*i]));
             let mut columns: Vec<f64> = right.collect();
-            self.cholesky.substitute_columns(&mut columns, group.len());
+            cholesky.substitute_columns(&mut columns, group.len());
             // Where nothing is free every column is empty.
             for (residual, begin) in group.iter().zip((0..).step_by(free.len().max(1))) {
                 let column = columns.get(begin..begin + free.len());
@@ -161,7 +200,7 @@ impl Tangent {
         let count = self.free().len();
         let mut mode: Vec<f64> = (0..count).map(|i| (1.0 + i as f64).sqrt().sin()).collect();
         for _ in 0..ITERATIONS {
-            mode = self.cholesky.solve(&mode).ok()?;
+            mode = self.analysed().ok()?.solve(&mode).ok()?;
             let size = norm(&mode);
             mode.iter_mut().for_each(|entry| *entry /= size);
         }
@@ -180,8 +219,26 @@ impl Tangent {
         self.assembly
             .linearise(potential, u, &mut residual, &mut stiffness)
             .map_err(|fault| inverted(fault, describe))?;
-        let shifted = self.factorise(&mut stiffness)?;
+        let shifted = match &mut self.iterative {
+            Some(iterative) => {
+                iterative.take(&self.assembly, &stiffness);
+                self.factorised = false;
+                false
+            }
+            None => self.factorise(&mut stiffness)?,
+        };
         Ok((residual, shifted))
+    }
+
+    /// Factorises the tangent taken last, if it is not; says whether it had to be shifted.
+    fn replace_by_factor(&mut self) -> Result<bool, SolveFault> {
+        match &self.iterative {
+            Some(iterative) if !self.factorised => {
+                let mut values = iterative.values().to_vec();
+                self.factorise(&mut values)
+            }
+            _ => Ok(false),
+        }
     }
 
     /// Factorises the stiffness, shifted along its diagonal where it is not positive definite; says
@@ -191,7 +248,11 @@ impl Tangent {
         let sum: f64 = diagonal.iter().map(|place| stiffness[*place].abs()).sum();
         let mean = sum / diagonal.len().max(1) as f64;
         let mut shift = 0.0;
-        while let Err(fault) = self.cholesky.factorise(stiffness) {
+        self.factorised = true;
+        self.analysed()?;
+        let cholesky = self.cholesky.as_mut().expect("analysed above");
+        let diagonal = self.assembly.pattern().diagonal();
+        while let Err(fault) = cholesky.factorise(stiffness) {
             if fault == FactorFault::OutOfMemory {
                 return Err(fault.into());
             }
@@ -231,13 +292,26 @@ impl Tangent {
         Ok(spread(self.free(), &step, residual.len()))
     }
 
+    /// K⁻¹ b by multigrid or the factor, without the skew part.
+    fn solve(&mut self, right: &[f64]) -> Result<Vec<f64>, SolveFault> {
+        const EXACT: f64 = 1e-12;
+        if !self.factorised
+            && let Some(iterative) = &mut self.iterative
+        {
+            if let Ok(x) = iterative.solve(right, EXACT) {
+                return Ok(x);
+            }
+            self.replace_by_factor()?;
+        }
+        self.analysed()?.solve(right).map_err(SolveFault::from)
+    }
+
     /// −K⁻¹ r by the symmetric factor; a skew part, small compared with it, is added by iteration: K_s dᵢ₊₁ = −r − S dᵢ.
     pub(super) fn step(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
         const ITERATIONS: usize = 60;
         let mut negative = gather(self.assembly.free(), residual);
         scale(&mut negative, -1.0);
-        let mut solve = |right: &[f64]| self.cholesky.solve(right).map_err(SolveFault::from);
-        let mut step = solve(&negative)?;
+        let mut step = self.solve(&negative)?;
         if self.skew.is_empty() {
             return Ok(step);
         }
@@ -248,7 +322,7 @@ impl Tangent {
                 right[own.row] -= own.stiffness * step[own.column];
                 right[own.column] += own.stiffness * step[own.row];
             }
-            let next = solve(&right)?;
+            let next = self.solve(&right)?;
             let change = largest(&difference(&next, &step));
             if change.is_nan() || change >= last {
                 break;

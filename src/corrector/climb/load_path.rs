@@ -12,7 +12,8 @@ use crate::error::{Error, SolveFault};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
 use crate::solve::{
-    Assembly, Attendance, Loading, NewtonSettings, PathEnd, Potential, State, compliance, follow,
+    Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State,
+    Tangent, compliance, follow,
 };
 
 /// The residual that Newton's method leaves, relative to the largest reaction.
@@ -165,7 +166,8 @@ impl Climb<'_> {
             stretch: 0.0,
         };
         let (u, b) = (u.to_nodes(), b.to_nodes());
-        let mut x = compliance(&loading, (1.0, &u), &b)?;
+        let mut tangent = Tangent::new(&energy, &loading.held(), LinearSolver::Direct)?;
+        let mut x = compliance(&mut tangent, &loading, (1.0, &u), &b)?;
         let mut image = vec![0.0; x.len()];
         let product = Assembly::add_product(&energy, &u, &x, &mut image);
         product.map_err(|fault| SolveFault::Inverted {

@@ -66,10 +66,7 @@ impl EquationOfMotion<'_> {
         start: &Start,
         settings: WindowSettings,
     ) -> Result<CorrectedMotion, SolveFault> {
-        let cholesky = self
-            .assembly
-            .analyse(self.motion.energy)
-            .map_err(SolveFault::from)?;
+        let cholesky = self.assembly.analyse().map_err(SolveFault::from)?;
         let mut retained = RetainedFactor {
             cholesky,
             fresh: false,

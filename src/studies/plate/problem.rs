@@ -10,7 +10,7 @@ use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
 use crate::problem::ClampedPlate;
-use crate::solve::NewtonSettings;
+use crate::solve::{LinearSolver, NewtonSettings};
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::Tolerances;
 
@@ -71,6 +71,8 @@ pub struct Reference {
     pub grading: f64,
     /// How they are solved.
     pub newton: NewtonSettings,
+    /// How their systems are solved.
+    pub linear_solver: LinearSolver,
 }
 
 /// What is written, and where.

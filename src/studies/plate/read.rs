@@ -14,6 +14,7 @@ use crate::finite_element::Element;
 use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
 use crate::problem::ClampedPlate;
+use crate::solve::LinearSolver;
 use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
@@ -186,8 +187,10 @@ fn read_reference(
     affords_cells(section, cells, unknowns, plate.stretches.len());
     let grading = section.number("grading", Bound::Within(1.0, 4.0));
     let newton = read_newton(section);
+    let linear_solver = section.choice("method", &LinearSolver::NAMES);
     section.unknown_keys();
     Some(Reference {
+        linear_solver: linear_solver?,
         element: element?,
         cells,
         grading,

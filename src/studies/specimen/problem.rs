@@ -5,7 +5,7 @@ use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Model};
 use crate::results::Sheet;
-use crate::solve::Potential;
+use crate::solve::{LinearSolver, Potential};
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::Tolerances;
 
@@ -41,6 +41,8 @@ pub struct Specimen {
     pub tolerances: Tolerances,
     /// How far the finite elements are refined locally; `None` where they have three meshes.
     pub refinement: Option<Refinement>,
+    /// How the systems of the finite elements are solved.
+    pub linear_solver: LinearSolver,
     /// What is meshed, and how.
     pub outline: Outline,
     /// The pictures of its fields.
@@ -77,6 +79,7 @@ impl Specimen {
                 correction_percent: 1.0,
             },
             refinement: None,
+            linear_solver: LinearSolver::Automatic,
             pictures: Pictures::default(),
             outline: Outline::File {
                 mesh: Box::new(mesh),

@@ -9,6 +9,7 @@ use crate::document::{Bound, Section};
 use crate::error::suggestion;
 use crate::mesh::{CellShape, Mesh, import};
 use crate::problem::{BoundaryProblem, Load};
+use crate::solve::LinearSolver;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{Tolerances, read_card};
 use crate::units::Dimension;
@@ -44,6 +45,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
 
     let section = root.section("finite_element");
     let element = section.choice("element", &CellShape::NAMES);
+    let linear_solver = section.choice("method", &LinearSolver::NAMES);
     let refinement = read_refinement(&section, element);
     section.unknown_keys();
     let specimen = root.section("specimen").requiring(MEASURES);
@@ -92,6 +94,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         group,
         tolerances,
         refinement,
+        linear_solver: linear_solver?,
         outline,
         pictures,
     };

@@ -9,7 +9,7 @@ use web_time::Instant;
 
 use gelbench::error::Error;
 use gelbench::results::nodal_states;
-use gelbench::solve::compliance;
+use gelbench::solve::{LinearSolver, Loading, Tangent, compliance};
 
 use super::background::Worker;
 use super::scene::{Colour, Grip, Model, Scene};
@@ -179,7 +179,9 @@ fn multipliers(
     }
     let model = body.model(sheet, grip)?;
     let change: Vec<f64> = springs.iter().zip(corrected).map(|(s, u)| s - u).collect();
-    let found = compliance(&model, (1.0, corrected), &change);
+    let tangent = Tangent::new(&*model.potential(1.0), &model.held(), LinearSolver::Direct);
+    let found =
+        tangent.and_then(|mut tangent| compliance(&mut tangent, &model, (1.0, corrected), &change));
     found.map_err(|fault| Error::Solve {
         model: "multipliers".into(),
         step: grip.describe(),

@@ -39,16 +39,29 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
         "finite elements, fine",
     ];
     let mut names = names.into_iter();
-    let reference = study.finite_elements().map(|model| {
+    let mut coarser: Option<(Mesh, Vec<State>)> = None;
+    let reference = study.finite_elements().map(|elements| {
         let name = names.next().expect("three meshes");
-        let solution = run.solve(name, &model.model(plate), study.reference.newton);
-        ReferenceMesh { model, solution }
+        let mut model = elements
+            .model(plate)
+            .solved_by(study.reference.linear_solver);
+        if let Some((mesh, states)) = &coarser {
+            model = model.near(mesh, states);
+        }
+        let solution = run.solve(name, &model, study.reference.newton);
+        drop(model);
+        coarser = Some((solution.mesh.clone(), solution.states.clone()));
+        ReferenceMesh {
+            model: elements,
+            solution,
+        }
     });
     let [.., finest] = &reference;
     let estimates = run.timed("finite elements' error", |_| {
         let recovery = Recovery::new(&finest.model.mesh);
-        let estimate = |state| finest.model.estimate(plate, state, &recovery).ok();
-        finest.solution.states.iter().map(estimate).collect()
+        let states = &finest.solution.states;
+        let found = finest.model.estimates(plate, states, &recovery).into_iter();
+        found.map(Result::ok).collect()
     });
     let reached = [&uncorrected, &finest.solution].map(Solution::reached);
     if reached == [0, 0] && corrected.iter().all(Option::is_none) {
@@ -89,7 +102,7 @@ pub fn one_model(study: &Study, kind: ModelKind, progress: Progress) -> OneModel
     let plate = &study.problem;
     if kind == ModelKind::FiniteElement {
         let [.., finest] = study.finite_elements();
-        let model = finest.model(plate);
+        let model = finest.model(plate).solved_by(study.reference.linear_solver);
         let solution = run.solve("finite elements", &model, study.reference.newton);
         return of_solution(solution, run.ends);
     }

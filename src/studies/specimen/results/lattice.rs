@@ -1,7 +1,7 @@
 //! Springs and corrected springs on the lattice of a specimen, each as far as its path goes.
 
 use super::end::End;
-use crate::corrector::specimen::correct;
+use crate::corrector::specimen::{correct, correct_without_multipliers};
 use crate::corrector::{CorrectorSettings, Solver};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::MassSpring;
@@ -22,6 +22,9 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
     max_steps: 60,
     solver: Solver::Automatic,
 };
+
+/// Unknowns of a lattice from which on nobody looks at its multipliers one by one.
+const LARGE: usize = 20_000;
 
 /// Where the corrector began at a load factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -191,6 +194,9 @@ impl<'a> Corrections<'a> {
     }
 
     fn correct(&self, data: &[f64], start: &[f64], factor: f64) -> Result<State, SolveFault> {
+        if data.len() >= LARGE {
+            return correct_without_multipliers(self.model, start, factor, NEWTON);
+        }
         Ok(correct(self.model, data, start, factor, CORRECTOR)?.state)
     }
 }

@@ -5,7 +5,7 @@ use super::end::{End, last_groups};
 use super::lattice::solve;
 use super::measured::Measured;
 use super::reference::{Reference, Round};
-use crate::error::Error;
+use crate::error::{Error, SolveFault};
 use crate::finite_element::error_estimate::{self, ErrorEstimate, bulk};
 use crate::finite_element::recovery::Recovery;
 use crate::mesh::Mesh;
@@ -40,9 +40,11 @@ impl Reference {
     fn halved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Self, Error> {
         let meshes = specimen.outline.reference_meshes();
         let files = &FILES[FILES.len() - meshes.len()..];
-        let meshes = meshes.iter().zip(files);
-        let solutions = meshes.map(|(mesh, file)| on_mesh(specimen, mesh, file, ends, progress));
-        let solutions = solutions.collect::<Result<Vec<_>, _>>()?;
+        let mut solutions: Vec<Solution> = Vec::new();
+        for (mesh, file) in meshes.iter().zip(files) {
+            let coarser = solutions.last();
+            solutions.push(on_mesh(specimen, mesh, coarser, file, ends, progress)?);
+        }
         Self::of_meshes(specimen, solutions, Vec::new(), ends, progress)
     }
 
@@ -87,7 +89,7 @@ impl Reference {
         progress: Progress,
     ) -> Result<Self, Error> {
         let mesh = specimen.outline.reference_mesh(3);
-        let finer = on_mesh(specimen, &mesh, FILE, ends, progress)?;
+        let finer = on_mesh(specimen, &mesh, Some(&self.finest), FILE, ends, progress)?;
         let mut meshes = self.coarser.split_off(self.coarser.len() - 1);
         meshes.extend([self.finest, finer]);
         Self::of_meshes(specimen, meshes, Vec::new(), ends, progress)
@@ -106,7 +108,7 @@ impl Reference {
             // A finer mesh may reach what a coarser one did not.
             ends.truncate(ends_before);
             let mesh = specimen.outline.elements_on(&triangles);
-            let solution = on_mesh(specimen, &mesh, FILE, ends, progress)?;
+            let solution = on_mesh(specimen, &mesh, meshes.last(), FILE, ends, progress)?;
             let measured = measured(specimen, &solution, ends);
             let estimates = estimates(specimen, &solution, &measured)?;
             meshes.push(solution);
@@ -137,19 +139,25 @@ pub fn finest(
         return Ok(Reference::adaptive(specimen, goal, ends, progress)?.finest);
     }
     let mesh = specimen.outline.finest_mesh();
-    on_mesh(specimen, &mesh, FILE, ends, progress)
+    on_mesh(specimen, &mesh, None, FILE, ends, progress)
 }
 
-/// The finite elements on a mesh; `file` is what their files begin with.
+/// The finite elements on a mesh, with first guesses of a coarser one; `file` is what their files begin with.
 fn on_mesh(
     specimen: &Specimen,
     mesh: &Mesh,
+    coarser: Option<&Solution>,
     file: &str,
     ends: &mut Vec<End>,
     progress: Progress,
 ) -> Result<Solution, Error> {
     let energy = specimen.problem.finite_elements(mesh);
-    let model = specimen.on(mesh, &energy)?;
+    let mut model = specimen
+        .on(mesh, &energy)?
+        .solved_by(specimen.linear_solver);
+    if let Some(coarser) = coarser {
+        model = model.near(&coarser.mesh, &coarser.states);
+    }
     Ok(solve(specimen, &model, file, ends, progress))
 }
 
@@ -194,7 +202,7 @@ fn outline_errors(
     };
     // Where a path ends is told of the meshes whose results are given.
     let mut untold = Vec::new();
-    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, FILE, &mut untold, progress);
+    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, middle, FILE, &mut untold, progress);
     let rounded = on(&rounded)?;
     let halved;
     let middle = match middle {
@@ -228,10 +236,13 @@ fn estimates(
 ) -> Result<Vec<Option<ErrorEstimate>>, Error> {
     let mesh = &solution.mesh;
     let energy = specimen.problem.finite_elements(mesh);
-    let model = specimen.on(mesh, &energy)?;
+    let model = specimen
+        .on(mesh, &energy)?
+        .solved_by(specimen.linear_solver);
     let recovery = Recovery::new(mesh);
-    let estimate = |state: &State| {
-        let influence = model.influence(state, &measured.group, measured.axis);
+    let states = &solution.states;
+    let influences = model.influences(states, &measured.group, measured.axis);
+    let estimate = |(state, influence): (&State, Result<Vec<f64>, SolveFault>)| {
         let solved = error_estimate::SheetSolution {
             law: &*specimen.problem.law,
             thickness: specimen.problem.thickness,
@@ -240,5 +251,5 @@ fn estimates(
         };
         Some(solved.estimate(&recovery, &influence.ok()?))
     };
-    Ok(solution.states.iter().map(estimate).collect())
+    Ok(states.iter().zip(influences).map(estimate).collect())
 }

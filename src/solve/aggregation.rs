@@ -1,0 +1,162 @@
+//! Multigrid by smoothed aggregation: a symmetric approximate inverse of the stiffness of any mesh.
+//!
+//! Nodes that are strongly coupled are grouped; each group moves as a rigid body, smoothed by one step of damped Jacobi, and is
+//! one node of the next coarser level, with three unknowns. A cycle costs about as much as two products with the stiffness, and
+//! the iterations around it hardly depend on the number of nodes. Nothing is asked of the mesh but the places of its
+//! nodes: quadrilaterals and triangles, linear and quadratic, graded, locally refined, with holes and any supports.
+//!
+//! | step | how |
+//! |---|---|
+//! | motions without strain | two translations and the rotation of the nodes' places |
+//! | smoother | block Gauss–Seidel, forward before and backward after the coarser levels: symmetric |
+//! | coarser operators | PᵀAP |
+//! | coarsest level | sparse Cholesky factor |
+//!
+//! All sums run in an order that does not depend on the number of threads.
+//!
+//! # References
+//! P. Vaněk, J. Mandel, M. Brezina, Computing 56, 179 (1996), doi:10.1007/BF02238511
+
+mod aggregates;
+pub mod blocks;
+mod level;
+mod prolongation;
+#[cfg(test)]
+mod tests;
+
+use super::pattern::SymmetricPattern;
+use super::sparse::{Cholesky, FactorFault};
+use blocks::Blocks;
+use level::{Coarser, Level};
+pub use prolongation::Motions;
+
+/// Nodes up to which a level is factorised.
+const COARSEST: usize = 200;
+
+/// Share of a level's nodes that the next coarser one may have at most; where groups stay small that level is the last.
+const SLOW: f64 = 0.7;
+
+/// Levels from fine to coarse.
+pub struct Hierarchy {
+    fine: Level<2>,
+    coarse: Vec<Level<3>>,
+    coarsest: Cholesky,
+    /// Right-hand side and solution of the coarsest level.
+    last: Vec<[f32; 3]>,
+}
+
+impl Hierarchy {
+    /// The levels of a positive definite matrix with two unknowns a node.
+    ///
+    /// # Errors
+    /// [`FactorFault`] when a level shows that it is not positive definite, or is too large.
+    pub fn new(matrix: &Blocks<2, 2>, motions: &[Motions<2>]) -> Result<Self, FactorFault> {
+        const INDEFINITE: FactorFault = FactorFault::NotPositiveDefinite;
+        let (fine, mut below) = Level::new(matrix, motions).ok_or(INDEFINITE)?;
+        let mut coarse: Vec<Level<3>> = Vec::new();
+        let mut nodes = fine.nodes();
+        loop {
+            let rows = below.matrix.rows();
+            if rows <= COARSEST || rows as f64 > SLOW * nodes as f64 {
+                break;
+            }
+            nodes = rows;
+            let (level, next) = Level::new(&below.matrix, &below.motions).ok_or(INDEFINITE)?;
+            coarse.push(level);
+            below = next;
+        }
+        Ok(Self {
+            coarsest: factor(&below)?,
+            last: vec![[0.0; 3]; below.matrix.rows()],
+            coarse,
+            fine,
+        })
+    }
+
+    /// Nodes of all levels, fine to coarse.
+    #[cfg(test)]
+    pub fn nodes(&self) -> Vec<usize> {
+        let coarse = self.coarse.iter().map(Level::nodes);
+        let between = std::iter::once(self.fine.nodes()).chain(coarse);
+        between.chain([self.last.len()]).collect()
+    }
+
+    /// z = M r by one V-cycle.
+    pub fn apply(&mut self, r: &[[f64; 2]], z: &mut [[f64; 2]]) {
+        let most = r
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |most, r| most.max(r.abs()));
+        if most == 0.0 || !most.is_finite() {
+            z.fill([most; 2]);
+            return;
+        }
+        // Single precision has few exponents.
+        for (b, r) in self.fine.b.iter_mut().zip(r) {
+            *b = r.map(|r| (r / most) as f32);
+        }
+        let Self {
+            fine,
+            coarse,
+            coarsest,
+            last,
+        } = self;
+        fine.descend(
+            coarse
+                .first_mut()
+                .map_or(&mut last[..], |level| &mut level.b),
+        );
+        for index in 0..coarse.len() {
+            let (upper, lower) = coarse.split_at_mut(index + 1);
+            upper[index].descend(
+                lower
+                    .first_mut()
+                    .map_or(&mut last[..], |level| &mut level.b),
+            );
+        }
+        let mut flat: Vec<f64> = last.iter().flatten().map(|b| f64::from(*b)).collect();
+        coarsest.substitute(&mut flat);
+        for (last, own) in last.iter_mut().zip(flat.chunks_exact(3)) {
+            *last = [own[0] as f32, own[1] as f32, own[2] as f32];
+        }
+        for index in (0..coarse.len()).rev() {
+            let (upper, lower) = coarse.split_at_mut(index + 1);
+            upper[index].ascend(lower.first().map_or(&last[..], |level| &level.x));
+        }
+        fine.ascend(coarse.first().map_or(&last[..], |level| &level.x));
+        for (z, x) in z.iter_mut().zip(&fine.x) {
+            *z = x.map(|x| most * f64::from(x));
+        }
+    }
+}
+
+/// The factor of the coarsest level.
+fn factor(below: &Coarser) -> Result<Cholesky, FactorFault> {
+    let matrix = &below.matrix;
+    let unknowns = 0..3 * matrix.rows();
+    let rows_of = |column: usize| {
+        let nodes = matrix.row(column / 3).map(|(node, _)| node);
+        nodes
+            .flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
+            .collect()
+    };
+    let pattern = SymmetricPattern::new(unknowns.clone().map(rows_of));
+    let mut values = vec![0.0; pattern.entries()];
+    for node in 0..matrix.rows() {
+        for (other, block) in matrix.row(node) {
+            for (i, entries) in block.iter().enumerate() {
+                for (k, entry) in entries.iter().enumerate() {
+                    let (row, column) = (3 * node + i, 3 * other + k);
+                    if row >= column
+                        && let Some(place) = pattern.position(row, column)
+                    {
+                        values[place] = *entry;
+                    }
+                }
+            }
+        }
+    }
+    let mut cholesky = Cholesky::analyse(pattern)?;
+    cholesky.factorise(&values)?;
+    Ok(cholesky)
+}

@@ -1,0 +1,206 @@
+use super::*;
+use crate::solve::nodal::{NodalMatrix, Nodes, conjugate_gradients};
+
+/// Plane stress of a soft sheet at rest, E = 1, ν = ½, on a grid of bilinear rectangles hx × hy, its left side held.
+struct Sheet {
+    unknowns: Vec<usize>,
+    places: Vec<[f64; 2]>,
+    pattern: SymmetricPattern,
+    values: Vec<f64>,
+}
+
+/// The stiffness of a rectangle by one point a corner of the 2 × 2 Gauss rule.
+fn rectangle([hx, hy]: [f64; 2]) -> [[f64; 8]; 8] {
+    let [c11, c12, c33] = [4.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0];
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let mut stiffness = [[0.0; 8]; 8];
+    for point in corners {
+        let [x, y] = point.map(|x: f64| x / 3_f64.sqrt());
+        let gradients =
+            corners.map(|[a, b]| [0.5 * a * (1.0 + b * y) / hx, 0.5 * b * (1.0 + a * x) / hy]);
+        for (a, g) in gradients.iter().enumerate() {
+            for (b, h) in gradients.iter().enumerate() {
+                let blocks = [
+                    [
+                        c11 * g[0] * h[0] + c33 * g[1] * h[1],
+                        c12 * g[0] * h[1] + c33 * g[1] * h[0],
+                    ],
+                    [
+                        c12 * g[1] * h[0] + c33 * g[0] * h[1],
+                        c11 * g[1] * h[1] + c33 * g[0] * h[0],
+                    ],
+                ];
+                for i in 0..2 {
+                    for k in 0..2 {
+                        stiffness[2 * a + i][2 * b + k] += 0.25 * hx * hy * blocks[i][k];
+                    }
+                }
+            }
+        }
+    }
+    stiffness
+}
+
+/// `order` numbers the nodes anew; `slides` frees the held side along y above its first node.
+fn sheet(cells: [usize; 2], size: [f64; 2], slides: bool, order: impl Fn(usize) -> usize) -> Sheet {
+    let [nx, ny] = cells;
+    let h = [size[0] / nx as f64, size[1] / ny as f64];
+    let node = |i: usize, j: usize| order(i * (ny + 1) + j);
+    let count = (nx + 1) * (ny + 1);
+    let (mut places, mut held) = (vec![[0.0; 2]; count], vec![false; 2 * count]);
+    for i in 0..=nx {
+        for j in 0..=ny {
+            places[node(i, j)] = [7.0 + h[0] * i as f64, -3.0 + h[1] * j as f64];
+            held[2 * node(i, j)] = i == 0;
+            held[2 * node(i, j) + 1] = i == 0 && (!slides || j == 0);
+        }
+    }
+    let unknowns: Vec<usize> = (0..2 * count).filter(|unknown| !held[*unknown]).collect();
+    let index = |unknown: usize| unknowns.binary_search(&unknown).ok();
+    let cell = |i: usize, j: usize| {
+        let nodes = [
+            node(i, j),
+            node(i + 1, j),
+            node(i + 1, j + 1),
+            node(i, j + 1),
+        ];
+        let all: Vec<usize> = nodes
+            .iter()
+            .flat_map(|node| [2 * node, 2 * node + 1])
+            .collect();
+        all
+    };
+    let cells: Vec<Vec<usize>> = (0..nx)
+        .flat_map(|i| (0..ny).map(move |j| [i, j]))
+        .map(|[i, j]| cell(i, j))
+        .collect();
+    let mut columns = vec![Vec::new(); unknowns.len()];
+    for own in &cells {
+        for column in own.iter().filter_map(|unknown| index(*unknown)) {
+            columns[column].extend(own.iter().filter_map(|unknown| index(*unknown)));
+        }
+    }
+    let pattern = SymmetricPattern::new(columns.into_iter());
+    let mut values = vec![0.0; pattern.entries()];
+    let stiffness = rectangle(h);
+    for own in &cells {
+        for (a, row) in own.iter().enumerate() {
+            for (b, column) in own.iter().enumerate() {
+                if let (Some(row), Some(column)) = (index(*row), index(*column))
+                    && row >= column
+                {
+                    values[pattern.position(row, column).unwrap()] += stiffness[a][b];
+                }
+            }
+        }
+    }
+    Sheet {
+        places: unknowns.iter().map(|unknown| places[unknown / 2]).collect(),
+        unknowns,
+        pattern,
+        values,
+    }
+}
+
+impl Sheet {
+    fn prepare(&self) -> (Nodes, NodalMatrix, Hierarchy) {
+        let nodes = Nodes::new(&self.unknowns, &self.places);
+        let mut matrix = NodalMatrix::new(&nodes, &self.pattern);
+        matrix.take(&nodes, &self.pattern, &self.values);
+        let cycle = Hierarchy::new(&matrix.blocks, &nodes.motions()).unwrap();
+        (nodes, matrix, cycle)
+    }
+
+    fn iterations(&self) -> usize {
+        let (nodes, matrix, mut cycle) = self.prepare();
+        let found = conjugate_gradients(&matrix.blocks, &mut cycle, &nodes.uneven(), 1e-8, 200);
+        let found = found.unwrap();
+        assert!(found.reduction <= 1e-8);
+        // The true residual has fallen too.
+        let b = nodes.gather(&nodes.uneven());
+        let image = self.pattern.multiply(&self.values, &nodes.gather(&found.x));
+        let left = crate::solve::vector::difference(&b, &image);
+        let (left, whole) = (
+            crate::solve::vector::norm(&left),
+            crate::solve::vector::norm(&b),
+        );
+        assert!(left < 1e-4 * whole, "{left} of {whole}");
+        found.iterations
+    }
+}
+
+fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    a.iter()
+        .flatten()
+        .zip(b.iter().flatten())
+        .map(|(a, b)| a * b)
+        .sum()
+}
+
+#[test]
+fn a_cycle_is_symmetric_and_positive() {
+    for (cells, slides) in [([60, 20], false), ([7, 90], true)] {
+        let (nodes, _, mut cycle) = sheet(cells, [3.0, 1.0], slides, |node| node).prepare();
+        assert!(cycle.nodes().len() > 1, "{:?}", cycle.nodes());
+        let a = nodes.uneven();
+        let b: Vec<[f64; 2]> =
+            nodes.spread(&crate::solve::krylov::irregular(nodes.gather(&a).len(), 3));
+        let mut apply = |r: &[[f64; 2]]| {
+            let mut z = vec![[0.0; 2]; r.len()];
+            cycle.apply(r, &mut z);
+            z
+        };
+        let (to_a, to_b) = (apply(&a), apply(&b));
+        let (ab, ba) = (dot(&a, &to_b), dot(&b, &to_a));
+        let size = (dot(&a, &to_a) * dot(&b, &to_b)).sqrt();
+        assert!(
+            size > 0.0 && (ab - ba).abs() < 2e-5 * size,
+            "{ab} {ba} of {size}"
+        );
+    }
+}
+
+#[test]
+fn iterations_hardly_depend_on_the_number_of_nodes() {
+    let counts = [20, 40, 80]
+        .map(|across| sheet([3 * across, across], [3.0, 1.0], false, |node| node).iterations());
+    assert!(
+        counts[0] >= 5 && counts[2] <= counts[0] + 5 && counts[2] <= 20,
+        "{counts:?}"
+    );
+}
+
+#[test]
+fn long_cells_and_sliding_sides_take_a_few_iterations_more() {
+    for slides in [false, true] {
+        let found = sheet([24, 16], [3.0, 0.5], slides, |node| node).iterations();
+        assert!(found <= 40, "{slides}: {found}");
+    }
+}
+
+#[test]
+fn the_order_of_the_nodes_costs_a_few_iterations_at_most() {
+    let count = 61 * 21;
+    let straight = sheet([60, 20], [3.0, 1.0], true, |node| node).iterations();
+    let mixed = sheet([60, 20], [3.0, 1.0], true, |node| node * 577 % count).iterations();
+    assert!(mixed <= straight + 8, "{straight} {mixed}");
+}
+
+#[test]
+fn an_indefinite_matrix_is_seen() {
+    let mut sheet = sheet([30, 10], [3.0, 1.0], false, |node| node);
+    // Springs of negative stiffness below all nodes: the softest modes fall below zero, all diagonal entries stay positive.
+    for place in sheet.pattern.diagonal().to_vec() {
+        sheet.values[place] -= 0.01;
+    }
+    let nodes = Nodes::new(&sheet.unknowns, &sheet.places);
+    let mut matrix = NodalMatrix::new(&nodes, &sheet.pattern);
+    matrix.take(&nodes, &sheet.pattern, &sheet.values);
+    let seen = match Hierarchy::new(&matrix.blocks, &nodes.motions()) {
+        Err(_) => true,
+        Ok(mut cycle) => {
+            conjugate_gradients(&matrix.blocks, &mut cycle, &nodes.uneven(), 0.0, 12).is_err()
+        }
+    };
+    assert!(seen);
+}

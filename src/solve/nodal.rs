@@ -1,0 +1,252 @@
+//! A stiffness by nodes with two unknowns each, and conjugate gradients for it.
+
+use super::aggregation::blocks::Blocks;
+use super::aggregation::{Hierarchy, Motions};
+use super::krylov::irregular;
+use super::pattern::SymmetricPattern;
+use super::sparse::FactorFault;
+use crate::statistics::extremes;
+
+/// Which node and component each unknown of a stiffness is. A component without an unknown, because it is held, is
+/// one that nothing moves: its row is that of the identity.
+pub struct Nodes {
+    /// Of each unknown: its node, and 0 or 1.
+    of: Vec<(u32, u8)>,
+    /// Where each node is, relative to the middle of all and to their extent.
+    places: Vec<[f64; 2]>,
+    /// Which components of each node are unknowns.
+    free: Vec<[bool; 2]>,
+}
+
+/// A stiffness by nodes.
+pub struct NodalMatrix {
+    /// The blocks of nodes.
+    pub blocks: Blocks<2, 2>,
+    /// For each stored entry of the symmetric pattern its block below or on the diagonal, and the one above it.
+    slots: Vec<[u32; 2]>,
+}
+
+impl Nodes {
+    /// The nodes of some unknowns with their places, ascending: 2 n and 2 n + 1 are those of node n.
+    pub fn new(unknowns: &[usize], all_places: &[[f64; 2]]) -> Self {
+        let (mut of, mut places, mut free) = (Vec::new(), Vec::new(), Vec::<[bool; 2]>::new());
+        let mut last = usize::MAX;
+        for (unknown, place) in unknowns.iter().zip(all_places) {
+            if unknown / 2 != last {
+                last = unknown / 2;
+                places.push(*place);
+                free.push([false; 2]);
+            }
+            let node = free.len() - 1;
+            free[node][unknown % 2] = true;
+            of.push((node as u32, (unknown % 2) as u8));
+        }
+        let extent = [0, 1].map(|axis| extremes(places.iter().map(|place| place[axis])));
+        let size = extent
+            .iter()
+            .fold(f64::MIN_POSITIVE, |size, [low, high]| size.max(high - low));
+        for place in &mut places {
+            for (x, [low, high]) in place.iter_mut().zip(extent) {
+                *x = (*x - 0.5 * (low + high)) / size;
+            }
+        }
+        Self { of, places, free }
+    }
+
+    /// Translations and rotation of the components that are unknowns.
+    pub fn motions(&self) -> Vec<Motions<2>> {
+        let nodes = self.places.iter().zip(&self.free);
+        let motion = |([x, y], free): (&[f64; 2], &[bool; 2])| {
+            let rows = [[1.0, 0.0, -y], [0.0, 1.0, *x]];
+            [0, 1].map(|axis| if free[axis] { rows[axis] } else { [0.0; 3] })
+        };
+        nodes.map(motion).collect()
+    }
+
+    /// The components of all nodes, zero where there is no unknown.
+    pub fn spread(&self, entries: &[f64]) -> Vec<[f64; 2]> {
+        let mut all = vec![[0.0; 2]; self.places.len()];
+        for ((node, component), entry) in self.of.iter().zip(entries) {
+            all[*node as usize][usize::from(*component)] = *entry;
+        }
+        all
+    }
+
+    /// Forces without any symmetry, with a large part of every smooth mode and some of every other.
+    pub fn uneven(&self) -> Vec<[f64; 2]> {
+        let rough = irregular(2 * self.places.len(), 1);
+        let nodes = self
+            .places
+            .iter()
+            .zip(rough.chunks_exact(2))
+            .zip(&self.free);
+        let force = |(([x, y], rough), free): ((&[f64; 2], &[f64]), &[bool; 2])| {
+            let smooth = [
+                (7.3 * x + 3.1 * y + 1.0).sin() + (4.1 * y + 0.3).cos() + 0.7 * x,
+                (6.1 * y - 2.3 * x + 0.4).sin() + (5.3 * x + 0.9).cos() - 0.6 * y,
+            ];
+            [0, 1].map(|axis| {
+                if free[axis] {
+                    smooth[axis] + rough[axis]
+                } else {
+                    0.0
+                }
+            })
+        };
+        nodes.map(force).collect()
+    }
+
+    /// The unknowns among the components of all nodes.
+    pub fn gather(&self, all: &[[f64; 2]]) -> Vec<f64> {
+        let entry = |(node, component): &(u32, u8)| all[*node as usize][usize::from(*component)];
+        self.of.iter().map(entry).collect()
+    }
+}
+
+impl NodalMatrix {
+    /// The matrix of a pattern over the unknowns of some nodes; its values are taken later.
+    pub fn new(nodes: &Nodes, pattern: &SymmetricPattern) -> Self {
+        let count = nodes.places.len();
+        let mut below = vec![Vec::<u32>::new(); count];
+        for column in 0..pattern.size() {
+            let node = nodes.of[column].0;
+            let own = &mut below[node as usize];
+            let rows = pattern.column(column).iter().map(|row| nodes.of[*row].0);
+            own.extend(rows.filter(|row| *row > node));
+        }
+        let mut rows = vec![Vec::<u32>::new(); count];
+        for (column, own) in below.iter_mut().enumerate() {
+            own.sort_unstable();
+            own.dedup();
+            for row in own.iter() {
+                rows[*row as usize].push(column as u32);
+            }
+            rows[column].push(column as u32);
+        }
+        let (mut starts, mut columns) = (vec![0], Vec::new());
+        for (lower, upper) in rows.iter_mut().zip(&below) {
+            columns.extend_from_slice(lower);
+            columns.extend_from_slice(upper);
+            starts.push(columns.len());
+        }
+        let blocks = Blocks {
+            values: vec![[[0.0; 2]; 2]; columns.len()],
+            starts,
+            columns,
+        };
+        let find = |row: u32, column: u32| {
+            let start = blocks.starts[row as usize];
+            let own = &blocks.columns[start..blocks.starts[row as usize + 1]];
+            let place = own.binary_search(&column);
+            (start + place.expect("a block of the pattern")) as u32
+        };
+        let mut slots = Vec::with_capacity(pattern.entries());
+        for column in 0..pattern.size() {
+            let to = nodes.of[column].0;
+            for row in pattern.column(column) {
+                let from = nodes.of[*row].0;
+                slots.push([find(from, to), find(to, from)]);
+            }
+        }
+        Self { blocks, slots }
+    }
+
+    /// Takes the values of a pattern.
+    pub fn take(&mut self, nodes: &Nodes, pattern: &SymmetricPattern, values: &[f64]) {
+        self.blocks.values.fill([[0.0; 2]; 2]);
+        let mut entries = self.slots.iter().zip(values);
+        for column in 0..pattern.size() {
+            let k = usize::from(nodes.of[column].1);
+            for row in pattern.column(column) {
+                let i = usize::from(nodes.of[*row].1);
+                let ([lower, upper], value) = entries.next().expect("a value each");
+                self.blocks.values[*lower as usize][i][k] = *value;
+                self.blocks.values[*upper as usize][k][i] = *value;
+            }
+        }
+        for (node, free) in nodes.free.iter().enumerate() {
+            for axis in (0..2).filter(|axis| !free[*axis]) {
+                let start = self.blocks.starts[node];
+                let own = &self.blocks.columns[start..self.blocks.starts[node + 1]];
+                let place = own.binary_search(&(node as u32)).expect("a diagonal");
+                self.blocks.values[start + place][axis][axis] = 1.0;
+            }
+        }
+    }
+}
+
+/// What conjugate gradients found.
+pub struct Found {
+    /// The approximate solution.
+    pub x: Vec<[f64; 2]>,
+    /// Iterations, each one product and one cycle.
+    pub iterations: usize,
+    /// ‖b − A x‖_M over ‖b‖_M, with the preconditioner's norm.
+    pub reduction: f64,
+}
+
+/// x of A x = b by conjugate gradients with a preconditioner, until the residual has fallen by `reduction` or for so many
+/// iterations.
+///
+/// # Errors
+/// [`FactorFault::NotPositiveDefinite`] where a direction has no positive stiffness.
+pub fn conjugate_gradients(
+    matrix: &Blocks<2, 2>,
+    preconditioner: &mut Hierarchy,
+    b: &[[f64; 2]],
+    reduction: f64,
+    most: usize,
+) -> Result<Found, FactorFault> {
+    let size = b.len();
+    let mut r = b.to_vec();
+    let mut z = vec![[0.0; 2]; size];
+    let mut found = Found {
+        x: vec![[0.0; 2]; size],
+        iterations: 0,
+        reduction: 1.0,
+    };
+    preconditioner.apply(&r, &mut z);
+    let mut square = product(&r, &z);
+    let first = square;
+    if first == 0.0 {
+        found.reduction = 0.0;
+        return Ok(found);
+    }
+    let mut direction = z.clone();
+    let mut image = vec![[0.0; 2]; size];
+    while found.iterations < most && found.reduction > reduction {
+        matrix.multiply(&direction, &mut image);
+        let stiffness = product(&direction, &image);
+        if !(stiffness > 0.0 && square > 0.0) {
+            return Err(FactorFault::NotPositiveDefinite);
+        }
+        let length = square / stiffness;
+        let before = product(&r, &z);
+        for i in 0..size {
+            for axis in 0..2 {
+                found.x[i][axis] += length * direction[i][axis];
+                r[i][axis] -= length * image[i][axis];
+            }
+        }
+        // z of before: rounding makes the preconditioner slightly unsymmetric (Polak and Ribière).
+        let last = product(&r, &z);
+        preconditioner.apply(&r, &mut z);
+        let next = product(&r, &z);
+        let beta = (next - last) / before;
+        for (direction, z) in direction.iter_mut().zip(&z) {
+            for axis in 0..2 {
+                direction[axis] = z[axis] + beta * direction[axis];
+            }
+        }
+        square = next;
+        found.iterations += 1;
+        found.reduction = (next.max(0.0) / first).sqrt();
+    }
+    Ok(found)
+}
+
+/// a · b.
+pub fn product(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    let terms = a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1]);
+    terms.sum()
+}

@@ -1,0 +1,197 @@
+//! The climb on any shape: what it leaves is small compared with the discretisation error, which it states.
+
+use std::f64::consts::FRAC_PI_2;
+use std::path::Path;
+use std::sync::Arc;
+
+use gelbench::corrector::CorrectorSettings;
+use gelbench::corrector::climb::ClimbSettings;
+use gelbench::corrector::shape_climb::climb;
+use gelbench::corrector::specimen::{correct, correct_without_multipliers};
+use gelbench::material::{Card, HyperelasticLaw, NeoHooke};
+use gelbench::mesh::{CellShape, Mesh, Shape};
+use gelbench::problem::{BoundaryProblem, Drive, Load, Support};
+use gelbench::solve::{LinearSolver, NewtonSettings};
+
+const SETTINGS: NewtonSettings = NewtonSettings {
+    tolerance: 1e-11,
+    max_iterations: 40,
+};
+
+struct Case {
+    name: &'static str,
+    shape: Shape,
+    /// Cells across the coarsest mesh.
+    across: usize,
+    kind: CellShape,
+    problem: BoundaryProblem,
+}
+
+fn named<T>(own: impl IntoIterator<Item = (&'static str, T)>) -> Vec<(String, T)> {
+    own.into_iter()
+        .map(|(name, own)| (name.to_owned(), own))
+        .collect()
+}
+
+fn held(x: f64, y: f64) -> Support {
+    Support::Displacement([Some(x), Some(y)])
+}
+
+fn cases() -> Vec<Case> {
+    let hole = Shape::StripWithHole {
+        size: [100.0, 40.0],
+        radius: 8.0,
+    };
+    let bone = Shape::DogBone {
+        size: [115.0, 25.0],
+        narrow: [33.0, 6.0],
+        shoulder: 20.0,
+    };
+    let ring = Shape::RingSector {
+        radii: [10.0, 20.0],
+        angle: FRAC_PI_2,
+    };
+    let pva = Card::load("pva-10", Path::new(".")).unwrap().law;
+    let soft: Arc<dyn HyperelasticLaw> = Arc::new(NeoHooke { c10: 0.05 });
+    let grips = |by: f64| named([("left", held(0.0, 0.0)), ("right", held(by, 0.0))]);
+    let pulled = Support::Grip([Drive::Force(2.0), Drive::Displacement(0.0)]);
+    let case =
+        |name, (shape, across, kind), law: &Arc<dyn HyperelasticLaw>, supports, loads| Case {
+            name,
+            shape,
+            across,
+            kind,
+            problem: BoundaryProblem {
+                thickness: 2.0,
+                law: Arc::clone(law),
+                supports,
+                loads,
+            },
+        };
+    vec![
+        case(
+            "hole, Q1",
+            (hole, 6, CellShape::Quad4),
+            &pva,
+            grips(50.0),
+            vec![],
+        ),
+        case(
+            "hole, T1, force",
+            (hole, 6, CellShape::Triangle3),
+            &soft,
+            named([("left", held(0.0, 0.0)), ("right", pulled)]),
+            vec![],
+        ),
+        case(
+            "hole, Q2",
+            (hole, 4, CellShape::Quad9),
+            &pva,
+            grips(50.0),
+            vec![],
+        ),
+        case(
+            "dog-bone, Q1",
+            (bone, 6, CellShape::Quad4),
+            &pva,
+            grips(50.0),
+            vec![],
+        ),
+        case(
+            "ring sector under pressure, Q1",
+            (ring, 3, CellShape::Quad4),
+            &soft,
+            named([("start", Support::Roller), ("end", Support::Roller)]),
+            named([("inside", Load::Pressure(0.02))]),
+        ),
+    ]
+}
+
+fn root_mean_square(a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b);
+    let sum: f64 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
+    (sum / (0.5 * a.len() as f64)).sqrt()
+}
+
+#[test]
+fn what_the_climb_leaves_is_a_small_share_of_the_discretisation_error() {
+    for case in cases() {
+        let meshes: Vec<Mesh> = (0..4)
+            .map(|level| case.shape.mesh(case.across << level, case.kind))
+            .collect();
+        let finest = &meshes[3];
+        for (settings, most) in [(ClimbSettings::default(), 2e-3), (ClimbSettings::FAST, 0.1)] {
+            let climbed = climb(&case.problem, &meshes, 1.0, settings).unwrap();
+            assert!(
+                climbed.work[1..].iter().all(|work| work.iterations > 0),
+                "{}: {:?}",
+                case.name,
+                climbed.work
+            );
+            let energy = case.problem.finite_elements(finest);
+            let model = case.problem.on(finest, &energy).unwrap();
+            let exact =
+                correct_without_multipliers(&model, &climbed.state.displacement, 1.0, SETTINGS)
+                    .unwrap();
+            let left = root_mean_square(&climbed.state.displacement, &exact.displacement);
+            let error = climbed.discretisation_error;
+            assert!(
+                left <= most * error,
+                "{}: {left} of {error}, {:?}",
+                case.name,
+                climbed.work
+            );
+        }
+    }
+}
+
+/// The stated error against meshes with cells a quarter as large, or half where they are quadratic.
+#[test]
+fn the_stated_discretisation_error_is_true_within_two() {
+    for case in cases() {
+        // With three meshes the ratio of two changes is all that is known, which is too little.
+        let (levels, finest) = match case.kind {
+            CellShape::Quad9 => (4, 5),
+            _ => (4, 6),
+        };
+        let meshes = (0..finest).map(|level| case.shape.mesh(case.across << level, case.kind));
+        let meshes: Vec<Mesh> = meshes.collect();
+        let settings = ClimbSettings::default();
+        let on = |levels: usize| climb(&case.problem, &meshes[..levels], 1.0, settings).unwrap();
+        let (climbed, finer) = (on(levels), on(finest));
+        let interpolation = meshes[finest - 1].interpolation_on(&meshes[levels - 1]);
+        let there = interpolation.apply(&finer.state.displacement);
+        let true_error = root_mean_square(&climbed.state.displacement, &there);
+        let ratio = climbed.discretisation_error / true_error;
+        println!("{}: stated over true {ratio}", case.name);
+        assert!(
+            (0.5..2.0).contains(&ratio),
+            "{}: stated over true {ratio}",
+            case.name
+        );
+    }
+}
+
+#[test]
+fn the_field_without_multipliers_is_that_with_them() {
+    for case in cases() {
+        let mesh = case.shape.mesh(2 * case.across, case.kind);
+        let energy = case.problem.finite_elements(&mesh);
+        let model = case.problem.on(&mesh, &energy).unwrap();
+        let start = climb(
+            &case.problem,
+            std::slice::from_ref(&mesh),
+            1.0,
+            ClimbSettings::default(),
+        )
+        .unwrap();
+        let start = start.state.displacement;
+        let with = correct(&model, &start, &start, 1.0, CorrectorSettings::default()).unwrap();
+        for solver in [LinearSolver::Direct, LinearSolver::Multigrid] {
+            let model = case.problem.on(&mesh, &energy).unwrap().solved_by(solver);
+            let without = correct_without_multipliers(&model, &start, 1.0, SETTINGS).unwrap();
+            let apart = root_mean_square(&with.state.displacement, &without.displacement);
+            assert!(apart < 1e-7, "{}: {apart} mm", case.name);
+        }
+    }
+}
