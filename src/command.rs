@@ -47,6 +47,7 @@ mod progress;
 mod reference;
 mod schema;
 mod shell;
+mod sweep;
 mod terminal;
 
 const SAMPLES: &str = "\
@@ -59,6 +60,7 @@ Samples:
   gelbench compare my_plate.toml abaqus.vtu  compare its models with a field of another program
   gelbench identify spring.csv               spring and dashpot functions from recorded force and motion
   gelbench correct markers.csv …             make measured displacements satisfy the physics
+  gelbench sweep my_plate.toml --vary …      compute it many times, some of its keys changed
   gelbench validate                          redo the publication's claims, write output/validation/REPORT.md
   gelbench materials list                    the cards that come along
   gelbench materials show pva-10             one card with its moduli and its source
@@ -165,6 +167,9 @@ enum Command {
         #[command(flatten)]
         printed: Printed,
     },
+    /// Compute a study many times, some of its keys changed
+    #[command(after_help = sweep::HELP)]
+    Sweep(Box<sweep::Options>),
     /// Print the completions of a shell
     #[command(
         after_help = "Sample: gelbench completions bash > ~/.local/share/bash-completion/completions/gelbench"
@@ -231,6 +236,7 @@ fn perform(command: Command) -> u8 {
         Command::Schema { kind } => schema::print_schema(kind),
         Command::Completions { shell } => shell::completions(shell, &mut Arguments::command()),
         Command::Man { output } => shell::manual(&output, &mut Arguments::command()),
+        Command::Sweep(options) => sweep::run(*options),
         Command::Validate {
             mut cases,
             quick,

@@ -11,6 +11,7 @@
 //! | [Measured fields](measured_fields) | markers from image correlation: the nearest field in equilibrium, with intervals |
 //! | [Materials](materials) | cards, fits to your own tests, export of test data |
 //! | [Springs and dashpots](springs_and_dashpots) | spring and dashpot functions from a recording of force and extension |
+//! | [Many runs](many_runs) | a study with other parameters, again and again: grids, distributions, a fit's uncertainty; clusters |
 //! | [Other codes](other_codes) | the same problem in Abaqus, CalculiX or FEBio, and the way back |
 //! | [Validation](validation) | the claims of the publication, and what gelbench is checked against |
 //! | [Performance](performance) | why the corrected plate is fast, and how to measure it |
@@ -73,6 +74,8 @@ pub mod measured_fields {}
 pub mod materials {}
 #[doc = include_str!("guide/springs_and_dashpots.md")]
 pub mod springs_and_dashpots {}
+#[doc = include_str!("guide/many_runs.md")]
+pub mod many_runs {}
 #[doc = include_str!("guide/other_codes.md")]
 pub mod other_codes {}
 #[doc = include_str!("guide/validation.md")]

@@ -55,6 +55,7 @@
 //! | compare two fields, with the reference's own error | [`compare`] |
 //! | run a study file as the command does | [`studies`], [`results`] |
 //! | write reports, pictures, VTK files, or the input of another code | [`output`] |
+//! | run a study many times, some of its keys changed | [`sweep`] |
 //! | recompute what proves gelbench right | [`validation`] |
 //! | call the command itself | [`command`] |
 #![warn(missing_docs)]
@@ -83,6 +84,7 @@ pub mod results;
 pub mod solve;
 pub mod statistics;
 pub mod studies;
+pub mod sweep;
 pub mod units;
 pub mod validation;
 

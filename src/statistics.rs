@@ -63,6 +63,11 @@ pub fn normal_reach() -> f64 {
     Normal::standard().inverse_cdf(0.975)
 }
 
+/// The value below which a standard normal number lies with a probability.
+pub fn normal_quantile(probability: f64) -> f64 {
+    Normal::standard().inverse_cdf(probability)
+}
+
 /// P(|z| > x) for a standard normal number z.
 pub fn normal_tail(x: f64) -> f64 {
     2.0 * Normal::standard().sf(x.abs())

@@ -311,7 +311,7 @@ pub fn is_known(unit: &str) -> bool {
 }
 
 /// Length in bytes of the decimal number at the beginning of `text`.
-fn number_length(text: &str) -> usize {
+pub(crate) fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = 0;
     while end < bytes.len() {

@@ -139,6 +139,14 @@ pub fn case_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
 /// [`Error::Input`] with every fault.
 pub fn read(path: &Path, budget: Budget) -> Result<PreparedStudy, Error> {
     let text = read_text(path)?;
+    read_given(path, text, budget)
+}
+
+/// Reads a study of any kind from its text; the files that it names are relative to `path`.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn read_given(path: &Path, text: String, budget: Budget) -> Result<PreparedStudy, Error> {
     match case_of(&path.display().to_string(), &text)? {
         Some(case) => case.read(path, &text, budget),
         None => plate_study::prepare(path, text, budget),

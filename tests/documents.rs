@@ -33,6 +33,7 @@ const NOT_RUN: &[(&str, &str)] = &[
 
 /// Commands that take longer than about 20 s in a build without optimisation, and why.
 const SLOW: &[(&str, &str)] = &[
+    ("gelbench sweep", "computes whole studies"),
     ("gelbench run", "computes a whole study in three models"),
     ("gelbench correct", "inverts a field with its uncertainty"),
     ("gelbench compare", "solves the study in three models"),

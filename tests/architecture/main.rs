@@ -23,6 +23,7 @@ const FLOORS: &[&[&str]] = &[
     &["studies"],
     &["output"],
     &["validation"],
+    &["sweep"],
     &["command"],
     &["guide"],
 ];

@@ -1,0 +1,137 @@
+//! Many runs of one study, some of its keys changed.
+//!
+//! ```text
+//! study ──────┐
+//! variables ──┼─▶ Sweep ─run─▶ one Row per run ─▶ table, bands, rank correlations
+//! sampling ───┘
+//! ```
+//!
+//! A variable is a key of the study with its values, or a parameter of the study's card as `material.KEY`: some values, of which every
+//! combination is run, or a distribution, of which points are drawn. Points are those of Sobol's sequence with Owen's scrambling, or
+//! random ones; a point u in (0, 1)ⁿ is taken to the distributions by their inverse cumulative functions, and to the correlated
+//! parameters of a fit by x = x̂ + L z, with the Cholesky factor L of their covariance and normal z.
+//!
+//! # References
+//! I. M. Sobol', USSR Comput. Math. Math. Phys. 7, 86 (1967), doi:10.1016/0041-5553(67)90144-9;
+//! A. B. Owen, in Monte Carlo and Quasi-Monte Carlo Methods, Springer 1995, doi:10.1007/978-1-4612-2552-2_19
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use rayon::prelude::*;
+
+use crate::budget::Budget;
+use crate::error::{Diagnostic, Error};
+use crate::studies::Progress;
+
+mod altered;
+mod figures;
+mod plan;
+mod results;
+mod table;
+mod variable;
+
+pub use figures::Row;
+pub use plan::{FittedParameters, Method, Sampling};
+pub use results::{Statistics, blocks, figures, json, statistics};
+pub use table::{read, write};
+pub use variable::{Setting, Values, Variable};
+
+/// A study with what is varied.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// The study's file.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// What is varied.
+    pub variables: Vec<Variable>,
+    /// Parameters that are drawn with their correlation.
+    pub fitted: Option<FittedParameters>,
+    /// How points are drawn.
+    pub sampling: Sampling,
+    /// What each run may ask for.
+    pub budget: Budget,
+}
+
+/// One run: its number from 1 on, and what each variable is set to.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Its number.
+    pub number: usize,
+    /// In the order of [`Sweep::keys`].
+    pub settings: Vec<Setting>,
+}
+
+impl Sweep {
+    /// The keys that are varied.
+    pub fn keys(&self) -> Vec<String> {
+        let fitted = self.fitted.iter().flat_map(FittedParameters::keys);
+        let own = self.variables.iter().map(|variable| variable.key.clone());
+        own.chain(fitted).collect()
+    }
+
+    /// All runs.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where nothing is varied, a key twice, distributions have no number of samples, or there are more than a million runs.
+    pub fn runs(&self) -> Result<Vec<Run>, Error> {
+        let input = |fault: Diagnostic| Error::Input(vec![fault]);
+        plan::check_keys(&self.keys()).map_err(input)?;
+        let rows = plan::rows(&self.variables, self.fitted.as_ref(), self.sampling);
+        let rows = rows.map_err(input)?.into_iter().enumerate();
+        let run = |(index, settings)| Run {
+            number: index + 1,
+            settings,
+        };
+        Ok(rows.map(run).collect())
+    }
+
+    /// Computes runs, several at once, but for those that are done; each is handed to `keep` when it ends.
+    ///
+    /// # Errors
+    /// [`Error::Input`] of a run whose study has faults, with its number; those of `keep`. A model without a solution is no error: it stands in
+    /// the run's row.
+    pub fn compute(
+        &self,
+        runs: &[Run],
+        mut done: HashMap<usize, Row>,
+        keep: &(dyn Fn(&Row) -> Result<(), Error> + Sync),
+    ) -> Result<Vec<Row>, Error> {
+        let done: Vec<(&Run, Option<Row>)> = runs
+            .iter()
+            .map(|run| (run, done.remove(&run.number)))
+            .collect();
+        let row = |(run, done): (&Run, Option<Row>)| match done {
+            Some(row) => Ok(row),
+            None => {
+                let row = self.row(run)?;
+                keep(&row)?;
+                Ok(row)
+            }
+        };
+        done.into_par_iter().map(row).collect()
+    }
+
+    fn row(&self, run: &Run) -> Result<Row, Error> {
+        let told = |error: Error| match error {
+            Error::Input(faults) => {
+                let named = |fault: Diagnostic| Diagnostic {
+                    message: format!("run {}: {}", run.number, fault.message),
+                    ..fault
+                };
+                Error::Input(faults.into_iter().map(named).collect())
+            }
+            other => other,
+        };
+        let ready = altered::prepare(self, run).map_err(told)?;
+        match ready.compute(Progress::silent()) {
+            Ok(results) => Ok(Row::of(run, &results.outcome, results.passed())),
+            Err(fault @ Error::Solve { .. }) => Ok(Row::failed(run, fault.to_string())),
+            Err(other) => Err(other),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,88 @@
+//! What is noted of a run.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::Run;
+use super::variable::Setting;
+use crate::results::Outcome;
+
+/// A run with what came of it.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Row {
+    /// The run's number.
+    pub number: usize,
+    /// What was set.
+    pub settings: Vec<Setting>,
+    /// Every number of every model at every step, by names such as `corrected.force_N@0.5`: model, quantity with its unit, and the
+    /// stretch, load factor, time in s or frame. Components along x and y end with `.x` and `.y`.
+    pub figures: Vec<(String, f64)>,
+    /// Whether all that the study requires is met.
+    pub passed: bool,
+    /// Why there is no solution, or where a model ended early; empty where neither is the case.
+    pub fault: String,
+}
+
+impl Row {
+    /// Of what a study has found.
+    pub fn of(run: &Run, outcome: &Outcome, passed: bool) -> Self {
+        let mut figures = Vec::new();
+        for step in &outcome.steps {
+            for (model, quantities) in &step.models {
+                let mut found = Vec::new();
+                flatten(model, quantities, &mut found);
+                let at = step.at;
+                figures.extend(
+                    found
+                        .into_iter()
+                        .map(|(name, value)| (format!("{name}@{at}"), value)),
+                );
+            }
+        }
+        let ends = outcome.ends.iter().map(|end| end.message.as_str());
+        Self {
+            number: run.number,
+            settings: run.settings.clone(),
+            figures,
+            passed,
+            fault: ends.collect::<Vec<_>>().join("; "),
+        }
+    }
+
+    /// Of a study without a solution.
+    pub fn failed(run: &Run, fault: String) -> Self {
+        Self {
+            number: run.number,
+            settings: run.settings.clone(),
+            figures: Vec::new(),
+            passed: false,
+            fault,
+        }
+    }
+
+    /// A figure by its name.
+    pub fn figure(&self, name: &str) -> Option<f64> {
+        let mut figures = self.figures.iter();
+        figures
+            .find(|(own, _)| own == name)
+            .map(|(_, value)| *value)
+    }
+}
+
+/// All numbers below a name; lists but those of two components are left out.
+fn flatten(name: &str, value: &Value, into: &mut Vec<(String, f64)>) {
+    match value {
+        Value::Number(number) => into.extend(number.as_f64().map(|value| (name.to_owned(), value))),
+        Value::Object(fields) => {
+            for (key, inner) in fields {
+                flatten(&format!("{name}.{key}"), inner, into);
+            }
+        }
+        Value::Array(parts) if parts.len() == 2 => {
+            for (axis, part) in ["x", "y"].into_iter().zip(parts) {
+                flatten(&format!("{name}.{axis}"), part, into);
+            }
+        }
+        _ => {}
+    }
+}

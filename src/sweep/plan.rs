@@ -1,0 +1,267 @@
+//! The runs: every combination of the listed values, each with the points that are drawn.
+
+use nalgebra::{DMatrix, DVector};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde_json::Value;
+
+use super::variable::{Setting, Values, Variable};
+use crate::error::Diagnostic;
+use crate::statistics::normal_quantile;
+
+/// More runs are refused.
+const MOST_RUNS: usize = 1_000_000;
+
+/// What the scrambled sequence holds.
+const MOST_OF_SOBOL: usize = 1 << 16;
+const SOBOL_DIMENSIONS: usize = 256;
+
+/// How points are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Sobol's sequence with Owen's scrambling.
+    Sobol,
+    /// Independent of each other.
+    Random,
+}
+
+/// How many points are drawn, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampling {
+    /// How many; `None` where none are.
+    pub samples: Option<usize>,
+    /// How.
+    pub method: Method,
+    /// What tells one drawing from another.
+    pub seed: u32,
+}
+
+/// Parameters of a law with their covariance, of the JSON file of `gelbench materials fit`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FittedParameters {
+    keys: Vec<String>,
+    units: Vec<String>,
+    values: DVector<f64>,
+    /// L with Cov = L Lᵀ.
+    factor: DMatrix<f64>,
+}
+
+impl FittedParameters {
+    /// Reads them.
+    ///
+    /// # Errors
+    /// A text that is no fit, or a fit without uncertainty.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostic> {
+        const HINT: &str =
+            "take the JSON file that `gelbench materials fit` writes beside the card";
+        let wrong = |what: &str| Diagnostic::error(file, what.to_owned()).hint(HINT);
+        let fit: Value = serde_json::from_str(text).map_err(|_| wrong("is not JSON"))?;
+        let parameters = fit["parameters"].as_array();
+        let parameters = parameters.ok_or_else(|| wrong("holds no `parameters`"))?;
+        let texts = |key: &str| -> Option<Vec<String>> {
+            let all = parameters
+                .iter()
+                .map(|one| Some(one[key].as_str()?.to_owned()));
+            all.collect()
+        };
+        let numbers = |key: &str| -> Option<Vec<f64>> {
+            parameters.iter().map(|one| one[key].as_f64()).collect()
+        };
+        let (keys, units) = texts("key")
+            .zip(texts("unit"))
+            .ok_or_else(|| wrong("holds parameters without keys or units"))?;
+        let values = numbers("value").ok_or_else(|| wrong("holds parameters without values"))?;
+        let errors = numbers("standard_error").ok_or_else(|| {
+            Diagnostic::error(file, "its parameters have no standard errors").hint(
+                "a fit that leaves a systematic pattern, or has parameters at a bound, has no uncertainty: choose another law",
+            )
+        })?;
+        let correlation = |i: usize, j: usize| fit["correlation"][i][j].as_f64();
+        let count = keys.len();
+        let mut covariance = DMatrix::zeros(count, count);
+        for i in 0..count {
+            for j in 0..count {
+                let own = correlation(i.max(j), i.min(j))
+                    .ok_or_else(|| wrong("holds no whole `correlation`"))?;
+                covariance[(i, j)] = errors[i] * own * errors[j];
+            }
+        }
+        let factor = covariance.cholesky();
+        let factor =
+            factor.ok_or_else(|| wrong("holds a covariance that is not positive definite"))?;
+        Ok(Self {
+            units: units
+                .into_iter()
+                .map(|unit| if unit == "–" { String::new() } else { unit })
+                .collect(),
+            keys,
+            values: values.into(),
+            factor: factor.l(),
+        })
+    }
+
+    /// The keys of a study that stand for them.
+    pub fn keys(&self) -> impl Iterator<Item = String> {
+        self.keys.iter().map(|key| format!("material.{key}"))
+    }
+
+    fn at(&self, point: &[f64]) -> Vec<Setting> {
+        let normal = point.iter().map(|share| normal_quantile(*share));
+        let normal = DVector::from_iterator(self.values.len(), normal);
+        let values = &self.values + &self.factor * normal;
+        let units = self.units.iter().cloned();
+        values
+            .iter()
+            .zip(units)
+            .map(|(value, unit)| Setting::Number(*value, unit))
+            .collect()
+    }
+}
+
+/// Refuses no key, a key twice, and one within another.
+pub fn check_keys(keys: &[String]) -> Result<(), Diagnostic> {
+    if keys.is_empty() {
+        let fault = Diagnostic::error("", "nothing is varied");
+        return Err(
+            fault.hint("give --vary KEY=VALUES, such as --vary \"material.c10=0.04..0.06 MPa:20\"")
+        );
+    }
+    for (index, key) in keys.iter().enumerate() {
+        let within = |other: &String| {
+            let rest = other.strip_prefix(key.as_str());
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        if keys
+            .iter()
+            .enumerate()
+            .any(|(at, other)| at != index && within(other))
+        {
+            let fault = Diagnostic::error("", format!("`{key}` is varied twice"));
+            return Err(fault.hint("give every key once"));
+        }
+    }
+    Ok(())
+}
+
+/// What is set in every run: combinations in the order of the variables, the last one changing fastest, and for each of them the
+/// same points.
+pub fn rows(
+    variables: &[Variable],
+    fitted: Option<&FittedParameters>,
+    sampling: Sampling,
+) -> Result<Vec<Vec<Setting>>, Diagnostic> {
+    let drawn = variables
+        .iter()
+        .filter(|variable| !matches!(variable.values, Values::Listed(_)));
+    let fitted_count = fitted.map_or(0, |fitted| fitted.keys.len());
+    let dimensions = drawn.count() + fitted_count;
+    let samples = match (sampling.samples, dimensions) {
+        (None, 0) => 1,
+        (Some(samples), 1..) => samples,
+        (None, _) => {
+            let fault = Diagnostic::error(
+                "",
+                "distributions are given, but not how many points are drawn of them",
+            );
+            return Err(fault.hint(
+                "give --samples, such as --samples 256, or a number of values: LOW..HIGH:20",
+            ));
+        }
+        (Some(_), 0) => {
+            let fault =
+                Diagnostic::error("", "points are to be drawn, but there is no distribution");
+            return Err(fault
+                .hint("leave out --samples, or give KEY=LOW..HIGH, KEY=MEAN+-DEVIATION or --fit"));
+        }
+    };
+    if sampling.method == Method::Sobol
+        && (samples > MOST_OF_SOBOL || dimensions > SOBOL_DIMENSIONS)
+    {
+        let message = format!(
+            "Sobol's sequence has at most {MOST_OF_SOBOL} points of {SOBOL_DIMENSIONS} distributions here"
+        );
+        return Err(Diagnostic::error("", message).hint("draw them with --method random"));
+    }
+    let combinations = variables.iter().try_fold(samples, |count, variable| {
+        count.checked_mul(match &variable.values {
+            Values::Listed(values) => values.len(),
+            _ => 1,
+        })
+    });
+    if combinations.is_none_or(|count| count > MOST_RUNS) {
+        let fault = Diagnostic::error("", "there are more than a million runs");
+        return Err(fault.hint("take fewer values, or draw points of distributions"));
+    }
+    let points: Vec<Vec<f64>> = (0..samples)
+        .map(|index| point(index, dimensions, sampling))
+        .collect();
+    let mut all = Vec::new();
+    let mut listed: Vec<Vec<Setting>> = vec![Vec::new()];
+    for variable in variables {
+        if let Values::Listed(values) = &variable.values {
+            listed = listed
+                .iter()
+                .flat_map(|before| {
+                    values
+                        .iter()
+                        .map(move |value| [&before[..], &[value.clone()]].concat())
+                })
+                .collect();
+        }
+    }
+    for combination in &listed {
+        for point in &points {
+            all.push(row(variables, fitted, combination, point));
+        }
+    }
+    Ok(all)
+}
+
+fn row(
+    variables: &[Variable],
+    fitted: Option<&FittedParameters>,
+    listed: &[Setting],
+    point: &[f64],
+) -> Vec<Setting> {
+    let (mut listed, mut shares) = (listed.iter(), point.iter());
+    let mut settings: Vec<Setting> = Vec::with_capacity(variables.len());
+    for variable in variables {
+        let drawn = match &variable.values {
+            Values::Listed(_) => listed.next().cloned(),
+            Values::Between([low, high], unit) => shares
+                .next()
+                .map(|share| Setting::Number(low + share * (high - low), unit.clone())),
+            Values::Normal([mean, deviation], unit) => shares.next().map(|share| {
+                Setting::Number(mean + deviation * normal_quantile(*share), unit.clone())
+            }),
+        };
+        settings.extend(drawn);
+    }
+    settings.extend(
+        fitted
+            .iter()
+            .flat_map(|fitted| fitted.at(shares.as_slice())),
+    );
+    settings
+}
+
+/// A point of (0, 1)ⁿ.
+fn point(index: usize, dimensions: usize, sampling: Sampling) -> Vec<f64> {
+    const INSIDE: f64 = 1e-9;
+    let share = |dimension: usize| match sampling.method {
+        Method::Sobol => f64::from(sobol_burley::sample(
+            index as u32,
+            dimension as u32,
+            sampling.seed,
+        )),
+        Method::Random => {
+            let mut random = ChaCha8Rng::seed_from_u64(u64::from(sampling.seed));
+            random.set_stream(dimension as u64);
+            random.set_word_pos(2 * index as u128);
+            random.random()
+        }
+    };
+    (0..dimensions)
+        .map(|dimension| share(dimension).clamp(INSIDE, 1.0 - INSIDE))
+        .collect()
+}

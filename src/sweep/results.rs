@@ -1,0 +1,294 @@
+//! What many runs say together: spreads, rank correlations, bands.
+
+use std::collections::HashMap;
+
+use serde_json::{Value, json};
+
+use super::figures::Row;
+use super::table::{headed, names};
+use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke};
+
+/// Below so many runs there is neither a spread nor a correlation.
+const FEWEST: usize = 10;
+
+/// A figure over all runs that have it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistics {
+    /// Its name.
+    pub name: String,
+    /// How many runs have it.
+    pub runs: usize,
+    /// The mean.
+    pub mean: f64,
+    /// The standard deviation; NaN of fewer than two runs.
+    pub standard_deviation: f64,
+    /// The values below which 5, 50 and 95 % of the runs lie.
+    pub quantiles: [f64; 3],
+    /// Spearman's rank correlation with each key; NaN where there are fewer than [`FEWEST`] runs, or a key is no number.
+    pub rank_correlations: Vec<f64>,
+}
+
+/// All figures over all runs.
+pub fn statistics(rows: &[Row]) -> Vec<Statistics> {
+    let names = names(rows);
+    let places: HashMap<&str, usize> = names
+        .iter()
+        .enumerate()
+        .map(|(place, name)| (*name, place))
+        .collect();
+    let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); names.len()];
+    for (index, row) in rows.iter().enumerate() {
+        for (name, value) in &row.figures {
+            columns[places[name.as_str()]].push((index, *value));
+        }
+    }
+    let pairs = names.iter().zip(&columns);
+    pairs
+        .map(|(name, column)| Statistics::of(name, column, rows))
+        .collect()
+}
+
+impl Statistics {
+    fn of(name: &str, column: &[(usize, f64)], rows: &[Row]) -> Self {
+        let values: Vec<f64> = column.iter().map(|(_, value)| *value).collect();
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let mut sorted = values.clone();
+        sorted.sort_by(f64::total_cmp);
+        let keys = rows.first().map_or(0, |row| row.settings.len());
+        let correlation = |key: usize| {
+            let settings = column
+                .iter()
+                .map(|(index, _)| rows[*index].settings[key].value());
+            let settings: Option<Vec<f64>> = settings.collect();
+            settings.map_or(f64::NAN, |settings| rank_correlation(&settings, &values))
+        };
+        Self {
+            name: name.to_owned(),
+            runs: values.len(),
+            mean,
+            standard_deviation: (square / (count - 1.0)).sqrt(),
+            quantiles: [0.05, 0.5, 0.95].map(|share| quantile(&sorted, share)),
+            rank_correlations: (0..keys).map(correlation).collect(),
+        }
+    }
+}
+
+/// The value below which a share of sorted values lies, linear between them.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(sorted.len() - 1);
+    let part = place - below as f64;
+    sorted[below] * (1.0 - part) + sorted[above] * part
+}
+
+/// Spearman's rank correlation; NaN of fewer than [`FEWEST`] pairs, or where all of one are equal.
+fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
+    if a.len() < FEWEST {
+        return f64::NAN;
+    }
+    let [a, b] = [ranks(a), ranks(b)];
+    let mean = (a.len() - 1) as f64 / 2.0;
+    let product = |a: &[f64], b: &[f64]| -> f64 {
+        let pairs = a.iter().zip(b);
+        pairs.map(|(a, b)| (a - mean) * (b - mean)).sum()
+    };
+    product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt()
+}
+
+/// Ranks from 0 on; equal values share the mean of theirs.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut first = 0;
+    while first < order.len() {
+        let equal = order[first..]
+            .iter()
+            .take_while(|at| values[**at] == values[order[first]]);
+        let end = first + equal.count().max(1);
+        for at in &order[first..end] {
+            ranks[*at] = (first + end - 1) as f64 / 2.0;
+        }
+        first = end;
+    }
+    ranks
+}
+
+/// The figures of the last step, without the step in their names.
+fn of_last_step(all: &[Statistics]) -> impl Iterator<Item = &Statistics> {
+    let step = |one: &Statistics| one.name.rsplit_once('@').map(|(_, at)| at.to_owned());
+    let last = all.last().and_then(step);
+    all.iter().filter(move |one| step(one) == last)
+}
+
+/// The report.
+pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
+    let failed = rows.iter().filter(|row| !row.fault.is_empty()).count();
+    let all = statistics(rows);
+    let mut head = vec![
+        "figure of the last step",
+        "runs",
+        "mean",
+        "standard deviation",
+        "5 %",
+        "median",
+        "95 %",
+    ];
+    let correlations: Vec<String> = keys
+        .iter()
+        .map(|key| format!("rank correlation with {key}"))
+        .collect();
+    head.extend(correlations.iter().map(String::as_str));
+    let number = |value: f64| match value.is_finite() {
+        true => format!("{value:.5}"),
+        false => "–".to_owned(),
+    };
+    let lines = of_last_step(&all).map(|one| {
+        let [low, middle, high] = one.quantiles;
+        let numbers = [one.mean, one.standard_deviation, low, middle, high];
+        let numbers = numbers.iter().chain(&one.rank_correlations);
+        let first = [one.name.clone(), one.runs.to_string()];
+        first
+            .into_iter()
+            .chain(numbers.map(|value| number(*value)))
+            .collect()
+    });
+    let varied = (0..keys.len()).map(|index| headed(&keys[index], rows, index));
+    let varied: Vec<String> = varied.collect();
+    let mut blocks = vec![
+        Block::heading(title),
+        Block::paragraph(format!(
+            "{} runs; varied: {}. All figures of all runs are in sweep.csv, a line for each run.",
+            rows.len(),
+            varied.join(", ")
+        )),
+        Block::table(&head, lines),
+        Block::paragraph(format!(
+            "Quantiles are linear between the runs. Rank correlations are Spearman's, of {FEWEST} runs at least: 1 where a figure \
+             always rises with a key, −1 where it always falls."
+        )),
+    ];
+    if failed > 0 {
+        blocks.push(Block::paragraph(format!(
+            "{failed} runs have no solution, or none at their last steps; why stands in the column `fault` of sweep.csv."
+        )));
+    }
+    blocks
+}
+
+/// For machines: the statistics of every figure.
+pub fn json(keys: &[String], rows: &[Row]) -> Value {
+    let figures = statistics(rows).into_iter().map(|one| {
+        json!({
+            "name": one.name,
+            "runs": one.runs,
+            "mean": one.mean,
+            "standard_deviation": one.standard_deviation,
+            "quantiles_5_50_95_percent": one.quantiles,
+            "rank_correlations": one.rank_correlations,
+        })
+    });
+    json!({
+        "gelbench": env!("CARGO_PKG_VERSION"),
+        "keys": keys.iter().enumerate().map(|(index, key)| headed(key, rows, index)).collect::<Vec<_>>(),
+        "runs": rows.len(),
+        "failed": rows.iter().filter(|row| !row.fault.is_empty()).count(),
+        "figures": figures.collect::<Vec<_>>(),
+    })
+}
+
+/// Pictures: the band of every model's force over the steps, and the force of the last step over each key.
+pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
+    let all = statistics(rows);
+    let forces: Vec<&Statistics> = all.iter().filter(|one| is_force(&one.name)).collect();
+    let band = band(&forces, along).map(|chart| {
+        Figure::new(
+            "band.png",
+            "The forces of all runs: medians, and bands between 5 and 95 % of the runs.",
+            chart,
+        )
+    });
+    let last =
+        of_last_step(&all).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
+    let over = last.into_iter().flat_map(|one| {
+        let axis = |index: usize| -> Option<Figure> {
+            let points: Option<Vec<[f64; 2]>> = rows
+                .iter()
+                .filter_map(|row| Some((row, row.figure(&one.name)?)))
+                .map(|(row, value)| Some([row.settings[index].value()?, value]))
+                .collect();
+            let chart = LineChart::new(
+                format!("Force over {}", keys[index]),
+                Axis::new(&headed(&keys[index], rows, index), Scale::Interval),
+                Axis::new(&one.name.replace("_N", " [N]"), Scale::Interval),
+                vec![Line::new("", points?, PALETTE[0], Stroke::Points)],
+            );
+            let caption = format!("{} of every run over {}.", one.name, keys[index]);
+            Some(Figure::new(
+                format!("force_over_{}.png", index + 1),
+                caption,
+                chart,
+            ))
+        };
+        (0..keys.len()).filter_map(axis).collect::<Vec<_>>()
+    });
+    band.into_iter().chain(over).collect()
+}
+
+/// Whether a figure is the force of a model as a whole: not that of a group, nor an error.
+fn is_force(name: &str) -> bool {
+    let quantity = name.split('@').next().unwrap_or(name);
+    matches!(
+        quantity.split_once('.'),
+        Some((_, "force_N" | "measured_N"))
+    )
+}
+
+/// Medians and bands over the steps; `None` where there are fewer than two steps, or too few runs.
+fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
+    let model = |one: &Statistics| one.name.split('.').next().unwrap_or("").to_owned();
+    let mut lines = Vec::new();
+    let mut models: Vec<String> = forces.iter().map(|one| model(one)).collect();
+    models.dedup();
+    models.sort();
+    models.dedup();
+    for (name, colour) in models.iter().zip(PALETTE) {
+        let own = forces
+            .iter()
+            .filter(|one| model(one) == *name && one.runs >= FEWEST);
+        let mut steps: Vec<(f64, [f64; 3])> = own
+            .filter_map(|one| Some((one.name.rsplit_once('@')?.1.parse().ok()?, one.quantiles)))
+            .collect();
+        steps.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if steps.len() < 2 {
+            continue;
+        }
+        let there = steps.iter().map(|(at, [low, ..])| [*at, *low]);
+        let back = steps.iter().rev().map(|(at, [.., high])| [*at, *high]);
+        let words = name.replace('_', " ");
+        lines.push(Line::new(
+            format!("{words}, 5 … 95 %"),
+            there.chain(back),
+            colour,
+            Stroke::Filled,
+        ));
+        let middle = steps.iter().map(|(at, [_, middle, _])| [*at, *middle]);
+        lines.push(Line::new(
+            format!("{words}, median"),
+            middle,
+            colour,
+            Stroke::Solid,
+        ));
+    }
+    (!lines.is_empty()).then(|| {
+        LineChart::new(
+            "Forces of all runs",
+            Axis::new(along, Scale::Interval),
+            Axis::linear("force [N]"),
+            lines,
+        )
+    })
+}

@@ -1,0 +1,193 @@
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::*;
+
+const STUDY: &str = "\
+title = \"small\"
+[plate]
+cells = [6, 2]
+[material]
+card = \"neo-hooke\"
+[load]
+stretches = [\"10 %\", \"20 %\"]
+[finite_element]
+cells = [8, 4]
+[output]
+report = false
+";
+
+fn sweep(vary: &[&str], samples: Option<usize>) -> Sweep {
+    Sweep {
+        path: Path::new("small.toml").to_owned(),
+        text: STUDY.to_owned(),
+        variables: vary
+            .iter()
+            .map(|text| Variable::parse(text).unwrap())
+            .collect(),
+        fitted: None,
+        sampling: Sampling {
+            samples,
+            method: Method::Sobol,
+            seed: 1,
+        },
+        budget: Budget::USUAL,
+    }
+}
+
+fn rows(sweep: &Sweep) -> Vec<Row> {
+    let runs = sweep.runs().unwrap();
+    sweep.compute(&runs, HashMap::new(), &|_| Ok(())).unwrap()
+}
+
+#[test]
+fn forces_are_proportional_to_stiffness_and_thickness_in_every_combination() {
+    let sweep = sweep(
+        &["material.c10=0.05..0.1 MPa:2", "plate.thickness=1 mm,3 mm"],
+        None,
+    );
+    let rows = rows(&sweep);
+    let forces: Vec<f64> = rows
+        .iter()
+        .map(|row| row.figure("finite_element.force_N@0.2").unwrap())
+        .collect();
+    assert_eq!(rows.len(), 4);
+    for (force, factor) in forces.iter().zip([1.0, 3.0, 2.0, 6.0]) {
+        assert!((force / forces[0] - factor).abs() < 1e-6, "{forces:?}");
+    }
+    assert_eq!(statistics(&rows)[0].runs, 4);
+}
+
+#[test]
+fn what_is_kept_is_not_computed_again_and_a_table_is_read_as_it_was_written() {
+    let sweep = sweep(
+        &["plate.width=40..60 mm:3", "mass_spring.area_term=0,1"],
+        None,
+    );
+    let fault = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()));
+    let told = fault.unwrap_err().to_string();
+    assert!(
+        told.contains("run 1") && told.contains("area_term"),
+        "{told}"
+    );
+
+    let sweep = super::tests::sweep(&["plate.width=40..60 mm:3"], None);
+    let runs = sweep.runs().unwrap();
+    let first = rows(&sweep);
+    let done: HashMap<usize, Row> = first[..2]
+        .iter()
+        .map(|row| (row.number, row.clone()))
+        .collect();
+    let computed = std::sync::Mutex::new(Vec::new());
+    let again = sweep.compute(&runs, done, &|row| {
+        computed.lock().unwrap().push(row.number);
+        Ok(())
+    });
+    assert_eq!(again.unwrap(), first);
+    assert_eq!(*computed.lock().unwrap(), [3]);
+    let table = write(&sweep.keys(), &first);
+    assert_eq!(read(Path::new("sweep.csv"), 1, &table).unwrap(), first);
+}
+
+#[test]
+fn points_of_distributions_have_their_mean_and_spread() {
+    for method in [Method::Sobol, Method::Random] {
+        let mut sweep = sweep(
+            &["material.c10=0.05+-0.002 MPa", "plate.width=45..55 mm"],
+            Some(1024),
+        );
+        sweep.sampling.method = method;
+        let runs = sweep.runs().unwrap();
+        let column = |key: usize| -> Vec<f64> {
+            runs.iter()
+                .map(|run| run.settings[key].value().unwrap())
+                .collect()
+        };
+        for (key, mean, deviation) in [(0, 0.05, 0.002), (1, 50.0, 10.0 / 12f64.sqrt())] {
+            let values = column(key);
+            let found = values.iter().sum::<f64>() / 1024.0;
+            let square = values
+                .iter()
+                .map(|value| (value - found).powi(2))
+                .sum::<f64>()
+                / 1023.0;
+            assert!(
+                (found - mean).abs() < 0.15 * deviation,
+                "{method:?}: {found}"
+            );
+            assert!(
+                (square.sqrt() / deviation - 1.0).abs() < 0.1,
+                "{method:?}: {square}"
+            );
+        }
+    }
+}
+
+#[test]
+fn parameters_of_a_fit_are_drawn_with_their_correlation() {
+    let fit = r#"{"parameters": [
+        {"key": "c10", "unit": "MPa", "value": 0.1, "standard_error": 0.01},
+        {"key": "c20", "unit": "MPa", "value": 0.02, "standard_error": 0.004}],
+        "correlation": [[1.0, -0.8], [-0.8, 1.0]]}"#;
+    let fitted = FittedParameters::parse("fit.json", fit).unwrap();
+    let sweep = Sweep {
+        fitted: Some(fitted),
+        ..sweep(&[], Some(2048))
+    };
+    assert_eq!(sweep.keys(), ["material.c10", "material.c20"]);
+    let runs = sweep.runs().unwrap();
+    let moment = |i: usize, j: usize| {
+        let off = |run: &Run, key: usize, mean: f64| run.settings[key].value().unwrap() - mean;
+        let means = [0.1, 0.02];
+        let products = runs
+            .iter()
+            .map(|run| off(run, i, means[i]) * off(run, j, means[j]));
+        products.sum::<f64>() / runs.len() as f64
+    };
+    assert!((moment(0, 0) / 1e-4 - 1.0).abs() < 0.05);
+    assert!((moment(1, 1) / 1.6e-5 - 1.0).abs() < 0.05);
+    assert!((moment(0, 1) / -3.2e-5 - 1.0).abs() < 0.05);
+    let none = fit.replace("0.01}", "null}");
+    let told = FittedParameters::parse("fit.json", &none)
+        .unwrap_err()
+        .to_string();
+    assert!(told.contains("no standard errors"), "{told}");
+}
+
+#[test]
+fn faults_name_what_to_write() {
+    for (text, expected) in [
+        ("material.c10", "there is no `=`"),
+        ("a..b=1", "the key is not whole"),
+        ("a=2..1:3", "2 is not below 1"),
+        ("a=1..2:one", "`one` is not a number of values"),
+        ("a=1 mm..2 MPa", "two units"),
+        ("a=1 mm,2 cm", "several units"),
+        ("a=1+-0", "has to be positive"),
+        ("a=x..2", "`x` is not a number"),
+    ] {
+        let told = Variable::parse(text).unwrap_err().to_string();
+        assert!(told.contains(expected), "{text}: {told}");
+    }
+    for (vary, samples, expected) in [
+        (&[][..], None, "nothing is varied"),
+        (&["a=1,2", "a.b=1,2"], None, "varied twice"),
+        (&["a=1..2"], None, "--samples"),
+        (&["a=1,2"], Some(4), "no distribution"),
+        (&["a=1..2:1001", "b=1..2:1001"], None, "more than a million"),
+    ] {
+        let told = sweep(vary, samples).runs().unwrap_err().to_string();
+        assert!(told.contains(expected), "{told}");
+    }
+    for (vary, expected) in [
+        ("plate.cells.2=3,4", "list of 2"),
+        ("title.x=3,4", "is a value and no section"),
+        ("plate.lenght=3 cm,4 cm", "lenght"),
+        ("material.c01=1 MPa,2 MPa", "c01"),
+    ] {
+        let sweep = sweep(&[vary], None);
+        let told = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()));
+        let told = told.unwrap_err().to_string();
+        assert!(told.contains(expected), "{vary}: {told}");
+    }
+}

@@ -1,0 +1,176 @@
+//! What is varied, and by which values.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::Diagnostic;
+use crate::units::number_length;
+
+/// What a key is set to.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub enum Setting {
+    /// A whole number.
+    Integer(i64),
+    /// A number with its unit, which may be empty.
+    Number(f64, String),
+    /// Any other text.
+    Text(String),
+}
+
+/// The values of a variable.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Each of these.
+    Listed(Vec<Setting>),
+    /// Evenly between two ends, in a unit.
+    Between([f64; 2], String),
+    /// Normal, with mean and standard deviation in a unit.
+    Normal([f64; 2], String),
+}
+
+/// A key with its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// The key, its parts with dots between them: `material.c10`, `load.stretches.0`.
+    pub key: String,
+    /// Its values.
+    pub values: Values,
+}
+
+const HINT: &str = "write KEY=LOW..HIGH:COUNT for a grid, KEY=A,B,C for some values, KEY=LOW..HIGH or KEY=MEAN+-DEVIATION for a \
+                    distribution, such as \"material.c10=0.04..0.06 MPa:20\"";
+
+impl Setting {
+    /// Of a text: a whole number, a number with or without a unit, or anything else.
+    pub fn of(text: &str) -> Self {
+        let text = text.trim();
+        let unquoted = text.trim_matches('"');
+        if unquoted.len() < text.len() {
+            return Self::Text(unquoted.to_owned());
+        }
+        match (text.parse::<i64>(), number(text)) {
+            (Ok(whole), _) => Self::Integer(whole),
+            (_, Some((value, unit))) => Self::Number(value, unit.to_owned()),
+            _ => Self::Text(text.to_owned()),
+        }
+    }
+
+    /// The number, where it is one.
+    pub fn value(&self) -> Option<f64> {
+        match self {
+            Self::Integer(whole) => Some(*whole as f64),
+            Self::Number(value, _) => Some(*value),
+            Self::Text(_) => None,
+        }
+    }
+
+    /// The unit of a number.
+    pub fn unit(&self) -> &str {
+        match self {
+            Self::Number(_, unit) => unit,
+            _ => "",
+        }
+    }
+
+    /// The value without its unit.
+    pub fn words(&self) -> String {
+        match self {
+            Self::Integer(whole) => whole.to_string(),
+            Self::Number(value, _) => value.to_string(),
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
+impl Variable {
+    /// Of a text such as `material.c10=0.04..0.06 MPa:20`.
+    ///
+    /// # Errors
+    /// What is wrong with it, and the remedy.
+    pub fn parse(text: &str) -> Result<Self, Diagnostic> {
+        let wrong = |what: String| Diagnostic::error("", format!("`{text}`: {what}")).hint(HINT);
+        let (key, values) = text
+            .split_once('=')
+            .ok_or_else(|| wrong("there is no `=`".to_owned()))?;
+        let key = key.trim();
+        if key.is_empty() || key.split('.').any(str::is_empty) {
+            return Err(wrong("the key is not whole".to_owned()));
+        }
+        Ok(Self {
+            key: key.to_owned(),
+            values: Values::parse(values.trim()).map_err(wrong)?,
+        })
+    }
+}
+
+impl Values {
+    fn parse(text: &str) -> Result<Self, String> {
+        if let Some((low, rest)) = text.split_once("..") {
+            let (high, count) = match rest.rsplit_once(':') {
+                Some((high, count)) => (high, Some(count)),
+                None => (rest, None),
+            };
+            let (ends, unit) = pair(low, high)?;
+            if ends[0] >= ends[1] {
+                return Err(format!("{} is not below {}", ends[0], ends[1]));
+            }
+            return match count {
+                Some(count) => grid(ends, &unit, count),
+                None => Ok(Self::Between(ends, unit)),
+            };
+        }
+        if let Some((mean, deviation)) = text.split_once("+-").or_else(|| text.split_once('±')) {
+            let (normal, unit) = pair(mean, deviation)?;
+            return match normal[1] > 0.0 {
+                true => Ok(Self::Normal(normal, unit)),
+                false => Err("the standard deviation has to be positive".to_owned()),
+            };
+        }
+        let listed: Vec<Setting> = text.split(',').map(Setting::of).collect();
+        if listed
+            .iter()
+            .any(|one| *one == Setting::Text(String::new()))
+        {
+            return Err("a value is empty".to_owned());
+        }
+        let unit = listed[0].unit();
+        match listed.iter().all(|one| one.unit() == unit) {
+            true => Ok(Self::Listed(listed)),
+            false => Err("the values have several units".to_owned()),
+        }
+    }
+}
+
+/// Two numbers with one unit, which may stand behind the second alone.
+fn pair(first: &str, second: &str) -> Result<([f64; 2], String), String> {
+    let read = |text: &str| {
+        let found = number(text.trim()).map(|(value, unit)| (value, unit.to_owned()));
+        found.ok_or_else(|| format!("`{}` is not a number", text.trim()))
+    };
+    let ((a, before), (b, unit)) = (read(first)?, read(second)?);
+    match before.is_empty() || before == unit {
+        true => Ok(([a, b], unit)),
+        false => Err(format!("`{before}` and `{unit}` are two units")),
+    }
+}
+
+fn grid([low, high]: [f64; 2], unit: &str, count: &str) -> Result<Values, String> {
+    let count: usize = count
+        .trim()
+        .parse()
+        .ok()
+        .filter(|count| (2..=100_000).contains(count))
+        .ok_or_else(|| format!("`{count}` is not a number of values from 2 to 100,000"))?;
+    let last = (count - 1) as f64;
+    let value = |index: usize| {
+        let share = index as f64 / last;
+        Setting::Number(low * (1.0 - share) + high * share, unit.to_owned())
+    };
+    Ok(Values::Listed((0..count).map(value).collect()))
+}
+
+/// A finite number and what stands behind it.
+fn number(text: &str) -> Option<(f64, &str)> {
+    let (digits, unit) = text.split_at(number_length(text));
+    let value: f64 = digits.parse().ok()?;
+    value.is_finite().then_some((value, unit.trim()))
+}

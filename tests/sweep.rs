@@ -1,0 +1,133 @@
+//! Many runs of a study, as a user meets them: whole tables, kills, parts.
+#![cfg(unix)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+mod common;
+
+use common::process::*;
+
+const STUDY: &str = "\
+title = \"small\"
+[plate]
+cells = [12, 4]
+[material]
+card = \"neo-hooke\"
+[load]
+stretches = [\"10 %\", \"20 %\"]
+[finite_element]
+cells = [12, 4]
+";
+
+/// 24 runs.
+const VARIED: &str =
+    "s.toml --vary material.c10=0.05..0.1MPa --vary plate.width=45mm,50mm --samples 12";
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::TempDir::new().unwrap();
+    fs::write(folder.path().join("s.toml"), STUDY).unwrap();
+    folder
+}
+
+fn sweep(folder: &Path, more: &str) -> BTreeMap<String, Vec<u8>> {
+    let done = run(folder, &format!("sweep {VARIED} {more}"));
+    assert!(done.status.success(), "{}", told(&done));
+    results(&folder.join("output/s_sweep"))
+}
+
+#[test]
+fn a_sweep_that_was_killed_goes_on_and_parts_are_the_whole() {
+    let place = folder();
+    let folder = place.path();
+    let whole = sweep(folder, "");
+    let table = String::from_utf8(whole["sweep.csv"].clone()).unwrap();
+    assert_eq!(table.lines().count(), 25);
+    assert!(
+        table.starts_with("run,material.c10 [MPa],plate.width [mm],corrected."),
+        "{table}"
+    );
+    let output = folder.join("output/s_sweep");
+    fs::remove_dir_all(&output).unwrap();
+
+    let mut child = start(folder, &format!("sweep {VARIED}"));
+    let kept =
+        || first_partial(&output).and_then(|partial| fs::read_dir(partial.join(".parts")).ok());
+    let count = || {
+        kept().map_or(0, |entries| {
+            entries
+                .flatten()
+                .filter(|one| !one.path().to_string_lossy().ends_with(".new"))
+                .count()
+        })
+    };
+    wait_for(|| count() >= 5);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(count() >= 5);
+    assert!(
+        sweep(folder, "") == whole,
+        "what a killed sweep has left and what is added are the whole"
+    );
+
+    let missing = run(folder, &format!("sweep {VARIED} --join 3"));
+    assert_ends(&missing, 2, "parts of 3 that are not there: 1, 2, 3");
+    for part in 1..=3 {
+        let done = run(folder, &format!("sweep {VARIED} --shard {part}/3"));
+        assert!(told(&done).contains("8 runs"), "{}", told(&done));
+    }
+    let other = VARIED.replace("12", "11");
+    assert_ends(
+        &run(folder, &format!("sweep {other} --join 3")),
+        2,
+        "not those of this sweep",
+    );
+    let joined = sweep(folder, "--join 3");
+    assert_eq!(joined["sweep.csv"], whole["sweep.csv"]);
+    assert_eq!(joined["sweep.json"], whole["sweep.json"]);
+}
+
+#[test]
+fn runs_without_a_solution_stand_in_the_table() {
+    let place = folder();
+    let folder = place.path();
+    let done = run(
+        folder,
+        "sweep s.toml --vary load.stretches.0=-0.1,-0.95 --vary load.stretches.1=-0.96",
+    );
+    assert_ends(&done, 1, "2 of them without a solution somewhere");
+    let table = fs::read_to_string(folder.join("output/s_sweep/sweep.csv")).unwrap();
+    assert_eq!(table.lines().count(), 3, "{table}");
+    assert!(
+        table.lines().nth(1).unwrap().contains("@-0.96")
+            || table.contains("solution")
+            || table.contains("iterations"),
+        "{table}"
+    );
+}
+
+#[test]
+fn what_cannot_be_varied_is_told_before_anything_is_computed() {
+    let place = folder();
+    for (arguments, expected) in [
+        ("s.toml", "nothing is varied"),
+        (
+            "s.toml --vary plate.lenght=1mm,2mm",
+            "did you mean `length`",
+        ),
+        ("s.toml --vary material.c10=0.05+-0.01MPa", "--samples"),
+        (
+            "s.toml --vary plate.width=45mm,50mm --shard 4/3",
+            "PART/PARTS",
+        ),
+        (
+            "s.toml --vary plate.width=45mm,50mm --fit s.toml",
+            "is not JSON",
+        ),
+        ("none.toml --vary plate.width=45mm,50mm", "none.toml"),
+    ] {
+        let done = run(place.path(), &format!("sweep {arguments}"));
+        assert_ends(&done, 2, expected);
+    }
+}
