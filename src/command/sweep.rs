@@ -255,7 +255,7 @@ fn write(sweep: &Sweep, rows: &[Row], folder: &mut ResultFolder) -> Result<(), E
     folder.add("sweep.json", report.as_bytes())?;
     let title = format!("Many runs of {}", name(&sweep.path));
     let blocks = sweep::blocks(&title, &keys, rows);
-    let figures = sweep::figures(&keys, rows, "stretch, load factor or time");
+    let figures = sweep::figures(&keys, rows, "stretch, load factor, or time in s");
     warn(&output::write_document(
         folder, "report", &blocks, &figures,
     )?);

@@ -69,7 +69,7 @@ impl Row {
     }
 }
 
-/// All numbers below a name; lists but those of two components are left out.
+/// All numbers below a name, with two components where it ends with a unit; other lists are left out.
 fn flatten(name: &str, value: &Value, into: &mut Vec<(String, f64)>) {
     match value {
         Value::Number(number) => into.extend(number.as_f64().map(|value| (name.to_owned(), value))),
@@ -78,7 +78,9 @@ fn flatten(name: &str, value: &Value, into: &mut Vec<(String, f64)>) {
                 flatten(&format!("{name}.{key}"), inner, into);
             }
         }
-        Value::Array(parts) if parts.len() == 2 => {
+        Value::Array(parts)
+            if parts.len() == 2 && (name.ends_with("_N") || name.ends_with("_mm")) =>
+        {
             for (axis, part) in ["x", "y"].into_iter().zip(parts) {
                 flatten(&format!("{name}.{axis}"), part, into);
             }

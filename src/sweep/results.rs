@@ -207,13 +207,14 @@ pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
     let band = band(&forces, along).map(|chart| {
         Figure::new(
             "band.png",
-            "The forces of all runs: medians, and bands between 5 and 95 % of the runs.",
+            "The forces of all runs: medians, and the band between 5 and 95 % of the runs.",
             chart,
         )
     });
     let last =
         of_last_step(&all).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
     let over = last.into_iter().flat_map(|one| {
+        let at = one.name.rsplit('@').next().unwrap_or_default();
         let axis = |index: usize| -> Option<Figure> {
             let points: Option<Vec<[f64; 2]>> = rows
                 .iter()
@@ -223,7 +224,7 @@ pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
             let chart = LineChart::new(
                 format!("Force over {}", keys[index]),
                 Axis::new(&headed(&keys[index], rows, index), Scale::Interval),
-                Axis::new(&one.name.replace("_N", " [N]"), Scale::Interval),
+                Axis::new(&format!("force, corrected, at {at} [N]"), Scale::Interval),
                 vec![Line::new("", points?, PALETTE[0], Stroke::Points)],
             );
             let caption = format!("{} of every run over {}.", one.name, keys[index]);
@@ -247,14 +248,14 @@ fn is_force(name: &str) -> bool {
     )
 }
 
-/// Medians and bands over the steps; `None` where there are fewer than two steps, or too few runs.
+/// The medians of all models over the steps, and the band of the corrected model, or the first one; `None` where there are fewer than
+/// two steps, or too few runs.
 fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
     let model = |one: &Statistics| one.name.split('.').next().unwrap_or("").to_owned();
-    let mut lines = Vec::new();
     let mut models: Vec<String> = forces.iter().map(|one| model(one)).collect();
-    models.dedup();
     models.sort();
     models.dedup();
+    let mut lines = Vec::new();
     for (name, colour) in models.iter().zip(PALETTE) {
         let own = forces
             .iter()
@@ -266,21 +267,22 @@ fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
         if steps.len() < 2 {
             continue;
         }
-        let there = steps.iter().map(|(at, [low, ..])| [*at, *low]);
-        let back = steps.iter().rev().map(|(at, [.., high])| [*at, *high]);
         let words = name.replace('_', " ");
-        lines.push(Line::new(
-            format!("{words}, 5 … 95 %"),
-            there.chain(back),
-            colour,
-            Stroke::Filled,
-        ));
+        let stroke = if lines.is_empty() {
+            let there = steps.iter().map(|(at, [low, ..])| [*at, *low]);
+            let back = steps.iter().rev().map(|(at, [.., high])| [*at, *high]);
+            let label = format!("{words}, 5 … 95 %");
+            lines.push(Line::new(label, there.chain(back), colour, Stroke::Filled));
+            Stroke::Solid
+        } else {
+            Stroke::Dashed
+        };
         let middle = steps.iter().map(|(at, [_, middle, _])| [*at, *middle]);
         lines.push(Line::new(
             format!("{words}, median"),
             middle,
             colour,
-            Stroke::Solid,
+            stroke,
         ));
     }
     (!lines.is_empty()).then(|| {
