@@ -16,11 +16,9 @@
 //! A. B. Owen, in Monte Carlo and Quasi-Monte Carlo Methods, Springer 1995, doi:10.1007/978-1-4612-2552-2_19
 
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 use rayon::prelude::*;
 
-use crate::budget::Budget;
 use crate::error::{Diagnostic, Error};
 use crate::studies::Progress;
 
@@ -31,8 +29,9 @@ mod results;
 mod table;
 mod variable;
 
+pub use altered::BaseStudy;
 pub use figures::Row;
-pub use plan::{FittedParameters, Method, Sampling};
+pub use plan::{FittedParameters, Method, Run, Sampling};
 pub use results::{Statistics, blocks, figures, json, statistics};
 pub use table::{read, write};
 pub use variable::{Setting, Values, Variable};
@@ -40,27 +39,14 @@ pub use variable::{Setting, Values, Variable};
 /// A study with what is varied.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// The study's file.
-    pub path: PathBuf,
-    /// Its text.
-    pub text: String,
+    /// The study.
+    pub study: BaseStudy,
     /// What is varied.
     pub variables: Vec<Variable>,
     /// Parameters that are drawn with their correlation.
     pub fitted: Option<FittedParameters>,
     /// How points are drawn.
     pub sampling: Sampling,
-    /// What each run may ask for.
-    pub budget: Budget,
-}
-
-/// One run: its number from 1 on, and what each variable is set to.
-#[derive(Clone, Debug)]
-pub struct Run {
-    /// Its number.
-    pub number: usize,
-    /// In the order of [`Sweep::keys`].
-    pub settings: Vec<Setting>,
 }
 
 impl Sweep {
@@ -124,7 +110,7 @@ impl Sweep {
             }
             other => other,
         };
-        let ready = altered::prepare(self, run).map_err(told)?;
+        let ready = self.study.with(&self.keys(), &run.settings).map_err(told)?;
         match ready.compute(Progress::silent()) {
             Ok(results) => Ok(Row::of(run, &results.outcome, results.passed())),
             Err(fault @ Error::Solve { .. }) => Ok(Row::failed(run, fault.to_string())),

@@ -16,7 +16,9 @@ use crate::error::Error;
 use crate::output::{self, ResultFolder};
 use crate::studies::name;
 use crate::studies::sections::read_text;
-use crate::sweep::{self, FittedParameters, Method, Row, Run, Sampling, Sweep, Variable};
+use crate::sweep::{
+    self, BaseStudy, FittedParameters, Method, Row, Run, Sampling, Sweep, Variable,
+};
 use crate::validation;
 
 /// The file with a line for each run.
@@ -169,8 +171,11 @@ fn sweep(options: &Options) -> Result<Sweep, Error> {
         read.map_err(|fault| Error::Input(vec![fault]))
     });
     Ok(Sweep {
-        path: options.study.clone(),
-        text: read_text(&options.study)?,
+        study: BaseStudy {
+            path: options.study.clone(),
+            text: read_text(&options.study)?,
+            budget: options.large.budget(),
+        },
         variables,
         fitted: fitted.transpose()?,
         sampling: Sampling {
@@ -181,7 +186,6 @@ fn sweep(options: &Options) -> Result<Sweep, Error> {
             },
             seed: options.seed,
         },
-        budget: options.large.budget(),
     })
 }
 
@@ -253,7 +257,7 @@ fn write(sweep: &Sweep, rows: &[Row], folder: &mut ResultFolder) -> Result<(), E
     folder.add(TABLE, &sweep::write(&keys, rows))?;
     let report = format!("{:#}\n", sweep::json(&keys, rows));
     folder.add("sweep.json", report.as_bytes())?;
-    let title = format!("Many runs of {}", name(&sweep.path));
+    let title = format!("Many runs of {}", name(&sweep.study.path));
     let blocks = sweep::blocks(&title, &keys, rows);
     let figures = sweep::figures(&keys, rows, "stretch, load factor, or time in s");
     warn(&output::write_document(

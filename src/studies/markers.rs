@@ -41,7 +41,6 @@ pub use alike::ComparedFrames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, keys, measured_force};
 pub use machine::{ForceColumn, FrameForces};
-pub use refined::COARSE;
 pub use report::SHOWN;
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;

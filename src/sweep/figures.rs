@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::Run;
+use super::plan::Run;
 use super::variable::Setting;
 use crate::results::Outcome;
 

@@ -36,6 +36,15 @@ pub struct Sampling {
     pub seed: u32,
 }
 
+/// One run: its number from 1 on, and what each variable is set to.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Its number.
+    pub number: usize,
+    /// In the order of [`Sweep::keys`](super::Sweep::keys).
+    pub settings: Vec<Setting>,
+}
+
 /// Parameters of a law with their covariance, of the JSON file of `gelbench materials fit`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedParameters {
@@ -155,6 +164,44 @@ pub fn rows(
         .filter(|variable| !matches!(variable.values, Values::Listed(_)));
     let fitted_count = fitted.map_or(0, |fitted| fitted.keys.len());
     let dimensions = drawn.count() + fitted_count;
+    let samples = points_to_draw(sampling, dimensions)?;
+    let combinations = variables.iter().try_fold(samples, |count, variable| {
+        count.checked_mul(match &variable.values {
+            Values::Listed(values) => values.len(),
+            _ => 1,
+        })
+    });
+    if combinations.is_none_or(|count| count > MOST_RUNS) {
+        let fault = Diagnostic::error("", "there are more than a million runs");
+        return Err(fault.hint("take fewer values, or draw points of distributions"));
+    }
+    let points: Vec<Vec<f64>> = (0..samples)
+        .map(|index| point(index, dimensions, sampling))
+        .collect();
+    let mut all = Vec::new();
+    let mut listed: Vec<Vec<Setting>> = vec![Vec::new()];
+    for variable in variables {
+        if let Values::Listed(values) = &variable.values {
+            listed = listed
+                .iter()
+                .flat_map(|before| {
+                    values
+                        .iter()
+                        .map(move |value| [&before[..], std::slice::from_ref(value)].concat())
+                })
+                .collect();
+        }
+    }
+    for combination in &listed {
+        for point in &points {
+            all.push(row(variables, fitted, combination, point));
+        }
+    }
+    Ok(all)
+}
+
+/// How many points are drawn of so many distributions: one where there are none.
+fn points_to_draw(sampling: Sampling, dimensions: usize) -> Result<usize, Diagnostic> {
     let samples = match (sampling.samples, dimensions) {
         (None, 0) => 1,
         (Some(samples), 1..) => samples,
@@ -182,39 +229,7 @@ pub fn rows(
         );
         return Err(Diagnostic::error("", message).hint("draw them with --method random"));
     }
-    let combinations = variables.iter().try_fold(samples, |count, variable| {
-        count.checked_mul(match &variable.values {
-            Values::Listed(values) => values.len(),
-            _ => 1,
-        })
-    });
-    if combinations.is_none_or(|count| count > MOST_RUNS) {
-        let fault = Diagnostic::error("", "there are more than a million runs");
-        return Err(fault.hint("take fewer values, or draw points of distributions"));
-    }
-    let points: Vec<Vec<f64>> = (0..samples)
-        .map(|index| point(index, dimensions, sampling))
-        .collect();
-    let mut all = Vec::new();
-    let mut listed: Vec<Vec<Setting>> = vec![Vec::new()];
-    for variable in variables {
-        if let Values::Listed(values) = &variable.values {
-            listed = listed
-                .iter()
-                .flat_map(|before| {
-                    values
-                        .iter()
-                        .map(move |value| [&before[..], &[value.clone()]].concat())
-                })
-                .collect();
-        }
-    }
-    for combination in &listed {
-        for point in &points {
-            all.push(row(variables, fitted, combination, point));
-        }
-    }
-    Ok(all)
+    Ok(samples)
 }
 
 fn row(

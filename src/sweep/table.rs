@@ -1,9 +1,11 @@
 //! Runs as a table with a line for each, written and read.
 
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::figures::Row;
 use super::variable::Setting;
+use crate::document::{read_records, write_records};
 use crate::error::Error;
 
 /// The columns before those of the figures, but for the keys, and those behind them.
@@ -12,7 +14,7 @@ const LAST: [&str; 2] = ["passed", "fault"];
 
 /// The names of all figures, in the order in which runs have them.
 pub fn names(rows: &[Row]) -> Vec<&str> {
-    let mut known = std::collections::HashSet::new();
+    let mut known = HashSet::new();
     let all = rows.iter().flat_map(|row| &row.figures);
     all.map(|(name, _)| name.as_str())
         .filter(|name| known.insert(*name))
@@ -37,11 +39,8 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
         .chain(keys)
         .chain(names.iter().map(|name| (*name).to_owned()))
         .chain(LAST.map(str::to_owned));
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let sound = "memory takes all that is written";
-    table.write_record(head).expect(sound);
-    for row in rows {
-        let figures: std::collections::HashMap<&str, f64> = row
+    let line = |row: &Row| {
+        let figures: HashMap<&str, f64> = row
             .figures
             .iter()
             .map(|(name, value)| (name.as_str(), *value))
@@ -49,13 +48,12 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
         let found = names
             .iter()
             .map(|name| figures.get(name).map_or(String::new(), f64::to_string));
-        let line = std::iter::once(row.number.to_string())
-            .chain(row.settings.iter().map(Setting::words))
-            .chain(found)
-            .chain([row.passed.to_string(), row.fault.clone()]);
-        table.write_record(line).expect(sound);
-    }
-    table.into_inner().expect(sound)
+        let first = std::iter::once(row.number.to_string());
+        let settings = row.settings.iter().map(Setting::words);
+        let last = [row.passed.to_string(), row.fault.clone()];
+        first.chain(settings).chain(found).chain(last).collect()
+    };
+    write_records(std::iter::once(head.collect()).chain(rows.iter().map(line)))
 }
 
 /// The rows of a table that [`write`] has written, with as many keys.
@@ -69,28 +67,30 @@ pub fn read(path: &Path, keys: usize, bytes: &[u8]) -> Result<Vec<Row>, Error> {
             "compute this shard again",
         )
     };
-    let mut table = csv::Reader::from_reader(bytes);
-    let head = table.headers().map_err(|_| wrong())?.clone();
-    let figures = 1 + keys..head.len().checked_sub(LAST.len()).ok_or_else(wrong)?;
-    if figures.start > figures.end {
-        return Err(wrong());
-    }
-    let units: Vec<&str> = head.iter().skip(1).take(keys).map(unit_of).collect();
-    let mut rows = Vec::new();
-    for line in table.records() {
-        let line = line.map_err(|_| wrong())?;
-        let settings = line.iter().skip(1).take(keys).zip(&units);
+    rows_of(&read_records(bytes).ok_or_else(wrong)?, keys).ok_or_else(wrong)
+}
+
+fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
+    let (head, lines) = records.split_first()?;
+    let figures = 1 + keys..head.len().checked_sub(LAST.len())?;
+    let units: Vec<&str> = head
+        .get(1..figures.start)?
+        .iter()
+        .map(|head| unit_of(head))
+        .collect();
+    let row = |line: &Vec<String>| {
+        let settings = line[1..].iter().zip(&units);
         let own = figures.clone().filter(|place| !line[*place].is_empty());
-        let own = own.map(|place| Some((head[place].to_owned(), line[place].parse().ok()?)));
-        rows.push(Row {
-            number: line[0].parse().map_err(|_| wrong())?,
+        let own = own.map(|place| Some((head[place].clone(), line[place].parse().ok()?)));
+        Some(Row {
+            number: line[0].parse().ok()?,
             settings: settings.map(|(text, unit)| setting(text, unit)).collect(),
-            figures: own.collect::<Option<_>>().ok_or_else(wrong)?,
-            passed: line[figures.end].parse().map_err(|_| wrong())?,
-            fault: line[figures.end + 1].to_owned(),
-        });
-    }
-    Ok(rows)
+            figures: own.collect::<Option<_>>()?,
+            passed: line[figures.end].parse().ok()?,
+            fault: line[figures.end + 1].clone(),
+        })
+    };
+    lines.iter().map(row).collect()
 }
 
 fn unit_of(head: &str) -> &str {

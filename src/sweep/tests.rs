@@ -2,6 +2,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::*;
+use crate::budget::Budget;
 
 const STUDY: &str = "\
 title = \"small\"
@@ -19,8 +20,11 @@ report = false
 
 fn sweep(vary: &[&str], samples: Option<usize>) -> Sweep {
     Sweep {
-        path: Path::new("small.toml").to_owned(),
-        text: STUDY.to_owned(),
+        study: BaseStudy {
+            path: Path::new("small.toml").to_owned(),
+            text: STUDY.to_owned(),
+            budget: Budget::USUAL,
+        },
         variables: vary
             .iter()
             .map(|text| Variable::parse(text).unwrap())
@@ -31,7 +35,6 @@ fn sweep(vary: &[&str], samples: Option<usize>) -> Sweep {
             method: Method::Sobol,
             seed: 1,
         },
-        budget: Budget::USUAL,
     }
 }
 

@@ -46,7 +46,10 @@ const DOORS: &[(&str, &[&str])] = &[
     ("miette::", &["src/command"]),
     ("toml::", &["src/document"]),
     ("spade::", &["src/mesh/triangulate.rs"]),
-    ("csv::", &["src/document/table.rs"]),
+    (
+        "csv::",
+        &["src/document/records.rs", "src/document/table.rs"],
+    ),
     ("encoding_rs::", &["src/document/encoding.rs"]),
     ("statrs::", &["src/statistics.rs"]),
     ("rmpfit::", &["src/calibration/least_squares.rs"]),

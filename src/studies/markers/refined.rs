@@ -1,17 +1,17 @@
 //! Cells that are small enough for the data.
 
 use super::{MarkerStudy, Request};
-use crate::corrector::estimation::MOST_REFINED_CELLS;
+use crate::corrector::estimation::{FieldEstimate, MOST_REFINED_CELLS};
 use crate::error::{Diagnostic, Error};
 use crate::markers::Frame;
 use crate::material::Card;
 
 /// Share of the area on which the mesh's own error may be the larger part of the error of stress.
-pub const COARSE: f64 = 0.05;
+const COARSE: f64 = 0.05;
 
 impl MarkerStudy {
     /// Reads everything but the material, as [`Self::prepare_with`], and halves the cells until, in the frame that moves most, the mesh's
-    /// own error is the larger part of the error of stress on [`COARSE`] of the area at most. Where that would take more cells
+    /// own error is the larger part of the error of stress on 5 % of the area at most. Where that would take more cells
     /// than can be refined, a warning says how far it came.
     ///
     /// # Errors
@@ -69,4 +69,23 @@ impl MarkerStudy {
         let most = frames.max_by(|a, b| moved(a).total_cmp(&moved(b)));
         most.ok_or_else(|| Error::input("there are no frames", "give a field with markers"))
     }
+}
+
+/// Where the mesh rather than the noise makes the intervals of stress wide.
+pub(super) fn told(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
+    let shares = field.series.frames.iter().zip(estimates);
+    let shares = shares.map(|(frame, found)| (frame.number, found.coarse_share(&field.mesh)));
+    let (number, share) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (share > COARSE).then(|| {
+        let remedy = match field.cell_size {
+            Some(size) => format!(
+                "smaller cells than {size:.4} mm make intervals narrower there (--refine, or --cell-size)"
+            ),
+            None => "a finer mesh makes intervals narrower there".to_owned(),
+        };
+        format!(
+            "In frame {number} the mesh's own error is the larger part of the error of stress on {:.0} % of the area: {remedy}.",
+            100.0 * share
+        )
+    })
 }

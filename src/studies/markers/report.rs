@@ -1,10 +1,10 @@
 //! The report of a correction.
 
-use super::{reading, verdict};
+use super::{reading, refined, verdict};
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::results::Block;
 use crate::statistics::Estimate;
-use crate::studies::markers::{COARSE, MarkerStudy};
+use crate::studies::markers::MarkerStudy;
 
 /// How many frames are shown in the terminal at the begin and at the end, and how many doubts.
 pub const SHOWN: usize = 12;
@@ -186,7 +186,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     ];
     let understood = reading::blocks(&field.understood);
     blocks.splice(1..1, understood);
-    blocks.extend(coarse(field, estimates).map(Block::paragraph));
+    blocks.extend(refined::told(field, estimates).map(Block::paragraph));
     blocks.extend(gross_errors(field, estimates).map(Block::paragraph));
     if field.coarse.is_none() {
         blocks.extend(verdict::blocks(field, estimates));
@@ -210,25 +210,6 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         blocks.extend(edges(field, last));
     }
     blocks
-}
-
-/// Where the mesh rather than the noise makes the intervals of stress wide.
-fn coarse(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
-    let shares = field.series.frames.iter().zip(estimates);
-    let shares = shares.map(|(frame, found)| (frame.number, found.coarse_share(&field.mesh)));
-    let (number, share) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (share > COARSE).then(|| {
-        let remedy = match field.cell_size {
-            Some(size) => format!(
-                "smaller cells than {size:.4} mm make intervals narrower there (--refine, or --cell-size)"
-            ),
-            None => "a finer mesh makes intervals narrower there".to_owned(),
-        };
-        format!(
-            "In frame {number} the mesh's own error is the larger part of the error of stress on {:.0} % of the area: {remedy}.",
-            100.0 * share
-        )
-    })
 }
 
 const EXPLANATION: &str = "Noise is the standard deviation of each component of a marker's displacement; left is the root \

@@ -1,0 +1,105 @@
+//! TOML documents of which some values are set.
+
+use toml::{Table, Value};
+
+/// A TOML document that is written again; its comments are lost.
+#[derive(Clone, Debug)]
+pub struct EditedDocument {
+    table: Table,
+}
+
+/// A value that is set.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NewValue {
+    /// A whole number.
+    Integer(i64),
+    /// A number.
+    Float(f64),
+    /// A text.
+    Text(String),
+}
+
+impl NewValue {
+    fn value(&self) -> Value {
+        match self {
+            Self::Integer(whole) => Value::Integer(*whole),
+            Self::Float(number) => Value::Float(*number),
+            Self::Text(text) => Value::String(text.clone()),
+        }
+    }
+}
+
+impl EditedDocument {
+    /// Of a text.
+    ///
+    /// # Errors
+    /// Why it is not TOML.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let table = text
+            .parse()
+            .map_err(|fault: toml::de::Error| fault.to_string())?;
+        Ok(Self { table })
+    }
+
+    /// The text of a key in a section.
+    pub fn text_of(&self, [section, key]: [&str; 2]) -> Option<&str> {
+        self.table.get(section)?.get(key)?.as_str()
+    }
+
+    /// Sets the value at a path of names and of places in lists from 0 on; sections that are not there are made, places of lists are not.
+    ///
+    /// # Errors
+    /// Why there is no such place.
+    pub fn set(&mut self, path: &[&str], value: &NewValue) -> Result<(), String> {
+        set(&mut self.table, path, value)
+    }
+
+    /// The document again.
+    pub fn text(&self) -> String {
+        self.table.to_string()
+    }
+}
+
+fn set(table: &mut Table, path: &[&str], value: &NewValue) -> Result<(), String> {
+    match path {
+        [] => Err("there is no key".to_owned()),
+        [key] => {
+            table.insert((*key).to_owned(), value.value());
+            Ok(())
+        }
+        [key, rest @ ..] => {
+            let inner = table
+                .entry(*key)
+                .or_insert_with(|| Value::Table(Table::new()));
+            set_within(inner, (key, rest), value)
+        }
+    }
+}
+
+fn set_within(
+    inner: &mut Value,
+    (name, rest): (&str, &[&str]),
+    value: &NewValue,
+) -> Result<(), String> {
+    match inner {
+        Value::Table(table) => set(table, rest, value),
+        Value::Array(list) => {
+            let count = list.len();
+            let place = rest[0].parse::<usize>().ok();
+            let place = place.and_then(|place| list.get_mut(place)).ok_or_else(|| {
+                format!(
+                    "`{name}` is a list of {count}, in which `{}` is no place",
+                    rest[0]
+                )
+            })?;
+            match rest {
+                [_] => {
+                    *place = value.value();
+                    Ok(())
+                }
+                _ => set_within(place, (rest[0], &rest[1..]), value),
+            }
+        }
+        _ => Err(format!("`{name}` is a value and no section")),
+    }
+}
