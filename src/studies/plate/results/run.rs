@@ -33,29 +33,7 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let springs = MassSpring::new(plate, study.cells, study.lattice);
     let uncorrected = run.solve("mass-spring", &springs.model(plate), study.mass_spring);
     let corrected = run.timed("corrector", |run| run.correct(&uncorrected));
-    let names = [
-        "finite elements, coarse",
-        "finite elements, middle",
-        "finite elements, fine",
-    ];
-    let mut names = names.into_iter();
-    let mut coarser: Option<(Mesh, Vec<State>)> = None;
-    let reference = study.finite_elements().map(|elements| {
-        let name = names.next().expect("three meshes");
-        let mut model = elements
-            .model(plate)
-            .solved_by(study.reference.linear_solver);
-        if let Some((mesh, states)) = &coarser {
-            model = model.near(mesh, states);
-        }
-        let solution = run.solve(name, &model, study.reference.newton);
-        drop(model);
-        coarser = Some((solution.mesh.clone(), solution.states.clone()));
-        ReferenceMesh {
-            model: elements,
-            solution,
-        }
-    });
+    let reference = run.reference();
     let [.., finest] = &reference;
     let estimates = run.timed("finite elements' error", |_| {
         let recovery = Recovery::new(&finest.model.mesh);
@@ -160,6 +138,33 @@ impl<'a> Run<'a> {
             times: Vec::new(),
             ends: Vec::new(),
         }
+    }
+
+    /// The finite elements on three meshes, each beginning with the equilibria of the one before.
+    fn reference(&mut self) -> [ReferenceMesh; 3] {
+        let names = [
+            "finite elements, coarse",
+            "finite elements, middle",
+            "finite elements, fine",
+        ];
+        let mut names = names.into_iter();
+        let mut coarser: Option<(Mesh, Vec<State>)> = None;
+        self.study.finite_elements().map(|elements| {
+            let name = names.next().expect("three meshes");
+            let mut model = elements
+                .model(&self.study.problem)
+                .solved_by(self.study.reference.linear_solver);
+            if let Some((mesh, states)) = &coarser {
+                model = model.near(mesh, states);
+            }
+            let solution = self.solve(name, &model, self.study.reference.newton);
+            drop(model);
+            coarser = Some((solution.mesh.clone(), solution.states.clone()));
+            ReferenceMesh {
+                model: elements,
+                solution,
+            }
+        })
     }
 
     /// Solves a model at the study's stretches, as far as there are solutions.
