@@ -158,6 +158,24 @@ fn parameters_of_a_fit_are_drawn_with_their_correlation() {
 }
 
 #[test]
+fn paths_and_names_are_values_too() {
+    let texts = |text: &str| match Variable::parse(text).unwrap().values {
+        Values::Listed(all) => all,
+        other => panic!("{other:?}"),
+    };
+    let text = |text: &str| Setting::Text(text.to_owned());
+    assert_eq!(
+        texts("material.card=../gel.toml,pva-10"),
+        [text("../gel.toml"), text("pva-10")]
+    );
+    assert_eq!(
+        texts("material.card=cards/../gel.toml"),
+        [text("cards/../gel.toml")]
+    );
+    assert_eq!(texts("load.stretches.0=\"15 %\""), [text("15 %")]);
+}
+
+#[test]
 fn faults_name_what_to_write() {
     for (text, expected) in [
         ("material.c10", "there is no `=`"),

@@ -104,7 +104,10 @@ impl Variable {
 
 impl Values {
     fn parse(text: &str) -> Result<Self, String> {
-        if let Some((low, rest)) = text.split_once("..") {
+        // `..` in a path is no range.
+        let range = text.split_once("..");
+        let range = range.filter(|(low, _)| !low.is_empty() && !low.contains(['/', '\\', '"']));
+        if let Some((low, rest)) = range {
             let (high, count) = match rest.rsplit_once(':') {
                 Some((high, count)) => (high, Some(count)),
                 None => (rest, None),
