@@ -1,7 +1,7 @@
 //! What lies between the instants of a motion that are kept.
 
 /// Parts of the way from one instant to the next.
-const PARTS: usize = 12;
+pub const PARTS: usize = 12;
 
 /// Times in s, displacements in mm and velocities in mm/s at the instants and between them, on the cubics that have the displacement and
 /// the velocity of both of their ends:

@@ -1,6 +1,6 @@
 //! Pictures, grids and tables of a motion.
 
-use super::between::with_cubics;
+use super::between::{PARTS, with_cubics};
 use super::corrected::CorrectedMotion;
 use super::problem::{MovingPlate, Probe};
 use super::solution::ModelMotion;
@@ -140,7 +140,9 @@ fn brief(time: f64) -> String {
 fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     const SHADES: [[u8; 3]; 4] = [[253, 174, 107], [230, 109, 59], [166, 54, 3], [60, 20, 0]];
     let points = model.course(probe);
-    let length = points.len().div_ceil(SHADES.len()).max(2);
+    // Each part ends with an instant that is kept.
+    let instants = (points.len() / PARTS).div_ceil(SHADES.len()).max(1);
+    let length = PARTS * instants;
     let starts = (0..points.len().saturating_sub(1)).step_by(length);
     let lines = starts.zip(SHADES).map(|(start, colour)| {
         // Each part begins where the one before ends.

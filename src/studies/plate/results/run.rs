@@ -79,10 +79,11 @@ pub fn one_model(study: &Study, kind: ModelKind, progress: Progress) -> OneModel
     let mut run = Run::new(study, progress);
     let plate = &study.problem;
     if kind == ModelKind::FiniteElement {
-        let [.., finest] = study.finite_elements();
-        let model = finest.model(plate).solved_by(study.reference.linear_solver);
-        let solution = run.solve("finite elements", &model, study.reference.newton);
-        return of_solution(solution, run.ends);
+        // The first guesses come from the coarser meshes, as in a run.
+        let [.., finest] = run.reference();
+        let is_whole = finest.solution.reached() == plate.stretches.len();
+        let ends = run.ends.pop().filter(|_| !is_whole);
+        return of_solution(finest.solution, ends.into_iter().collect());
     }
     let springs = MassSpring::new(plate, study.cells, study.lattice);
     let uncorrected = run.solve("mass-spring", &springs.model(plate), study.mass_spring);

@@ -38,13 +38,7 @@ impl Reference {
     }
 
     fn halved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Self, Error> {
-        let meshes = specimen.outline.reference_meshes();
-        let files = &FILES[FILES.len() - meshes.len()..];
-        let mut solutions: Vec<Solution> = Vec::new();
-        for (mesh, file) in meshes.iter().zip(files) {
-            let coarser = solutions.last();
-            solutions.push(on_mesh(specimen, mesh, coarser, file, ends, progress)?);
-        }
+        let solutions = nested(specimen, ends, progress)?;
         Self::of_meshes(specimen, solutions, Vec::new(), ends, progress)
     }
 
@@ -129,7 +123,23 @@ impl Reference {
     }
 }
 
-/// The finest finite elements alone: without the coarser meshes that an error by three of them takes.
+/// The finite elements on all meshes, each with first guesses of the one before.
+fn nested(
+    specimen: &Specimen,
+    ends: &mut Vec<End>,
+    progress: Progress,
+) -> Result<Vec<Solution>, Error> {
+    let meshes = specimen.outline.reference_meshes();
+    let files = &FILES[FILES.len() - meshes.len()..];
+    let mut solutions: Vec<Solution> = Vec::new();
+    for (mesh, file) in meshes.iter().zip(files) {
+        let coarser = solutions.last();
+        solutions.push(on_mesh(specimen, mesh, coarser, file, ends, progress)?);
+    }
+    Ok(solutions)
+}
+
+/// The finest finite elements alone, with first guesses of the coarser ones as in a run.
 pub fn finest(
     specimen: &Specimen,
     ends: &mut Vec<End>,
@@ -138,8 +148,12 @@ pub fn finest(
     if let Some(goal) = specimen.refinement {
         return Ok(Reference::adaptive(specimen, goal, ends, progress)?.finest);
     }
-    let mesh = specimen.outline.finest_mesh();
-    on_mesh(specimen, &mesh, None, FILE, ends, progress)
+    let mut all = Vec::new();
+    let finest = nested(specimen, &mut all, progress)?.pop();
+    let finest = finest.expect("a mesh at least");
+    let is_whole = finest.reached() == specimen.factors.len();
+    ends.extend(all.pop().filter(|_| !is_whole));
+    Ok(finest)
 }
 
 /// The finite elements on a mesh, with first guesses of a coarser one; `file` is what their files begin with.
