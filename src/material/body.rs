@@ -13,7 +13,7 @@
 //! λ₃ P₃₃ = W_b = 0,   W̄_ij = W_ij − W_ib W_jb/W_bb                                          [MPa]
 //! ```
 //!
-//! In plane strain b = 0. [`Measures`] has stress and tangent of a law of a and z.
+//! In plane strain b = 0. `measures` has stress and tangent of a law of a and z.
 //!
 //! Derivatives by a and b are sums of terms that vanish at rest, so no digit is lost at strains of 1e-8. At small strain, W_bb =
 //! κ + 4/3 μ and W_z = μ.

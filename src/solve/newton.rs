@@ -258,7 +258,7 @@ impl Newton {
     }
 
     /// Moves the free entries of `u` towards a minimum of the potential by multigrid, until the imbalance stands for a share of the
-    /// first one, both measured as [`Iterative::weight`] does. `None` where there is no multigrid, or anything is not as it
+    /// first one, both measured as the iteration weighs them. `None` where there is no multigrid, or anything is not as it
     /// should be.
     pub fn approach(
         &mut self,

@@ -24,7 +24,7 @@ pub struct Statistics {
     pub standard_deviation: f64,
     /// The values below which 5, 50 and 95 % of the runs lie.
     pub quantiles: [f64; 3],
-    /// Spearman's rank correlation with each key; NaN where there are fewer than [`FEWEST`] runs, or a key is no number.
+    /// Spearman's rank correlation with each key; NaN where there are fewer than ten runs, or a key is no number.
     pub rank_correlations: Vec<f64>,
 }
 

@@ -56,7 +56,7 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
     write_records(std::iter::once(head.collect()).chain(rows.iter().map(line)))
 }
 
-/// The rows of a table that [`write`] has written, with as many keys.
+/// The rows of a table that [`write()`] has written, with as many keys.
 ///
 /// # Errors
 /// [`Error::Input`] where it is no such table.
