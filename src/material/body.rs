@@ -13,7 +13,7 @@
 //! λ₃ P₃₃ = W_b = 0,   W̄_ij = W_ij − W_ib W_jb/W_bb                                          [MPa]
 //! ```
 //!
-//! In plane strain b = 0. `measures` has stress and tangent of a law of a and z.
+//! In plane strain b = 0. [`Measures`] has stress and tangent of a law of a and z.
 //!
 //! Derivatives by a and b are sums of terms that vanish at rest, so no digit is lost at strains of 1e-8. At small strain, W_bb =
 //! κ + 4/3 μ and W_z = μ.
@@ -86,19 +86,27 @@ pub trait BodyLaw: Clone + Send + Sync + Debug {
 pub struct BodySheet<L> {
     law: L,
     plane: PlaneState,
-    /// −W_ab/W_bb at rest: ln λ₃ over ln J at small strain.
-    contraction: f64,
+    /// b = c₁ a + c₂ a² + c₃ z where W_b = 0, to the second order of the strain: where the search for b begins.
+    series: [f64; 3],
 }
 
 impl<L: BodyLaw> BodySheet<L> {
     /// A sheet of a law.
     pub fn new(law: L, plane: PlaneState) -> Self {
+        const SMALL: f64 = 1e-3;
         let rest = law.evaluate(BodyStretches::default());
-        Self {
+        let mut sheet = Self {
             law,
             plane,
-            contraction: -rest.ab / rest.bb,
+            series: [-rest.ab / rest.bb, 0.0, 0.0],
+        };
+        if plane == PlaneState::Stress && sheet.series[0].is_finite() {
+            let [wider, narrower, sheared] =
+                sheet.free_surface(&[SMALL, -SMALL, 0.0], &[0.0, 0.0, SMALL]);
+            let second = 0.5 * (wider + narrower) / (SMALL * SMALL);
+            sheet.series = [sheet.series[0], second, sheared / SMALL];
         }
+        sheet
     }
 
     /// W and its derivatives where the sheet's surfaces are as its plane state wants them, with b.
@@ -133,22 +141,19 @@ impl<L: BodyLaw> BodySheet<L> {
     /// The law of a and z that is left.
     #[inline(always)]
     fn condensed(&self, w: &BodyDerivatives) -> Derivatives {
-        let plain = Derivatives {
+        // No branch, for the sake of vectorised loops.
+        let free = if self.plane == PlaneState::Stress {
+            1.0 / w.bb
+        } else {
+            0.0
+        };
+        Derivatives {
             energy: w.energy,
             m: w.a,
             z: w.z,
-            mm: w.aa,
-            mz: w.az,
-            zz: w.zz,
-        };
-        match self.plane {
-            PlaneState::Stress => Derivatives {
-                mm: w.aa - w.ab * w.ab / w.bb,
-                mz: w.az - w.ab * w.zb / w.bb,
-                zz: w.zz - w.zb * w.zb / w.bb,
-                ..plain
-            },
-            PlaneState::Strain => plain,
+            mm: w.aa - w.ab * w.ab * free,
+            mz: w.az - w.ab * w.zb * free,
+            zz: w.zz - w.zb * w.zb * free,
         }
     }
 }
@@ -261,8 +266,10 @@ impl Lanes {
         }
         let [mut area, mut shape] = [[0.0; LANES]; 2];
         let mut inverted = 0_u64;
+        let [h11, h12, h21, h22] = &gradients;
         for lane in 0..LANES {
-            let kinematics = Kinematics::unchecked(&gradients.map(|own| own[lane]).into());
+            let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
+            let kinematics = Kinematics::unchecked(&h);
             inverted |= u64::from(!kinematics.is_admissible());
             area[lane] = logarithm_of_one_plus(kinematics.area_change);
             shape[lane] = Measures::new(&kinematics).z;
@@ -282,7 +289,8 @@ impl Lanes {
 
     #[inline(always)]
     fn point<L: BodyLaw>(&self, sheet: &BodySheet<L>, lane: usize) -> (Measures, Derivatives) {
-        let h = self.gradients.map(|own| own[lane]).into();
+        let [h11, h12, h21, h22] = &self.gradients;
+        let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
         let measures = Measures::new(&Kinematics::unchecked(&h));
         let w = sheet.evaluated(self.area[lane], measures.z, self.thickness[lane]);
         (measures, sheet.condensed(&w))
@@ -302,17 +310,22 @@ impl<L: BodyLaw> NullaryFnOnce for StressLoop<'_, L> {
 
     #[inline(always)]
     fn call(mut self) -> bool {
+        // A copy that no store in the loop can reach.
+        let sheet = &self.sheet.clone();
         let points = self.gradients[0].len();
         for first in (0..points).step_by(LANES) {
             let count = LANES.min(points - first);
-            let lanes = Lanes::new(self.sheet, &self.gradients, first, count);
+            let lanes = Lanes::new(sheet, &self.gradients, first, count);
             if !lanes.admissible {
                 return false;
             }
-            let mut found = [[0.0; 4]; LANES];
-            for (lane, own) in found.iter_mut().enumerate() {
-                let (measures, w) = lanes.point(self.sheet, lane);
-                *own = measures.stress(&w).into();
+            let mut found = [[0.0; LANES]; 4];
+            let [p11, p12, p21, p22] = &mut found;
+            for lane in 0..LANES {
+                let (measures, w) = lanes.point(sheet, lane);
+                let p = measures.stress(&w);
+                (p11[lane], p12[lane]) = (p[0], p[1]);
+                (p21[lane], p22[lane]) = (p[2], p[3]);
             }
             store(&mut self.stresses, &found, first, count);
         }
@@ -332,17 +345,24 @@ impl<L: BodyLaw> NullaryFnOnce for TangentLoop<'_, L> {
 
     #[inline(always)]
     fn call(mut self) -> bool {
+        // A copy that no store in the loop can reach.
+        let sheet = &self.sheet.clone();
         let points = self.gradients[0].len();
         for first in (0..points).step_by(LANES) {
             let count = LANES.min(points - first);
-            let lanes = Lanes::new(self.sheet, &self.gradients, first, count);
+            let lanes = Lanes::new(sheet, &self.gradients, first, count);
             if !lanes.admissible {
                 return false;
             }
-            let mut found = [[0.0; 10]; LANES];
-            for (lane, own) in found.iter_mut().enumerate() {
-                let (measures, w) = lanes.point(self.sheet, lane);
-                *own = lower_triangle(&measures.response(&w).tangent);
+            let mut found = [[0.0; LANES]; 10];
+            let [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] = &mut found;
+            for lane in 0..LANES {
+                let (measures, w) = lanes.point(sheet, lane);
+                let lower = lower_triangle(&measures.response(&w).tangent);
+                (a0[lane], a1[lane], a2[lane]) = (lower[0], lower[1], lower[2]);
+                (a3[lane], a4[lane], a5[lane]) = (lower[3], lower[4], lower[5]);
+                (a6[lane], a7[lane]) = (lower[6], lower[7]);
+                (a8[lane], a9[lane]) = (lower[8], lower[9]);
             }
             store(&mut self.tangents, &found, first, count);
         }
@@ -354,13 +374,11 @@ impl<L: BodyLaw> NullaryFnOnce for TangentLoop<'_, L> {
 #[inline(always)]
 fn store<const N: usize>(
     all: &mut [&mut [f64]; N],
-    found: &[[f64; N]; LANES],
+    found: &[[f64; LANES]; N],
     first: usize,
     count: usize,
 ) {
-    for (component, all) in all.iter_mut().enumerate() {
-        for (place, own) in all[first..first + count].iter_mut().zip(found) {
-            *place = own[component];
-        }
+    for (all, found) in all.iter_mut().zip(found) {
+        all[first..first + count].copy_from_slice(&found[..count]);
     }
 }

@@ -49,20 +49,22 @@ impl<L: IsochoricLaw> BodyLaw for FlorySplit<L> {
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
         let (a, z, b) = (at.area, at.shape, at.thickness);
-        let w = self.law.at((a - 2.0 * b) / 3.0, z);
+        const THIRD: f64 = 1.0 / 3.0;
+        let w = self.law.at(THIRD * (a - 2.0 * b), z);
         let kappa = self.volume.bulk_modulus;
         let [u, du, ddu] = self.volume.energy.derivatives(a + b).map(|u| kappa * u);
+        let (m, mz, mm) = (THIRD * w.m, THIRD * w.mz, THIRD * THIRD * w.mm);
         BodyDerivatives {
             energy: w.energy + u,
-            a: w.m / 3.0 + du,
+            a: m + du,
             z: w.z,
-            b: du - w.m / 1.5,
-            aa: w.mm / 9.0 + ddu,
-            az: w.mz / 3.0,
-            ab: ddu - w.mm / 4.5,
+            b: du - 2.0 * m,
+            aa: mm + ddu,
+            az: mz,
+            ab: ddu - 2.0 * mm,
             zz: w.zz,
-            zb: -w.mz / 1.5,
-            bb: w.mm / 2.25 + ddu,
+            zb: -2.0 * mz,
+            bb: 4.0 * mm + ddu,
         }
     }
 }

@@ -113,16 +113,17 @@ impl<L: InvariantLaw> IsochoricLaw for L {
     fn at(&self, s: f64, z: f64) -> Derivatives {
         let d = exponential_less_one(s);
         let x = 1.0 + d;
-        let square = x * x;
+        let (square, inverse) = (x * x, 1.0 / x);
+        let inverse_square = inverse * inverse;
         // x − x⁻²
-        let r = d * (1.0 + x + square) / square;
+        let r = d * (1.0 + x + square) * inverse_square;
         let w = self.evaluate(Invariants {
-            i1_minus_3: 2.0 * x * z + d * d * (2.0 * x + 1.0) / square,
-            i2_minus_3: 2.0 * z / x + d * d * (x + 2.0) / x,
+            i1_minus_3: 2.0 * x * z + d * d * (2.0 * x + 1.0) * inverse_square,
+            i2_minus_3: 2.0 * z * inverse + d * d * (x + 2.0) * inverse,
         });
         let [s1, z1] = [2.0 * (x * z + r), 2.0 * x];
-        let [s2, z2] = [2.0 * (x * r - z / x), 2.0 / x];
-        let ss1 = z1 * (1.0 + z) + 4.0 / square;
+        let [s2, z2] = [2.0 * (x * r - z * inverse), 2.0 * inverse];
+        let ss1 = z1 * (1.0 + z) + 4.0 * inverse_square;
         let ss2 = z2 * (1.0 + z) + 4.0 * square;
         Derivatives {
             energy: w.energy,

@@ -16,7 +16,7 @@
 //! S. Doll, K. Schweizerhof, J. Appl. Mech. 67, 17 (2000), doi:10.1115/1.321146;
 //! J. C. Simo, R. L. Taylor, Comput. Methods Appl. Mech. Eng. 85, 273 (1991), doi:10.1016/0045-7825(91)90100-K
 
-use super::exponential::{exponential_less_one, second_quotient};
+use super::exponential::second_quotient;
 use super::sheet::PlaneState;
 use crate::document::{Bound, name_of};
 
@@ -59,27 +59,24 @@ impl VolumeEnergy {
         name_of(&Self::NAMES, self)
     }
 
-    /// U/κ and its first two derivatives by ln J₃.
+    /// U/κ and its first two derivatives by ln J₃: all of them, weighted, because a branch would keep loops over many points from
+    /// being vectorised.
     #[inline(always)]
     pub(super) fn derivatives(self, logarithm: f64) -> [f64; 3] {
-        match self {
-            Self::Quadratic => {
-                let change = exponential_less_one(logarithm);
-                let ratio = 1.0 + change;
-                [
-                    0.5 * change * change,
-                    change * ratio,
-                    ratio * (ratio + change),
-                ]
-            }
-            Self::Logarithmic => [0.5 * logarithm * logarithm, logarithm, 1.0],
-            Self::SimoTaylor => {
-                let twice = 2.0 * logarithm;
-                let change = exponential_less_one(twice);
-                let energy = logarithm * logarithm * second_quotient(twice);
-                [energy, 0.5 * change, 1.0 + change]
-            }
-        }
+        let weight = |energy: Self| if self as u8 == energy as u8 { 1.0 } else { 0.0 };
+        let [quadratic, plain, simo_taylor] =
+            [Self::Quadratic, Self::Logarithmic, Self::SimoTaylor].map(weight);
+        let square = logarithm * logarithm;
+        // J₃ − 1 − ln J₃, and ½ (J₃ − 1)²
+        let beyond = square * second_quotient(logarithm);
+        let change = logarithm + beyond;
+        let ratio = 1.0 + change;
+        let half = 0.5 * change * change;
+        [
+            quadratic * half + plain * 0.5 * square + simo_taylor * 0.5 * (beyond + half),
+            quadratic * change * ratio + plain * logarithm + simo_taylor * (change + half),
+            quadratic * ratio * (ratio + change) + plain + simo_taylor * ratio * ratio,
+        ]
     }
 }
 
