@@ -13,7 +13,7 @@
 //! λ₃ P₃₃ = W_b = 0,   W̄_ij = W_ij − W_ib W_jb/W_bb                                          [MPa]
 //! ```
 //!
-//! In plane strain b = 0. [`Measures`] has stress and tangent of a law of a and z.
+//! In plane strain b = 0. `measures` has stress and tangent of a law of a and z.
 //!
 //! Derivatives by a and b are sums of terms that vanish at rest, so no digit is lost at strains of 1e-8. At small strain, W_bb =
 //! κ + 4/3 μ and W_z = μ.
@@ -22,6 +22,7 @@
 //! J. C. Simo, R. L. Taylor, Comput. Methods Appl. Mech. Eng. 85, 273 (1991), doi:10.1016/0045-7825(91)90100-K
 
 use std::fmt::Debug;
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 use pulp::{Arch, NullaryFnOnce};
@@ -170,18 +171,20 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
     }
 
     fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
-        Arch::new().dispatch(StressLoop {
+        Arch::new().dispatch(PointLoop {
             sheet: self,
             gradients,
-            stresses,
+            made: stresses,
+            kind: PhantomData::<Stress>,
         })
     }
 
     fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
-        Arch::new().dispatch(TangentLoop {
+        Arch::new().dispatch(PointLoop {
             sheet: self,
             gradients,
-            tangents,
+            made: tangents,
+            kind: PhantomData::<Tangent>,
         })
     }
 
@@ -297,50 +300,42 @@ impl Lanes {
     }
 }
 
-/// Straight-line code for each point, as for laws that keep their volume: no operation is fused with another, so that all
-/// machines give the same bits.
-struct StressLoop<'a, L> {
-    sheet: &'a BodySheet<L>,
-    gradients: [&'a [f64]; 4],
-    stresses: [&'a mut [f64]; 4],
+/// What is made of the measures and derivatives at a point.
+trait Made<const N: usize> {
+    /// Component by component.
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; N];
 }
 
-impl<L: BodyLaw> NullaryFnOnce for StressLoop<'_, L> {
-    type Output = bool;
+struct Stress;
 
+impl Made<4> for Stress {
     #[inline(always)]
-    fn call(mut self) -> bool {
-        // A copy that no store in the loop can reach.
-        let sheet = &self.sheet.clone();
-        let points = self.gradients[0].len();
-        for first in (0..points).step_by(LANES) {
-            let count = LANES.min(points - first);
-            let lanes = Lanes::new(sheet, &self.gradients, first, count);
-            if !lanes.admissible {
-                return false;
-            }
-            let mut found = [[0.0; LANES]; 4];
-            let [p11, p12, p21, p22] = &mut found;
-            for lane in 0..LANES {
-                let (measures, w) = lanes.point(sheet, lane);
-                let p = measures.stress(&w);
-                (p11[lane], p12[lane]) = (p[0], p[1]);
-                (p21[lane], p22[lane]) = (p[2], p[3]);
-            }
-            store(&mut self.stresses, &found, first, count);
-        }
-        true
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; 4] {
+        measures.stress(w).into()
     }
 }
 
-/// As [`StressLoop`].
-struct TangentLoop<'a, L> {
-    sheet: &'a BodySheet<L>,
-    gradients: [&'a [f64]; 4],
-    tangents: [&'a mut [f64]; 10],
+struct Tangent;
+
+impl Made<10> for Tangent {
+    #[inline(always)]
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; 10] {
+        lower_triangle(&measures.response(w).tangent)
+    }
 }
 
-impl<L: BodyLaw> NullaryFnOnce for TangentLoop<'_, L> {
+/// What is made of every point of a list; `false` where one is turned inside out.
+///
+/// Straight-line code for each point, as for laws that keep their volume: no operation is fused with another, so that all
+/// machines give the same bits.
+struct PointLoop<'a, L, M, const N: usize> {
+    sheet: &'a BodySheet<L>,
+    gradients: [&'a [f64]; 4],
+    made: [&'a mut [f64]; N],
+    kind: PhantomData<M>,
+}
+
+impl<L: BodyLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
     type Output = bool;
 
     #[inline(always)]
@@ -354,17 +349,14 @@ impl<L: BodyLaw> NullaryFnOnce for TangentLoop<'_, L> {
             if !lanes.admissible {
                 return false;
             }
-            let mut found = [[0.0; LANES]; 10];
-            let [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] = &mut found;
+            let mut found = [[0.0; LANES]; N];
             for lane in 0..LANES {
                 let (measures, w) = lanes.point(sheet, lane);
-                let lower = lower_triangle(&measures.response(&w).tangent);
-                (a0[lane], a1[lane], a2[lane]) = (lower[0], lower[1], lower[2]);
-                (a3[lane], a4[lane], a5[lane]) = (lower[3], lower[4], lower[5]);
-                (a6[lane], a7[lane]) = (lower[6], lower[7]);
-                (a8[lane], a9[lane]) = (lower[8], lower[9]);
+                for (component, value) in found.iter_mut().zip(M::of(&measures, &w)) {
+                    component[lane] = value;
+                }
             }
-            store(&mut self.tangents, &found, first, count);
+            store(&mut self.made, &found, first, count);
         }
         true
     }

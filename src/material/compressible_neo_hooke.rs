@@ -63,31 +63,37 @@ impl CompressibleNeoHooke {
 }
 
 impl BodyLaw for CompressibleNeoHooke {
-    /// ```text
-    /// ½ (I₁ − 3 − 2 ln J₃) = J z + (J − 1 − a) + ½ (λ₃² − 1 − 2 b)
-    /// ```
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
-        let (a, z, b) = (at.area, at.shape, at.thickness);
-        let mu = self.shear_modulus;
-        let area = a * a * second_quotient(a);
-        let across = 2.0 * b * b * second_quotient(2.0 * b);
-        // J − 1 and λ₃² − 1
-        let (change, square_change) = (a + area, 2.0 * (b + across));
-        let ratio = 1.0 + change;
         let lame = self.lame_modulus;
-        let [u, du, ddu] = self.energy.derivatives(a + b).map(|u| lame * u);
-        BodyDerivatives {
-            energy: mu * (ratio * z + area + across) + u,
-            a: mu * (ratio * z + change) + du,
-            z: mu * ratio,
-            b: mu * square_change + du,
-            aa: mu * ratio * (1.0 + z) + ddu,
-            az: mu * ratio,
-            ab: ddu,
-            zz: 0.0,
-            zb: 0.0,
-            bb: 2.0 * mu * (1.0 + square_change) + ddu,
-        }
+        let volume = self.energy.derivatives(at.area + at.thickness);
+        chains(self.shear_modulus, at, volume.map(|u| lame * u))
+    }
+}
+
+/// μ (½ (I₁ − 3) − ln J₃) + U(ln J₃), U given with its first two derivatives.
+///
+/// ```text
+/// ½ (I₁ − 3 − 2 ln J₃) = J z + (J − 1 − a) + ½ (λ₃² − 1 − 2 b)
+/// ```
+#[inline(always)]
+pub(super) fn chains(mu: f64, at: BodyStretches, [u, du, ddu]: [f64; 3]) -> BodyDerivatives {
+    let (a, z, b) = (at.area, at.shape, at.thickness);
+    let area = a * a * second_quotient(a);
+    let across = 2.0 * b * b * second_quotient(2.0 * b);
+    // J − 1 and λ₃² − 1
+    let (change, square_change) = (a + area, 2.0 * (b + across));
+    let ratio = 1.0 + change;
+    BodyDerivatives {
+        energy: mu * (ratio * z + area + across) + u,
+        a: mu * (ratio * z + change) + du,
+        z: mu * ratio,
+        b: mu * square_change + du,
+        aa: mu * ratio * (1.0 + z) + ddu,
+        az: mu * ratio,
+        ab: ddu,
+        zz: 0.0,
+        zb: 0.0,
+        bb: 2.0 * mu * (1.0 + square_change) + ddu,
     }
 }

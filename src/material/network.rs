@@ -1,6 +1,7 @@
 //! Gels: networks that take up solvent.
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
+use super::compressible_neo_hooke::chains;
 use super::exponential::second_quotient;
 use super::law::HyperelasticLaw;
 use super::logarithm::logarithm_beyond_first_order;
@@ -203,25 +204,7 @@ impl SwollenNetwork {
 impl BodyLaw for SwollenNetwork {
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
-        let (a, z, b) = (at.area, at.shape, at.thickness);
-        let mu = self.modulus;
-        let area = a * a * second_quotient(a);
-        let across = 2.0 * b * b * second_quotient(2.0 * b);
-        let (change, square_change) = (a + area, 2.0 * (b + across));
-        let ratio = 1.0 + change;
-        let [u, du, ddu] = self.volume(a + b);
-        BodyDerivatives {
-            energy: mu * (ratio * z + area + across) + u,
-            a: mu * (ratio * z + change) + du,
-            z: mu * ratio,
-            b: mu * square_change + du,
-            aa: mu * ratio * (1.0 + z) + ddu,
-            az: mu * ratio,
-            ab: ddu,
-            zz: 0.0,
-            zb: 0.0,
-            bb: 2.0 * mu * (1.0 + square_change) + ddu,
-        }
+        chains(self.modulus, at, self.volume(at.area + at.thickness))
     }
 
     fn statements(&self) -> Vec<(&'static str, String)> {
