@@ -11,6 +11,7 @@ mod curve;
 mod curve_noise;
 mod durbin_watson;
 mod neighbours;
+mod ranks;
 mod spline;
 
 pub use correlated_regression::{CorrelatedNoise, CorrelatedRegression, WhiteRegression};
@@ -19,6 +20,7 @@ pub use curve::Curve;
 pub use curve_noise::{CurveNoise, CurveResiduals};
 pub use durbin_watson::DurbinWatson;
 pub use neighbours::nearest;
+pub use ranks::{quantile, rank_correlation};
 pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
 /// The least and the largest of some values; infinities the wrong way round where there are none.

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::figures::Row;
 use super::table::{headed, names};
 use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke};
+use crate::statistics::{quantile, rank_correlation};
 
 /// Below so many runs there is neither a spread nor a correlation.
 const FEWEST: usize = 10;
@@ -62,7 +63,8 @@ impl Statistics {
                 .iter()
                 .map(|(index, _)| rows[*index].settings[key].value());
             let settings: Option<Vec<f64>> = settings.collect();
-            settings.map_or(f64::NAN, |settings| rank_correlation(&settings, &values))
+            let enough = settings.filter(|settings| settings.len() >= FEWEST);
+            enough.map_or(f64::NAN, |settings| rank_correlation(&settings, &values))
         };
         Self {
             name: name.to_owned(),
@@ -73,48 +75,6 @@ impl Statistics {
             rank_correlations: (0..keys).map(correlation).collect(),
         }
     }
-}
-
-/// The value below which a share of sorted values lies, linear between them.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len() - 1) as f64;
-    let below = place.floor() as usize;
-    let above = (below + 1).min(sorted.len() - 1);
-    let part = place - below as f64;
-    sorted[below] * (1.0 - part) + sorted[above] * part
-}
-
-/// Spearman's rank correlation; NaN of fewer than [`FEWEST`] pairs, or where all of one are equal.
-fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
-    if a.len() < FEWEST {
-        return f64::NAN;
-    }
-    let [a, b] = [ranks(a), ranks(b)];
-    let mean = (a.len() - 1) as f64 / 2.0;
-    let product = |a: &[f64], b: &[f64]| -> f64 {
-        let pairs = a.iter().zip(b);
-        pairs.map(|(a, b)| (a - mean) * (b - mean)).sum()
-    };
-    product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt()
-}
-
-/// Ranks from 0 on; equal values share the mean of theirs.
-fn ranks(values: &[f64]) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-    let mut ranks = vec![0.0; values.len()];
-    let mut first = 0;
-    while first < order.len() {
-        let equal = order[first..]
-            .iter()
-            .take_while(|at| values[**at] == values[order[first]]);
-        let end = first + equal.count().max(1);
-        for at in &order[first..end] {
-            ranks[*at] = (first + end - 1) as f64 / 2.0;
-        }
-        first = end;
-    }
-    ranks
 }
 
 /// The figures of the last step, without the step in their names.
