@@ -1,6 +1,5 @@
 //! Multigrid finds what a factor finds: shapes × elements × laws × supports × loads, and says the same where there is nothing to find.
 
-use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -8,6 +7,10 @@ use gelbench::material::{Card, HyperelasticLaw, NeoHooke};
 use gelbench::mesh::{CellShape, Grid, Mesh, Shape};
 use gelbench::problem::{BoundaryProblem, Drive, Load, Support};
 use gelbench::solve::{LinearSolver, NewtonSettings, PathEnd, State};
+
+mod common;
+
+use common::sheets::{DOG_BONE, RING, STRIP_WITH_HOLE, held, named};
 
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
@@ -22,16 +25,6 @@ fn neo_hooke() -> Arc<dyn HyperelasticLaw> {
     Arc::new(NeoHooke { c10: 0.05 })
 }
 
-fn named<T>(own: impl IntoIterator<Item = (&'static str, T)>) -> Vec<(String, T)> {
-    own.into_iter()
-        .map(|(name, own)| (name.to_owned(), own))
-        .collect()
-}
-
-fn held(x: f64, y: f64) -> Support {
-    Support::Displacement([Some(x), Some(y)])
-}
-
 struct Case {
     name: &'static str,
     mesh: Mesh,
@@ -39,19 +32,7 @@ struct Case {
 }
 
 fn cases() -> Vec<Case> {
-    let hole = Shape::StripWithHole {
-        size: [100.0, 40.0],
-        radius: 8.0,
-    };
-    let bone = Shape::DogBone {
-        size: [115.0, 25.0],
-        narrow: [33.0, 6.0],
-        shoulder: 20.0,
-    };
-    let ring = Shape::RingSector {
-        radii: [10.0, 20.0],
-        angle: FRAC_PI_2,
-    };
+    let (hole, bone, ring) = (STRIP_WITH_HOLE, DOG_BONE, RING);
     let graded = |kind| {
         let grid = Grid {
             size: [150.0, 50.0],

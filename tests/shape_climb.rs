@@ -1,6 +1,5 @@
 //! The climb on any shape: what it leaves is small compared with the discretisation error, which it states.
 
-use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -12,6 +11,10 @@ use gelbench::material::{Card, HyperelasticLaw, NeoHooke};
 use gelbench::mesh::{CellShape, Mesh, Shape};
 use gelbench::problem::{BoundaryProblem, Drive, Load, Support};
 use gelbench::solve::{LinearSolver, NewtonSettings};
+
+mod common;
+
+use common::sheets::{DOG_BONE, RING, STRIP_WITH_HOLE, held, named};
 
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-11,
@@ -27,30 +30,8 @@ struct Case {
     problem: BoundaryProblem,
 }
 
-fn named<T>(own: impl IntoIterator<Item = (&'static str, T)>) -> Vec<(String, T)> {
-    own.into_iter()
-        .map(|(name, own)| (name.to_owned(), own))
-        .collect()
-}
-
-fn held(x: f64, y: f64) -> Support {
-    Support::Displacement([Some(x), Some(y)])
-}
-
 fn cases() -> Vec<Case> {
-    let hole = Shape::StripWithHole {
-        size: [100.0, 40.0],
-        radius: 8.0,
-    };
-    let bone = Shape::DogBone {
-        size: [115.0, 25.0],
-        narrow: [33.0, 6.0],
-        shoulder: 20.0,
-    };
-    let ring = Shape::RingSector {
-        radii: [10.0, 20.0],
-        angle: FRAC_PI_2,
-    };
+    let (hole, bone, ring) = (STRIP_WITH_HOLE, DOG_BONE, RING);
     let pva = Card::load("pva-10", Path::new(".")).unwrap().law;
     let soft: Arc<dyn HyperelasticLaw> = Arc::new(NeoHooke { c10: 0.05 });
     let grips = |by: f64| named([("left", held(0.0, 0.0)), ("right", held(by, 0.0))]);

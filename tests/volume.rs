@@ -71,15 +71,18 @@ fn measured(law: Arc<dyn HyperelasticLaw>) -> Vec<[f64; 3]> {
     measures.collect()
 }
 
-#[test]
-fn a_clamped_plate_that_changes_its_volume_is_that_of_another_code() {
-    let text = include_str!("../validation/plate/volume.csv");
-    let rows: Vec<Vec<&str>> = text
-        .lines()
-        .filter(|line| !line.starts_with('#'))
+/// The rows of a table below its remarks and its names.
+fn rows(text: &str) -> Vec<Vec<&str>> {
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
+    lines
         .skip(1)
         .map(|line| line.split(',').collect())
-        .collect();
+        .collect()
+}
+
+#[test]
+fn a_clamped_plate_that_changes_its_volume_is_that_of_another_code() {
+    let rows = rows(include_str!("../validation/plate/volume.csv"));
     assert_eq!(rows.len(), 24);
     for pair in rows.chunks(2) {
         let plane = PlaneState::NAMES
@@ -125,13 +128,7 @@ fn law_of_row(row: &[&str]) -> Arc<dyn HyperelasticLaw> {
 
 #[test]
 fn a_clamped_plate_of_any_law_of_volume_change_is_that_of_two_other_codes() {
-    let text = include_str!("../validation/plate/volume_laws.csv");
-    let rows: Vec<Vec<&str>> = text
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .skip(1)
-        .map(|line| line.split(',').collect())
-        .collect();
+    let rows = rows(include_str!("../validation/plate/volume_laws.csv"));
     let mut plates = BTreeMap::new();
     for row in &rows {
         let found = plates

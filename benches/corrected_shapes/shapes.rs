@@ -1,11 +1,15 @@
 //! The shapes, each with meshes from coarse to fine.
 
-use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use gelbench::material::HyperelasticLaw;
 use gelbench::mesh::{Block, CellShape, Mesh, Outline, Shape, mesh_of_blocks};
 use gelbench::problem::{BoundaryProblem, Load, Support};
+
+#[path = "../../tests/common/sheets.rs"]
+mod sheets;
+
+use sheets::{DOG_BONE, RING, STRIP_WITH_HOLE, held, named};
 
 /// A problem on a shape.
 pub struct Case {
@@ -26,30 +30,9 @@ impl Case {
     }
 }
 
-fn named<T>(own: impl IntoIterator<Item = (&'static str, T)>) -> Vec<(String, T)> {
-    let own = own.into_iter();
-    own.map(|(name, own)| (name.to_owned(), own)).collect()
-}
-
-fn held(x: f64, y: f64) -> Support {
-    Support::Displacement([Some(x), Some(y)])
-}
-
 /// All of them; displacements, tractions and pressures make strains of some 50 %.
 pub fn all(law: &Arc<dyn HyperelasticLaw>) -> Vec<Case> {
-    let hole = Shape::StripWithHole {
-        size: [100.0, 40.0],
-        radius: 8.0,
-    };
-    let bone = Shape::DogBone {
-        size: [115.0, 25.0],
-        narrow: [33.0, 6.0],
-        shoulder: 20.0,
-    };
-    let ring = Shape::RingSector {
-        radii: [10.0, 20.0],
-        angle: FRAC_PI_2,
-    };
+    let (hole, bone, ring) = (STRIP_WITH_HOLE, DOG_BONE, RING);
     let case = |name, meshes, supports, loads| Case {
         name,
         meshes,

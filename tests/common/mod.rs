@@ -14,6 +14,7 @@ pub mod exports;
 pub mod mesh_files;
 pub mod process;
 pub mod schema;
+pub mod sheets;
 
 pub fn gelbench(folder: &Path, arguments: &[&str]) -> Assert {
     let mut command = Command::cargo_bin("gelbench").unwrap();
