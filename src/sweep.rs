@@ -16,6 +16,7 @@
 //! A. B. Owen, in Monte Carlo and Quasi-Monte Carlo Methods, Springer 1995, doi:10.1007/978-1-4612-2552-2_19
 
 use std::collections::HashMap;
+use std::slice::from_ref;
 
 use rayon::prelude::*;
 
@@ -71,6 +72,18 @@ impl Sweep {
             settings,
         };
         Ok(rows.map(run).collect())
+    }
+
+    /// Reads the files that texts among the values name, such as cards, so that they count as read before a run needs them. What
+    /// cannot be read is told by its run.
+    pub fn read_files(&self) {
+        for variable in &self.variables {
+            if let Values::Listed(values) = &variable.values {
+                for value in values.iter().filter(|value| value.value().is_none()) {
+                    drop(self.study.with(from_ref(&variable.key), from_ref(value)));
+                }
+            }
+        }
     }
 
     /// Computes runs, several at once, but for those that are done; each is handed to `keep` when it ends.

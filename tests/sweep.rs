@@ -90,6 +90,33 @@ fn a_sweep_that_was_killed_goes_on_and_parts_are_the_whole() {
 }
 
 #[test]
+fn a_sweep_of_other_cards_is_another_sweep() {
+    let place = folder();
+    let (folder, output) = (place.path(), &place.path().join("output/s_sweep"));
+    let card = fs::read_to_string(common::root().join("materials/neo-hooke.toml")).unwrap();
+    fs::write(folder.join("a.toml"), &card).unwrap();
+    let arguments = "sweep s.toml --vary material.card=a.toml --vary plate.width=40..60mm:24";
+    let mut child = start(folder, arguments);
+    let kept = |run: usize| {
+        first_partial(output).is_some_and(|partial| partial.join(format!(".parts/{run}")).exists())
+    };
+    wait_for(|| (1..=24).any(kept));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    fs::write(
+        folder.join("a.toml"),
+        card.replace("0.05 MPa\"", "0.1 MPa\""),
+    )
+    .unwrap();
+    let done = run(folder, arguments);
+    assert!(done.status.success(), "{}", told(&done));
+    let after = fs::read(output.join("sweep.csv")).unwrap();
+    fs::remove_dir_all(output).unwrap();
+    run(folder, arguments);
+    assert!(after == fs::read(output.join("sweep.csv")).unwrap());
+}
+
+#[test]
 fn runs_without_a_solution_stand_in_the_table() {
     let place = folder();
     let folder = place.path();

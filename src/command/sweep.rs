@@ -124,7 +124,9 @@ pub fn run(options: Options) -> Outcome {
         runs.retain(|run| shard.holds(run));
     }
     // Faults of the study itself are told before anything is computed.
-    validation::read(&options.study, options.large.budget())?;
+    let study = &sweep.study;
+    validation::read_given(&study.path, study.text.clone(), study.budget)?;
+    sweep.read_files();
     let said = format!("{sweep:?} {:?}", options.shard);
     let inputs: Vec<&Path> = std::iter::once(&*options.study)
         .chain(options.fit.as_deref())
