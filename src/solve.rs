@@ -7,6 +7,7 @@ pub mod assembly;
 mod connectivity;
 pub mod dissection;
 mod ending;
+mod equilibrium;
 mod iterative;
 mod journal;
 pub mod krylov;
@@ -23,6 +24,7 @@ pub mod vector;
 
 pub use assembly::Assembly;
 pub use connectivity::Connectivity;
+pub use equilibrium::equilibrium;
 pub use iterative::{LinearSolver, WORTH_MULTIGRID};
 pub use journal::{Attendance, Journal, Milestone};
 pub use loading::{Loading, State};

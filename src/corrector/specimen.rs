@@ -6,7 +6,7 @@ use super::plate::{EQUILIBRIUM, GRIPS};
 use super::{Correction, Corrector, CorrectorSettings, Describe};
 use crate::error::SolveFault;
 use crate::problem::Model;
-use crate::solve::{Assembly, Loading, Newton, NewtonSettings, State};
+use crate::solve::{Assembly, Loading, Newton, NewtonSettings, State, equilibrium};
 
 /// Cells and nodes of a mesh by their places.
 struct Names<'a>(&'a Model<'a>);
@@ -94,23 +94,7 @@ pub fn correct_without_multipliers(
     settings: NewtonSettings,
 ) -> Result<State, SolveFault> {
     let potential = model.potential(factor);
-    let (mut displacement, mut residual) = (start.to_vec(), vec![0.0; start.len()]);
-    model.impose(factor, &mut displacement);
     let mut newton = Newton::with_solver(&*potential, &model.held(), model.linear_solver())?;
-    let describe = |element| model.describe(element);
-    let convergence = newton.solve(
-        &*potential,
-        &mut displacement,
-        &mut residual,
-        settings,
-        &describe,
-    )?;
-    model.impose(factor, &mut displacement);
-    Ok(State {
-        factor,
-        displacement,
-        residual,
-        load_steps: 1,
-        convergence,
-    })
+    let from = (&mut newton, start.to_vec());
+    equilibrium(model, (&*potential, factor), from, settings)
 }

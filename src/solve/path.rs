@@ -1,6 +1,7 @@
 //! Equilibria along a path of load factors.
 
 use super::ending::diagnose;
+use super::equilibrium::equilibrium;
 use super::journal::{Attendance, Journal, Milestone};
 use super::loading::{Loading, State};
 use super::newton::{Newton, NewtonSettings};
@@ -213,27 +214,12 @@ impl<'a> Path<'a> {
 
     fn solve_at(&mut self, previous: Option<&State>, factor: f64) -> Result<State, SolveFault> {
         let potential = self.loading.potential(factor);
-        let mut displacement = match self.loading.guess(factor, previous) {
+        let guess = match self.loading.guess(factor, previous) {
             Some(guess) => guess,
             None => self.predict(previous, factor, &*potential)?,
         };
-        self.loading.impose(factor, &mut displacement);
-        let mut residual = vec![0.0; displacement.len()];
-        let convergence = self.newton.solve(
-            &*potential,
-            &mut displacement,
-            &mut residual,
-            self.settings,
-            &|element| self.loading.describe(element),
-        )?;
-        self.loading.impose(factor, &mut displacement);
-        Ok(State {
-            factor,
-            displacement,
-            residual,
-            load_steps: 1,
-            convergence,
-        })
+        let at = (&*potential, factor);
+        equilibrium(self.loading, at, (&mut self.newton, guess), self.settings)
     }
 
     /// The linear prediction: the tangent at the state before, for the change of supports and loads.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::figures::Row;
 use super::table::{headed, names};
-use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke};
+use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke, number};
 use crate::statistics::{quantile, rank_correlation};
 
 /// Below so many runs there is neither a spread nor a correlation.
@@ -102,8 +102,8 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
         .map(|key| format!("rank correlation with {key}"))
         .collect();
     head.extend(correlations.iter().map(String::as_str));
-    let number = |value: f64| match value.is_finite() {
-        true => format!("{value:.5}"),
+    let told = |value: f64| match value.is_finite() {
+        true => number(value),
         false => "–".to_owned(),
     };
     let lines = of_last_step(&all).map(|one| {
@@ -113,7 +113,7 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
         let first = [one.name.clone(), one.runs.to_string()];
         first
             .into_iter()
-            .chain(numbers.map(|value| number(*value)))
+            .chain(numbers.map(|value| told(*value)))
             .collect()
     });
     let varied = (0..keys.len()).map(|index| headed(&keys[index], rows, index));
