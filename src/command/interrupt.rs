@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::output::{ResultFolder, Unfinished};
+use crate::output::{Left, ResultFolder, Unfinished};
 
 /// The exit code of a command that was interrupted: 128 and the number of the signal.
 const EXIT_CODE: i32 = 130;
@@ -15,15 +15,18 @@ pub fn attend() {
     // Without a handler the system ends the command, and the next one sweeps what it has left.
     let _ = ctrlc::set_handler(|| {
         let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
-        let resumable = unfinished.as_ref().is_some_and(|own| own.break_off());
-        let left = match resumable {
-            true => "the same command goes on from here",
-            false => "nothing of this run is left",
+        // Held until the end: what was taken away is not written again meanwhile.
+        let broken_off = unfinished.as_ref().map(|own| own.break_off());
+        let left = match broken_off.as_ref().map(|run| run.left) {
+            None | Some(Left::Nothing) => {
+                "nothing of this run is left; results of earlier runs are as they were"
+            }
+            Some(Left::Parts) => {
+                "the same command goes on from here; results of earlier runs are as they were"
+            }
+            Some(Left::Results) => "the results of this run are in place",
         };
-        let _ = writeln!(
-            std::io::stderr(),
-            "interrupted: {left}; results of earlier runs are as they were"
-        );
+        let _ = writeln!(std::io::stderr(), "interrupted: {left}");
         std::process::exit(EXIT_CODE);
     });
 }

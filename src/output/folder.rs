@@ -31,8 +31,8 @@ mod unfinished;
 pub use inputs::refuse_inputs;
 use inputs::{places, refuse_input};
 use manifest::{Locked, Manifest, Moving, PARTIAL, is_inside};
-use unfinished::PARTS;
-pub use unfinished::Unfinished;
+pub use unfinished::{BrokenOff, Left, Unfinished};
+use unfinished::{PARTS, Stage};
 
 /// A folder that is being written into.
 #[derive(Debug)]
@@ -180,6 +180,8 @@ impl ResultFolder {
         let fault = |cause: std::io::Error| Error::write(&target, cause);
         let aside = self.unfinished.partial.join(name);
         let folder = aside.parent().unwrap_or(&self.path);
+        // Nobody who breaks the run off takes the folder away in the middle of a file, or finds one written afterwards.
+        let _growing = self.unfinished.growing()?;
         // The folder may have been taken away while the results were computed.
         fs::create_dir_all(folder).map_err(fault)?;
         let mut file = File::create(&aside).map_err(fault)?;
@@ -215,10 +217,10 @@ impl ResultFolder {
             stale,
         };
         // Nobody who breaks the run off does so between the first file and the last.
-        let mut settled = unfinished.settled();
+        let mut stage = unfinished.growing()?;
         self.manifest.write(&files, Some(moving.clone()))?;
         // From here on the next run could finish it.
-        *settled = true;
+        *stage = Stage::InPlace;
         let written = moving.settle(&self.path, &self.inputs)?;
         moving.forget_stale(&mut files);
         self.manifest.write(&files, None)?;

@@ -184,9 +184,7 @@ fn work_that_was_broken_off_goes_on_where_it_was_with_the_same_identity_only() {
     first.add("a.csv", b"1").unwrap();
     first.keep("1", &"one".to_owned()).unwrap();
     first.add("b.csv", b"half").unwrap();
-    assert!(first.unfinished().break_off());
-    // As a kill leaves it.
-    *first.unfinished().settled() = true;
+    assert_eq!(first.unfinished().break_off().left, Left::Parts);
     drop(first);
     let mut second = begin("1");
     assert_eq!(second.kept("1"), Some("one".to_owned()));
@@ -196,9 +194,43 @@ fn work_that_was_broken_off_goes_on_where_it_was_with_the_same_identity_only() {
     assert_eq!(names(path), [MANIFEST, "a.csv", "b.csv"]);
     let mut third = begin("1");
     third.keep("1", &"one".to_owned()).unwrap();
-    assert!(third.unfinished().break_off());
-    *third.unfinished().settled() = true;
+    assert_eq!(third.unfinished().break_off().left, Left::Parts);
     drop(third);
     assert_eq!(begin("2").kept::<String>("1"), None);
     assert_eq!(names(path), [MANIFEST, "a.csv", "b.csv"]);
+}
+
+#[test]
+fn nothing_is_written_into_what_was_broken_off() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    for file in 0..20 {
+        let mut results = ResultFolder::open(path, "run", &[]).unwrap();
+        let unfinished = results.unfinished();
+        let writer = std::thread::spawn(move || {
+            for number in 0.. {
+                if let Err(fault) = results.add(&format!("vtk/{number}.vtu"), &[0; 1 << 16]) {
+                    return fault.to_string();
+                }
+            }
+            unreachable!()
+        });
+        while !unfinished.partial.join(format!("vtk/{file}.vtu")).exists() {
+            std::thread::yield_now();
+        }
+        assert_eq!(unfinished.break_off().left, Left::Nothing);
+        assert!(writer.join().unwrap().contains("broken off"));
+        assert!(!path.exists(), "{:?}", names(path));
+    }
+}
+
+#[test]
+fn results_that_are_in_place_stay_when_their_run_is_broken_off() {
+    let folder = TempDir::new().unwrap();
+    let mut results = ResultFolder::open(folder.path(), "run", &[]).unwrap();
+    results.add("a.csv", b"1").unwrap();
+    let unfinished = results.unfinished();
+    results.finish().unwrap();
+    assert_eq!(unfinished.break_off().left, Left::Results);
+    assert_eq!(names(folder.path()), [MANIFEST, "a.csv"]);
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::manifest::MANIFEST;
+use crate::error::Error;
 
 /// Where a partial folder notes which parts of the work are done.
 pub const PARTS: &str = ".parts";
@@ -16,7 +17,37 @@ pub struct Unfinished {
     pub folder: PathBuf,
     /// The folder where the files are before they are in place.
     pub partial: PathBuf,
-    settled: Mutex<bool>,
+    stage: Mutex<Stage>,
+}
+
+/// How far a set of results is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stage {
+    /// Files are written aside.
+    Growing,
+    /// The files are in place, or the next run moves them there.
+    InPlace,
+    /// Nothing more is written.
+    BrokenOff,
+}
+
+/// What is left of a run that was broken off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Left {
+    /// Nothing.
+    Nothing,
+    /// Parts from which a later start goes on.
+    Parts,
+    /// All of its results.
+    Results,
+}
+
+/// A run that was broken off: nobody writes into its folder while this is held, nor later.
+#[derive(Debug)]
+pub struct BrokenOff<'a> {
+    /// What is left of it.
+    pub left: Left,
+    _writers_wait: MutexGuard<'a, Stage>,
 }
 
 impl Unfinished {
@@ -25,22 +56,36 @@ impl Unfinished {
         Self {
             folder,
             partial,
-            settled: Mutex::new(false),
+            stage: Mutex::new(Stage::Growing),
         }
     }
 
-    /// Waits for a set that is being moved into place; true once it is there, or was taken away.
-    pub(super) fn settled(&self) -> MutexGuard<'_, bool> {
-        self.settled.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Lets somebody write into it, and nobody break it off meanwhile.
+    ///
+    /// # Errors
+    /// [`Error::Write`] when it was broken off.
+    pub(super) fn growing(&self) -> Result<MutexGuard<'_, Stage>, Error> {
+        let stage = self.stage();
+        match *stage {
+            Stage::BrokenOff => Err(Error::write(&self.folder, "the run was broken off")),
+            _ => Ok(stage),
+        }
+    }
+
+    fn stage(&self) -> MutexGuard<'_, Stage> {
+        self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes it away, and a folder into which nothing came to be written.
     pub fn discard(&self) {
-        let mut settled = self.settled();
-        if !*settled {
+        self.take_away(&mut self.stage());
+    }
+
+    fn take_away(&self, stage: &mut Stage) {
+        if *stage == Stage::Growing {
             let _ = fs::remove_dir_all(&self.partial);
+            *stage = Stage::BrokenOff;
         }
-        *settled = true;
         let manifest = self.folder.join(MANIFEST);
         let empty = manifest.metadata().is_ok_and(|file| file.len() == 0);
         if empty {
@@ -50,12 +95,22 @@ impl Unfinished {
         let _ = fs::remove_dir(&self.folder);
     }
 
-    /// Takes it away, unless a later start can go on from it; says whether one can.
-    pub fn break_off(&self) -> bool {
-        let resumable = !*self.settled() && self.partial.join(PARTS).is_dir();
-        if !resumable {
-            self.discard();
+    /// Takes it away, unless it is in place or a later start can go on from it.
+    pub fn break_off(&self) -> BrokenOff<'_> {
+        let mut stage = self.stage();
+        let left = match *stage {
+            Stage::InPlace => Left::Results,
+            _ if self.partial.join(PARTS).is_dir() => Left::Parts,
+            _ => Left::Nothing,
+        };
+        match left {
+            Left::Results => {}
+            Left::Parts => *stage = Stage::BrokenOff,
+            Left::Nothing => self.take_away(&mut stage),
         }
-        resumable
+        BrokenOff {
+            left,
+            _writers_wait: stage,
+        }
     }
 }
