@@ -27,6 +27,7 @@ mod alpha_shape;
 mod fault;
 mod lattice;
 mod polygon;
+mod sides;
 
 pub use fault::OutlineFault;
 use polygon::Polygon;
@@ -256,23 +257,20 @@ impl Outline {
     }
 
     fn name_sides(&self, mesh: &mut Mesh) {
-        let mut sides: Vec<(String, [[f64; 2]; 2])> = Vec::new();
-        sides.extend(
-            polygon::sides(&self.outer)
-                .into_iter()
-                .map(|(side, edge)| (side.to_owned(), edge)),
-        );
+        let of_side = |(side, edge): (Option<&str>, _)| (side.map(str::to_owned), edge);
+        let mut sides: Vec<(Option<String>, [[f64; 2]; 2])> =
+            sides::sides(&self.outer).into_iter().map(of_side).collect();
         for (hole, number) in self.holes.iter().zip(1..) {
             let edges = Polygon(hole).edges();
-            sides.extend(edges.map(|edge| (format!("hole-{number}"), edge)));
+            sides.extend(edges.map(|edge| (Some(format!("hole-{number}")), edge)));
         }
         let mut groups: BTreeMap<&str, Vec<Vec<usize>>> = BTreeMap::new();
         for edge in mesh.boundary() {
             let [a, b] = [mesh.nodes[edge[0]], mesh.nodes[edge[1]]];
             let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
-            let far = |(_, edge): &&(String, _)| polygon::distance(*edge, middle);
+            let far = |(_, edge): &&(Option<String>, _)| polygon::distance(*edge, middle);
             let nearest = sides.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-            if let Some((side, _)) = nearest {
+            if let Some((Some(side), _)) = nearest {
                 groups.entry(side).or_default().push(edge.clone());
             }
         }

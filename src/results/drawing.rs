@@ -55,17 +55,20 @@ impl From<FieldFigure> for Drawing {
 /// A mesh with its named groups; curved edges are drawn through their middles.
 pub fn mesh_outlines(title: &str, mesh: &Mesh) -> Drawing {
     let cells = 0..mesh.cell_count();
-    let groups = mesh.groups().iter().map(|(name, group)| NamedLines {
+    let named = mesh.groups().iter().map(|(name, group)| NamedLines {
         name: name.clone(),
         lines: match group.edges.is_empty() {
             false => edge_lines(&group.edges, &mesh.nodes),
             true => points(group, mesh),
         },
     });
+    let mut groups: Vec<NamedLines> = named.collect();
+    // The later ones are drawn over the earlier ones: a side is to be seen on the whole boundary.
+    groups.sort_by_key(|group| std::cmp::Reverse(group.lines.len()));
     Drawing::Mesh(MeshFigure {
         title: title.to_owned(),
         cells: cells.map(|cell| cell_outline(mesh, cell)).collect(),
-        groups: groups.collect(),
+        groups,
     })
 }
 

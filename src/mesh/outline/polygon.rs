@@ -2,9 +2,6 @@
 
 use crate::mesh::geometry::{distance as length, polygon_area};
 
-/// A turn of more than this is a corner: 40°.
-const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
-
 /// A closed line of straight edges.
 #[derive(Clone, Copy)]
 pub struct Polygon<'a>(pub &'a [[f64; 2]]);
@@ -178,44 +175,4 @@ pub fn crossing(lines: &[Polygon]) -> Option<[f64; 2]> {
         }
     }
     None
-}
-
-/// The edges of an outer line, each with the side that it belongs to: from corner to corner by the direction that the
-/// edges between them face together.
-pub fn sides(line: &[[f64; 2]]) -> Vec<(&'static str, [[f64; 2]; 2])> {
-    let edges: Vec<[[f64; 2]; 2]> = Polygon(line).edges().collect();
-    let direction = |[a, b]: &[[f64; 2]; 2]| (b[1] - a[1]).atan2(b[0] - a[0]);
-    let count = edges.len();
-    let turns = |i: usize| {
-        let turn = direction(&edges[i]) - direction(&edges[(i + count - 1) % count]);
-        turn.sin().atan2(turn.cos()).abs() > CORNER
-    };
-    let first = (0..count).find(|i| turns(*i)).unwrap_or_default();
-    let mut chains: Vec<Vec<[[f64; 2]; 2]>> = Vec::new();
-    for i in (0..count).map(|i| (first + i) % count) {
-        if chains.is_empty() || turns(i) {
-            chains.push(Vec::new());
-        }
-        chains.last_mut().expect("a chain").push(edges[i]);
-    }
-    // A round line without corners faces all sides: each of its edges for itself.
-    if chains.len() < 2 {
-        chains = edges.iter().map(|edge| vec![*edge]).collect();
-    }
-    let named = chains.into_iter().flat_map(|chain| {
-        let (from, to) = (chain[0][0], chain[chain.len() - 1][1]);
-        let normal = [to[1] - from[1], from[0] - to[0]];
-        let side = match (
-            normal[0].abs() > normal[1].abs(),
-            normal[0] > 0.0,
-            normal[1] > 0.0,
-        ) {
-            (true, false, _) => "left",
-            (true, true, _) => "right",
-            (false, _, false) => "bottom",
-            (false, _, true) => "top",
-        };
-        chain.into_iter().map(move |edge| (side, edge))
-    });
-    named.collect()
 }

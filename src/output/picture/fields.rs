@@ -7,7 +7,7 @@ use super::canvas::{Area, render};
 use super::colours::Range;
 use super::design::DrawResult;
 use super::layout::{AXIS_HEIGHT, Heading, LABEL_HEIGHT, LEFT, Layout, Pen};
-use super::look::{Look, short};
+use super::look::{Look, short, text_width};
 use super::numbers::{Numbers, ticks};
 use super::paint::{Painter, Thin};
 use crate::results::{FieldFigure, Panel, PictureFormat, Scale, Values};
@@ -40,6 +40,8 @@ const CONTOUR: Thin = Thin {
 /// How far the arrow at an end of the colour bar reaches.
 const ARROW: f64 = 14.0;
 
+const AT_REST: &str = "thin lines: at rest";
+
 /// Fields on so many triangles at most have contour lines.
 const MOST_CONTOURED: usize = 400_000;
 
@@ -68,7 +70,9 @@ impl FieldFigure {
             let rest = surface.rest.iter().flatten();
             surface.points.iter().chain(rest).copied()
         });
-        Layout::of(look, &self.heading(look), places)
+        let words = self.panels.iter().map(|panel| text_width(&panel.label, 14));
+        let words = words.fold(0.0, f64::max) + text_width(AT_REST, 12);
+        Layout::of(look, &self.heading(look), words, places)
     }
 
     pub(super) fn range(&self) -> Range {
@@ -79,7 +83,7 @@ impl FieldFigure {
     pub(super) fn draw(&self, area: &Area<'_>, layout: &Layout, range: &Range) -> DrawResult<()> {
         let look = layout.look;
         let pen = Pen { area, look };
-        self.heading(look).draw(&pen)?;
+        self.heading(look).draw(&pen, layout)?;
         let room = layout.bar()[0] - LEFT - 4.0;
         for (index, panel) in self.panels.iter().enumerate() {
             let place = [LEFT, layout.panel_top(index) + LABEL_HEIGHT / 2.0];
@@ -90,7 +94,7 @@ impl FieldFigure {
             pen.write(label, place, look.text(14), HPos::Left)?;
             if index == 0 && !panel.surface.rest.is_empty() && !look.is_narrow() {
                 let label = [layout.right(), place[1]];
-                pen.write("thin lines: at rest", label, look.text(12), HPos::Right)?;
+                pen.write(AT_REST, label, look.text(12), HPos::Right)?;
             }
             layout.draw_width_axis(&pen, index)?;
         }

@@ -5,7 +5,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::canvas::Area;
 use super::design::{DrawResult, FINE};
-use super::look::{Look, lines};
+use super::look::{Look, lines, text_width};
 use super::numbers::{Numbers, round_positions};
 use crate::mesh::geometry::bounding_box;
 
@@ -56,7 +56,18 @@ impl Heading {
         TITLE_HEIGHT + LINE_HEIGHT * (self.lines.len() - 1 + below) as f64
     }
 
-    pub fn draw(&self, pen: &Pen) -> DrawResult<()> {
+    /// The least width of a picture in which its words have room.
+    fn least_width(&self) -> f64 {
+        const APART: f64 = 24.0;
+        let title = self.lines.iter().map(|line| text_width(line, self.size));
+        let beside = match self.is_beside && !self.quantity.is_empty() {
+            true => APART + text_width(&self.quantity, 13),
+            false => 0.0,
+        };
+        LEFT + title.fold(0.0, f64::max) + beside + EDGE
+    }
+
+    pub fn draw(&self, pen: &Pen, layout: &Layout) -> DrawResult<()> {
         let mut y = 24.0;
         for line in &self.lines {
             pen.write(line, [LEFT, y], pen.look.bold(self.size), HPos::Left)?;
@@ -65,7 +76,7 @@ impl Heading {
         if self.is_beside {
             y -= LINE_HEIGHT;
         }
-        let right = f64::from(pen.look.points(WIDTH)) - EDGE;
+        let right = layout.width() - EDGE;
         pen.write(&self.quantity, [right, y], pen.look.text(13), HPos::Right)
     }
 }
@@ -83,25 +94,44 @@ pub(super) struct Layout {
     low: [f64; 2],
     high: [f64; 2],
     points_per_mm: f64,
+    /// What panels and the words above them take along x.
+    panels: f64,
+    width: f64,
 }
 
 impl Layout {
-    /// The layout that shows all places below a heading.
-    pub fn of(look: Look, heading: &Heading, places: impl Iterator<Item = [f64; 2]>) -> Self {
+    /// The layout that shows all places below a heading, with so much room at least for the words above a panel. A picture
+    /// for a screen is no wider than it needs.
+    pub fn of(
+        look: Look,
+        heading: &Heading,
+        words: f64,
+        places: impl Iterator<Item = [f64; 2]>,
+    ) -> Self {
         let [low, high] = bounding_box(places);
-        let width = f64::from(look.points(WIDTH)) - LEFT - beside(look);
+        let whole = f64::from(look.points(WIDTH));
+        let most = whole - LEFT - beside(look);
+        let points_per_mm = (most / (high[0] - low[0])).min(HIGHEST_PLATE / (high[1] - low[1]));
+        let panels = (points_per_mm * (high[0] - low[0])).max(words.min(most));
+        let least = (LEFT + panels + beside(look)).max(heading.least_width());
         Self {
             look,
             top: heading.height(),
             low,
             high,
-            points_per_mm: (width / (high[0] - low[0])).min(HIGHEST_PLATE / (high[1] - low[1])),
+            points_per_mm,
+            panels,
+            width: if look.is_printed() {
+                whole
+            } else {
+                least.min(whole)
+            },
         }
     }
 
     /// The whole picture's width.
     pub fn width(&self) -> f64 {
-        f64::from(self.look.points(WIDTH))
+        self.width
     }
 
     /// Left and right of the colour bar.
@@ -111,7 +141,7 @@ impl Layout {
         } else {
             [38.0, 18.0]
         };
-        let left = self.width() - beside(self.look) + gap;
+        let left = self.right() + gap;
         [left, left + width]
     }
 
@@ -123,9 +153,9 @@ impl Layout {
         self.top + (LABEL_HEIGHT + self.size(1)) * index as f64
     }
 
-    /// The right end of all panels.
+    /// The right end of all panels and of the words above them.
     pub fn right(&self) -> f64 {
-        LEFT + self.size(0)
+        LEFT + self.panels
     }
 
     /// A place on the plate of a panel.

@@ -235,6 +235,11 @@ impl Look {
 /// Most points that a letter takes, for each point of its size.
 const LETTER: f64 = 0.62;
 
+/// The width that words take at most, in points.
+pub(super) fn text_width(words: &str, size: u32) -> f64 {
+    LETTER * f64::from(size) * words.chars().count() as f64
+}
+
 /// Words in lines of some width in points; a word that is too long has a line of its own.
 pub(super) fn lines(words: &str, size: u32, width: f64) -> Vec<String> {
     let most = (width / (LETTER * f64::from(size))) as usize;

@@ -22,13 +22,13 @@ impl MeshFigure {
     /// The figure as a file, in true proportions.
     pub(super) fn drawn(&self, look: Look, format: PictureFormat) -> DrawResult<Vec<u8>> {
         let heading = Heading::new(look, &self.title, "");
-        let layout = Layout::of(look, &heading, self.cells.iter().flatten().copied());
+        let layout = Layout::of(look, &heading, 0.0, self.cells.iter().flatten().copied());
         let bottom = layout.panel_top(1) + AXIS_HEIGHT;
         let (names, rows) = legend(&self.groups, layout.width());
         let paint = |painter: &mut Painter| self.paint(painter, &layout);
         let draw = |area: &Area<'_>| {
             let pen = Pen { area, look };
-            heading.draw(&pen)?;
+            heading.draw(&pen, &layout)?;
             layout.draw_width_axis(&pen, 0)?;
             layout.draw_length_axis(&pen, 0)?;
             for ((group, [x, row]), index) in self.groups.iter().zip(&names).zip(0..) {

@@ -84,14 +84,16 @@ impl EdgePlace {
                     "the specimen's edge is taken to lie {half:.4} mm outside of the outermost markers, half a subset: {words}"
                 ),
                 format!(
-                    "subsets lie inside of the specimen, and less than a step was left: intervals of forces hold an edge up to {step:.4} mm farther out; \
-                     say where it is with --edge-gap LENGTH, --outline or --mesh"
+                    "subsets lie inside of the specimen, and less than a step was left: between free edges, intervals of forces hold an edge up to \
+                     {step:.4} mm farther out, else they are forces through the outline; say where the edge is with --edge-gap LENGTH, \
+                     --outline or --mesh"
                 ),
             ),
             Self::Unknown(_) => (
                 "the specimen's edge is not known: the outline is that of the markers, which usually end inside of it".to_owned(),
-                "forces grow with the width: their intervals hold an edge up to a spacing farther out; say where it is with \
-                 --edge-gap LENGTH (\"0 mm\" where markers lie on it), --outline or --mesh"
+                "forces grow with the width: between free edges their intervals hold an edge up to a spacing farther out, else they are \
+                 forces through the outline; say where the edge is with --edge-gap LENGTH (\"0 mm\" where markers lie on it), --outline \
+                 or --mesh"
                     .to_owned(),
             ),
         };

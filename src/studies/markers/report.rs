@@ -196,10 +196,12 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         forces(field, estimates),
     ]);
     blocks.extend(field.unknown_gap.map(|gap| {
-        Block::paragraph(format!(
-            "The specimen's edge is not known but for the markers: intervals of forces and moduli hold that it may lie up to {gap:.4} mm \
-             farther out than the mesh."
-        ))
+        let free = estimates.iter().any(|estimate| estimate.growth > 0.0);
+        let then = match free {
+            true => format!("intervals of forces and moduli hold that it may lie up to {gap:.4} mm farther out than the mesh"),
+            false => "no edge is free: forces and their intervals are those through the outline of the mesh".to_owned(),
+        };
+        Block::paragraph(format!("The specimen's edge is not known but for the markers: {then}."))
     }));
     if field.regressed.is_some() {
         blocks.push(Block::heading("Parameters of the law"));

@@ -1,0 +1,275 @@
+//! Which of its sides the edges of a specimen's outline belong to.
+//!
+//! Sides are found on the outline's convex hull: they go from corner to corner and are named by where they face. A notch or a
+//! waist, no deeper than it is wide, belongs to the side that it lies in, however the specimen is turned. Deeper ones, such as a cut or
+//! the inside of a U, belong to none: they are no part of what is gripped or pulled beside them. Where the hull bridges the angle
+//! between two sides, as that of an L, its edges are named by where they face themselves.
+
+use super::polygon::distance;
+use crate::mesh::geometry::{distance as length, polygon_area};
+
+/// A turn of more than this is a corner: 40°.
+const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
+
+/// Share of a hull's edge within which points of the line lie on it.
+const NEAR: f64 = 0.02;
+
+type Edge = [[f64; 2]; 2];
+
+/// An edge of the hull with the points of the line from its first to its last one.
+struct Span {
+    edge: Edge,
+    points: Vec<[f64; 2]>,
+}
+
+/// The edges of an outer line, the specimen to its left, each with the side that it belongs to, if any.
+pub fn sides(line: &[[f64; 2]]) -> Vec<(Option<&'static str>, Edge)> {
+    let spans = spans(line);
+    let edges: Vec<Edge> = spans.iter().map(|span| span.edge).collect();
+    let chains = chains(&edges, true);
+    let mut named = Vec::new();
+    for chain in chains {
+        let side = facing(&edges, &chain);
+        for (place, number) in chain.iter().enumerate() {
+            let amid = place > 0 && place + 1 < chain.len();
+            named.extend(spans[*number].named(side, amid));
+        }
+    }
+    named
+}
+
+impl Span {
+    /// Its edges with their sides, on a side of the hull, amid others of the same side or not.
+    fn named(&self, side: &'static str, amid: bool) -> Vec<(Option<&'static str>, Edge)> {
+        let near = NEAR * length(self.edge[0], self.edge[1]);
+        let off = |place: usize| distance(self.edge, self.points[place]);
+        let last = self.points.len() - 1;
+        let on: Vec<usize> = (0..=last)
+            .filter(|place| *place == 0 || *place == last || off(*place) <= near)
+            .collect();
+        let lies_on_the_hull = on.windows(2).any(|pair| pair[1] == pair[0] + 1);
+        let pieces = self.points.windows(2).map(|pair| [pair[0], pair[1]]);
+        let pieces: Vec<Edge> = pieces.collect();
+        if !lies_on_the_hull && !amid {
+            let chains = chains(&pieces, false);
+            let each = chains.iter().flat_map(|chain| {
+                let own = facing(&pieces, chain);
+                let edges = chain.iter().map(|number| pieces[*number]);
+                edges.map(move |edge| (Some(own), edge))
+            });
+            return each.collect();
+        }
+        let pockets = on.windows(2).flat_map(|pair| {
+            let (from, to) = (pair[0], pair[1]);
+            let depth = (from..=to).map(off).fold(0.0, f64::max);
+            let is_shallow = depth <= length(self.points[from], self.points[to]);
+            let own = is_shallow.then_some(side);
+            pieces[from..to].iter().map(move |edge| (own, *edge))
+        });
+        pockets.collect()
+    }
+}
+
+/// The edges of a line's convex hull in order, with what the line does between their ends.
+fn spans(line: &[[f64; 2]]) -> Vec<Span> {
+    let corners = hull(line);
+    let count = line.len();
+    let next = corners.iter().cycle().skip(1);
+    let between = corners.iter().zip(next).map(|(from, to)| {
+        let steps = (to + count - from - 1) % count + 1;
+        let points = (0..=steps).map(|step| line[(from + step) % count]);
+        Span {
+            edge: [line[*from], line[*to]],
+            points: points.collect(),
+        }
+    });
+    between.collect()
+}
+
+/// The numbers of the points of a line that are corners of its convex hull, in the line's order (Andrew's monotone chain).
+fn hull(line: &[[f64; 2]]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..line.len()).collect();
+    order.sort_by(|a, b| {
+        let [p, q] = [line[*a], line[*b]];
+        p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+    });
+    let half = |order: &mut dyn Iterator<Item = usize>| {
+        let mut half: Vec<usize> = Vec::new();
+        for next in order {
+            while let [.., before, last] = half[..]
+                && polygon_area(&[line[before], line[last], line[next]]) <= 0.0
+            {
+                half.pop();
+            }
+            half.push(next);
+        }
+        half.pop();
+        half
+    };
+    let mut corners = half(&mut order.iter().copied());
+    corners.extend(half(&mut order.iter().rev().copied()));
+    corners.sort_unstable();
+    corners
+}
+
+/// Numbers of edges that follow each other from corner to corner; of a closed line the first one may begin before a corner. A
+/// round line faces all sides: each of its edges is for itself.
+fn chains(edges: &[Edge], closed: bool) -> Vec<Vec<usize>> {
+    let direction = |[a, b]: &Edge| (b[1] - a[1]).atan2(b[0] - a[0]);
+    let count = edges.len();
+    let turns = |i: usize| {
+        let turn = direction(&edges[i]) - direction(&edges[(i + count - 1) % count]);
+        turn.sin().atan2(turn.cos()).abs() > CORNER
+    };
+    let first = match closed {
+        true => (0..count).find(|i| turns(*i)).unwrap_or_default(),
+        false => 0,
+    };
+    let mut chains: Vec<Vec<usize>> = Vec::new();
+    for i in (0..count).map(|i| (first + i) % count) {
+        match chains.last_mut() {
+            Some(chain) if !turns(i) => chain.push(i),
+            _ => chains.push(vec![i]),
+        }
+    }
+    match closed && chains.len() < 2 {
+        true => (0..count).map(|i| vec![i]).collect(),
+        false => chains,
+    }
+}
+
+/// Where edges that follow each other face together.
+fn facing(edges: &[Edge], chain: &[usize]) -> &'static str {
+    let (from, to) = (edges[chain[0]][0], edges[chain[chain.len() - 1]][1]);
+    let normal = [to[1] - from[1], from[0] - to[0]];
+    match (
+        normal[0].abs() > normal[1].abs(),
+        normal[0] > 0.0,
+        normal[1] > 0.0,
+    ) {
+        (true, false, _) => "left",
+        (true, true, _) => "right",
+        (false, _, false) => "bottom",
+        (false, _, true) => "top",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::outline::polygon::Polygon;
+
+    /// How long the edges of a side are together.
+    fn total(line: &[[f64; 2]], side: Option<&str>) -> f64 {
+        let of_side = sides(line).into_iter().filter(|(own, _)| *own == side);
+        of_side.map(|(_, [a, b])| length(a, b)).sum()
+    }
+
+    fn perimeter(line: &[[f64; 2]]) -> f64 {
+        Polygon(line).edges().map(|[a, b]| length(a, b)).sum()
+    }
+
+    fn turned(line: &[[f64; 2]], degrees: f64) -> Vec<[f64; 2]> {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let turn = |[x, y]: &[f64; 2]| [cosine * x - sine * y + 1e3, sine * x + cosine * y];
+        line.iter().map(turn).collect()
+    }
+
+    const NAMES: [&str; 4] = ["bottom", "right", "top", "left"];
+
+    #[test]
+    fn notches_and_waists_belong_to_the_side_that_they_lie_in_however_the_specimen_is_turned() {
+        let smooth = (0..=20).map(|i| {
+            let x = f64::from(i) / 20.0;
+            [
+                40.0 - 20.0 * x,
+                20.0 - 3.0 * (std::f64::consts::PI * x).sin(),
+            ]
+        });
+        let mut line = vec![
+            [0.0, 0.0],
+            [25.0, 0.0],
+            [25.0, 4.0],
+            [35.0, 4.0],
+            [35.0, 0.0],
+        ];
+        line.extend([[60.0, 0.0], [60.0, 20.0]]);
+        line.extend(smooth);
+        line.push([0.0, 20.0]);
+        let lengths: Vec<f64> = NAMES.iter().map(|side| total(&line, Some(side))).collect();
+        assert!((lengths[0] - 68.0).abs() < 1e-9, "{lengths:?}");
+        assert!((lengths[1] - 20.0).abs() < 1e-9, "{lengths:?}");
+        assert!(lengths[2] > 60.0);
+        for degrees in [-35.0, -10.0, 0.0, 7.0, 35.0, 80.0, 130.0, 180.0, 260.0] {
+            let quarter = (degrees / 90.0_f64).round().rem_euclid(4.0) as usize;
+            for begin in [0, 3, 9] {
+                let mut line = turned(&line, degrees);
+                line.rotate_left(begin);
+                let now: Vec<f64> = (0..4)
+                    .map(|side| total(&line, Some(NAMES[(side + quarter) % 4])))
+                    .collect();
+                for (one, other) in lengths.iter().zip(&now) {
+                    assert!((one - other).abs() < 1e-9, "{degrees}°: {now:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_deeper_than_wide_belongs_to_no_side() {
+        let cut = [
+            [0.0, 0.0],
+            [29.0, 0.0],
+            [30.0, 8.0],
+            [31.0, 0.0],
+            [60.0, 0.0],
+            [60.0, 20.0],
+            [0.0, 20.0],
+        ];
+        assert!((total(&cut, Some("bottom")) - 58.0).abs() < 1e-9);
+        assert!((total(&cut, Some("left")) - 20.0).abs() < 1e-9);
+        assert!((total(&cut, None) - 2.0 * f64::hypot(1.0, 8.0)).abs() < 1e-9);
+        let u = [
+            [0.0, 0.0],
+            [30.0, 0.0],
+            [30.0, 40.0],
+            [20.0, 40.0],
+            [20.0, 10.0],
+            [10.0, 10.0],
+            [10.0, 40.0],
+            [0.0, 40.0],
+        ];
+        assert!((total(&u, Some("top")) - 20.0).abs() < 1e-9);
+        assert!((total(&u, None) - 70.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_inner_angle_is_named_by_where_its_edges_face() {
+        let l = [
+            [0.0, 0.0],
+            [40.0, 0.0],
+            [40.0, 10.0],
+            [10.0, 10.0],
+            [10.0, 30.0],
+            [0.0, 30.0],
+        ];
+        let lengths = NAMES.map(|side| total(&l, Some(side)));
+        assert_eq!(lengths, [40.0, 30.0, 40.0, 30.0]);
+    }
+
+    #[test]
+    fn every_edge_is_named_once() {
+        let ragged: Vec<[f64; 2]> = (0..90)
+            .map(|i| {
+                let angle = f64::from(i) * std::f64::consts::TAU / 90.0;
+                let radius = 20.0 + f64::from(i * 7 % 5);
+                [radius * angle.cos(), 2.0 * radius * angle.sin()]
+            })
+            .collect();
+        for line in [&ragged[..], &ragged[..3], &ragged[10..60]] {
+            let all: f64 = sides(line).iter().map(|(_, [a, b])| length(*a, *b)).sum();
+            assert!((all / perimeter(line) - 1.0).abs() < 1e-12);
+            assert_eq!(sides(line).len(), line.len());
+        }
+    }
+}
