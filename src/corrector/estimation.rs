@@ -31,6 +31,7 @@ mod bodies;
 mod body_force;
 mod edge_displacements;
 mod edge_motion;
+mod edge_place;
 mod equations;
 mod field_estimate;
 mod forces;

@@ -18,7 +18,7 @@ th { border-bottom: 2px solid #999; font-weight: 600; vertical-align: bottom; }
 td { white-space: nowrap; } td.long { white-space: normal; } td.number { text-align: right; }
 td.pass { color: #176b2c; font-weight: 600; } td.fail, p.fail { color: #b00020; font-weight: 600; }
 figure { margin: 1.5rem 0; } img { max-width: 100%; border: 1px solid #eee; } figcaption { color: #555; font-size: .9rem; }
-pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; }
+code { font-size: .92em; } pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; }
 ";
 
 /// A self-contained page.
@@ -91,7 +91,7 @@ fn render(block: &Block, pictures: &[&Drawn]) -> Markup {
         Block::Heading(1, text) => html! { h1 { (text) } },
         Block::Heading(2, text) => html! { h2 { (text) } },
         Block::Heading(_, text) => html! { h3 { (text) } },
-        Block::Paragraph(text) => html! { p { (text) } },
+        Block::Paragraph(text) => html! { p { (inline(text)) } },
         Block::Code(_, code) => html! { pre { (code) } },
         Block::Figure(index, caption) => html! {
             figure {
@@ -101,7 +101,7 @@ fn render(block: &Block, pictures: &[&Drawn]) -> Markup {
                     }
                     Err(fault) => p.fail { (fault) },
                 }
-                figcaption { (caption) }
+                figcaption { (inline(caption)) }
             }
         },
         Block::Table(head, rows) => html! {
@@ -110,10 +110,24 @@ fn render(block: &Block, pictures: &[&Drawn]) -> Markup {
                     @if head.iter().any(|cell| !cell.is_empty()) {
                         thead { tr { @for cell in head { th { (cell) } } } }
                     }
-                    tbody { @for row in rows { tr { @for cell in row { td class=(class(cell)) { (cell) } } } } }
+                    tbody { @for row in rows { tr { @for cell in row { td class=(class(cell)) { (inline(cell)) } } } } }
                 }
             }
         },
+    }
+}
+
+/// Words with what stands between backticks as code.
+fn inline(words: &str) -> Markup {
+    let parts: Vec<&str> = words.split('`').collect();
+    // A backtick without another one is itself.
+    if parts.len() % 2 == 0 {
+        return html! { (words) };
+    }
+    html! {
+        @for (place, part) in parts.iter().enumerate() {
+            @if place % 2 == 1 { code { (part) } } @else { (part) }
+        }
     }
 }
 

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::material::scalar_function::ScalarFunction;
+
 /// Colours that most people tell apart (Okabe and Ito).
 pub const PALETTE: [[u8; 3]; 6] = [
     [0, 114, 178],
@@ -72,6 +74,22 @@ pub enum Stroke {
     Points,
     /// A pale area, its points the outline.
     Filled,
+}
+
+/// Computed points and, between them, cubics that keep their shape (those of [`ScalarFunction::table`]), for a line that is a curve.
+pub fn curve_through(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    const PARTS: i32 = 16;
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let Ok(cubics) = ScalarFunction::table(points.clone()) else {
+        return points;
+    };
+    let between = points.windows(2).flat_map(|pair| {
+        let ([from, _], [to, _]) = (pair[0], pair[1]);
+        let place = move |part| from + (to - from) * f64::from(part) / f64::from(PARTS);
+        let amid = (1..PARTS).map(place).map(|x| [x, cubics.at(x)[0]]);
+        [pair[0]].into_iter().chain(amid)
+    });
+    between.chain(points.last().copied()).collect()
 }
 
 /// One line of a chart.
@@ -153,5 +171,27 @@ impl LineChart {
             lines,
             band: None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_goes_through_its_points_and_nowhere_beyond_them() {
+        let points = vec![[0.0, 0.0], [1.0, 1.0], [1.5, 5.0], [4.0, 5.5]];
+        let curve = curve_through(points.clone());
+        assert!(points.iter().all(|point| curve.contains(point)));
+        assert!(curve.len() > 40 && curve.windows(2).all(|pair| pair[1][1] >= pair[0][1]));
+        // A path to negative load factors.
+        let mirrored = points.iter().map(|[x, y]| [-x, -y]).collect();
+        let other: Vec<_> = curve_through(mirrored).into_iter().rev().collect();
+        let differences = curve.iter().zip(&other);
+        for ([x, y], [a, b]) in differences {
+            assert!((x + a).abs() < 1e-12 && (y + b).abs() < 1e-12);
+        }
+        assert_eq!(curve_through(vec![[0.0, 0.0]]), [[0.0, 0.0]]);
+        assert_eq!(curve_through(Vec::new()), [[0.0; 2]; 0]);
     }
 }

@@ -99,6 +99,17 @@ impl WhiteRegression {
         Some((left.max(f64::MIN_POSITIVE), effective))
     }
 
+    /// The best δ; `None` where nothing determines it.
+    pub fn best(
+        &self,
+        held: &DMatrix<f64>,
+        slope: &DVector<f64>,
+        variance: f64,
+    ) -> Option<DVector<f64>> {
+        let (_, solution, _) = self.solve(held, slope, variance)?;
+        Some(solution)
+    }
+
     /// ln det M − gᵀM⁻¹g, δ, and tr(M⁻¹AᵀR⁻¹A)/τ².
     fn solve(
         &self,

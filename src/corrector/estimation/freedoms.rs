@@ -31,24 +31,28 @@ impl NearestField<'_> {
         all.push((Freedom::Volume, self.volume_change()));
         let mut columns: Vec<Column> = Vec::new();
         for (freedom, forces) in all {
-            let changes = self
-                .equations
-                .newton
-                .tangent
-                .changes(&forces)
-                .map_err(solve)?;
-            let interpolation = &self.observations().interpolation;
-            let values = changes
-                .iter()
-                .flat_map(|change| interpolation.multiply(change));
-            let design = DMatrix::from_iterator(interpolation.len(), changes.len(), values);
-            columns.push((freedom, design));
+            columns.push((freedom, self.marker_changes(&forces)?));
         }
         if let Some(own) = own {
             let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
             columns.push((Freedom::Mesh, error));
         }
         Ok(columns)
+    }
+
+    /// The displacements of the markers that small residual forces make, a column for each of several.
+    pub(super) fn marker_changes(&mut self, forces: &[Vec<f64>]) -> Result<DMatrix<f64>, Error> {
+        let tangent = &mut self.equations.newton.tangent;
+        let changes = tangent.changes(forces).map_err(solve)?;
+        let interpolation = &self.observations().interpolation;
+        let values = changes
+            .iter()
+            .flat_map(|change| interpolation.multiply(change));
+        Ok(DMatrix::from_iterator(
+            interpolation.len(),
+            changes.len(),
+            values,
+        ))
     }
 
     /// Forces along x and along y with smooth densities.

@@ -4,6 +4,7 @@
 //! every freedom of [`super::freedoms`] and all edges let go: what is left then is noise more surely. Made white by the latter, the
 //! data tell which freedom takes more from the misfit than noise would let it (F test, in one linearised step).
 
+use super::edge_place::MovedEdge;
 use super::equations::Equations;
 use super::field_estimate::{Contradiction, ForceCheck};
 use super::knowledge::EdgeCondition;
@@ -64,6 +65,7 @@ pub fn judge(
     let base = Model::of_search(&rows, found);
     let noise = base.noise(&rows);
     let columns = found.freedoms(own)?;
+    let moved = found.moved_edges(edges)?;
     let found = &*found;
     let released = |goes: &dyn Fn(&str) -> bool| {
         let scored = let_go(task, found, edges, goes)?;
@@ -93,6 +95,7 @@ pub fn judge(
         contradiction = contradicted(together.as_ref(), &each);
         mends.extend(together.filter(|_| each.len() > 1));
         mends.extend(each);
+        mends.extend(moved.into_iter().filter_map(|edge| trials.moved(edge)));
     }
     // What hardly moves the misfit mends nothing.
     let left = base.plain_left(&rows, found);
@@ -132,6 +135,13 @@ impl Trials<'_> {
             left: model.plain_left(self.rows, self.found),
             ..self.reference.test(freedom, self.base, model)
         }
+    }
+
+    /// What an edge that lies elsewhere mends, and how far; `None` where the data do not say.
+    fn moved(&self, (edge, design): MovedEdge) -> Option<Mend> {
+        let outwards = self.reference.factor(self.rows, self.base, &design)?;
+        let model = self.base.with(self.rows, [&design]);
+        Some(self.mend(Freedom::MovedEdge { edge, outwards }, &model))
     }
 }
 

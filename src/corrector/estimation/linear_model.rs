@@ -143,6 +143,17 @@ impl Reference {
         }
     }
 
+    /// The factor of one further column that fits best beside the equations.
+    pub fn factor(&self, rows: &Rows, base: &Model, design: &DMatrix<f64>) -> Option<f64> {
+        let model = base.with(rows, [design]);
+        let last = model.design.ncols().checked_sub(1)?;
+        let white = WhiteRegression::new(&model.design, &model.residual, self.whitening.as_ref());
+        let best = white.best(&model.held, &model.slope, self.variance)?;
+        // Columns are added with a length of their own.
+        let own = rows.scaled(design);
+        Some(best[last] * model.design.column(last).norm() / own.norm())
+    }
+
     /// How much a model takes from the misfit of the equations.
     pub fn test(&self, freedom: Freedom, base: &Model, model: &Model) -> Mend {
         let left = |model: &Model| {

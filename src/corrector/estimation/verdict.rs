@@ -94,6 +94,13 @@ pub enum Freedom {
     Edge(String),
     /// All edges of which something is said do so.
     Edges,
+    /// A free edge, or all of them, lies elsewhere.
+    MovedEdge {
+        /// Its name; `None` where all of them move together.
+        edge: Option<String>,
+        /// How far outside of the mesh's edge, in mm.
+        outwards: f64,
+    },
     /// A smooth force on the sheet, such as friction or weight.
     BodyForce,
     /// Thickness or stiffness that varies smoothly over the sheet.
@@ -116,6 +123,16 @@ impl Freedom {
         match self {
             Self::Edge(name) => format!("`{name}` moved in an unknown way"),
             Self::Edges => "all edges of which something is said moved in an unknown way".into(),
+            Self::MovedEdge { edge, outwards } => {
+                let way = if *outwards > 0.0 { "out" } else { "in" };
+                let distance = roughly(outwards.abs());
+                match edge {
+                    Some(name) => {
+                        format!("the free edge `{name}` about {distance} mm farther {way}")
+                    }
+                    None => format!("all free edges about {distance} mm farther {way}"),
+                }
+            }
             Self::BodyForce => "a smooth force on the sheet (friction, weight, a fixture)".into(),
             Self::Stiffness => "a thickness or stiffness that varies over the sheet".into(),
             Self::Law => "another isotropic law".into(),
@@ -127,6 +144,12 @@ impl Freedom {
             }
         }
     }
+}
+
+/// One digit of a positive number.
+fn roughly(value: f64) -> String {
+    let digits = (-value.max(1e-9).log10().floor()).max(0.0) as usize;
+    format!("{value:.digits$}")
 }
 
 /// What a freedom does, tried in one linearised step.

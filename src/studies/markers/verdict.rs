@@ -8,7 +8,7 @@ use crate::results::Block;
 use crate::statistics::extremes;
 
 /// Freedoms that are told in the terminal.
-const TOLD: usize = 3;
+const TOLD: usize = 5;
 
 /// The answers that frames have, the worst first.
 const ANSWERS: [Answer; 3] = [Answer::NotExplained, Answer::Correlated, Answer::Explained];

@@ -6,8 +6,8 @@ use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::results::{
-    Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, material_chart,
-    sheet_figures,
+    Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, curve_through,
+    material_chart, sheet_figures,
 };
 use crate::solve::State;
 
@@ -27,7 +27,8 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
     all.extend(stress_figures(study, results));
     let caption = "Deviation from the finite elements over stretch.";
     all.push(Figure::new("errors.png", caption, errors(results)));
-    let caption = "Grip force over stretch, and how far it is from the finite elements'.";
+    let caption = "Grip force over stretch, and how far it is from the finite elements'; between the stretches of the study the curves \
+                   are cubics that keep their shape.";
     all.push(Figure::new("force.png", caption, force(results)));
     let caption = "Residual of springs and finite elements, and correction of the corrected field, over iteration at the last \
                    stretch with a solution.";
@@ -186,16 +187,16 @@ fn force(results: &Results) -> Drawing {
         let solutions =
             steps.filter_map(|step| results.models(step)[model].zip(results.measures(step)[model]));
         let points = solutions.map(|(state, measures)| [100.0 * state.factor, measures.force]);
-        Line::new(
-            MODELS[model],
-            [[0.0, 0.0]].into_iter().chain(points),
-            colour,
-            stroke,
-        )
+        let points: Vec<_> = [[0.0, 0.0]].into_iter().chain(points).collect();
+        let points = match stroke {
+            Stroke::Points => points,
+            _ => curve_through(points),
+        };
+        Line::new(MODELS[model], points, colour, stroke)
     };
     let lines = [
         (2, FINITE_ELEMENT, Stroke::Solid),
-        (0, MASS_SPRING, Stroke::Marked),
+        (0, MASS_SPRING, Stroke::Dashed),
         (1, CORRECTED, Stroke::Points),
     ];
     let forces = LineChart::new(

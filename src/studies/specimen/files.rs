@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::{
     Array, Axis, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, PALETTE, Panel,
-    Stroke, mesh_outlines, sheet_figures,
+    Stroke, curve_through, mesh_outlines, sheet_figures,
 };
 use crate::studies::pictures::Shown;
 
@@ -103,7 +103,7 @@ const NO_FORCE: f64 = 1e-6;
 /// The forces of all groups that carry one, over the load factor; `None` where there is none.
 fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     const COLOURS: [[u8; 3]; 3] = [PALETTE[1], PALETTE[0], [30, 30, 30]];
-    const STROKES: [Stroke; 3] = [Stroke::Marked, Stroke::Points, Stroke::Solid];
+    const STROKES: [Stroke; 3] = [Stroke::Dashed, Stroke::Points, Stroke::Solid];
     let named = &models.named();
     let points = |model: usize, group: usize, axis: usize| {
         let steps = specimen.factors.iter().enumerate();
@@ -131,8 +131,12 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let chart = |(group, (axis, _)): (usize, (usize, f64))| {
         let line = |model: usize| {
             let points = points(model, group, axis);
-            (points.len() > 1)
-                .then(|| Line::new(named[model].name, points, COLOURS[model], STROKES[model]))
+            let enough = points.len() > 1;
+            let points = match STROKES[model] {
+                Stroke::Points => points,
+                _ => curve_through(points),
+            };
+            enough.then(|| Line::new(named[model].name, points, COLOURS[model], STROKES[model]))
         };
         let y = format!("force along {} [N]", ["x", "y"][axis]);
         let lines = [2, 0, 1].into_iter().filter_map(line).collect();

@@ -20,6 +20,7 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
         "mean displacement along x [mm]",
         "mean displacement along y [mm]",
     ];
+    let scales = scales(specimen, models);
     let mut rows = Vec::new();
     for (step, factor) in specimen.factors.iter().enumerate() {
         for (index, group) in specimen.groups().iter().enumerate() {
@@ -30,14 +31,19 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
                         (*group).to_owned(),
                         model.name.to_owned(),
                     ];
-                    rows.push(names.into_iter().chain(cells(&groups[index])).collect());
+                    rows.push(
+                        names
+                            .into_iter()
+                            .chain(cells(&groups[index], scales))
+                            .collect(),
+                    );
                 }
             }
         }
     }
     let text = "Forces of the supports on the specimen, with the signs of the axes, and their moments about the middle of \
                 the group's deformed nodes, counter-clockwise; the force that a grip is given counts as one of its \
-                support. Displacements are means over the length of the group's edges.";
+                support; what rounding leaves of nothing is 0. Displacements are means over the length of the group's edges.";
     vec![
         Block::Heading(2, "Forces at the groups".into()),
         Block::Paragraph(text.into()),
@@ -79,11 +85,33 @@ pub fn unbalanced(models: &Models) -> Option<String> {
     ))
 }
 
-fn cells(state: &GroupState) -> Vec<String> {
+/// The largest force at any group, and its moment over the specimen's larger side.
+fn scales(specimen: &Specimen, models: &Models) -> [f64; 2] {
+    let named = models.named();
+    let steps = 0..specimen.factors.len();
+    let all = steps.flat_map(|step| {
+        named
+            .iter()
+            .filter_map(move |own| own.solution.groups(step))
+    });
+    let sizes = all
+        .flatten()
+        .map(|state| state.force[0].hypot(state.force[1]));
+    let force = sizes.fold(0.0, f64::max);
+    let [low, high] = models.on_lattice.springs.mesh.bounding_box();
+    [force, force * (high[0] - low[0]).max(high[1] - low[1])]
+}
+
+fn cells(state: &GroupState, [force, moment]: [f64; 2]) -> Vec<String> {
+    const ROUNDING: f64 = 1e-12;
     let [x, y] = state.force;
     let [u, v] = state.displacement;
-    let all = [x, y, state.moment, u, v];
-    all.map(number).to_vec()
+    let shown = |(value, scale): (f64, f64)| match value.abs() < ROUNDING * scale {
+        true => number(0.0),
+        false => number(value),
+    };
+    let forces = [(x, force), (y, force), (state.moment, moment)].map(shown);
+    forces.into_iter().chain([u, v].map(number)).collect()
 }
 
 /// What happens at all groups in a model at a load factor, for machines; `None` where it has no solution.
