@@ -8,14 +8,14 @@
 //!
 //! A variable is a key of the study with its values, or a parameter of the study's card as `material.KEY`: some values, of which every
 //! combination is run, or a distribution, of which points are drawn. Points are those of Sobol's sequence with Owen's scrambling, or
-//! random ones; a point u in (0, 1)ⁿ is taken to the distributions by their inverse cumulative functions, and to the correlated
+//! random ones, or are given; a point u in (0, 1)ⁿ is taken to the distributions by their inverse cumulative functions, and to the correlated
 //! parameters of a fit by x = x̂ + L z, with the Cholesky factor L of their covariance and normal z.
 //!
 //! # References
 //! I. M. Sobol', USSR Comput. Math. Math. Phys. 7, 86 (1967), doi:10.1016/0041-5553(67)90144-9;
 //! A. B. Owen, in Monte Carlo and Quasi-Monte Carlo Methods, Springer 1995, doi:10.1007/978-1-4612-2552-2_19
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::slice::from_ref;
 
 use rayon::prelude::*;
@@ -25,17 +25,23 @@ use crate::studies::Progress;
 
 mod altered;
 mod figures;
+#[cfg(feature = "pictures")]
+mod folder;
 mod plan;
+mod points;
 mod results;
 mod table;
 mod variable;
 
 pub use altered::BaseStudy;
 pub use figures::Row;
+#[cfg(feature = "pictures")]
+pub use folder::{Shard, Share, SweepFolder, join};
 pub use plan::{FittedParameters, Method, Run, Sampling};
+pub use points::Points;
 pub use results::{Statistics, blocks, figures, json, statistics};
-pub use table::{read, write};
-pub use variable::{Setting, Values, Variable};
+pub use table::{names, read, write};
+pub use variable::{Setting, Values, Variable, headed};
 
 /// A study with what is varied.
 #[derive(Clone, Debug)]
@@ -44,6 +50,8 @@ pub struct Sweep {
     pub study: BaseStudy,
     /// What is varied.
     pub variables: Vec<Variable>,
+    /// Points that another program has chosen, in place of drawn ones.
+    pub points: Option<Points>,
     /// Parameters that are drawn with their correlation.
     pub fitted: Option<FittedParameters>,
     /// How points are drawn.
@@ -55,7 +63,8 @@ impl Sweep {
     pub fn keys(&self) -> Vec<String> {
         let fitted = self.fitted.iter().flat_map(FittedParameters::keys);
         let own = self.variables.iter().map(|variable| variable.key.clone());
-        own.chain(fitted).collect()
+        let points = self.points.iter().flat_map(Points::keys);
+        own.chain(points).chain(fitted).collect()
     }
 
     /// All runs.
@@ -65,7 +74,12 @@ impl Sweep {
     pub fn runs(&self) -> Result<Vec<Run>, Error> {
         let input = |fault: Diagnostic| Error::Input(vec![fault]);
         plan::check_keys(&self.keys()).map_err(input)?;
-        let rows = plan::rows(&self.variables, self.fitted.as_ref(), self.sampling);
+        let rows = plan::rows(
+            &self.variables,
+            self.points.as_ref(),
+            self.fitted.as_ref(),
+            self.sampling,
+        );
         let rows = rows.map_err(input)?.into_iter().enumerate();
         let run = |(index, settings)| Run {
             number: index + 1,
@@ -77,16 +91,29 @@ impl Sweep {
     /// Reads the files that texts among the values name, such as cards, so that they count as read before a run needs them. What
     /// cannot be read is told by its run.
     pub fn read_files(&self) {
+        let read = |key: &String, value: &Setting| {
+            if value.value().is_none() {
+                drop(self.study.with(from_ref(key), from_ref(value)));
+            }
+        };
         for variable in &self.variables {
             if let Values::Listed(values) = &variable.values {
-                for value in values.iter().filter(|value| value.value().is_none()) {
-                    drop(self.study.with(from_ref(&variable.key), from_ref(value)));
-                }
+                values.iter().for_each(|value| read(&variable.key, value));
+            }
+        }
+        if let Some(points) = &self.points {
+            for (place, key) in points.keys().enumerate() {
+                let texts = points.rows().iter().map(|row| &row[place]);
+                let texts = texts.filter(|value| value.value().is_none());
+                let mut known = HashSet::new();
+                let new = texts.filter(|value| known.insert(value.words()));
+                new.for_each(|value| read(&key, value));
             }
         }
     }
 
-    /// Computes runs, several at once, but for those that are done; each is handed to `keep` when it ends.
+    /// Computes runs, several at once, but for those that are done; each is handed to `keep` when it ends. `attend` is called
+    /// between the steps of each, and may unwind.
     ///
     /// # Errors
     /// [`Error::Input`] of a run whose study has faults, with its number; those of `keep`. A model without a solution is no error: it stands in
@@ -96,6 +123,7 @@ impl Sweep {
         runs: &[Run],
         mut done: HashMap<usize, Row>,
         keep: &(dyn Fn(&Row) -> Result<(), Error> + Sync),
+        attend: &(dyn Fn() + Sync),
     ) -> Result<Vec<Row>, Error> {
         let done: Vec<(&Run, Option<Row>)> = runs
             .iter()
@@ -104,7 +132,7 @@ impl Sweep {
         let row = |(run, done): (&Run, Option<Row>)| match done {
             Some(row) => Ok(row),
             None => {
-                let row = self.row(run)?;
+                let row = self.row(run, attend)?;
                 keep(&row)?;
                 Ok(row)
             }
@@ -112,7 +140,8 @@ impl Sweep {
         done.into_par_iter().map(row).collect()
     }
 
-    fn row(&self, run: &Run) -> Result<Row, Error> {
+    fn row(&self, run: &Run, attend: &dyn Fn()) -> Result<Row, Error> {
+        attend();
         let told = |error: Error| match error {
             Error::Input(faults) => {
                 let named = |fault: Diagnostic| Diagnostic {
@@ -124,7 +153,7 @@ impl Sweep {
             other => other,
         };
         let ready = self.study.with(&self.keys(), &run.settings).map_err(told)?;
-        match ready.compute(Progress::silent()) {
+        match ready.compute(Progress::to(&|_| attend())) {
             Ok(results) => Ok(Row::of(run, &results.outcome, results.passed())),
             Err(fault @ Error::Solve { .. }) => Ok(Row::failed(run, fault.to_string())),
             Err(other) => Err(other),

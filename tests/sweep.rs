@@ -165,6 +165,7 @@ fn what_cannot_be_varied_is_told_before_anything_is_computed() {
             "s.toml --vary plate.width=45mm,50mm --fit s.toml",
             "is not JSON",
         ),
+        ("s.toml --points s.toml", "is no table"),
         ("none.toml --vary plate.width=45mm,50mm", "none.toml"),
     ] {
         let done = run(place.path(), &format!("sweep {arguments}"));

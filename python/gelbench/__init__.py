@@ -18,10 +18,12 @@ from ._material import Derivatives, Material, Parameter, laws, materials
 from ._results import Field, Results
 from ._solution import AtPoints, GroupForce, Solution, State
 from ._study import Plate, Specimen, check, run
+from ._sweep import Band, SweepPlan, SweepTable, salib_problem, sweep
 from ._tests import Estimate, Fit, Identification, fit, identify
 
 __all__ = [
     "AtPoints",
+    "Band",
     "Correction",
     "Derivatives",
     "Estimate",
@@ -40,6 +42,8 @@ __all__ = [
     "SolveError",
     "Specimen",
     "State",
+    "SweepPlan",
+    "SweepTable",
     "WriteError",
     "__version__",
     "check",
@@ -50,4 +54,6 @@ __all__ = [
     "laws",
     "materials",
     "run",
+    "salib_problem",
+    "sweep",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from ._material import Material
     from ._solution import Solution, State
+    from ._sweep import Band
 
 __all__ = ["deformed", "forces", "inline", "material_curves"]
 
@@ -102,6 +103,20 @@ def forces(solution: Solution, ax: Axes | None) -> Axes:
     own.grid(alpha=0.3)
     own.legend()
     return own
+
+
+def band_over_steps(bands: Mapping[str, Band], ax: Axes | None) -> Axes:
+    """Medians, and the bands of 5 … 95 % of the runs."""
+    own: Any = axes(ax)
+    for name, band in bands.items():
+        (line,) = own.plot(band.at, band.median, "o-", label=f"{name}, median")
+        own.fill_between(band.at, band.low, band.high, alpha=0.25, color=line.get_color(), label="5 … 95 %")
+    own.set_xlabel("stretch, load factor, or time in s")
+    own.set_ylabel(", ".join(dict.fromkeys(label(name.rpartition(".")[2]) for name in bands)))
+    own.grid(alpha=0.3)
+    own.legend()
+    found: Axes = own
+    return found
 
 
 def material_curves(material: Material, ax: Axes | None, tests: tuple[str, ...], stretch: ArrayLike | None) -> Axes:

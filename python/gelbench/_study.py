@@ -25,6 +25,9 @@ Factors: TypeAlias = "ArrayLike | Sequence[float | str]"
 Condition: TypeAlias = "str | Mapping[str, Any]"
 """How a group is held or loaded: a kind, or its keys, such as ``{"x": "45 mm", "y": 0}``."""
 
+IN_MEMORY = "gelbench-card-in-memory.toml"
+"""The card of a material that has no file, in the text of a study."""
+
 Settings: TypeAlias = "Mapping[str, Mapping[str, Any]]"
 
 UNITS = {
@@ -60,10 +63,33 @@ class _Study:
     """A study that is solved."""
 
     material: Material
+    _sections: dict[str, Any]
+    _mesh: _core.GivenMesh | None = None
 
     def study(self, factors: Factors | None = None) -> str:
-        """The text of the study, which the command runs too."""
+        """The text of the study, which the command runs too.
+
+        Parameters
+        ----------
+        factors : array_like, optional
+            As in `solve`.
+        """
+        return self._text(factors, self._sections)
+
+    def _text(self, factors: Factors | None, sections: dict[str, Any]) -> str:
         raise NotImplementedError
+
+    def _in_memory(self, factors: Factors | None) -> tuple[str, str, dict[str, bytes]]:
+        """Name and text of the study, and the files that the text names and no disk has."""
+        name, own = type(self).__name__.lower(), card(self.material)
+        if self._mesh is not None:
+            raise fault("study", "its mesh is on no disk", "save the mesh, and give a study that names the file")
+        if self.material._reference is not None:
+            return name, self.study(factors), {}
+        if not own.text:
+            raise fault("material", f"{own.name} is no card that a study can name", "take a card, or the material of a fit")
+        sections = {**self._sections, "material": {**self._sections["material"], "card": IN_MEMORY}}
+        return name, self._text(factors, sections), {IN_MEMORY: own.text.encode()}
 
     def _one(self, study: str, model: str, progress: Any, allow_large: bool) -> _core.Solution:
         raise NotImplementedError
@@ -229,16 +255,9 @@ class Plate(_Study):
             settings,
         )
 
-    def study(self, factors: Factors | None = None) -> str:
-        """The text of the study, which the command runs too.
-
-        Parameters
-        ----------
-        factors : array_like, optional
-            As in `solve`.
-        """
+    def _text(self, factors: Factors | None, sections: dict[str, Any]) -> str:
         load = {"stretches": _factors(factors, self.STRETCHES)}
-        return toml({"kind": "plate", **self._sections, "load": {**self._sections.get("load", {}), **load}})
+        return toml({"kind": "plate", **sections, "load": {**sections.get("load", {}), **load}})
 
     def _one(self, study: str, model: str, progress: Any, allow_large: bool) -> _core.Solution:
         return _core.solve_plate(study, card(self.material), model, progress, allow_large)
@@ -422,9 +441,12 @@ class Specimen(_Study):
         factors : array_like, optional
             As in `solve`.
         """
+        return super().study(factors)
+
+    def _text(self, factors: Factors | None, sections: dict[str, Any]) -> str:
         path = {"factors": _factors(factors, self.FACTORS), "measured_group": self._measured}
         conditions = {name: own for name, own in self._conditions.items() if own}
-        return toml({"kind": "specimen", **self._sections, "path": path, **conditions})
+        return toml({"kind": "specimen", **sections, "path": path, **conditions})
 
     def _one(self, study: str, model: str, progress: Any, allow_large: bool) -> _core.Solution:
         return _core.solve_specimen(study, card(self.material), model, self._mesh, progress, allow_large)

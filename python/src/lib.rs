@@ -15,6 +15,7 @@ mod results;
 mod running;
 mod solution;
 mod study;
+mod sweep;
 mod tests_to_laws;
 
 #[pymodule]
@@ -24,6 +25,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<results::Results>()?;
     module.add_class::<solution::Solution>()?;
     module.add_class::<study::GivenMesh>()?;
+    module.add_class::<sweep::Sweep>()?;
+    module.add_class::<sweep::SweepTable>()?;
     module.add_function(wrap_pyfunction!(corrector::corrected, module)?)?;
     module.add_function(wrap_pyfunction!(markers::correct, module)?)?;
     module.add_function(wrap_pyfunction!(material::laws, module)?)?;
@@ -35,6 +38,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::run_specimen, module)?)?;
     module.add_function(wrap_pyfunction!(study::solve_plate, module)?)?;
     module.add_function(wrap_pyfunction!(study::solve_specimen, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::distributions, module)?)?;
+    module.add_function(wrap_pyfunction!(sweep::text_of_file, module)?)?;
     module.add_function(wrap_pyfunction!(tests_to_laws::fit, module)?)?;
     module.add_function(wrap_pyfunction!(tests_to_laws::identify, module)?)?;
     Ok(())

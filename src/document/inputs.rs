@@ -2,10 +2,16 @@
 //!
 //! A command calls [`remember`] once. A program of your own that does not is free to write wherever it wants.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 static READ: Mutex<Option<Vec<PathBuf>>> = Mutex::new(None);
+
+thread_local! {
+    /// What this thread has read within [`noted`].
+    static NOTED: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
+}
 
 fn all() -> MutexGuard<'static, Option<Vec<PathBuf>>> {
     READ.lock().unwrap_or_else(PoisonError::into_inner)
@@ -18,11 +24,23 @@ pub fn remember() {
 
 /// Notes that a file is read.
 pub fn note(path: &Path) {
-    if let (Some(read), Ok(path)) = (all().as_mut(), std::fs::canonicalize(path))
-        && !read.contains(&path)
-    {
-        read.push(path);
-    }
+    let own = |read: &mut Option<Vec<PathBuf>>| {
+        if let (Some(read), Ok(path)) = (read.as_mut(), std::fs::canonicalize(path))
+            && !read.contains(&path)
+        {
+            read.push(path);
+        }
+    };
+    own(&mut all());
+    NOTED.with_borrow_mut(own);
+}
+
+/// Does some work, and tells the files that this thread has read meanwhile, by their whole paths.
+pub fn noted<T>(work: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
+    let before = NOTED.replace(Some(Vec::new()));
+    let found = work();
+    let read = NOTED.replace(before).unwrap_or_default();
+    (found, read)
 }
 
 /// The files that were read, by their whole paths, in the order in which they were first read.

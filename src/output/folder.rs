@@ -24,10 +24,12 @@ use serde::de::DeserializeOwned;
 
 use crate::error::Error;
 
+mod identity;
 mod inputs;
 mod manifest;
 mod unfinished;
 
+pub use identity::identity;
 pub use inputs::refuse_inputs;
 use inputs::{places, refuse_input};
 use manifest::{Locked, Manifest, Moving, PARTIAL, is_inside};

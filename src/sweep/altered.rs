@@ -13,6 +13,9 @@ use crate::validation;
 /// The card of a run stands beside the study's own under this name, in memory.
 const CARD: &str = "gelbench-sweep-card.toml";
 
+/// A file in memory: its path and its content.
+type File = (PathBuf, Vec<u8>);
+
 /// The study that is computed many times.
 #[derive(Clone, Debug)]
 pub struct BaseStudy {
@@ -20,6 +23,8 @@ pub struct BaseStudy {
     pub path: PathBuf,
     /// Its text.
     pub text: String,
+    /// Files in memory, by the names that the text has for them: cards that stand on no disk.
+    pub files: Vec<File>,
     /// What each run may ask for.
     pub budget: Budget,
 }
@@ -30,6 +35,29 @@ impl BaseStudy {
     /// # Errors
     /// [`Error::Input`] with what cannot be set, and every fault of the study.
     pub fn with(&self, keys: &[String], settings: &[Setting]) -> Result<PreparedStudy, Error> {
+        let (study, card) = with_files(self.files.clone(), || self.edited(keys, settings))?;
+        let files = self.files.iter().cloned().chain(card);
+        with_files(files, || {
+            validation::read_given(&self.path, study, self.budget)
+        })
+    }
+
+    /// The study as it is.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with every fault.
+    pub fn read(&self) -> Result<PreparedStudy, Error> {
+        with_files(self.files.clone(), || {
+            validation::read_given(&self.path, self.text.clone(), self.budget)
+        })
+    }
+
+    /// The study's text with some keys set, and the card of this run, where it has one of its own.
+    fn edited(
+        &self,
+        keys: &[String],
+        settings: &[Setting],
+    ) -> Result<(String, Option<File>), Error> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let mut study = EditedDocument::parse(&self.text).map_err(|cause| {
             let message = format!("{} is not TOML: {cause}", self.path.display());
@@ -55,18 +83,16 @@ impl BaseStudy {
                     .map_err(|reason| no_place(key, reason))?;
             }
         }
-        let mut files = Vec::new();
+        let mut file = None;
         if let Some(card) = card.filter(|card| card.is_varied) {
             let name = NewValue::Text(card.place.to_string_lossy().into_owned());
             let named = study.set(&["material", "card"], &name);
             named.map_err(|reason| no_place("material.card", reason))?;
             let path = folder.join(&card.place);
             let plain = path.strip_prefix(".").unwrap_or(&path).to_owned();
-            files.push((plain, card.document.text().into_bytes()));
+            file = Some((plain, card.document.text().into_bytes()));
         }
-        with_files(files, || {
-            validation::read_given(&self.path, study.text(), self.budget)
-        })
+        Ok((study.text(), file))
     }
 }
 

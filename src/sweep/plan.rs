@@ -5,12 +5,10 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 
-use super::variable::{Setting, Values, Variable};
+use super::points::Points;
+use super::variable::{MOST_RUNS, Setting, Values, Variable};
 use crate::error::Diagnostic;
 use crate::statistics::normal_quantile;
-
-/// More runs are refused.
-const MOST_RUNS: usize = 1_000_000;
 
 /// What the scrambled sequence holds.
 const MOST_OF_SOBOL: usize = 1 << 16;
@@ -153,9 +151,10 @@ pub fn check_keys(keys: &[String]) -> Result<(), Diagnostic> {
 }
 
 /// What is set in every run: combinations in the order of the variables, the last one changing fastest, and for each of them the
-/// same points.
+/// same points, which are drawn or given.
 pub fn rows(
     variables: &[Variable],
+    points: Option<&Points>,
     fitted: Option<&FittedParameters>,
     sampling: Sampling,
 ) -> Result<Vec<Vec<Setting>>, Diagnostic> {
@@ -164,7 +163,14 @@ pub fn rows(
         .filter(|variable| !matches!(variable.values, Values::Listed(_)));
     let fitted_count = fitted.map_or(0, |fitted| fitted.keys.len());
     let dimensions = drawn.count() + fitted_count;
-    let samples = points_to_draw(sampling, dimensions)?;
+    let samples = match points {
+        Some(points) if dimensions == 0 && sampling.samples.is_none() => points.rows().len(),
+        Some(_) => {
+            let fault = Diagnostic::error("", "points are given, and others are to be drawn");
+            return Err(fault.hint("leave out distributions, --samples and --fit, or --points"));
+        }
+        None => points_to_draw(sampling, dimensions)?,
+    };
     let combinations = variables.iter().try_fold(samples, |count, variable| {
         count.checked_mul(match &variable.values {
             Values::Listed(values) => values.len(),
@@ -175,7 +181,7 @@ pub fn rows(
         let fault = Diagnostic::error("", "there are more than a million runs");
         return Err(fault.hint("take fewer values, or draw points of distributions"));
     }
-    let points: Vec<Vec<f64>> = (0..samples)
+    let shares: Vec<Vec<f64>> = (0..samples)
         .map(|index| point(index, dimensions, sampling))
         .collect();
     let mut all = Vec::new();
@@ -193,8 +199,14 @@ pub fn rows(
         }
     }
     for combination in &listed {
-        for point in &points {
-            all.push(row(variables, fitted, combination, point));
+        for (index, shares) in shares.iter().enumerate() {
+            let mut settings = row(variables, fitted, combination, shares);
+            settings.extend(
+                points
+                    .iter()
+                    .flat_map(|points| points.rows()[index].clone()),
+            );
+            all.push(settings);
         }
     }
     Ok(all)

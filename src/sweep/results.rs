@@ -5,9 +5,12 @@ use std::collections::HashMap;
 use serde_json::{Value, json};
 
 use super::figures::Row;
-use super::table::{headed, names};
+use super::table::{heads, names};
 use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke, number};
 use crate::statistics::{quantile, rank_correlation};
+
+/// What the steps of studies are told by.
+const ALONG: &str = "stretch, load factor, or time in s";
 
 /// Below so many runs there is neither a spread nor a correlation.
 const FEWEST: usize = 10;
@@ -116,8 +119,7 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
             .chain(numbers.map(|value| told(*value)))
             .collect()
     });
-    let varied = (0..keys.len()).map(|index| headed(&keys[index], rows, index));
-    let varied: Vec<String> = varied.collect();
+    let varied = heads(keys, rows);
     let mut blocks = vec![
         Block::heading(title),
         Block::paragraph(format!(
@@ -153,7 +155,7 @@ pub fn json(keys: &[String], rows: &[Row]) -> Value {
     });
     json!({
         "gelbench": env!("CARGO_PKG_VERSION"),
-        "keys": keys.iter().enumerate().map(|(index, key)| headed(key, rows, index)).collect::<Vec<_>>(),
+        "keys": heads(keys, rows),
         "runs": rows.len(),
         "failed": rows.iter().filter(|row| !row.fault.is_empty()).count(),
         "figures": figures.collect::<Vec<_>>(),
@@ -161,10 +163,10 @@ pub fn json(keys: &[String], rows: &[Row]) -> Value {
 }
 
 /// Pictures: the band of every model's force over the steps, and the force of the last step over each key.
-pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
-    let all = statistics(rows);
+pub fn figures(keys: &[String], rows: &[Row]) -> Vec<Figure> {
+    let (all, heads) = (statistics(rows), heads(keys, rows));
     let forces: Vec<&Statistics> = all.iter().filter(|one| is_force(&one.name)).collect();
-    let band = band(&forces, along).map(|chart| {
+    let band = band(&forces).map(|chart| {
         Figure::new(
             "band.png",
             "The forces of all runs: medians, and the band between 5 and 95 % of the runs.",
@@ -175,6 +177,7 @@ pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
         of_last_step(&all).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
     let over = last.into_iter().flat_map(|one| {
         let at = one.name.rsplit('@').next().unwrap_or_default();
+        let heads = &heads;
         let axis = |index: usize| -> Option<Figure> {
             let points: Option<Vec<[f64; 2]>> = rows
                 .iter()
@@ -183,7 +186,7 @@ pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
                 .collect();
             let chart = LineChart::new(
                 format!("Force over {}", keys[index]),
-                Axis::new(&headed(&keys[index], rows, index), Scale::Interval),
+                Axis::new(&heads[index], Scale::Interval),
                 Axis::new(&format!("force, corrected, at {at} [N]"), Scale::Interval),
                 vec![Line::new("", points?, PALETTE[0], Stroke::Points)],
             );
@@ -210,7 +213,7 @@ fn is_force(name: &str) -> bool {
 
 /// The medians of all models over the steps, and the band of the corrected model, or the first one; `None` where there are fewer than
 /// two steps, or too few runs.
-fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
+fn band(forces: &[&Statistics]) -> Option<LineChart> {
     let model = |one: &Statistics| one.name.split('.').next().unwrap_or("").to_owned();
     let mut models: Vec<String> = forces.iter().map(|one| model(one)).collect();
     models.sort();
@@ -248,7 +251,7 @@ fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
     (!lines.is_empty()).then(|| {
         LineChart::new(
             "Forces of all runs",
-            Axis::new(along, Scale::Interval),
+            Axis::new(ALONG, Scale::Interval),
             Axis::linear("force [N]"),
             lines,
         )

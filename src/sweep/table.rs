@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::figures::Row;
-use super::variable::Setting;
+use super::variable::{Setting, headed, key_and_unit};
 use crate::document::{read_records, write_records};
 use crate::error::Error;
 
@@ -21,22 +21,18 @@ pub fn names(rows: &[Row]) -> Vec<&str> {
         .collect()
 }
 
-/// A key with the unit of its values.
-pub fn headed(key: &str, rows: &[Row], index: usize) -> String {
-    let unit = rows.first().map_or("", |row| row.settings[index].unit());
-    match unit {
-        "" => key.to_owned(),
-        unit => format!("{key} [{unit}]"),
-    }
+/// All keys with the units of their values.
+pub fn heads(keys: &[String], rows: &[Row]) -> Vec<String> {
+    let unit = |index: usize| rows.first().map_or("", |row| row.settings[index].unit());
+    let keys = keys.iter().enumerate();
+    keys.map(|(index, key)| headed(key, unit(index))).collect()
 }
 
 /// The table: number of the run, the keys with units, all figures, whether requirements are met, and what was amiss.
 pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
     let names = names(rows);
-    let keys = keys.iter().enumerate();
-    let keys = keys.map(|(index, key)| headed(key, rows, index));
     let head = std::iter::once(FIRST.to_owned())
-        .chain(keys)
+        .chain(heads(keys, rows))
         .chain(names.iter().map(|name| (*name).to_owned()))
         .chain(LAST.map(str::to_owned));
     let line = |row: &Row| {
@@ -76,7 +72,7 @@ fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
     let units: Vec<&str> = head
         .get(1..figures.start)?
         .iter()
-        .map(|head| unit_of(head))
+        .map(|head| key_and_unit(head).1)
         .collect();
     let row = |line: &Vec<String>| {
         let settings = line[1..].iter().zip(&units);
@@ -91,11 +87,6 @@ fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
         })
     };
     lines.iter().map(row).collect()
-}
-
-fn unit_of(head: &str) -> &str {
-    let inner = head.rsplit_once(" [").map(|(_, unit)| unit);
-    inner.and_then(|unit| unit.strip_suffix(']')).unwrap_or("")
 }
 
 fn setting(text: &str, unit: &str) -> Setting {

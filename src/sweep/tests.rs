@@ -23,12 +23,14 @@ fn sweep(vary: &[&str], samples: Option<usize>) -> Sweep {
         study: BaseStudy {
             path: Path::new("small.toml").to_owned(),
             text: STUDY.to_owned(),
+            files: Vec::new(),
             budget: Budget::USUAL,
         },
         variables: vary
             .iter()
             .map(|text| Variable::parse(text).unwrap())
             .collect(),
+        points: None,
         fitted: None,
         sampling: Sampling {
             samples,
@@ -40,7 +42,9 @@ fn sweep(vary: &[&str], samples: Option<usize>) -> Sweep {
 
 fn rows(sweep: &Sweep) -> Vec<Row> {
     let runs = sweep.runs().unwrap();
-    sweep.compute(&runs, HashMap::new(), &|_| Ok(())).unwrap()
+    sweep
+        .compute(&runs, HashMap::new(), &|_| Ok(()), &|| ())
+        .unwrap()
 }
 
 #[test]
@@ -67,7 +71,7 @@ fn what_is_kept_is_not_computed_again_and_a_table_is_read_as_it_was_written() {
         &["plate.width=40..60 mm:3", "mass_spring.area_term=0,1"],
         None,
     );
-    let fault = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()));
+    let fault = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()), &|| ());
     let told = fault.unwrap_err().to_string();
     assert!(
         told.contains("run 1") && told.contains("area_term"),
@@ -82,10 +86,15 @@ fn what_is_kept_is_not_computed_again_and_a_table_is_read_as_it_was_written() {
         .map(|row| (row.number, row.clone()))
         .collect();
     let computed = std::sync::Mutex::new(Vec::new());
-    let again = sweep.compute(&runs, done, &|row| {
-        computed.lock().unwrap().push(row.number);
-        Ok(())
-    });
+    let again = sweep.compute(
+        &runs,
+        done,
+        &|row| {
+            computed.lock().unwrap().push(row.number);
+            Ok(())
+        },
+        &|| (),
+    );
     assert_eq!(again.unwrap(), first);
     assert_eq!(*computed.lock().unwrap(), [3]);
     let table = write(&sweep.keys(), &first);
@@ -207,8 +216,104 @@ fn faults_name_what_to_write() {
         ("material.c01=1 MPa,2 MPa", "c01"),
     ] {
         let sweep = sweep(&[vary], None);
-        let told = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()));
+        let told = sweep.compute(&sweep.runs().unwrap(), HashMap::new(), &|_| Ok(()), &|| ());
         let told = told.unwrap_err().to_string();
         assert!(told.contains(expected), "{vary}: {told}");
     }
+}
+
+#[test]
+fn points_of_another_program_are_run_in_every_combination() {
+    let table = b"material.c10 [MPa],material.card\n0.05,neo-hooke\n0.1,neo-hooke\n";
+    let points = Points::parse(Path::new("points.csv"), table).unwrap();
+    let sweep = Sweep {
+        points: Some(points),
+        ..sweep(&["plate.thickness=1 mm,3 mm"], None)
+    };
+    assert_eq!(
+        sweep.keys(),
+        ["plate.thickness", "material.c10", "material.card"]
+    );
+    let forces: Vec<f64> = rows(&sweep)
+        .iter()
+        .map(|row| row.figure("finite_element.force_N@0.2").unwrap())
+        .collect();
+    for (force, factor) in forces.iter().zip([1.0, 2.0, 3.0, 6.0]) {
+        assert!((force / forces[0] - factor).abs() < 1e-6, "{forces:?}");
+    }
+    let drawn = Sweep {
+        points: sweep.points.clone(),
+        ..super::tests::sweep(&["plate.width=40..60 mm"], Some(4))
+    };
+    let told = drawn.runs().unwrap_err().to_string();
+    assert!(told.contains("others are to be drawn"), "{told}");
+}
+
+#[test]
+fn tables_that_are_no_points_are_told() {
+    for (table, expected) in [
+        ("", "no table"),
+        ("plate.width [mm]\n", "there are no points"),
+        ("plate.width [mm]\n1,2\n", "no table"),
+        ("plate.width [mm]\nwide\n", "`wide` is not a number"),
+        ("plate.width [mm]\ninf\n", "`inf` is not a number"),
+        ("plate.width,a\n1,\n", "`` is not a number"),
+        ("plate..width\n1\n", "is no key"),
+        (" [mm]\n1\n", "is no key"),
+    ] {
+        let told = Points::parse(Path::new("p.csv"), table.as_bytes()).unwrap_err();
+        let told = told.to_string();
+        assert!(
+            told.contains(expected) && told.contains("p.csv"),
+            "{table:?}: {told}"
+        );
+    }
+}
+
+#[test]
+fn every_run_is_in_one_part_and_parts_of_others_are_refused() {
+    let sweep = sweep(&["plate.width=40..60 mm:7"], None);
+    let runs = sweep.runs().unwrap();
+    let shards: Vec<Shard> = (1..=3).filter_map(|part| Shard::new(part, 3)).collect();
+    for run in &runs {
+        let holders = shards.iter().filter(|shard| shard.holds(run)).count();
+        assert_eq!(holders, 1, "run {}", run.number);
+    }
+    assert!(Shard::new(0, 3).is_none() && Shard::new(4, 3).is_none());
+    let row = |run: &Run| Row::failed(run, "none".to_owned());
+    let mut rows: Vec<Row> = runs.iter().rev().map(row).collect();
+    let joined = join(&runs, rows.clone()).unwrap();
+    assert!(joined.iter().map(|row| row.number).eq(1..=7));
+    rows[3].settings[0] = Setting::Number(1.0, "mm".to_owned());
+    assert!(join(&runs, rows.clone()).is_err());
+    rows.remove(3);
+    assert!(join(&runs, rows).is_err());
+}
+
+#[test]
+fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
+    use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+    let place = tempfile::TempDir::new().unwrap();
+    let output = place.path().join("out");
+    let sweep = sweep(&["plate.width=40..60 mm:6"], None);
+    let told = std::sync::Mutex::new(Vec::new());
+    let open = || SweepFolder::open(&sweep, Share::Whole, &output, &[], None).unwrap();
+    let broken = catch_unwind(AssertUnwindSafe(|| {
+        let ended = |number: usize| told.lock().unwrap().push(number);
+        let attend = || match told.lock().unwrap().len() {
+            0 | 1 => {}
+            _ => resume_unwind(Box::new("stop")),
+        };
+        open().rows(&ended, &attend).map(drop)
+    }));
+    assert!(broken.is_err());
+    let ended = told.into_inner().unwrap();
+    assert!((2..6).contains(&ended.len()), "{ended:?}");
+    let again = std::sync::Mutex::new(Vec::new());
+    let mut folder = open();
+    let rows = folder.rows(&|number| again.lock().unwrap().push(number), &|| ());
+    let (found, again) = (rows.unwrap(), again.into_inner().unwrap());
+    let kept = &again[..ended.len()];
+    assert!(ended.iter().all(|number| kept.contains(number)));
+    assert_eq!(found, super::tests::rows(&sweep));
 }

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::error::Diagnostic;
 use crate::units::number_length;
 
+/// More runs are refused.
+pub const MOST_RUNS: usize = 1_000_000;
+
 /// What a key is set to.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Setting {
@@ -91,13 +94,26 @@ impl Variable {
         let (key, values) = text
             .split_once('=')
             .ok_or_else(|| wrong("there is no `=`".to_owned()))?;
+        Self::of(key, Values::parse(values.trim())).map_err(wrong)
+    }
+
+    /// Of a key and texts of its values, each such as `5 mm` or `pva-10`.
+    ///
+    /// # Errors
+    /// What is wrong with them, and the remedy.
+    pub fn listed(key: &str, values: &[String]) -> Result<Self, Diagnostic> {
+        let values = Values::listed(values.iter().map(String::as_str));
+        Self::of(key, values).map_err(|what| Diagnostic::error(key, what).hint(HINT))
+    }
+
+    fn of(key: &str, values: Result<Values, String>) -> Result<Self, String> {
         let key = key.trim();
         if key.is_empty() || key.split('.').any(str::is_empty) {
-            return Err(wrong("the key is not whole".to_owned()));
+            return Err("the key is not whole".to_owned());
         }
         Ok(Self {
             key: key.to_owned(),
-            values: Values::parse(values.trim()).map_err(wrong)?,
+            values: values?,
         })
     }
 }
@@ -128,19 +144,42 @@ impl Values {
                 false => Err("the standard deviation has to be positive".to_owned()),
             };
         }
-        let listed: Vec<Setting> = text.split(',').map(Setting::of).collect();
+        Self::listed(text.split(','))
+    }
+
+    fn listed<'a>(texts: impl Iterator<Item = &'a str>) -> Result<Self, String> {
+        let listed: Vec<Setting> = texts.map(Setting::of).collect();
+        let Some(first) = listed.first() else {
+            return Err("there are no values".to_owned());
+        };
         if listed
             .iter()
             .any(|one| *one == Setting::Text(String::new()))
         {
             return Err("a value is empty".to_owned());
         }
-        let unit = listed[0].unit();
+        let unit = first.unit();
         match listed.iter().all(|one| one.unit() == unit) {
             true => Ok(Self::Listed(listed)),
             false => Err("the values have several units".to_owned()),
         }
     }
+}
+
+/// A key with a unit, which may be empty, as the head of a column.
+pub fn headed(key: &str, unit: &str) -> String {
+    match unit {
+        "" => key.to_owned(),
+        unit => format!("{key} [{unit}]"),
+    }
+}
+
+/// The key and the unit of such a head.
+pub fn key_and_unit(head: &str) -> (&str, &str) {
+    let within = head.strip_suffix(']');
+    within
+        .and_then(|head| head.rsplit_once(" ["))
+        .unwrap_or((head, ""))
 }
 
 /// Two numbers with one unit, which may stand behind the second alone.

@@ -1,0 +1,203 @@
+//! The folder of a sweep: each run is kept as soon as it ends, and parts that several jobs have computed are put together.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::panicking;
+
+use super::plan::Run;
+use super::{Row, Sweep, blocks, figures, json, read, write};
+use crate::document::inputs::noted;
+use crate::error::{Diagnostic, Error};
+use crate::output::{ResultFolder, Unfinished, identity, write_document};
+use crate::studies::name;
+
+/// The file with a line for each run.
+const TABLE: &str = "sweep.csv";
+
+/// One part of the runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    part: usize,
+    parts: usize,
+}
+
+impl Shard {
+    /// The part `part`, from 1 on, of so many; `None` of one that is not among them.
+    pub fn new(part: usize, parts: usize) -> Option<Self> {
+        (1..=parts).contains(&part).then_some(Self { part, parts })
+    }
+
+    /// Whether a run belongs to it: every `parts`-th one does.
+    pub fn holds(self, run: &Run) -> bool {
+        (run.number - 1) % self.parts == self.part - 1
+    }
+
+    fn folder(self, whole: &Path) -> PathBuf {
+        whole.join(format!("part_{}_of_{}", self.part, self.parts))
+    }
+}
+
+/// Which of the runs, and where they come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Share {
+    /// All are computed.
+    Whole,
+    /// Those of one part are computed, into a folder of their own.
+    Shard(Shard),
+    /// The tables of so many parts are put together.
+    Join(usize),
+}
+
+/// A sweep that is computed into a folder.
+pub struct SweepFolder<'a> {
+    sweep: &'a Sweep,
+    share: Share,
+    whole: PathBuf,
+    runs: Vec<Run>,
+    results: ResultFolder,
+}
+
+impl<'a> SweepFolder<'a> {
+    /// Opens the folder, with what the same sweep by the same `program` has left when it was broken off. The results follow from
+    /// the files `inputs`, and must not replace them.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the faults of the sweep and of the study; [`Error::Write`] as of [`ResultFolder::resume`].
+    pub fn open(
+        sweep: &'a Sweep,
+        share: Share,
+        whole: &Path,
+        inputs: &[&Path],
+        program: Option<&Path>,
+    ) -> Result<Self, Error> {
+        let mut runs = sweep.runs()?;
+        let mut folder = whole.to_owned();
+        if let Share::Shard(shard) = share {
+            runs.retain(|run| shard.holds(run));
+            folder = shard.folder(whole);
+        }
+        let (ready, files) = noted(|| {
+            let ready = sweep.study.read();
+            sweep.read_files();
+            ready
+        });
+        ready?;
+        let identity = identity(&format!("{sweep:?} {share:?}"), &files, program);
+        Ok(Self {
+            sweep,
+            share,
+            whole: whole.to_owned(),
+            runs,
+            results: ResultFolder::resume(&folder, "sweep", inputs, &identity)?,
+        })
+    }
+
+    /// The folder.
+    pub fn results(&self) -> &ResultFolder {
+        &self.results
+    }
+
+    /// How many runs there are, computed or not.
+    pub fn count(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Computes the runs, or puts them together; each is kept as soon as it ends. `ended` is told the number of each, also of those
+    /// that a sweep before has left; `attend` is that of [`Sweep::compute`]. Where it unwinds, what is kept stays for a later start.
+    ///
+    /// # Errors
+    /// Those of [`Sweep::compute`], and [`Error::Write`].
+    pub fn rows(
+        &mut self,
+        ended: &(dyn Fn(usize) + Sync),
+        attend: &(dyn Fn() + Sync),
+    ) -> Result<Vec<Row>, Error> {
+        if let Share::Join(parts) = self.share {
+            return self.of_parts(parts);
+        }
+        let _parts_stay = PartsStay(self.results.unfinished());
+        let results = &mut self.results;
+        let kept = self.runs.iter();
+        let kept = kept.filter_map(|run| results.kept::<Row>(&run.number.to_string()));
+        let done: HashMap<usize, Row> = kept.map(|row| (row.number, row)).collect();
+        done.keys().for_each(|number| ended(*number));
+        let results = Mutex::new(results);
+        let keep = |row: &Row| {
+            let mut folder = results.lock().unwrap_or_else(PoisonError::into_inner);
+            folder.keep(&row.number.to_string(), row)?;
+            drop(folder);
+            ended(row.number);
+            Ok(())
+        };
+        self.sweep.compute(&self.runs, done, &keep, attend)
+    }
+
+    fn of_parts(&self, parts: usize) -> Result<Vec<Row>, Error> {
+        let keys = self.sweep.keys().len();
+        let (mut rows, mut missing) = (Vec::new(), Vec::new());
+        for shard in (1..=parts).filter_map(|part| Shard::new(part, parts)) {
+            let path = shard.folder(&self.whole).join(TABLE);
+            match fs::read(&path) {
+                Ok(bytes) => rows.extend(read(&path, keys, &bytes)?),
+                Err(_) => missing.push(shard.part.to_string()),
+            }
+        }
+        if !missing.is_empty() {
+            let missing = missing.join(", ");
+            return Err(Error::input(
+                format!("parts of {parts} that are not there: {missing}"),
+                "compute each with --shard PART/PARTS first",
+            ));
+        }
+        join(&self.runs, rows)
+    }
+
+    /// Writes the table, the report and the pictures of rows; the files, and a warning for each picture that cannot be drawn.
+    ///
+    /// # Errors
+    /// [`Error::Write`].
+    pub fn finish(mut self, rows: &[Row]) -> Result<(Vec<PathBuf>, Vec<Diagnostic>), Error> {
+        let (keys, folder) = (self.sweep.keys(), &mut self.results);
+        folder.add(TABLE, &write(&keys, rows))?;
+        let report = format!("{:#}\n", json(&keys, rows));
+        folder.add("sweep.json", report.as_bytes())?;
+        let title = format!("Many runs of {}", name(&self.sweep.study.path));
+        let blocks = blocks(&title, &keys, rows);
+        let figures = figures(&keys, rows);
+        let warnings = write_document(folder, "report", &blocks, &figures)?;
+        Ok((self.results.finish()?, warnings))
+    }
+}
+
+/// The rows of all parts in the order of the runs.
+///
+/// # Errors
+/// [`Error::Input`] where they are not those of these runs.
+pub fn join(runs: &[Run], mut rows: Vec<Row>) -> Result<Vec<Row>, Error> {
+    rows.sort_by_key(|row| row.number);
+    let same = rows.len() == runs.len()
+        && rows.iter().zip(runs).all(|(row, run)| {
+            let mut pairs = row.settings.iter().zip(&run.settings);
+            row.number == run.number && pairs.all(|(a, b)| a.words() == b.words())
+        });
+    match same {
+        true => Ok(rows),
+        false => Err(Error::input(
+            "the parts are not those of this sweep",
+            "give the same --vary, --points, --fit, --samples, --method and --seed as with --shard",
+        )),
+    }
+}
+
+/// Lets the runs that are kept stay where a computation is broken off by unwinding.
+struct PartsStay(Arc<Unfinished>);
+
+impl Drop for PartsStay {
+    fn drop(&mut self) {
+        if panicking() {
+            drop(self.0.break_off());
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Points that another program has chosen.
+
+use std::path::Path;
+
+use super::variable::{MOST_RUNS, Setting, key_and_unit};
+use crate::document::read_records;
+use crate::error::{Diagnostic, Error};
+
+/// Points in place of drawn ones: a table with a column for each key, and a line for each point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Points {
+    keys: Vec<String>,
+    rows: Vec<Vec<Setting>>,
+}
+
+impl Points {
+    /// What such a table looks like.
+    pub const HINT: &str = "heads are keys, with the unit in brackets: plate.width [mm],material.c10 [MPa]; below them stands a line for each \
+                            point";
+
+    /// Of columns, by keys with their units such as `material.c10 [MPa]`.
+    ///
+    /// # Errors
+    /// No points, columns of different lengths, or more than a million points.
+    pub fn of_columns(columns: &[(String, Vec<String>)]) -> Result<Self, Diagnostic> {
+        let count = columns.first().map_or(0, |(_, values)| values.len());
+        if count == 0 {
+            return Err(Diagnostic::error("", "there are no points").hint(Points::HINT));
+        }
+        if let Some((head, values)) = columns.iter().find(|(_, own)| own.len() != count) {
+            let message = format!("`{head}` has {} values, others have {count}", values.len());
+            return Err(Diagnostic::error("", message).hint(Points::HINT));
+        }
+        if count > MOST_RUNS {
+            return Err(
+                Diagnostic::error("", "there are more than a million points")
+                    .hint("take fewer, or several sweeps"),
+            );
+        }
+        let columns: Vec<(&str, Vec<Setting>)> = columns
+            .iter()
+            .map(|(head, values)| column(head, values))
+            .collect::<Result<_, _>>()?;
+        let row = |index: usize| columns.iter().map(|(_, own)| own[index].clone()).collect();
+        Ok(Self {
+            rows: (0..count).map(row).collect(),
+            keys: columns.iter().map(|(key, _)| (*key).to_owned()).collect(),
+        })
+    }
+
+    /// Of a table of commas.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it is none, and those of [`Points::of_columns`].
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        let named = |fault: Diagnostic| {
+            let message = format!("{}: {}", path.display(), fault.message);
+            Error::Input(vec![Diagnostic { message, ..fault }])
+        };
+        let records = read_records(bytes).filter(|records| !records.is_empty());
+        let records = records.ok_or_else(|| {
+            let fault = Diagnostic::error("", "is no table with commas and one head");
+            named(fault.hint(Points::HINT))
+        })?;
+        let (head, lines) = (&records[0], &records[1..]);
+        let column = |place: usize| {
+            let values = lines.iter().map(|line| line[place].trim().to_owned());
+            (head[place].trim().to_owned(), values.collect())
+        };
+        let columns: Vec<_> = (0..head.len()).map(column).collect();
+        Self::of_columns(&columns).map_err(named)
+    }
+
+    /// The keys.
+    pub fn keys(&self) -> impl Iterator<Item = String> {
+        self.keys.iter().cloned()
+    }
+
+    /// What is set at each point, in the order of the keys.
+    pub fn rows(&self) -> &[Vec<Setting>] {
+        &self.rows
+    }
+}
+
+/// A column's key, and its values with their unit.
+fn column<'a>(head: &'a str, values: &[String]) -> Result<(&'a str, Vec<Setting>), Diagnostic> {
+    let (key, unit) = key_and_unit(head);
+    if key.is_empty() || key.split('.').any(str::is_empty) {
+        return Err(Diagnostic::error("", format!("`{head}` is no key")).hint(Points::HINT));
+    }
+    let setting = |text: &String| match (unit, text.parse::<f64>()) {
+        (_, Ok(value)) if !value.is_finite() => None,
+        ("", _) if text.is_empty() => None,
+        ("", _) => Some(Setting::of(text)),
+        (unit, Ok(value)) => Some(Setting::Number(value, unit.to_owned())),
+        _ => None,
+    };
+    let read = values.iter().map(|text| {
+        setting(text).ok_or_else(|| {
+            let message = format!("`{key}`: `{text}` is not a number");
+            Diagnostic::error("", message).hint(Points::HINT)
+        })
+    });
+    Ok((key, read.collect::<Result<_, _>>()?))
+}
