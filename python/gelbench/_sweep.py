@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 import json
 import os
-import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -340,6 +339,8 @@ def _of_text(name: str, keys: list[str], table: bytes) -> SweepTable:
 
 def _written(path: PathLike, write: Callable[[Path], object]) -> None:
     """Writes a file under another name, then gives it its own."""
+    import tempfile
+
     target = Path(path)
     try:
         with tempfile.TemporaryDirectory(prefix=".gelbench-new-", dir=target.parent) as folder:
