@@ -311,11 +311,11 @@ fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
     assert!(broken.is_err());
     let ended = told.into_inner().unwrap();
     assert!((2..6).contains(&ended.len()), "{ended:?}");
-    let again = std::sync::Mutex::new(Vec::new());
     let mut folder = open();
-    let rows = folder.rows(&|number| again.lock().unwrap().push(number), &|| ());
-    let (found, again) = (rows.unwrap(), again.into_inner().unwrap());
-    let kept = &again[..ended.len()];
-    assert!(ended.iter().all(|number| kept.contains(number)));
+    let parts = folder.results().unfinished().partial.join(".parts");
+    for number in &ended {
+        assert!(parts.join(number.to_string()).is_file(), "run {number}");
+    }
+    let found = folder.rows(&|_| (), &|| ()).unwrap();
     assert_eq!(found, super::tests::rows(&sweep));
 }
