@@ -7,30 +7,42 @@
 
 mod card_text;
 mod conversion;
+mod cycles;
 mod fit;
+mod history;
 mod layout;
 mod least_squares;
 mod misfit;
+mod prony;
 mod quality;
 mod reading;
+mod record;
+mod relaxation;
+mod roles;
 mod rounding;
 mod search;
 mod settings;
+mod terms;
 mod test_data;
 mod verdict;
 mod warnings;
+mod zero;
 
 pub use card_text::{Provenance, card_text};
 pub use conversion::Conversion;
-pub use fit::{Fit, fit, rank};
+pub use fit::{Fit, Relaxed, fit, rank};
 pub use quality::{Quality, StableRange};
 pub use reading::KEYS;
+pub use relaxation::fit_relaxation;
 pub use settings::{Bounds, FitSettings, Weighting};
-pub use test_data::{Observation, StrainColumn, Test, TestData};
+pub use terms::Terms;
+pub use test_data::{Observation, StrainColumn, Test, TestData, Times};
 pub use verdict::{Answer, Verdict};
 
 #[cfg(test)]
 mod quality_tests;
+#[cfg(test)]
+mod relaxation_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -49,6 +49,7 @@ mod schema;
 mod shell;
 mod sweep;
 mod terminal;
+mod test_reading;
 
 const SAMPLES: &str = "\
 Samples:

@@ -35,6 +35,7 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     put(&mut text, "law", quoted(fit.law.name));
     text += "\n[parameters]\n";
     parameters(&mut text, fit);
+    viscosity(&mut text, fit);
     text += "\n[data]\n";
     put(&mut text, "test", quoted(&kinds.join(", ")));
     put(
@@ -54,7 +55,7 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     }
     let specimen = specimen.as_deref().unwrap_or("not stated in the data");
     put(&mut text, "specimen", quoted(specimen));
-    put(&mut text, "note", quoted(&note(fit)));
+    put(&mut text, "note", quoted(&note(fit, tests)));
     text + &recipe(fit, provenance)
 }
 
@@ -68,6 +69,13 @@ fn recipe(fit: &Fit, provenance: &Provenance) -> String {
         quoted(fit.settings.weighting.name()),
     );
     put(&mut text, "starts", fit.settings.starts);
+    if let Some(relaxed) = &fit.relaxed {
+        put(
+            &mut text,
+            "relaxation_terms",
+            relaxed.material.relaxation.len(),
+        );
+    }
     let bounds = fit.settings.bounds.iter();
     let bounds = bounds.map(|(key, [low, high])| format!("{key}={low}..{high}"));
     if bounds.len() > 0 {
@@ -102,17 +110,12 @@ fn list(items: impl Iterator<Item = String>) -> String {
 }
 
 fn parameters(text: &mut String, fit: &Fit) {
-    for (parameter, estimate) in fit.parameters.iter().zip(&fit.quality.estimates) {
+    for (index, parameter) in fit.law_parameters().iter().enumerate() {
         let value = match parameter.dimension {
             Dimension::Ratio => parameter.value.to_string(),
             other => quoted(&format!("{} {}", parameter.value, other.internal_unit())),
         };
-        let error = match estimate.standard_error {
-            error if !error.is_finite() => "held by a bound".to_owned(),
-            _ if !fit.quality.has_intervals() => "no interval".to_owned(),
-            error => format!("standard error {error:.2e}"),
-        };
-        let _ = writeln!(text, "{} = {value} # {error}", parameter.key);
+        let _ = writeln!(text, "{} = {value} # {}", parameter.key, error(fit, index));
     }
     for (key, name) in &fit.choices {
         put(text, key, quoted(name));
@@ -125,8 +128,50 @@ fn parameters(text: &mut String, fit: &Fit) {
     }
 }
 
+/// The standard error of a parameter in words.
+fn error(fit: &Fit, index: usize) -> String {
+    match fit.quality.estimates[index].standard_error {
+        error if !error.is_finite() => "held by a bound".to_owned(),
+        _ if !fit.quality.has_intervals() => "no interval".to_owned(),
+        error => format!("standard error {error:.2e}"),
+    }
+}
+
+/// The Prony series, and what the data behind it cover.
+fn viscosity(text: &mut String, fit: &Fit) {
+    let Some(relaxed) = &fit.relaxed else {
+        return;
+    };
+    if relaxed.material.relaxation.is_empty() {
+        return;
+    }
+    text.push_str("\n[viscosity]\nrelaxation = [\n");
+    for (term, one) in relaxed.material.relaxation.iter().enumerate() {
+        let [share, time] = [0, 1].map(|part| error(fit, relaxed.of_law + 2 * term + part));
+        let (own, tau) = (one.share, one.time);
+        let _ = writeln!(
+            text,
+            "    {{ share = {own}, time = \"{tau} s\" }}, # share: {share}; time in s: {time}"
+        );
+    }
+    text.push_str("]\n");
+    let covered = &relaxed.material.covered;
+    for (key, range, unit) in [
+        ("times", covered.times, "s"),
+        ("rates", covered.rates, "1/s"),
+    ] {
+        if let Some(range) = range {
+            put(
+                text,
+                key,
+                list(range.iter().map(|value| format!("{value} {unit}"))),
+            );
+        }
+    }
+}
+
 /// The figures and the warnings of the fit in one line.
-fn note(fit: &Fit) -> String {
+fn note(fit: &Fit, tests: &[TestData]) -> String {
     let quality = &fit.quality;
     let mut note = if fit.parameters.is_empty() {
         format!("the curve of {} points as it was measured", quality.points)
@@ -137,9 +182,20 @@ fn note(fit: &Fit) -> String {
             quality.points, quality.rmse, quality.nmad_percent, quality.r_squared
         )
     };
+    if let Some(relaxed) = &fit.relaxed {
+        let terms = relaxed.material.relaxation.len();
+        let _ = write!(
+            note,
+            "; the law is that of long times, {terms} terms of a Prony series"
+        );
+    }
     if let Some(verdict) = &quality.verdict {
         note += "; left over: ";
         note += &verdict.sentence();
+    }
+    for remark in tests.iter().flat_map(|test| &test.remarks) {
+        note += "; ";
+        note += remark;
     }
     for warning in &quality.warnings {
         note += "; ";

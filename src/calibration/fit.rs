@@ -26,6 +26,7 @@ use crate::material::HyperelasticLaw;
 use crate::material::marlow::{Marlow, TableCurve};
 use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::{LAWS, Law, MARLOW_TABLE};
+use crate::material::viscosity::ViscousMaterial;
 
 /// A law fitted to tests.
 #[derive(Debug)]
@@ -40,14 +41,35 @@ pub struct Fit {
     pub choices: Vec<(&'static str, String)>,
     /// The points (λ − 1, nominal stress in MPa) of a law that takes the curve as it is.
     pub curve: Vec<[f64; 2]>,
-    stress_measure: StressMeasure,
+    pub(super) stress_measure: StressMeasure,
     /// The settings.
     pub settings: FitSettings,
     /// How far the fit can be trusted.
     pub quality: Quality,
+    /// The Prony series of a fit to what was measured over time; its shares and times follow the law's parameters.
+    pub relaxed: Option<Relaxed>,
+}
+
+/// The relaxation of a fit.
+#[derive(Clone, Debug)]
+pub struct Relaxed {
+    /// The series, and what the data cover.
+    pub material: ViscousMaterial,
+    /// How many of the fit's parameters are the law's.
+    pub of_law: usize,
+    /// The fitted stresses at all observations of each test, in the measure of the data, in MPa.
+    pub predicted: Vec<Vec<f64>>,
+    /// The numbers of terms that were tried with their AICc.
+    pub tried: Vec<(usize, f64)>,
 }
 
 impl Fit {
+    /// The parameters of the law.
+    pub fn law_parameters(&self) -> &[Parameter] {
+        let count = self.relaxed.as_ref().map(|relaxed| relaxed.of_law);
+        &self.parameters[..count.unwrap_or(self.parameters.len())]
+    }
+
     /// The stress measure of the data.
     pub fn stress_measure(&self) -> StressMeasure {
         self.stress_measure
@@ -92,6 +114,7 @@ impl Residuals for Curve<'_> {
             stress_measure,
             ..
         } = self.fit;
+        let parameters = &parameters[..self.fit.law_parameters().len()];
         let (law, _) = law.with_values(parameters, *stress_measure, MEASURE);
         for (stress, one) in stresses.iter_mut().zip(self.at) {
             *stress = self.data.stress_of(&*law, one);
@@ -165,10 +188,12 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         stress_measure: tests[0].stress_measure,
         settings: settings.clone(),
         quality,
+        relaxed: None,
     })
 }
 
-fn check_measures(tests: &[TestData]) -> Result<(), Error> {
+/// Tests of one fit have one stress measure.
+pub(super) fn check_measures(tests: &[TestData]) -> Result<(), Error> {
     let first = &tests[0];
     let other = |test: &&TestData| test.stress_measure != first.stress_measure;
     let Some(other) = tests.iter().find(other) else {
@@ -202,10 +227,8 @@ fn take_curve(
         return Err(refuse(": takes a uniaxial test".into(), hint));
     }
     if let Some((key, _)) = settings.bounds.first() {
-        return Err(refuse(
-            format!(" has no parameter `{key}`"),
-            "leave the bound out",
-        ));
+        let message = format!(" has no parameter `{key}`");
+        return Err(refuse(message, "leave the bound out"));
     }
     let measure = test.stress_measure;
     let point = |one: &Observation| {
@@ -245,6 +268,7 @@ fn take_curve(
         stress_measure: StressMeasure::Nominal,
         settings: settings.clone(),
         quality,
+        relaxed: None,
     })
 }
 

@@ -1,9 +1,12 @@
 //! What the columns of a table mean, and the rows read by it.
 
+use super::cycles::Turns;
+use super::record::{Machine, Part};
+use super::roles::{DISPLACEMENT, FORCE, Kind, Role, check_columns, of_kind, roles};
 use super::rounding::rounding;
-use super::test_data::{Observation, StrainColumn, Test, TestData};
+use super::test_data::{Observation, StrainColumn, Test, TestData, Times};
 use crate::document::{Faulty, Head, Table};
-use crate::error::Diagnostic;
+use crate::error::{Diagnostic, Error};
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::units::Dimension;
 
@@ -17,76 +20,10 @@ pub struct Layout {
     stresses: Vec<StressColumn>,
     /// ε₂/ε₁ of nominal strains in a biaxial test without a second column.
     strain_ratio: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Strain,
-    Stress,
-    Other,
-}
-
-/// What a column's name says.
-#[derive(Clone, Copy, Debug)]
-struct Role {
-    kind: Kind,
-    measure: Option<&'static str>,
-    axis: usize,
-}
-
-const DISPLACEMENT: &str = "displacement";
-const FORCE: &str = "force";
-
-impl Role {
-    const fn strain(measure: Option<&'static str>, axis: usize) -> Self {
-        let kind = Kind::Strain;
-        Self {
-            kind,
-            measure,
-            axis,
-        }
-    }
-
-    const fn stress(measure: Option<&'static str>, axis: usize) -> Self {
-        let kind = Kind::Stress;
-        Self {
-            kind,
-            measure,
-            axis,
-        }
-    }
-
-    fn named(name: &str) -> Self {
-        let (stem, axis) = match name.rsplit_once('_') {
-            Some((stem, "1")) => (stem, 0),
-            Some((stem, "2")) => (stem, 1),
-            _ => (name, 0),
-        };
-        match stem {
-            "stretch" | "lambda" | "λ" => Self::strain(Some("stretch"), axis),
-            "strain" => Self::strain(None, axis),
-            "nominal_strain" | "engineering_strain" => Self::strain(Some("nominal"), axis),
-            "logarithmic_strain" | "true_strain" => Self::strain(Some("logarithmic"), axis),
-            "displacement" | "extension" => Self::strain(Some(DISPLACEMENT), axis),
-            "stress" => Self::stress(None, axis),
-            "nominal_stress" | "engineering_stress" | "first_piola_kirchhoff_stress" => {
-                Self::stress(Some("nominal"), axis)
-            }
-            "cauchy_stress" | "true_stress" => Self::stress(Some("cauchy"), axis),
-            "force" | "load" => Self::stress(Some(FORCE), axis),
-            _ => Self {
-                kind: Kind::Other,
-                measure: None,
-                axis,
-            },
-        }
-    }
-}
-
-/// The columns of some kind with what their names say.
-fn of_kind(roles: &[Role], kind: Kind) -> impl Iterator<Item = (usize, &Role)> {
-    let all = roles.iter().enumerate();
-    all.filter(move |(_, role)| role.kind == kind)
+    /// The specimen of a table with one column of displacements and one of forces.
+    machine: Option<Machine>,
+    /// Column and factor to s; a fault where the unit is not known.
+    time: Option<Faulty<Scaled>>,
 }
 
 impl Layout {
@@ -109,6 +46,8 @@ impl Layout {
             strains,
             stresses,
             strain_ratio,
+            machine: machine(head, &roles)?,
+            time: time(head, &roles),
         })
     }
 
@@ -121,16 +60,23 @@ impl Layout {
     /// Reads the rows.
     pub fn read(&self, head: &Head) -> Faulty<TestData> {
         let table = head.table;
-        let mut observations = Vec::with_capacity(table.rows.len() * self.stresses.len());
+        let part = self.part(head)?;
+        let (mut kept, mut left_out) = (Vec::new(), Vec::new());
         let mut turns = Turns::default();
         for (index, (row, place)) in table.rows.iter().enumerate() {
-            let [first, second] = self.strains_of(row);
+            let [first, second] = self.strains_of(row, &part);
             if [first, second].iter().any(|x| *x <= -1.0) {
                 let message = format!("the stretch is {}", 1.0 + first.min(second));
                 let hint = "stretches are greater than zero; is the column a strain?";
                 return Err(head.fault(place.clone(), message, hint));
             }
-            turns.add(index, first);
+            let observations = match part.rows.contains(&index) {
+                true => &mut kept,
+                false => &mut left_out,
+            };
+            if part.remarks.is_empty() && part.rows.contains(&index) {
+                turns.add(index, first);
+            }
             for (column, factor, axis) in &self.stresses {
                 let strains = if self.test == Test::Uniaxial && *axis == 1 {
                     [f64::NAN, first]
@@ -140,10 +86,11 @@ impl Layout {
                 observations.push(Observation {
                     strains,
                     axis: *axis,
-                    stress: row[*column] * factor,
+                    stress: part.stress(row[*column] * factor),
                 });
             }
         }
+        let observations = kept;
         let stresses = observations.iter().map(|one| one.stress.abs());
         let largest_stress = stresses.fold(0.0, f64::max);
         check_signs(head, &observations)?;
@@ -160,9 +107,43 @@ impl Layout {
             observations,
             largest_stress,
             rounding: self.rounding(table),
+            times: self.times(table, &part),
+            rise: head.quantity("ramp", Dimension::Time)?.unwrap_or(0.0),
+            left_out,
+            remarks: part.remarks,
             head: head.written(),
             warnings: turns.warning(head).into_iter().collect(),
         })
+    }
+
+    /// What of the table is fitted.
+    fn part(&self, head: &Head) -> Faulty<Part> {
+        let rows = &head.table.rows;
+        let plain = Part::whole(rows.len());
+        let strains = rows.iter().map(|(row, _)| self.strains_of(row, &plain)[0]);
+        let (column, factor, _) = self.stresses[0];
+        let stresses = rows.iter().map(|(row, _)| row[column] * factor);
+        let [strains, stresses] = [strains.collect::<Vec<_>>(), stresses.collect()];
+        Part::of(head, self.machine, &strains, &stresses)
+    }
+
+    /// The time of every observation.
+    fn times(&self, table: &Table, part: &Part) -> Times {
+        let (column, factor) = match &self.time {
+            None => return Times::None,
+            Some(Err(fault)) => return Times::Unknown(fault.clone()),
+            Some(Ok(scaled)) => *scaled,
+        };
+        let hint = "every row has a time";
+        if let Err(Error::Input(faults)) = table.check_numbers([column], hint)
+            && let Some(fault) = faults.into_iter().next()
+        {
+            return Times::Unknown(Box::new(fault));
+        }
+        let rows = &table.rows[part.rows.clone()];
+        let times = rows.iter().map(|(row, _)| row[column] * factor);
+        let each = self.stresses.len();
+        Times::Known(times.flat_map(|time| vec![time; each]).collect())
     }
 
     /// What rounding took from strains and stresses.
@@ -179,10 +160,11 @@ impl Layout {
     }
 
     /// λ − 1 along both axes in a row.
-    fn strains_of(&self, row: &[f64]) -> [f64; 2] {
+    fn strains_of(&self, row: &[f64], part: &Part) -> [f64; 2] {
         let strain = |axis: usize| {
-            let read =
-                |(column, factor): (usize, f64)| self.strain.to_nominal(row[column] * factor);
+            let read = |(column, factor): (usize, f64)| {
+                part.strain(self.strain.to_nominal(row[column] * factor))
+            };
             self.strains[axis].map_or(f64::NAN, read)
         };
         let first = strain(0);
@@ -214,59 +196,6 @@ fn check_signs(head: &Head, observations: &[Observation]) -> Faulty<()> {
         let message = "a compression test has positive strains";
         let hint = "give strains and stresses of compression a minus sign, or stretches below 1";
         return Err(head.fault(head.place("test"), message, hint));
-    }
-    Ok(())
-}
-
-/// What the names of the columns say; the first two of a file without names are strain and stress.
-fn roles(head: &Head) -> Vec<Role> {
-    let columns = &head.table.columns;
-    if columns.iter().all(|column| column.name.is_empty()) {
-        let plain = [Role::strain(None, 0), Role::stress(None, 0)];
-        return plain.into_iter().take(columns.len()).collect();
-    }
-    columns
-        .iter()
-        .map(|column| Role::named(&column.name))
-        .collect()
-}
-
-/// Refuses columns that do not fit together: each axis has one strain and one stress, all strains and all
-/// stresses have one measure.
-fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
-    let place = || head.table.columns_place.clone();
-    for (kind, what) in [(Kind::Strain, "strain"), (Kind::Stress, "stress")] {
-        let mut first: Option<&Role> = None;
-        for (column, role) in of_kind(roles, kind) {
-            let name = &head.table.columns[column].name;
-            let earlier = of_kind(roles, kind).find(|(_, other)| other.axis == role.axis);
-            if earlier.is_some_and(|(other, _)| other != column) {
-                let message = format!(
-                    "there are two columns of {what} along axis {}",
-                    role.axis + 1
-                );
-                let hint = "leave one out, or name them with _1 and _2 for the two axes";
-                return Err(head.fault(place(), message, hint));
-            }
-            if first.is_some_and(|first| first.measure != role.measure) {
-                let message = format!("`{name}` has another measure than the column before it");
-                let hint = format!("give every {what} in the same measure");
-                return Err(head.fault(place(), message, &hint));
-            }
-            first = Some(role);
-        }
-    }
-    let strains = of_kind(roles, Kind::Strain).count();
-    if strains > 1 && test != Test::Biaxial {
-        let message = format!("the strains of a {} test have one column", test.name());
-        let hint = "leave the other out, or call the test biaxial";
-        return Err(head.fault(place(), message, hint));
-    }
-    let numbered = of_kind(roles, Kind::Stress).any(|(_, role)| role.axis == 1);
-    if numbered && head.setting("direction", None)?.is_some() {
-        let hint = "leave the direction out";
-        let message = "the columns of stress name their axes, and a direction is given too";
-        return Err(head.fault(head.place("direction"), message, hint));
     }
     Ok(())
 }
@@ -328,13 +257,62 @@ fn stresses(head: &Head, roles: &[Role]) -> Faulty<(StressMeasure, Vec<StressCol
         let named = &head.table.columns[column];
         let factor = if loaded {
             let unit = head.factor("stress unit", named, Dimension::Force)?;
-            unit / head.required_quantity("area", Dimension::Area)?
+            unit / area(head)?
         } else {
             head.factor("stress unit", named, Dimension::Stress)?
         };
         columns.push((column, factor, role.axis.max(direction)));
     }
     Ok((measure, columns))
+}
+
+/// The cross-section of the specimen in mm²: as it is stated, or width times thickness.
+fn area(head: &Head) -> Faulty<f64> {
+    let stated = head.quantity("area", Dimension::Area)?;
+    let sides = ["width", "thickness"].map(|key| head.quantity(key, Dimension::Length));
+    match (stated, sides) {
+        (Some(area), [Ok(None), Ok(None)]) => Ok(area),
+        (None, [Ok(None), Ok(None)]) => {
+            let mut fault = head.missing("area", "20 mm^2");
+            let hint = fault.hint.take().unwrap_or_default();
+            fault.hint = Some(format!("{hint}; or width and thickness of the specimen"));
+            Err(fault)
+        }
+        (None, [width, thickness]) => {
+            let side = |side: Option<f64>, key| side.ok_or_else(|| head.missing(key, "2 mm"));
+            Ok(side(width?, "width")? * side(thickness?, "thickness")?)
+        }
+        (Some(_), _) => {
+            let message = "the area is stated, and width or thickness too";
+            Err(head.fault(head.place("area"), message, "state the area, or both sides"))
+        }
+    }
+}
+
+/// The specimen of a table with one column of displacements and one of forces.
+fn machine(head: &Head, roles: &[Role]) -> Faulty<Option<Machine>> {
+    let only = |kind, measure| {
+        let mut own = of_kind(roles, kind);
+        let first = own
+            .next()
+            .is_some_and(|(_, role)| role.measure == Some(measure));
+        first && own.next().is_none()
+    };
+    if !only(Kind::Strain, DISPLACEMENT) || !only(Kind::Stress, FORCE) {
+        return Ok(None);
+    }
+    Ok(Some(Machine {
+        length: head.required_quantity("length", Dimension::Length)?,
+        area: area(head)?,
+        presses: head.setting("test", None)?.as_deref() == Some("compression"),
+    }))
+}
+
+/// The column of times with its factor.
+fn time(head: &Head, roles: &[Role]) -> Option<Faulty<Scaled>> {
+    let (column, _) = of_kind(roles, Kind::Time).next()?;
+    let factor = head.factor("time unit", &head.table.columns[column], Dimension::Time);
+    Some(factor.map(|factor| (column, factor)))
 }
 
 fn no_column(head: &Head, what: &str, names: &str) -> Box<Diagnostic> {
@@ -355,41 +333,4 @@ fn strain_ratio(head: &Head) -> Faulty<f64> {
         let message = format!("the strain ratio {ratio} is not a number");
         head.fault(head.place(KEY), message, "it is ε₂/ε₁ of nominal strains")
     })
-}
-
-/// Where a strain turns back: a curve of loading alone does not.
-#[derive(Default)]
-struct Turns {
-    last: Option<f64>,
-    /// Whether the strain rose at its last change.
-    rising: Option<bool>,
-    first: Option<usize>,
-    count: usize,
-}
-
-impl Turns {
-    fn add(&mut self, row: usize, strain: f64) {
-        let changed = self.last.filter(|last| *last != strain);
-        if let Some(last) = changed {
-            let rising = strain > last;
-            if self.rising.is_some_and(|before| before != rising) {
-                self.first.get_or_insert(row);
-                self.count += 1;
-            }
-            self.rising = Some(rising);
-        }
-        self.last = Some(strain);
-    }
-
-    fn warning(&self, head: &Head) -> Option<Diagnostic> {
-        let row = self.first?;
-        let times = if self.count == 1 {
-            "once".to_owned()
-        } else {
-            format!("{} times", self.count)
-        };
-        let hint = "loading and unloading, or scatter, are fitted together; cut the file to the branch that you mean";
-        let warning = Diagnostic::warning("", format!("the strain turns back {times}")).hint(hint);
-        Some(warning.at(&head.table.source, head.table.rows[row].1.clone()))
-    }
 }

@@ -133,19 +133,21 @@ impl Assessment<'_> {
     pub fn quality(&self) -> Quality {
         let values = self.values;
         let points = self.tests.iter().map(|test| test.observations.len()).sum();
-        let deviations = Deviations::of(self.tests, self.weighting, self.law);
+        let deviations = Deviations::of(self.tests, self.weighting, &|test, row| {
+            let data = &self.tests[test];
+            data.stress_of(self.law, &data.observations[row])
+        });
         let at_bound = self.at_bound();
         let judged = self.judge(&at_bound, points, deviations.weighted);
         let (verdict, noise) = judged.unzip();
-        let (estimates, correlation) = self.estimates(&at_bound, noise.as_ref());
+        let (estimates, correlation) = estimates(values, &at_bound, noise.as_ref());
         let n = points as f64;
         let effective = verdict.map_or(n, |verdict| verdict.effective_points);
         Quality {
             points,
             sum_of_squares: deviations.squares,
             rmse: (deviations.squares / n).sqrt(),
-            nmad_percent: 100.0 * deviations.absolute
-                / deviations.measured.max(deviations.predicted),
+            nmad_percent: deviations.nmad_percent(),
             r_squared: 1.0 - deviations.squares / deviations.spread,
             aicc: aicc(
                 deviations.weighted,
@@ -159,7 +161,7 @@ impl Assessment<'_> {
             correlation,
             at_bound,
             noise,
-            stable: self.stable(),
+            stable: stable_ranges(self.law, self.tests),
             stretch_range: stretch_range(self.tests.iter()),
             untested: untested(self.tests),
             warnings: Vec::new(),
@@ -182,10 +184,10 @@ impl Assessment<'_> {
         let mut residual = DVector::zeros(rows);
         self.misfit.evaluate(self.values, residual.as_mut_slice());
         let left_over = LeftOver {
-            misfit: self.misfit,
+            curves: self.misfit.curves(),
             design: &jacobian.select_columns(&free),
             residual: &residual,
-            rounded: self.rounded() * rows as f64,
+            rounded: rounded(self.tests, self.law, self.weighting) * rows as f64,
         };
         let (mut verdict, noise) = left_over.judge()?;
         // Points that were gathered count as many as their means are the less scattered.
@@ -198,80 +200,80 @@ impl Assessment<'_> {
         }
         Some((verdict, noise))
     }
+}
 
-    /// The mean square of weighted residuals that rounding alone leaves, or that no test could tell from nothing.
-    fn rounded(&self) -> f64 {
-        const NOTHING: f64 = 1e-6;
-        let (mut sum, mut count) = (0.0, 0);
-        for test in self.tests {
-            let [strain, stress] = test.rounding;
-            for one in &test.observations {
-                let size = one
-                    .strains
-                    .iter()
-                    .fold(0.0, |most: f64, x| most.max(x.abs()));
-                let moved = Observation {
-                    strains: one.strains.map(|x| x * (1.0 + strain / size.max(strain))),
-                    ..*one
-                };
-                let by_strain = test.stress_of(self.law, &moved) - test.stress_of(self.law, one);
-                let nothing = NOTHING * test.largest_stress;
-                let square = by_strain.powi(2) + stress * stress + nothing * nothing;
-                sum += self.weighting.weight(test, one).powi(2) * square;
-                count += 1;
-            }
+/// The mean square of weighted residuals that rounding alone leaves, or that no test could tell from nothing.
+pub(super) fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighting) -> f64 {
+    const NOTHING: f64 = 1e-6;
+    let (mut sum, mut count) = (0.0, 0);
+    for test in tests {
+        let [strain, stress] = test.rounding;
+        for one in &test.observations {
+            let size = one
+                .strains
+                .iter()
+                .fold(0.0, |most: f64, x| most.max(x.abs()));
+            let moved = Observation {
+                strains: one.strains.map(|x| x * (1.0 + strain / size.max(strain))),
+                ..*one
+            };
+            let by_strain = test.stress_of(law, &moved) - test.stress_of(law, one);
+            let nothing = NOTHING * test.largest_stress;
+            let square = by_strain.powi(2) + stress * stress + nothing * nothing;
+            sum += weighting.weight(test, one).powi(2) * square;
+            count += 1;
         }
-        sum / f64::from(count)
     }
+    sum / f64::from(count)
+}
 
-    /// The values with their uncertainty, NaN where a bound holds them, and their correlation.
-    fn estimates(
-        &self,
-        fixed: &[bool],
-        noise: Option<&CurveNoise>,
-    ) -> (Vec<Estimate>, DMatrix<f64>) {
-        let size = self.values.len();
-        let mut correlation = DMatrix::from_element(size, size, f64::NAN);
-        let mut estimates: Vec<Estimate> = self
-            .values
-            .iter()
-            .map(|value| Estimate::new(*value, f64::NAN, f64::NAN))
-            .collect();
-        let Some(noise) = noise else {
-            return (estimates, correlation);
-        };
-        let free: Vec<usize> = (0..size).filter(|index| !fixed[*index]).collect();
-        let covariance = noise.covariance();
-        let error = |i: usize| covariance[(i, i)].sqrt();
-        for (i, row) in free.iter().enumerate() {
-            let unit = DVector::from_fn(free.len(), |j, _| f64::from(u8::from(i == j)));
-            let reach = noise.half_width(&unit) / error(i);
-            estimates[*row] = Estimate::new(self.values[*row], error(i), reach);
-            for (j, column) in free.iter().enumerate() {
-                correlation[(*row, *column)] = covariance[(i, j)] / (error(i) * error(j));
-            }
+/// The values with their uncertainty, NaN where a bound holds them, and their correlation.
+pub(super) fn estimates(
+    values: &[f64],
+    fixed: &[bool],
+    noise: Option<&CurveNoise>,
+) -> (Vec<Estimate>, DMatrix<f64>) {
+    let size = values.len();
+    let mut correlation = DMatrix::from_element(size, size, f64::NAN);
+    let mut estimates: Vec<Estimate> = values
+        .iter()
+        .map(|value| Estimate::new(*value, f64::NAN, f64::NAN))
+        .collect();
+    let Some(noise) = noise else {
+        return (estimates, correlation);
+    };
+    let free: Vec<usize> = (0..size).filter(|index| !fixed[*index]).collect();
+    let covariance = noise.covariance();
+    let error = |i: usize| covariance[(i, i)].sqrt();
+    for (i, row) in free.iter().enumerate() {
+        let unit = DVector::from_fn(free.len(), |j, _| f64::from(u8::from(i == j)));
+        let reach = noise.half_width(&unit) / error(i);
+        estimates[*row] = Estimate::new(values[*row], error(i), reach);
+        for (j, column) in free.iter().enumerate() {
+            correlation[(*row, *column)] = covariance[(i, j)] / (error(i) * error(j));
         }
-        (estimates, correlation)
     }
+    (estimates, correlation)
+}
 
-    fn stable(&self) -> Vec<StableRange> {
-        let range = |(_, mode): (&str, Mode)| {
-            let own = || self.tests.iter().filter(|data| is_of(data, mode));
-            StableRange {
-                mode,
-                stretches: stable_range(self.law, mode),
-                needed: match own().next() {
-                    Some(_) => stretch_range(own()),
-                    None => stretch_range(self.tests.iter()),
-                },
-            }
-        };
-        Mode::ALL.into_iter().map(range).collect()
-    }
+/// The stretches within which a law is stable in the usual tests.
+pub(super) fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Vec<StableRange> {
+    let range = |(_, mode): (&str, Mode)| {
+        let own = || tests.iter().filter(|data| is_of(data, mode));
+        StableRange {
+            mode,
+            stretches: stable_range(law, mode),
+            needed: match own().next() {
+                Some(_) => stretch_range(own()),
+                None => stretch_range(tests.iter()),
+            },
+        }
+    };
+    Mode::ALL.into_iter().map(range).collect()
 }
 
 /// nₑ ln(S/n) + 2k + 2k(k + 1)/(nₑ − k − 1); infinite where there are too few points.
-fn aicc(sum: f64, [n, effective]: [f64; 2], k: f64) -> f64 {
+pub(super) fn aicc(sum: f64, [n, effective]: [f64; 2], k: f64) -> f64 {
     let left = effective - k - 1.0;
     match left > 0.0 {
         true => effective * (sum / n).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / left,
@@ -280,7 +282,7 @@ fn aicc(sum: f64, [n, effective]: [f64; 2], k: f64) -> f64 {
 }
 
 /// The stretches between which the data of some tests lie.
-fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] {
+pub(super) fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] {
     tests
         .map(TestData::stretch_range)
         .fold([1.0, 1.0], |all, one| {
@@ -290,27 +292,32 @@ fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] {
 
 /// Sums over all observations.
 #[derive(Default)]
-struct Deviations {
-    squares: f64,
-    weighted: f64,
+pub(super) struct Deviations {
+    pub squares: f64,
+    pub weighted: f64,
     absolute: f64,
     /// Σ |σᵢ|.
     measured: f64,
     /// Σ |σ|.
     predicted: f64,
-    spread: f64,
-    largest_relative: f64,
+    pub spread: f64,
+    pub largest_relative: f64,
 }
 
 impl Deviations {
-    fn of(tests: &[TestData], weighting: Weighting, law: &dyn HyperelasticLaw) -> Self {
+    /// Of the stresses that are predicted for an observation of a test.
+    pub fn of(
+        tests: &[TestData],
+        weighting: Weighting,
+        predicted: &dyn Fn(usize, usize) -> f64,
+    ) -> Self {
         let mut sums = Self::default();
         let all = || tests.iter().flat_map(|test| &test.observations);
         let mean = all().map(|one| one.stress).sum::<f64>() / all().count() as f64;
-        for test in tests {
+        for (number, test) in tests.iter().enumerate() {
             let least = SMALLEST_SHARE * test.largest_stress;
-            for one in &test.observations {
-                let predicted = test.stress_of(law, one);
+            for (row, one) in test.observations.iter().enumerate() {
+                let predicted = predicted(number, row);
                 let difference = (one.stress - predicted).abs();
                 sums.squares += difference * difference;
                 sums.weighted += (weighting.weight(test, one) * difference).powi(2);
@@ -326,10 +333,15 @@ impl Deviations {
         }
         sums
     }
+
+    /// The normalised mean absolute difference in %.
+    pub fn nmad_percent(&self) -> f64 {
+        100.0 * self.absolute / self.measured.max(self.predicted)
+    }
 }
 
 /// The usual tests that no data cover.
-fn untested(tests: &[TestData]) -> Vec<Mode> {
+pub(super) fn untested(tests: &[TestData]) -> Vec<Mode> {
     let modes = Mode::ALL.into_iter().map(|(_, mode)| mode);
     let untested = modes.filter(|mode| !tests.iter().any(|data| is_of(data, *mode)));
     untested.collect()

@@ -8,7 +8,7 @@ use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
 
 /// What a file or the command line must say about test data.
-pub const KEYS: [&str; 9] = [
+pub const KEYS: [&str; 15] = [
     "test",
     "stress measure",
     "strain measure",
@@ -18,6 +18,12 @@ pub const KEYS: [&str; 9] = [
     "strain ratio",
     "area",
     "length",
+    "width",
+    "thickness",
+    "time unit",
+    "cycle",
+    "zero",
+    "ramp",
 ];
 
 impl TestData {

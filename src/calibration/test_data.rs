@@ -80,6 +80,17 @@ pub struct Observation {
     pub stress: f64,
 }
 
+/// The times of observations.
+#[derive(Clone, Debug)]
+pub enum Times {
+    /// The file has none.
+    None,
+    /// One for each observation, in s.
+    Known(Vec<f64>),
+    /// The file has some that cannot be read.
+    Unknown(Box<Diagnostic>),
+}
+
 /// The data of one test.
 #[derive(Clone, Debug)]
 pub struct TestData {
@@ -99,6 +110,14 @@ pub struct TestData {
     pub largest_stress: f64,
     /// Root mean squares of what rounding took from the strains (nominal) and from the stresses in MPa of the file.
     pub rounding: [f64; 2],
+    /// When the observations were made.
+    pub times: Times,
+    /// How long the strain took to the first row, where the file begins stretched, in s.
+    pub rise: f64,
+    /// What the record holds and is not fitted: slack, holds, other cycles.
+    pub left_out: Vec<Observation>,
+    /// What was taken of a record and what was taken off, in words.
+    pub remarks: Vec<String>,
     /// What the head says about source, specimen, DOI and licence.
     pub head: Statements,
     /// What to look at before trusting the data.

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::misfit::{Misfit, Rows};
+use super::misfit::Rows;
 use crate::statistics::{Curve, CurveNoise, CurveResiduals, DurbinWatson};
 
 /// What the residuals are.
@@ -93,7 +93,8 @@ const DOUBTED: f64 = 0.01;
 
 /// What a fit leaves, in the order of its curves.
 pub(super) struct LeftOver<'a> {
-    pub misfit: &'a Misfit<'a>,
+    /// The rows along each curve.
+    pub curves: Vec<Rows>,
     /// Derivatives of the residuals by the parameters that no bound holds.
     pub design: &'a DMatrix<f64>,
     pub residual: &'a DVector<f64>,
@@ -108,8 +109,8 @@ impl LeftOver<'_> {
         if estimates == 0 || self.design.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        let curves = self.misfit.curves();
-        let orders = orders(&curves);
+        let curves = &self.curves;
+        let orders = orders(curves);
         let residuals = CurveResiduals {
             design: self.design,
             residual: self.residual,
@@ -122,7 +123,7 @@ impl LeftOver<'_> {
         let doubt = tests.min_by(|a, b| a.probability.total_cmp(&b.probability));
         let correlated =
             doubt.is_some_and(|test| test.probability * (orders.len() as f64) < DOUBTED);
-        let functions = smooth_functions(&curves, self.residual.len(), estimates);
+        let functions = smooth_functions(curves, self.residual.len(), estimates);
         let pattern = residuals.pattern(&functions);
         let answer = match (self.is_rounding(), pattern) {
             (true, _) => Answer::Rounding,

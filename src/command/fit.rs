@@ -6,9 +6,11 @@ use clap::{ArgGroup, Args};
 
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
+use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use crate::calibration::{
-    self, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, TestData, Weighting,
+    self, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, Terms, TestData,
+    Weighting,
 };
 use crate::document::Statements;
 use crate::error::{Diagnostic, Error, suggestion};
@@ -31,6 +33,10 @@ pub struct FitArguments {
     /// Fit all laws, rank them, and write the best one that is stable over the data
     #[arg(long, group = "laws")]
     all: bool,
+    /// Fit a Prony series too, to tests with a column of times: relaxation, creep, cycles, several rates; with as many terms as AICc
+    /// asks for, or so many
+    #[arg(long, value_name = "TERMS", num_args = 0..=1, default_missing_value = "automatic", conflicts_with = "all")]
+    relaxation: Option<String>,
     /// absolute: differences of stress count alike; relative: relative differences do, where a stress below 1 % of its test's
     /// largest counts as that 1 %
     #[arg(long, default_value = "absolute")]
@@ -73,59 +79,6 @@ pub struct ConvertArguments {
     reading: ReadingArguments,
 }
 
-/// What the files of test data do not say themselves.
-#[derive(Args)]
-#[command(next_help_heading = "What the files do not say")]
-struct ReadingArguments {
-    /// uniaxial, planar, equibiaxial, biaxial or compression
-    #[arg(long, allow_hyphen_values = true)]
-    test: Option<String>,
-    /// nominal or cauchy
-    #[arg(long, allow_hyphen_values = true)]
-    stress: Option<String>,
-    /// stretch, nominal or logarithmic
-    #[arg(long, allow_hyphen_values = true)]
-    strain: Option<String>,
-    /// Unit of the stresses, or of the force
-    #[arg(long, value_name = "UNIT")]
-    stress_unit: Option<String>,
-    /// Unit of the strains, `-` or `%`, or of the displacement
-    #[arg(long, value_name = "UNIT", allow_hyphen_values = true)]
-    strain_unit: Option<String>,
-    /// Axis of the stress: 1 as the strain, 2 across
-    #[arg(long, allow_hyphen_values = true)]
-    direction: Option<String>,
-    /// ε₂/ε₁ of a biaxial test
-    #[arg(long, allow_hyphen_values = true)]
-    strain_ratio: Option<String>,
-    /// Cross-section of the specimen, where the file has forces
-    #[arg(long, allow_hyphen_values = true)]
-    area: Option<String>,
-    /// Length of the specimen, where the file has displacements
-    #[arg(long, allow_hyphen_values = true)]
-    length: Option<String>,
-}
-
-impl ReadingArguments {
-    fn reading(self) -> Statements {
-        let given = [
-            self.test,
-            self.stress,
-            self.strain,
-            self.stress_unit,
-            self.strain_unit,
-            self.direction,
-            self.strain_ratio,
-            self.area,
-            self.length,
-        ];
-        let pairs = calibration::KEYS.into_iter().zip(given);
-        pairs
-            .filter_map(|(key, value)| Some((key.to_owned(), value?)))
-            .collect()
-    }
-}
-
 /// A card by its name or path.
 pub fn load(name: &str) -> Result<Card, Error> {
     Card::load(name, Path::new("."))
@@ -151,7 +104,12 @@ pub fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Ve
 /// Fits, prints, and writes card, picture and figures.
 pub fn fit(arguments: FitArguments) -> Outcome {
     arguments.printed.choose();
-    let reading = arguments.reading.reading();
+    let mut reading = arguments.reading.reading();
+    let terms = arguments.relaxation.as_deref().map(terms).transpose()?;
+    if terms.is_some() {
+        // What relaxes is the whole record.
+        reading.entry("cycle".into()).or_insert("all".into());
+    }
     let files = arguments.data.iter();
     let tests = together(files.map(|path| TestData::read(path, &reading)))?;
     tests.iter().for_each(|test| warn(&test.warnings));
@@ -164,7 +122,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     let fit = match &arguments.law {
         Some(name) => {
             progress.tell(name);
-            calibration::fit(law(name)?, &tests, &settings)?
+            fitted(law(name)?, &tests, &settings, terms)?
         }
         None => {
             progress.tell("all laws");
@@ -202,6 +160,35 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         fit_message::fit(&fit, &tests)
     ))?;
     Ok(0)
+}
+
+/// How many terms a Prony series is asked for.
+fn terms(text: &str) -> Result<Terms, Error> {
+    let number = text.parse().ok().filter(|terms| *terms <= Terms::MOST);
+    match (text, number) {
+        ("automatic", _) => Ok(Terms::Automatic),
+        (_, Some(terms)) => Ok(Terms::Exactly(terms)),
+        _ => Err(Error::input(
+            format!("--relaxation {text} is no number of terms"),
+            format!(
+                "a number up to {}, or nothing, for as many as AICc asks for",
+                Terms::MOST
+            ),
+        )),
+    }
+}
+
+/// A law fitted to tests, with a Prony series where terms are asked for.
+fn fitted(
+    law: &'static Law,
+    tests: &[TestData],
+    settings: &FitSettings,
+    terms: Option<Terms>,
+) -> Result<Fit, Error> {
+    match terms {
+        Some(terms) => calibration::fit_relaxation(law, tests, settings, terms),
+        None => calibration::fit(law, tests, settings),
+    }
 }
 
 /// What is written of a fit.
@@ -324,7 +311,8 @@ pub fn refit(name: &str) -> Outcome {
         bounds: bounds(&record.bounds)?,
         starts: record.starts,
     };
-    let fit = calibration::fit(law(&card.law_name)?, &tests, &settings)?;
+    let terms = record.relaxation_terms.map(Terms::Exactly);
+    let fit = fitted(law(&card.law_name)?, &tests, &settings, terms)?;
     let (text, same) = fit_message::refit(&card, &fit, &tests);
     print(&text)?;
     Ok(u8::from(!same))

@@ -17,7 +17,11 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
             test.stress_measure.name(),
             test.observations.len()
         );
+        for remark in &test.remarks {
+            text += &format!("               {remark}\n");
+        }
     }
+    text += &relaxation(fit);
     text += &parameters(fit);
     text += &correlation(fit);
     text += &figures(fit);
@@ -33,6 +37,41 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
         text += &format!("  warning: {warning}\n");
     }
     text
+}
+
+/// How many terms, and what the data cover.
+fn relaxation(fit: &Fit) -> String {
+    let Some(relaxed) = &fit.relaxed else {
+        return String::new();
+    };
+    let tried = relaxed.tried.iter();
+    let tried: Vec<_> = tried
+        .map(|(terms, aicc)| format!("{terms}: {aicc:.1}"))
+        .collect();
+    let material = &relaxed.material;
+    let mut text = format!(
+        "  terms        {} of a Prony series (AICc {})\n",
+        material.relaxation.len(),
+        tried.join(", ")
+    );
+    if let Some([low, high]) = material.covered.times {
+        text += &format!(
+            "  times        {} to {} s are resolved\n",
+            digits(low, 4),
+            digits(high, 4)
+        );
+    }
+    if let Some([low, high]) = material.covered.rates {
+        text += &format!(
+            "  rates        {} to {} 1/s\n",
+            digits(low, 4),
+            digits(high, 4)
+        );
+    }
+    text + &format!(
+        "  at once      a sudden stress is {:.4} times that of long times, whose law this is\n",
+        material.relaxation_function(0.0)
+    )
 }
 
 fn parameters(fit: &Fit) -> String {
@@ -175,19 +214,22 @@ const SAME: f64 = 1e-3;
 pub fn refit(card: &Card, fit: &Fit, tests: &[TestData]) -> (String, bool) {
     let mut text = format!("{}: {}\n", card.name, card.title);
     let mut worst = 0.0_f64;
-    let parameters = card.parameters.iter().zip(&fit.parameters);
+    let terms = card.viscosity.relaxation.iter();
+    let terms = terms.flat_map(|term| [term.share, term.time]);
+    let old = card.parameters.iter().map(|old| old.value).chain(terms);
+    let parameters = old.zip(&fit.parameters);
     for ((old, new), estimate) in parameters.zip(&fit.quality.estimates) {
-        let change = (new.value - old.value).abs();
+        let change = (new.value - old).abs();
         // A parameter at a bound has no standard error.
         let scale = match estimate.standard_error {
             error if error > 0.0 => error,
-            _ => 1e-3 * old.value.abs().max(f64::MIN_POSITIVE),
+            _ => 1e-3 * old.abs().max(f64::MIN_POSITIVE),
         };
         worst = worst.max(change / scale);
         text += &format!(
             "  {:<12} card {:.8e}   refitted {:.8e} {}   {:.1e} standard errors apart\n",
-            old.key,
-            old.value,
+            new.key,
+            old,
             new.value,
             new.unit(),
             change / scale

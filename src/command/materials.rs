@@ -10,7 +10,7 @@ use super::terminal::{Outcome, print};
 use crate::error::Error;
 use crate::material::registry::{CARDS, LAWS};
 use crate::output;
-use crate::results::{Drawing, comparison_chart, material_chart};
+use crate::results::{Drawing, card_curves, comparison_chart};
 
 #[derive(Subcommand)]
 pub enum Materials {
@@ -22,7 +22,8 @@ pub enum Materials {
         /// Name of a card that comes along, or path of one ending in .toml
         card: String,
     },
-    /// Draw the curves of a card: uniaxial, planar and equibiaxial tension, simple shear
+    /// Draw the curves of a card: uniaxial, planar and equibiaxial tension, simple shear; where it relaxes, its modulus over time, and
+    /// storage and loss modulus over frequency
     #[command(
         after_help = "Sample: gelbench materials plot pva-10    writes output/materials/pva-10_curves.png"
     )]
@@ -79,6 +80,7 @@ Samples:
   gelbench materials fit tensile.csv --law yeoh
   gelbench materials fit uniaxial.csv equibiaxial.csv planar.csv --law ogden-3 --weighting relative
   gelbench materials fit tensile.csv --all
+  gelbench materials fit ramp_and_hold.csv --law neo-hooke --relaxation
   gelbench materials fit machine.csv --law gent --test uniaxial --area \"20 mm^2\" --length \"5 cm\" --bound jm=5..200";
 
 /// Runs one of the commands.
@@ -119,7 +121,7 @@ fn plot(name: &str, file: Option<PathBuf>) -> Outcome {
     let file =
         file.unwrap_or_else(|| Path::new("output/materials").join(format!("{stem}_curves.png")));
     output::refuse_inputs(&file, &[Path::new(name)])?;
-    save_picture(&file, &material_chart(&card).into())?;
+    save_picture(&file, &card_curves(&card))?;
     print(&format!("{} written\n", file.display()))?;
     Ok(0)
 }

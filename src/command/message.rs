@@ -129,6 +129,14 @@ fn in_time(card: &Card) -> String {
         let (share, time) = (100.0 * term.share, term.time);
         text += &format!("  relaxation {share:.4} % of a sudden stress in τ = {time} s\n");
     }
+    for (what, range, unit) in [
+        ("times", viscosity.covered.times, "s"),
+        ("rates", viscosity.covered.rates, "1/s"),
+    ] {
+        if let Some([low, high]) = range {
+            text += &format!("  relaxation measured at {what} of {low:.4} to {high:.4} {unit}\n");
+        }
+    }
     if !viscosity.relaxation.is_empty() {
         let at_once = viscosity.relaxation_function(0.0);
         text += &format!(

@@ -164,10 +164,9 @@ impl<'a> Head<'a> {
     /// # Errors
     /// A fault where it is not stated, or no unit of the dimension.
     pub fn factor(&self, key: &str, column: &Column, dimension: Dimension) -> Faulty<f64> {
-        let example = if dimension == Dimension::Ratio {
-            "-"
-        } else {
-            "MPa"
+        let example = match dimension {
+            Dimension::Ratio => "-",
+            other => other.internal_unit(),
         };
         let unit = self.setting(key, column.unit.as_deref())?;
         let unit = unit.ok_or_else(|| self.missing(key, example))?;

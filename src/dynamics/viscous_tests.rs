@@ -18,13 +18,14 @@ fn prony(share: f64, time: f64) -> ViscousMaterial {
     ViscousMaterial {
         shear_viscosity: 0.0,
         relaxation: vec![Relaxation { share, time }],
+        ..ViscousMaterial::default()
     }
 }
 
 fn fluid(shear_viscosity: f64) -> ViscousMaterial {
     ViscousMaterial {
         shear_viscosity,
-        relaxation: Vec::new(),
+        ..ViscousMaterial::default()
     }
 }
 

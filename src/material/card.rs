@@ -8,7 +8,7 @@ use super::law::HyperelasticLaw;
 use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS, Law};
-use super::viscosity::{Relaxation, ViscousMaterial};
+use super::viscosity::{Covered, Relaxation, ViscousMaterial};
 use super::volume::Volume;
 use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
 use crate::error::{Diagnostic, Error, nearest};
@@ -78,6 +78,8 @@ pub struct FitRecord {
     pub starts: usize,
     /// Bounds as `key=low..high`.
     pub bounds: Vec<String>,
+    /// How many terms of a Prony series were fitted; `None` where the law alone was.
+    pub relaxation_terms: Option<usize>,
 }
 
 impl Card {
@@ -291,10 +293,29 @@ pub fn read_viscosity(section: &Section) -> ViscousMaterial {
         let hint = "they are parts of the stress right after a sudden stretch; what remains is that of long times";
         section.fault("relaxation", "the shares must add up to less than 1", hint);
     }
+    let range = |key: &'static str, dimension, bound| {
+        let values = match section.has(key) {
+            true => section.quantities(key, dimension, bound),
+            false => return None,
+        };
+        match values[..] {
+            [low, high] if low <= high => Some([low, high]),
+            _ => {
+                let hint = "the smallest and the largest one that the data cover";
+                section.fault(key, "must be two values in order", hint);
+                None
+            }
+        }
+    };
+    let covered = Covered {
+        times: range("times", Dimension::Time, Bound::Positive),
+        rates: range("rates", Dimension::Frequency, Bound::Positive),
+    };
     section.unknown_keys();
     ViscousMaterial {
         shear_viscosity,
         relaxation,
+        covered,
     }
 }
 
@@ -312,6 +333,9 @@ fn read_fit(section: &Section) -> FitRecord {
         weighting: section.text("weighting"),
         starts: section.count("starts", 1, 1000),
         bounds: optional("bounds"),
+        relaxation_terms: section
+            .has("relaxation_terms")
+            .then(|| section.count("relaxation_terms", 0, 6)),
     };
     section.unknown_keys();
     record

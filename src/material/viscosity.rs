@@ -34,6 +34,17 @@ pub struct ViscousMaterial {
     pub shear_viscosity: f64,
     /// The Prony series.
     pub relaxation: Vec<Relaxation>,
+    /// What the data behind it cover.
+    pub covered: Covered,
+}
+
+/// Times and rates within which a viscous material was measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Covered {
+    /// The shortest interval and the longest duration of the data in s.
+    pub times: Option<[f64; 2]>,
+    /// The slowest and the fastest stretching in 1/s.
+    pub rates: Option<[f64; 2]>,
 }
 
 /// What a branch keeps and takes up in a step.
@@ -56,6 +67,23 @@ impl ViscousMaterial {
         let terms = self.relaxation.iter().enumerate();
         let rest = terms.map(|(i, term)| self.beta(i) * (-time / term.time).exp());
         1.0 + rest.sum::<f64>()
+    }
+
+    /// Storage and loss modulus of a strip at small strain in MPa, at an angular frequency ω in rad/s, with its modulus
+    /// E∞ of long times:
+    ///
+    /// ```text
+    /// E′ = E∞ (1 + Σ βᵢ x²/(1 + x²)),   E″ = E∞ Σ βᵢ x/(1 + x²) + 3 η ω,   x = ω τᵢ
+    /// ```
+    pub fn complex_modulus(&self, modulus: f64, angular_frequency: f64) -> [f64; 2] {
+        let mut found = [modulus, 3.0 * self.shear_viscosity * angular_frequency];
+        for (i, term) in self.relaxation.iter().enumerate() {
+            let x = angular_frequency * term.time;
+            let part = modulus * self.beta(i) * x / (1.0 + x * x);
+            found[0] += part * x;
+            found[1] += part;
+        }
+        found
     }
 
     /// βᵢ = gᵢ/(1 − Σ g).
@@ -175,6 +203,7 @@ mod tests {
                     time: 0.1,
                 },
             ],
+            ..ViscousMaterial::default()
         }
     }
 

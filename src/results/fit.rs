@@ -4,11 +4,15 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::relaxation::relaxation_picture;
+use super::stress_unit::readable;
 use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
 use crate::calibration::{Fit, Observation, Test, TestData};
 use crate::material::curve::{Mode, samples};
 
 const INK: [u8; 3] = [60, 60, 60];
+/// What a record holds and is not fitted.
+const LEFT_OUT: [u8; 3] = [190, 190, 190];
 
 /// The observations of one file along one axis.
 struct Group<'a> {
@@ -70,6 +74,9 @@ impl Group<'_> {
 
 /// Data with the fitted curve and its 95 % band, and the residuals below.
 pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
+    if let Some(relaxed) = &fit.relaxed {
+        return relaxation_picture(fit, relaxed, tests);
+    }
     let zero = fit.quality.stretch_range.map(|stretch| [stretch, 0.0]);
     let mut drawn = Drawn {
         residuals: vec![Line::new("", zero, INK, Stroke::Solid)],
@@ -126,6 +133,18 @@ impl Drawn {
         let colour = group.colour.map(|part| part / 2);
         self.curves
             .extend(Line::within("", &curve, colour, [low, high]));
+        let left_out = group.data.left_out.iter();
+        let left_out = left_out.filter(|one| one.axis == group.axis).copied();
+        let left_out = thinned(left_out.collect());
+        if !left_out.is_empty() {
+            let points = left_out.iter().map(|one| [group.stretch(one), one.stress]);
+            let label = match self.points.is_empty() {
+                true => "left out: slack, holds, other cycles",
+                false => "",
+            };
+            self.bands
+                .push(Line::new(label, points, LEFT_OUT, Stroke::Points));
+        }
         let shown = thinned(group.observations().copied().collect());
         let measured = shown.iter().map(|one| [group.stretch(one), one.stress]);
         let measured = Line::new(&group.label, measured, group.colour, Stroke::Points);
@@ -143,7 +162,7 @@ impl Drawn {
             (true, "fitted curve", Stroke::Solid),
             (self.any_unstable, "unstable (Drucker)", Stroke::Dashed),
             (
-                !self.bands.is_empty(),
+                self.bands.iter().any(|line| line.stroke == Stroke::Filled),
                 "95 % band of the curve",
                 Stroke::Filled,
             ),
@@ -157,30 +176,6 @@ impl Drawn {
             .chain(legend)
             .collect()
     }
-}
-
-/// A unit of stress in which numbers are neither long nor tiny.
-#[derive(Clone, Copy)]
-struct Unit {
-    name: &'static str,
-    per_mpa: f64,
-}
-
-impl Unit {
-    fn scale(self, lines: &mut [Line]) {
-        for point in lines.iter_mut().flat_map(|line| &mut line.points) {
-            point[1] *= self.per_mpa;
-        }
-    }
-}
-
-fn readable(largest_mpa: f64) -> Unit {
-    let units =
-        [("MPa", 1.0), ("kPa", 1e3), ("Pa", 1e6)].map(|(name, per_mpa)| Unit { name, per_mpa });
-    let large = units
-        .into_iter()
-        .find(|unit| unit.per_mpa * largest_mpa >= 0.1);
-    large.unwrap_or(units[2])
 }
 
 /// At most a thousand observations: more markers than that are a blot.
@@ -216,6 +211,8 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "test": test.test.name(),
             "stress_measure": test.stress_measure.name(),
             "points": test.observations.len(),
+            "remarks": test.remarks,
+            "points_left_out": test.left_out.len(),
         })).collect::<Vec<_>>(),
         "weighting": fit.settings.weighting.name(),
         "residuals": fit.settings.weighting.describe(),
@@ -235,6 +232,13 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "interval_95_percent": told.then_some(estimate.interval),
             "at_bound": at_bound,
         })).collect::<Vec<_>>(),
+        "relaxation": fit.relaxed.as_ref().map(|relaxed| json!({
+            "shares": relaxed.material.relaxation.iter().map(|term| term.share).collect::<Vec<_>>(),
+            "times_s": relaxed.material.relaxation.iter().map(|term| term.time).collect::<Vec<_>>(),
+            "terms_and_aicc": relaxed.tried,
+            "resolved_times_s": relaxed.material.covered.times,
+            "rates_per_s": relaxed.material.covered.rates,
+        })),
         "correlation": rows.map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
         "points": quality.points,
         "sum_of_squares_MPa2": quality.sum_of_squares,

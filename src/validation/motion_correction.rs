@@ -40,7 +40,7 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
                     Dimension::Viscosity,
                     Bound::Positive,
                 ),
-                relaxation: Vec::new(),
+                ..ViscousMaterial::default()
             },
         },
         release: Release {

@@ -83,8 +83,8 @@ fn energy() -> Result<Vec<Check>, Error> {
 fn relaxation() -> Result<Check, Error> {
     let (share, time) = (0.3, 2.0);
     let material = ViscousMaterial {
-        shear_viscosity: 0.0,
         relaxation: vec![Relaxation { share, time }],
+        ..ViscousMaterial::default()
     };
     let problem = problem(vec![0.3]);
     let elements = FiniteElements::new(&problem, [9, 3], Element::Q2);

@@ -1,7 +1,7 @@
 //! Reading of test data.
 
 use super::*;
-use crate::calibration::Observation;
+use crate::calibration::{Observation, Times};
 
 fn read(text: &str, reading: &[(&str, &str)]) -> Result<TestData, String> {
     let reading = reading
@@ -228,4 +228,168 @@ fn a_test_stretched_across_is_drawn_over_that_axis() {
     assert!((data.stretch_range()[1] - 1.2).abs() < 1e-15);
     let path = data.path(0, 10);
     assert!((path[10].strains[1] - 0.2).abs() < 1e-15 && path[10].strains[0] == 0.0);
+}
+
+/// Force and displacement of neo-Hooke with E = 0.3 MPa: a specimen of 20 mm × 5 mm × 2 mm that is slack over so many mm.
+fn force(u: f64, slack: f64) -> f64 {
+    let l = 1.0 + (u - slack).max(0.0) / 20.0;
+    10.0 * 0.1 * (l - l.powi(-2))
+}
+
+/// Three cycles to 6 mm with a hold at each end, as a machine records them.
+fn record(slack: f64, names: &str) -> String {
+    let mut text = format!("# test: uniaxial\n{names}\n");
+    let mut row = |time: f64, u: f64| {
+        let scatter = 1e-3 * ((12.9898 * time).sin() + (78.233 * time).cos());
+        text += &format!("{time},{u},{}\n", force(u, slack) + 0.02 + scatter);
+    };
+    for i in 0..600 {
+        let t = 0.1 * f64::from(i);
+        let phase = t % 20.0;
+        row(
+            t,
+            if phase < 8.0 {
+                0.75 * phase
+            } else if phase < 10.0 {
+                6.0
+            } else if phase < 18.0 {
+                0.75 * (18.0 - phase)
+            } else {
+                0.0
+            },
+        );
+    }
+    text
+}
+
+const SPECIMEN: [(&str, &str); 3] = [
+    ("length", "20 mm"),
+    ("width", "5 mm"),
+    ("thickness", "2 mm"),
+];
+
+#[test]
+fn cycles_and_slack_of_a_record_are_found_and_told() {
+    for names in [
+        "Time [s],Displacement [mm],Force [N]",
+        "Zeit (s),Standardweg (mm),Standardkraft (N)",
+        "时间,位移,力\n(s),(mm),(N)",
+    ] {
+        let data = read(&record(1.3, names), &SPECIMEN).unwrap();
+        let told = data.remarks.join("\n");
+        assert!(told.contains("3 cycles found"), "{told}");
+        assert!(
+            told.contains("the loading branch of the last is fitted"),
+            "{told}"
+        );
+        assert!(told.contains("slack up to 1.3"), "{told}");
+        let (first, last) = (
+            &data.observations[0],
+            &data.observations[data.observations.len() - 1],
+        );
+        assert!(
+            first.strains[0] >= 0.0 && first.strains[0] < 0.01,
+            "{first:?}"
+        );
+        assert!((last.strains[0] - 4.7 / 20.0).abs() < 2e-3, "{last:?}");
+        for one in &data.observations {
+            let expected = force(20.0 * one.strains[0], 0.0) / 10.0;
+            assert!((one.stress - expected).abs() < 1e-3, "{one:?} {expected}");
+        }
+        let Times::Known(times) = &data.times else {
+            panic!("{:?}", data.times)
+        };
+        assert_eq!(times.len(), data.observations.len());
+        assert!(times[0] > 40.0 && times[times.len() - 1] < 49.0);
+        assert_eq!(data.observations.len() + data.left_out.len(), 600);
+        assert!(data.warnings.is_empty(), "{:?}", data.warnings);
+    }
+}
+
+#[test]
+fn the_cycle_and_the_zero_can_be_chosen() {
+    let text = record(1.3, "Time [s],Displacement [mm],Force [N]");
+    let with = |more: &[(&str, &str)]| read(&text, &[&SPECIMEN, more].concat());
+    let first = with(&[("cycle", "first"), ("zero", "none")]).unwrap();
+    let Times::Known(times) = &first.times else {
+        panic!()
+    };
+    assert!(times[times.len() - 1] <= 8.1, "{}", times[times.len() - 1]);
+    assert!((first.observations[1].strains[0] - 0.075 / 20.0).abs() < 1e-15);
+    let all = with(&[("cycle", "all"), ("zero", "1.3 mm")]).unwrap();
+    assert!(
+        all.observations.len() > 580 && all.remarks[0].contains("all rows"),
+        "{:?}",
+        all.remarks
+    );
+    let by_force = with(&[("cycle", "2"), ("zero", "0.1 N")]).unwrap();
+    assert!(
+        by_force.remarks[1].contains("1.8"),
+        "{:?}",
+        by_force.remarks
+    );
+    for (key, value, message) in [
+        ("cycle", "4", "there is no such cycle: 3 cycles ("),
+        ("cycle", "lst", "the cycle `lst` is not known"),
+        ("zero", "0.3", "the zero `0.3` is not known"),
+        ("zero", "900 N", "does not pass the stated zero"),
+        ("area", "10 mm^2", "width or thickness too"),
+    ] {
+        let told = with(&[(key, value)]).unwrap_err();
+        assert!(told.contains(message), "{told}");
+    }
+    let told = read(&text, &[("length", "20 mm")]).unwrap_err();
+    assert!(
+        told.contains("the area is not stated") && told.contains("width and thickness"),
+        "{told}"
+    );
+    let told = read(&text, &SPECIMEN[..2]).unwrap_err();
+    assert!(told.contains("the thickness is not stated"), "{told}");
+    let strains =
+        "# test: uniaxial; zero: 1 mm\nstretch [-],nominal_stress [MPa]\n1.1,0.1\n1.2,0.2\n";
+    assert!(
+        read(strains, &[])
+            .unwrap_err()
+            .contains("displacements and forces alone")
+    );
+}
+
+/// Compression that a machine counts as positive; a tension test with the same file would stay as it is.
+#[test]
+fn compression_is_negative_here_and_one_pull_stays_as_it_is() {
+    let rows: String = (0..50)
+        .map(|i| {
+            let u = 0.1 * f64::from(i);
+            let l = 1.0 - u / 20.0;
+            format!("{u},{}\n", 10.0 * 0.1 * (l.powi(-2) - l))
+        })
+        .collect();
+    let text = format!("extension [mm],load [N]\n{rows}");
+    let pressed = read(&text, &[&SPECIMEN[..], &[("test", "compression")]].concat()).unwrap();
+    assert!(
+        pressed
+            .observations
+            .iter()
+            .all(|one| one.strains[0] <= 0.0 && one.stress <= 0.0)
+    );
+    assert!(pressed.remarks[0].contains("counts compression as positive"));
+    let pulled = read(&text, &[&SPECIMEN[..], &[("test", "uniaxial")]].concat()).unwrap();
+    assert!(
+        pulled.remarks.is_empty() && pulled.left_out.is_empty(),
+        "{:?}",
+        pulled.remarks
+    );
+    assert_eq!(pulled.observations.len(), 50);
+    assert_eq!(pulled.observations[7].strains[0], 0.1 * 7.0 * (1.0 / 20.0));
+}
+
+#[test]
+fn a_time_without_a_known_unit_is_no_fault_of_the_rest() {
+    let text =
+        "# test: uniaxial\ntime [sek],stretch [-],nominal_stress [MPa]\n0,1.1,0.1\n1,1.2,0.2\n";
+    let data = read(text, &[]).unwrap();
+    let Times::Unknown(fault) = &data.times else {
+        panic!("{:?}", data.times)
+    };
+    assert!(fault.to_string().contains("the time unit"), "{fault}");
 }

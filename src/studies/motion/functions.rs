@@ -4,6 +4,7 @@ use crate::document::{Bound, Section};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
 use crate::material::scalar_function::ScalarFunction;
+use crate::statistics::extremes;
 use crate::units::Dimension;
 
 /// Stretches that a grip may reach.
@@ -87,6 +88,26 @@ pub fn largest(motion: &TimeFunction) -> f64 {
             .iter()
             .fold(f64::NEG_INFINITY, |most, point| most.max(point[1])),
     }
+}
+
+/// The slowest and the fastest rate of a grip's motion in 1/s, rests left out; nothing where it rests.
+pub fn rates(motion: &TimeFunction) -> Option<[f64; 2]> {
+    let own: Vec<f64> = match motion {
+        TimeFunction::Constant(_) => Vec::new(),
+        TimeFunction::Ramp { begin, end } => vec![1.0 / (end - begin)],
+        TimeFunction::Sine {
+            amplitude,
+            frequency,
+            ..
+        } => vec![std::f64::consts::TAU * frequency * amplitude.abs()],
+        TimeFunction::Table(points) => {
+            let pairs = points.windows(2);
+            let rates = pairs.map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]));
+            rates.map(f64::abs).collect()
+        }
+    };
+    let [slowest, fastest] = extremes(own.into_iter().filter(|rate| *rate > 0.0));
+    (slowest <= fastest).then_some([slowest, fastest])
 }
 
 /// Points of a table whose times ascend.

@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::functions::{GripMotion, STRETCHES, largest, read_damping, read_grip, read_stiffness};
+use super::functions::{
+    GripMotion, STRETCHES, largest, rates, read_damping, read_grip, read_stiffness,
+};
 use super::problem::{MovingPlate, PointForce, Probe, Tolerances};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
@@ -12,7 +14,7 @@ use crate::finite_element::Element;
 use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
 use crate::material::Card;
 use crate::material::card::read_viscosity;
-use crate::material::viscosity::ViscousMaterial;
+use crate::material::viscosity::{Covered, ViscousMaterial};
 use crate::problem::ClampedPlate;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections;
@@ -48,6 +50,8 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let forces = tables(root, "force", |one| read_force(one, &problem));
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
+    let covered = &material.viscosity.covered;
+    check_covered(root, &in_time, time.as_ref().zip(grip.as_ref()), covered);
     let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity);
     let section = root.section("finite_element");
     let element = section.choice("element", &Element::NAMES);
@@ -151,6 +155,39 @@ fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotio
     }
     section.unknown_keys();
     (start, grip)
+}
+
+/// Warns where a motion lasts longer, or is faster or slower, than the tests behind the relaxation.
+fn check_covered(
+    root: &Section,
+    in_time: &Section,
+    motion: Option<(&TimeSettings, &GripMotion)>,
+    covered: &Covered,
+) {
+    let Some((time, grip)) = motion else {
+        return;
+    };
+    if let Some([_, longest]) = covered.times
+        && time.duration > longest * (1.0 + 1e-9)
+    {
+        let message = format!("the relaxation was measured over {longest} s, and this is longer");
+        let hint = "what relaxes later than the tests lasted is not in the card: take it from a longer test";
+        in_time.warning("duration", &message, hint);
+    }
+    let (Some([low, high]), Some([slowest, fastest])) = (covered.rates, rates(&grip.stretch))
+    else {
+        return;
+    };
+    let outside = match (fastest > high * (1.0 + 1e-9), slowest < low * (1.0 - 1e-9)) {
+        (true, _) => fastest,
+        (false, true) => slowest,
+        (false, false) => return,
+    };
+    let message = format!(
+        "the grip moves at {outside:.4} 1/s, and the relaxation was measured at {low:.4} to {high:.4} 1/s"
+    );
+    let hint = "the material may be stiffer at other rates than the card knows: take it from tests at this one";
+    root.section("grip").warning("motion", &message, hint);
 }
 
 fn read_gravity(section: &Section) -> [f64; 2] {

@@ -247,6 +247,11 @@ fn hint(key: &str) -> &'static str {
         "direction" => "1 or 2",
         "strain ratio" => "0.5",
         "area" => "10 mm^2",
+        "width" | "thickness" => "2 mm",
+        "ramp" => "0.5 s",
+        "time unit" => "s, min …",
+        "cycle" => "first, last, all",
+        "zero" => "automatic, none, 0.4 mm",
         _ => "50 mm",
     }
 }

@@ -1,0 +1,227 @@
+//! The cycles of a record: where a strain turns back, and the branches between.
+
+use std::ops::Range;
+
+use crate::document::{Faulty, Head};
+use crate::error::Diagnostic;
+
+/// The part of a record that is fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cycle {
+    /// The loading branch of the first cycle.
+    First,
+    /// That of the last cycle.
+    Last,
+    /// That of a cycle, counted from 1.
+    Number(usize),
+    /// All rows.
+    All,
+}
+
+/// The key under which a file or the command line says it.
+pub const CYCLE: &str = "cycle";
+
+impl Cycle {
+    /// What is stated, if anything is.
+    pub fn stated(head: &Head) -> Faulty<Option<Self>> {
+        let Some(text) = head.setting(CYCLE, None)? else {
+            return Ok(None);
+        };
+        let number = || text.parse().ok().filter(|number| *number > 0);
+        let cycle = match &*text {
+            "first" => Some(Self::First),
+            "last" => Some(Self::Last),
+            "all" => Some(Self::All),
+            _ => number().map(Self::Number),
+        };
+        let hint = "first, last, all, or the number of a cycle";
+        let message = || format!("the cycle `{text}` is not known");
+        cycle
+            .map(Some)
+            .ok_or_else(|| head.fault(head.place(CYCLE), message(), hint))
+    }
+}
+
+/// A swing of the strain smaller than this share of its whole range is none.
+const SMALLEST_SWING: f64 = 0.05;
+/// Strains within this share of a branch's end are those of a hold there.
+const HOLD: f64 = 1e-3;
+/// A hold has at least this share of the rows.
+const HOLD_ROWS: f64 = 0.03;
+
+/// A record, split.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branches {
+    /// The rows of each loading branch, without the holds at its ends.
+    pub loading: Vec<Range<usize>>,
+    /// The strain at the end of each.
+    pub ends: Vec<f64>,
+    /// Whether the strain turns back or holds anywhere.
+    pub is_one_pull: bool,
+    rows: usize,
+}
+
+impl Branches {
+    /// Splits the strains of a record; away from the first one is loading.
+    pub fn of(strains: &[f64]) -> Self {
+        let first = strains.first().copied().unwrap_or(0.0);
+        let far = strains.iter().map(|x| x - first);
+        let far = far.fold(
+            0.0,
+            |most: f64, x| if x.abs() > most.abs() { x } else { most },
+        );
+        let away: Vec<f64> = strains.iter().map(|x| (x - first) * far.signum()).collect();
+        let turns = turns(&away);
+        let pairs = turns
+            .windows(2)
+            .filter(|pair| away[pair[0]] < away[pair[1]]);
+        let loading: Vec<_> = pairs.map(|pair| between_holds(&away, pair)).collect();
+        let moving: usize = loading.iter().map(|(rows, _)| rows.len()).sum();
+        let few = (HOLD_ROWS * away.len() as f64).max(3.0);
+        let is_one_pull = turns.len() <= 2 && (away.len() - moving) as f64 <= few;
+        Self {
+            ends: loading.iter().map(|(_, end)| strains[*end]).collect(),
+            loading: loading.into_iter().map(|(rows, _)| rows).collect(),
+            is_one_pull,
+            rows: away.len(),
+        }
+    }
+
+    /// The rows of the chosen part; nothing where there is no such cycle.
+    pub fn rows(&self, cycle: Cycle) -> Option<Range<usize>> {
+        match cycle {
+            Cycle::All => Some(0..self.rows),
+            _ if self.is_one_pull && cycle != Cycle::All => Some(0..self.rows),
+            Cycle::First => self.loading.first().cloned(),
+            Cycle::Last => self.loading.last().cloned(),
+            Cycle::Number(number) => self.loading.get(number - 1).cloned(),
+        }
+    }
+}
+
+/// The rows at which values turn back by more than a small swing, with both ends.
+fn turns(values: &[f64]) -> Vec<usize> {
+    let [low, high] = crate::statistics::extremes(values.iter().copied());
+    let swing = SMALLEST_SWING * (high - low);
+    let mut turns = Vec::new();
+    let (mut lowest, mut highest) = (0, 0);
+    let mut rising = None;
+    for (row, value) in values.iter().enumerate() {
+        if *value < values[lowest] {
+            lowest = row;
+        }
+        if *value > values[highest] {
+            highest = row;
+        }
+        let turned_up = rising != Some(true) && value - values[lowest] > swing;
+        let turned_down = rising != Some(false) && values[highest] - value > swing;
+        if turned_up || turned_down {
+            turns.push(if turned_up { lowest } else { highest });
+            rising = Some(turned_up);
+            (lowest, highest) = (row, row);
+        }
+    }
+    turns.push(match rising {
+        Some(false) => lowest,
+        _ => highest,
+    });
+    turns
+}
+
+/// The rows between two turns without the holds there, and the row of the end.
+fn between_holds(values: &[f64], pair: &[usize]) -> (Range<usize>, usize) {
+    let (from, to) = (pair[0], pair[1]);
+    let near = HOLD * (values[to] - values[from]);
+    let arrives = (from..=to).find(|row| values[*row] >= values[to] - near);
+    let end = arrives.unwrap_or(to);
+    let leaves = (from..=end).rfind(|row| values[*row] <= values[from] + near);
+    (leaves.unwrap_or(from)..end + 1, to)
+}
+
+/// Where a strain turns back: a curve of loading alone does not.
+#[derive(Default)]
+pub struct Turns {
+    last: Option<f64>,
+    /// Whether the strain rose at its last change.
+    rising: Option<bool>,
+    first: Option<usize>,
+    count: usize,
+}
+
+impl Turns {
+    /// Takes the strain of a row.
+    pub fn add(&mut self, row: usize, strain: f64) {
+        let changed = self.last.filter(|last| *last != strain);
+        if let Some(last) = changed {
+            let rising = strain > last;
+            if self.rising.is_some_and(|before| before != rising) {
+                self.first.get_or_insert(row);
+                self.count += 1;
+            }
+            self.rising = Some(rising);
+        }
+        self.last = Some(strain);
+    }
+
+    /// What is said where it did.
+    pub fn warning(&self, head: &Head) -> Option<Diagnostic> {
+        let row = self.first?;
+        let times = if self.count == 1 {
+            "once".to_owned()
+        } else {
+            format!("{} times", self.count)
+        };
+        let hint = "loading and unloading, or scatter, are fitted together; `--cycle last` or `--cycle first` takes a loading \
+                    branch alone";
+        let warning = Diagnostic::warning("", format!("the strain turns back {times}")).hint(hint);
+        Some(warning.at(&head.table.source, head.table.rows[row].1.clone()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Straight lines through some values with so many rows each.
+    fn path(values: &[f64], rows: usize) -> Vec<f64> {
+        let pieces = values.windows(2).flat_map(|pair| {
+            let (from, to) = (pair[0], pair[1]);
+            (0..rows).map(move |i| from + (to - from) * i as f64 / rows as f64)
+        });
+        pieces.chain(values.last().copied()).collect()
+    }
+
+    #[test]
+    fn cycles_holds_and_single_pulls_are_told_apart() {
+        for sign in [1.0, -1.0] {
+            let cycles = path(&[0.0, 1.0, 0.1, 1.0, 0.0, 2.0], 40)
+                .iter()
+                .map(|x| sign * x)
+                .collect::<Vec<_>>();
+            let found = Branches::of(&cycles);
+            assert_eq!(found.loading.len(), 3);
+            assert_eq!(found.rows(Cycle::First), Some(0..41));
+            assert_eq!(found.rows(Cycle::Last), Some(160..201));
+            assert_eq!(found.rows(Cycle::Number(2)), Some(80..121));
+            assert_eq!(found.rows(Cycle::Number(4)), None);
+            assert_eq!(found.rows(Cycle::All), Some(0..201));
+            assert_eq!(found.ends[2], sign * 2.0);
+        }
+        let hold = path(&[0.0, 1.0, 1.0, 1.0], 30);
+        let found = Branches::of(&hold);
+        assert!(!found.is_one_pull);
+        assert_eq!(found.rows(Cycle::Last), Some(0..31));
+        let pull = path(&[0.0, 1.0], 50);
+        assert_eq!(Branches::of(&pull).rows(Cycle::Last), Some(0..51));
+    }
+
+    /// Noise of a fiftieth of the range is no cycle.
+    #[test]
+    fn scatter_is_no_cycle() {
+        let mut noisy = path(&[0.0, 1.0, 0.0, 1.0], 100);
+        for (row, value) in noisy.iter_mut().enumerate() {
+            *value += 0.01 * (12.9898 * row as f64).sin();
+        }
+        assert_eq!(Branches::of(&noisy).loading.len(), 2);
+    }
+}

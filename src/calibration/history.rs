@@ -1,0 +1,260 @@
+//! Tests as histories: what was measured over time, and the stress of a viscous material that went the same way.
+//!
+//! ```text
+//! S = S∞ + Σ Qᵢ,   Q̇ᵢ + Qᵢ/τᵢ = βᵢ Ṡ∞,   βᵢ = gᵢ/(1 − Σ g),   P = λ S                      [MPa]
+//! ```
+//!
+//! Strains are straight lines between the rows of a file. A step in which the stretch changes by more than [`FINE`] is divided, and in
+//! each part S∞ changes evenly, where the recursion of [`ViscousMaterial::recursions`] is exact: it is the one by which
+//! motions are computed. Edges that are free stay free: where the law has no stress, nothing relaxes.
+
+use super::test_data::{Observation, TestData, Times};
+use crate::error::{Diagnostic, Error};
+use crate::material::HyperelasticLaw;
+use crate::material::viscosity::ViscousMaterial;
+use crate::statistics::extremes;
+
+/// Longer steps of the stretch are divided.
+const FINE: f64 = 0.01;
+/// Rows are gathered until there are no more of them along one axis of a test.
+const MOST: usize = 1500;
+/// A history whose first strain is more than this share of its largest one begins stretched.
+const BEGUN: f64 = 0.5;
+
+/// What was measured at an instant, or the mean over some neighbouring ones.
+#[derive(Clone, Copy, Debug)]
+pub struct State {
+    /// In s.
+    pub time: f64,
+    /// Strains and stress.
+    pub observation: Observation,
+    /// How many rows it is the mean of.
+    pub count: f64,
+}
+
+/// A place on the way.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    observation: Observation,
+    /// Time since the node before, in s.
+    elapsed: f64,
+    /// Whether a state was measured here.
+    measured: bool,
+}
+
+/// The history of a test along one axis.
+#[derive(Clone, Debug)]
+pub struct History {
+    /// The test's place among all.
+    pub test: usize,
+    /// What was measured, in the order of time.
+    pub states: Vec<State>,
+    nodes: Vec<Node>,
+    /// Whether it begins stretched: the rise is not in the file.
+    pub begins_stretched: bool,
+}
+
+impl History {
+    /// The histories of all tests along all axes; many rows are gathered where `gathered`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a test has no times, or they run back.
+    pub fn all(tests: &[TestData], gathered: bool) -> Result<Vec<Self>, Error> {
+        let mut all = Vec::new();
+        for (test, data) in tests.iter().enumerate() {
+            let times = times(data)?;
+            for axis in [0, 1] {
+                let rows = data.observations.iter().zip(times);
+                let rows = rows.filter(|(one, _)| one.axis == axis);
+                let states: Vec<State> = rows
+                    .map(|(one, time)| State {
+                        time: *time,
+                        observation: *one,
+                        count: 1.0,
+                    })
+                    .collect();
+                if states.windows(2).any(|pair| pair[1].time < pair[0].time) {
+                    let message = format!("{}: the times run back", data.name);
+                    let hint =
+                        "one file is one run of the machine: give each run a file of its own";
+                    return Err(Error::input(message, hint));
+                }
+                if states.is_empty() {
+                    continue;
+                }
+                let states = match gathered {
+                    true => gather(states),
+                    false => states,
+                };
+                all.push(Self::new(test, states, data.rise));
+            }
+        }
+        Ok(all)
+    }
+
+    fn new(test: usize, states: Vec<State>, rise: f64) -> Self {
+        let strain = |state: &State| state.observation.strains[state.observation.axis].abs();
+        let largest = states.iter().map(strain).fold(0.0, f64::max);
+        let begins_stretched = strain(&states[0]) > BEGUN * largest;
+        let mut nodes = Vec::new();
+        if begins_stretched {
+            let rest = states[0].observation.strains.map(|x| 0.0 * x);
+            nodes.push(Node {
+                observation: Observation {
+                    strains: rest,
+                    ..states[0].observation
+                },
+                elapsed: 0.0,
+                measured: false,
+            });
+            add_steps(&mut nodes, states[0].observation, rise);
+        } else {
+            nodes.push(Node {
+                observation: states[0].observation,
+                elapsed: 0.0,
+                measured: true,
+            });
+        }
+        for pair in states.windows(2) {
+            add_steps(&mut nodes, pair[1].observation, pair[1].time - pair[0].time);
+        }
+        Self {
+            test,
+            states,
+            nodes,
+            begins_stretched,
+        }
+    }
+
+    /// S∞ of a law at all nodes, in MPa.
+    pub fn long_time_stress(&self, data: &TestData, law: &dyn HyperelasticLaw) -> Vec<f64> {
+        let stress = |node: &Node| {
+            let one = &node.observation;
+            let x = one.strains[one.axis];
+            let stress = data.stress_of(law, one);
+            data.stress_measure.to_nominal(stress, x) / (1.0 + x)
+        };
+        self.nodes.iter().map(stress).collect()
+    }
+
+    /// The stress of a material at all states, in the measure of the data, from S∞ at the nodes.
+    pub fn stresses(&self, data: &TestData, long: &[f64], material: &ViscousMaterial) -> Vec<f64> {
+        let mut branches = vec![0.0; material.relaxation.len()];
+        let mut before = long[0];
+        let mut found = Vec::with_capacity(self.states.len());
+        for (node, now) in self.nodes.iter().zip(long) {
+            let recursions = material.recursions(node.elapsed);
+            for (q, recursion) in branches.iter_mut().zip(recursions) {
+                *q = recursion.keeps * *q + recursion.takes * (now - before);
+            }
+            before = *now;
+            if node.measured {
+                let one = &node.observation;
+                let x = one.strains[one.axis];
+                let nominal = (1.0 + x) * (now + branches.iter().sum::<f64>());
+                found.push(data.stress_measure.of_nominal(nominal, x));
+            }
+        }
+        found
+    }
+
+    /// From the first to the last time, in s.
+    pub fn duration(&self) -> f64 {
+        self.states[self.states.len() - 1].time - self.states[0].time
+    }
+}
+
+/// The times of a test.
+fn times(data: &TestData) -> Result<&[f64], Error> {
+    match &data.times {
+        Times::Known(times) => Ok(times),
+        Times::Unknown(fault) => Err(Error::Input(vec![Diagnostic::clone(fault)])),
+        Times::None => {
+            let message = format!("{}: there is no column of times", data.name);
+            let hint =
+                "relaxation is fitted to what was measured over time: name a column `time [s]`";
+            Err(Error::input(message, hint))
+        }
+    }
+}
+
+/// Goes on to an observation in steps that are fine enough; a sudden one is a single step.
+fn add_steps(nodes: &mut Vec<Node>, to: Observation, elapsed: f64) {
+    let from = nodes[nodes.len() - 1].observation;
+    let change = (to.strains[to.axis] - from.strains[to.axis]).abs();
+    let steps = match elapsed > 0.0 {
+        true => (change / FINE).ceil().clamp(1.0, 1000.0),
+        false => 1.0,
+    };
+    for step in 1..=steps as usize {
+        let share = step as f64 / steps;
+        let strains = [0, 1].map(|axis| {
+            let (start, end) = (from.strains[axis], to.strains[axis]);
+            match step as f64 == steps {
+                true => end,
+                false => start + share * (end - start),
+            }
+        });
+        nodes.push(Node {
+            observation: Observation { strains, ..to },
+            elapsed: elapsed / steps,
+            measured: step as f64 == steps,
+        });
+    }
+}
+
+/// The means of neighbouring rows, the more of them the longer the strain has rested, until few enough are left.
+fn gather(states: Vec<State>) -> Vec<State> {
+    let mut share = 0.01;
+    let mut gathered = states.clone();
+    while gathered.len() > MOST {
+        gathered = gathered_by(&states, share);
+        share *= 1.5;
+    }
+    gathered
+}
+
+/// Means over no more than a share of the time since the strain moved by as large a share of its range.
+fn gathered_by(states: &[State], share: f64) -> Vec<State> {
+    let strain = |state: &State| state.observation.strains[state.observation.axis];
+    let [low, high] = extremes(states.iter().map(strain));
+    let moved = share * (high - low);
+    let mut groups: Vec<Vec<State>> = Vec::new();
+    let (mut reference, mut since) = (strain(&states[0]), states[0].time);
+    let mut first_strain = reference;
+    for state in states {
+        if (strain(state) - reference).abs() > moved {
+            (reference, since) = (strain(state), state.time);
+        }
+        let fits = |group: &Vec<State>| {
+            let rested = group[0].time - since;
+            let near = (strain(state) - first_strain).abs() <= moved;
+            near && state.time - group[0].time <= share * rested.max(0.0)
+        };
+        match groups.last_mut() {
+            Some(group) if fits(group) => group.push(*state),
+            _ => {
+                first_strain = strain(state);
+                groups.push(vec![*state]);
+            }
+        }
+    }
+    groups.iter().map(|group| mean(group)).collect()
+}
+
+fn mean(group: &[State]) -> State {
+    let count = group.len() as f64;
+    let mean = |value: &dyn Fn(&State) -> f64| group.iter().map(value).sum::<f64>() / count;
+    if group.len() == 1 {
+        return group[0];
+    }
+    State {
+        time: mean(&|state| state.time),
+        observation: Observation {
+            strains: [0, 1].map(|axis| mean(&|state| state.observation.strains[axis])),
+            axis: group[0].observation.axis,
+            stress: mean(&|state| state.observation.stress),
+        },
+        count,
+    }
+}

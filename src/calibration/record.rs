@@ -1,0 +1,301 @@
+//! The record of a testing machine: displacement and force over time, with several cycles, slack and preload.
+
+use std::ops::Range;
+
+use super::cycles::{Branches, CYCLE, Cycle};
+use super::zero::Beginning;
+use crate::document::{Faulty, Head};
+use crate::units::{self, Dimension};
+
+/// The key under which a file or the command line says where the specimen begins to be stretched.
+pub const ZERO: &str = "zero";
+
+/// A table of displacements and forces.
+#[derive(Clone, Copy, Debug)]
+pub struct Machine {
+    /// Length of the specimen in mm.
+    pub length: f64,
+    /// Its cross-section in mm².
+    pub area: f64,
+    /// Whether the test is one of compression, which machines often count as positive.
+    pub presses: bool,
+}
+
+/// What of a record is fitted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// The rows.
+    pub rows: Range<usize>,
+    /// The sign of strains and stresses.
+    pub signs: [f64; 2],
+    /// The strain of the record at which the specimen begins to be stretched.
+    pub zero: f64,
+    /// The stress of the record there, in MPa.
+    pub offset: f64,
+    /// What was done, in words.
+    pub remarks: Vec<String>,
+}
+
+/// Where the zero of displacement is.
+enum Zero {
+    Automatic,
+    AsWritten,
+    Displacement(f64),
+    Force(f64),
+}
+
+impl Part {
+    /// All rows as they are.
+    pub fn whole(rows: usize) -> Self {
+        Self {
+            rows: 0..rows,
+            signs: [1.0; 2],
+            ..Self::default()
+        }
+    }
+
+    /// A strain of the record, from the zero on.
+    pub fn strain(&self, x: f64) -> f64 {
+        self.signs[0] * (x - self.zero)
+    }
+
+    /// A stress of the record without what is taken off.
+    pub fn stress(&self, y: f64) -> f64 {
+        self.signs[1] * (y - self.offset)
+    }
+
+    /// The chosen part of a record with these strains and stresses.
+    pub fn of(
+        head: &Head,
+        machine: Option<Machine>,
+        strains: &[f64],
+        stresses: &[f64],
+    ) -> Faulty<Self> {
+        let stated = Cycle::stated(head)?;
+        let zero = Zero::stated(head, machine)?;
+        let mut part = Self::whole(strains.len());
+        let machine = match (machine, stated) {
+            (None, None | Some(Cycle::All)) => return Ok(part),
+            (machine, _) => machine,
+        };
+        let branches = Branches::of(strains);
+        part.choose(head, &branches, stated.unwrap_or(Cycle::Last), machine)?;
+        if let Some(machine) = machine {
+            let loading = match (&branches.loading[..], part.rows.len() < strains.len()) {
+                ([first, ..], false) if !branches.is_one_pull => first.clone(),
+                _ => part.rows.clone(),
+            };
+            machine.turn_signs(&mut part, &loading, [strains, stresses]);
+            part.begin(head, machine, zero, loading, [strains, stresses])?;
+        }
+        Ok(part)
+    }
+
+    /// Takes the rows of a cycle.
+    fn choose(
+        &mut self,
+        head: &Head,
+        branches: &Branches,
+        cycle: Cycle,
+        machine: Option<Machine>,
+    ) -> Faulty<()> {
+        let count = branches.loading.len();
+        if count == 0 {
+            return Ok(());
+        }
+        let Some(rows) = branches.rows(cycle) else {
+            let message = format!("there is no such cycle: {}", cycles(count));
+            let hint = "first, last, all, or a number up to that";
+            return Err(head.fault(head.place(CYCLE), message, hint));
+        };
+        self.rows = rows;
+        if branches.is_one_pull {
+            return Ok(());
+        }
+        let ends = branches.ends.iter().take(5);
+        let end = |x: &f64| match machine {
+            Some(machine) => format!("{:.2} mm", machine.length * x),
+            None => format!("λ = {:.3}", 1.0 + x),
+        };
+        let ends: Vec<_> = ends.map(end).collect();
+        let more = if count > 5 { ", …" } else { "" };
+        let found = format!("{} found (to {}{more})", cycles(count), ends.join(", "));
+        let line = |row: usize| {
+            let place = &head.table.rows[row.min(head.table.rows.len() - 1)].1;
+            head.table.source.line(place.start)
+        };
+        let taken = match cycle {
+            Cycle::All => "all rows are fitted".to_owned(),
+            _ => format!(
+                "the loading branch of the {} is fitted, lines {} to {}",
+                match cycle {
+                    _ if count == 1 => "only one".to_owned(),
+                    Cycle::First => "first".to_owned(),
+                    Cycle::Number(number) => format!("cycle {number}"),
+                    _ => "last".to_owned(),
+                },
+                line(self.rows.start),
+                line(self.rows.end - 1)
+            ),
+        };
+        let others = "`--cycle first`, `last`, `all` or a number takes another part";
+        self.remarks.push(format!("{found}; {taken} ({others})"));
+        Ok(())
+    }
+
+    /// Finds the zero of displacement of a loading branch.
+    fn begin(
+        &mut self,
+        head: &Head,
+        machine: Machine,
+        zero: Zero,
+        loading: Range<usize>,
+        [strains, stresses]: [&[f64]; 2],
+    ) -> Faulty<()> {
+        let (x, y) = (&strains[loading.clone()], &stresses[loading.clone()]);
+        match zero {
+            Zero::AsWritten => {}
+            Zero::Automatic => self.set_right(machine, Beginning::of(x, y), y),
+            Zero::Displacement(_) | Zero::Force(_) => {
+                let reached = match zero {
+                    Zero::Displacement(u) => passes(x, u / machine.length * self.signs[0]),
+                    Zero::Force(f) => passes(y, f / machine.area * self.signs[1]),
+                    _ => None,
+                };
+                let Some(place) = reached else {
+                    let message = "the loading branch does not pass the stated zero";
+                    let hint = "give a displacement or a force that it passes, or none";
+                    return Err(head.fault(head.place(ZERO), message, hint));
+                };
+                (self.zero, self.offset) = (at(x, place), at(y, place));
+                self.remarks.push(format!(
+                    "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is taken off",
+                    machine.length * self.zero,
+                    machine.area * self.offset
+                ));
+            }
+        }
+        // What lies before the zero is not fitted.
+        let way = (x[x.len() - 1] - x[0]).signum();
+        let before = x
+            .iter()
+            .take_while(|x| (**x - self.zero) * way < 0.0)
+            .count();
+        if self.zero != 0.0 && self.rows.start <= loading.start {
+            self.rows.start = loading.start + before;
+        }
+        Ok(())
+    }
+
+    /// Takes off what was found at the beginning of a branch with these stresses, and says so.
+    fn set_right(&mut self, machine: Machine, beginning: Beginning, stresses: &[f64]) {
+        let mm = |strain: f64| machine.length * strain;
+        let largest = stresses.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        let force = |stress: f64| {
+            let percent = 100.0 * (stress / largest).abs();
+            let newton = machine.area * stress;
+            format!("{newton:.4} N, {percent:.2} % of the largest force,")
+        };
+        let done = match beginning {
+            Beginning::Clean => return,
+            Beginning::Slack {
+                zero,
+                error,
+                offset,
+            } => {
+                (self.zero, self.offset) = (zero, offset);
+                format!(
+                    "slack up to {:.4} ± {:.4} mm is taken off: this is the zero of displacement, and {:.4} N that were read before it, of force",
+                    mm(zero),
+                    mm(error),
+                    machine.area * offset
+                )
+            }
+            Beginning::Preload { zero, stress } => {
+                self.zero = zero;
+                format!(
+                    "preload of {} at the first row: the zero of displacement is {:.4} mm, where the curve, followed back, has no force",
+                    force(stress),
+                    mm(zero)
+                )
+            }
+            Beginning::Offset(stress) => {
+                self.offset = stress;
+                format!(
+                    "{} at the first row are against the pull: the load cell's zero, which is taken off",
+                    force(stress)
+                )
+            }
+        };
+        let kept = "`--zero none` keeps the file's zero";
+        self.remarks.push(format!("{done} ({kept})"));
+    }
+}
+
+impl Machine {
+    /// Machines often count compression as positive.
+    fn turn_signs(self, part: &mut Part, loading: &Range<usize>, [x, y]: [&[f64]; 2]) {
+        if !self.presses {
+            return;
+        }
+        let rises = |values: &[f64]| {
+            let own = &values[loading.clone()];
+            own[own.len() - 1] > own[0]
+        };
+        for (sign, values) in part.signs.iter_mut().zip([x, y]) {
+            *sign = if rises(values) { -1.0 } else { 1.0 };
+        }
+        if part.signs != [1.0; 2] {
+            let remark = "the file counts compression as positive; here it is negative";
+            part.remarks.push(remark.to_owned());
+        }
+    }
+}
+
+impl Zero {
+    fn stated(head: &Head, machine: Option<Machine>) -> Faulty<Self> {
+        let Some(text) = head.setting(ZERO, None)? else {
+            return Ok(Self::Automatic);
+        };
+        let fault = |message: String, hint: &str| Err(head.fault(head.place(ZERO), message, hint));
+        if machine.is_none() {
+            let message =
+                "the zero is found in tables of displacements and forces alone".to_owned();
+            return fault(message, "leave it out, or shift the strains in the file");
+        }
+        let parsed = |dimension| units::parse(&text, dimension).ok();
+        match &*text {
+            "automatic" => Ok(Self::Automatic),
+            "none" => Ok(Self::AsWritten),
+            _ => match (parsed(Dimension::Length), parsed(Dimension::Force)) {
+                (Some(u), _) => Ok(Self::Displacement(u)),
+                (_, Some(f)) => Ok(Self::Force(f)),
+                _ => fault(
+                    format!("the zero `{text}` is not known"),
+                    "automatic, none, a displacement such as \"0.4 mm\", or the force at which stretching begins, such as \"0.05 N\"",
+                ),
+            },
+        }
+    }
+}
+
+fn cycles(count: usize) -> String {
+    match count {
+        1 => "one cycle or hold".to_owned(),
+        _ => format!("{count} cycles"),
+    }
+}
+
+/// Where values first pass one, as a row and the part of the step behind it.
+fn passes(values: &[f64], wanted: f64) -> Option<(usize, f64)> {
+    let step = |row: usize| {
+        let (from, to) = (values[row], values[row + 1]);
+        let share = (wanted - from) / (to - from);
+        (0.0..=1.0).contains(&share).then_some((row, share))
+    };
+    (0..values.len().saturating_sub(1)).find_map(step)
+}
+
+fn at(values: &[f64], (row, share): (usize, f64)) -> f64 {
+    values[row] + share * (values[row + 1] - values[row])
+}

@@ -1,0 +1,381 @@
+//! Relaxation: a law with a Prony series fitted to what was measured over time.
+//!
+//! The strains that were measured are followed, so a ramp is a ramp and a cycle a cycle; stress relaxation, creep, cycles and
+//! pulls at several rates are all histories of strain with stresses, and are fitted together. The law is that of long times. Terms
+//! are added as long as AICc falls; relaxation times lie between the shortest interval of the data and their longest duration, outside
+//! of which nothing is resolved.
+
+use std::fmt::Write;
+
+use super::cycles::Branches;
+use super::fit::{Fit, Relaxed, check_measures, fit};
+use super::history::History;
+use super::least_squares::{self, Residuals};
+use super::prony::{Found, ViscousMisfit};
+use super::quality::{
+    Deviations, Quality, aicc, estimates, rounded, stable_ranges, stretch_range, untested,
+};
+use super::settings::{FitSettings, MEASURE, limits};
+use super::terms::{SHARES, TIMES, Terms, parameters, transformed};
+use super::test_data::{TestData, Times};
+use super::verdict::{LeftOver, Verdict};
+use super::warnings::warnings;
+use crate::error::Error;
+use crate::material::parameters::{Parameter, StressMeasure};
+use crate::material::registry::{Law, MARLOW_TABLE};
+use crate::material::viscosity::Covered;
+use crate::statistics::{CurveNoise, Estimate, extremes};
+use nalgebra::{DMatrix, DVector};
+
+/// Fits a law with a Prony series to some tests together.
+///
+/// # Errors
+/// [`Error::Input`] where a test has no times, where the law has no parameters or changes its volume, when there are too few points,
+/// and as [`fit`].
+pub fn fit_relaxation(
+    law: &'static Law,
+    tests: &[TestData],
+    settings: &FitSettings,
+    terms: Terms,
+) -> Result<Fit, Error> {
+    check_measures(tests)?;
+    let histories = History::all(tests, true)?;
+    let elastic = elastic(law, tests, settings)?;
+    let law_parameters = elastic.parameters.clone();
+    let of_law = law_parameters.len();
+    let misfit = ViscousMisfit::new((law, of_law), tests, histories, settings.weighting);
+    let resolved = resolved(&misfit.histories)?;
+    let start: Vec<f64> = law_parameters.iter().map(|one| one.value).collect();
+    let mut laws = vec![start];
+    let mut candidates: Vec<(usize, Found)> = Vec::new();
+    let scale = elastic.fitted.youngs_modulus();
+    for terms in terms.tried() {
+        let parameters = parameters(&law_parameters, terms, resolved);
+        if misfit.count() <= parameters.len() + 1 {
+            break;
+        }
+        let bounds = transformed(limits(law, &parameters, &settings.bounds, scale), of_law)?;
+        if let Some(found) = misfit.minimum(&laws, &parameters, &bounds) {
+            laws.truncate(1);
+            laws.push(found.1[..of_law].to_vec());
+            candidates.push((terms, found));
+        }
+    }
+    if candidates.is_empty() {
+        let message = format!("{}: no Prony series describes the data", law.name);
+        let hint = "give fewer terms, or look at the times and the strains";
+        return Err(Error::input(message, hint));
+    }
+    let whole = Whole {
+        misfit: &misfit,
+        tests,
+        settings,
+        law_parameters: &law_parameters,
+        resolved,
+    };
+    whole.chosen(elastic, candidates)
+}
+
+/// The law without relaxation, whose parameters the search begins with.
+fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
+    if law.name == MARLOW_TABLE {
+        let message = format!("{} takes a curve as it is, at one rate", law.name);
+        return Err(Error::input(
+            message,
+            "fit the relaxation with a law that has parameters",
+        ));
+    }
+    let nominal = StressMeasure::Nominal;
+    if law
+        .with_values(&[], nominal, MEASURE)
+        .0
+        .bulk_modulus()
+        .is_some()
+    {
+        let message = format!("{} changes its volume", law.name);
+        let hint = "relaxation is that of sheets that keep their volume: choose another law";
+        return Err(Error::input(message, hint));
+    }
+    let own =
+        |(key, _): &&(String, [f64; 2])| !SHARES.contains(&&**key) && !TIMES.contains(&&**key);
+    let settings = FitSettings {
+        bounds: settings.bounds.iter().filter(own).cloned().collect(),
+        ..settings.clone()
+    };
+    fit(law, tests, &settings)
+}
+
+/// The shortest interval between rows and the longest duration of a history, in s.
+fn resolved(histories: &[History]) -> Result<[f64; 2], Error> {
+    let steps = histories.iter().flat_map(|history| {
+        let pairs = history.states.windows(2);
+        pairs.map(|pair| pair[1].time - pair[0].time)
+    });
+    let [shortest, _] = extremes(steps.filter(|step| *step > 0.0));
+    let [_, longest] = extremes(histories.iter().map(History::duration));
+    if shortest < longest {
+        return Ok([shortest, longest]);
+    }
+    let hint = "relaxation needs several rows at different times";
+    Err(Error::input("the times of the tests do not differ", hint))
+}
+
+/// Which values a bound holds, and what is left.
+type Judged = (Vec<bool>, Option<(Verdict, CurveNoise)>);
+
+/// What a chosen series is judged by.
+struct Whole<'a> {
+    misfit: &'a ViscousMisfit<'a>,
+    tests: &'a [TestData],
+    settings: &'a FitSettings,
+    law_parameters: &'a [Parameter],
+    resolved: [f64; 2],
+}
+
+impl Whole<'_> {
+    fn count(&self, terms: usize) -> f64 {
+        (self.law_parameters.len() + 2 * terms + 1) as f64
+    }
+
+    /// The fit with the smallest AICc; all have the effective points of the one with the least variance.
+    fn chosen(&self, elastic: Fit, candidates: Vec<(usize, Found)>) -> Result<Fit, Error> {
+        let rows = self.misfit.count() as f64;
+        let variance =
+            |(terms, found): &(usize, Found)| found.0 / (rows - self.count(*terms)).max(0.5);
+        let nearest = candidates
+            .iter()
+            .min_by(|a, b| variance(a).total_cmp(&variance(b)));
+        let judged = nearest
+            .map(|(terms, found)| self.judged(*terms, &found.1))
+            .transpose()?;
+        let effective = judged.and_then(|(_, judged)| judged);
+        let effective = effective.map_or(rows, |(verdict, _)| verdict.effective_points);
+        let criterion =
+            |(terms, found): &(usize, Found)| aicc(found.0, [rows, effective], self.count(*terms));
+        let tried: Vec<(usize, f64)> = candidates
+            .iter()
+            .map(|one| (one.0, criterion(one)))
+            .collect();
+        let best = candidates
+            .into_iter()
+            .min_by(|a, b| criterion(a).total_cmp(&criterion(b)));
+        let Some((terms, (sum, values))) = best else {
+            return Ok(elastic);
+        };
+        let points = [rows, effective];
+        self.finished(elastic, (terms, (sum, values)), tried, points)
+    }
+
+    /// The fit with so many terms, whose AICc counts rows and effective points as given.
+    fn finished(
+        &self,
+        elastic: Fit,
+        (terms, (sum, values)): (usize, Found),
+        tried: Vec<(usize, f64)>,
+        counted: [f64; 2],
+    ) -> Result<Fit, Error> {
+        let (bounded, judged) = self.judged(terms, &values)?;
+        let mut parameters = parameters(self.law_parameters, terms, self.resolved);
+        for (index, (parameter, value)) in parameters.iter_mut().zip(&values).enumerate() {
+            parameter.value = if self.is_logarithmic(index) {
+                value.exp()
+            } else {
+                *value
+            };
+        }
+        let (verdict, noise) = judged.unzip();
+        let (estimated, correlation) = self.estimated(&values, &bounded, noise.as_ref());
+        let fitted = self.misfit.law(&values);
+        let relaxed = self.relaxed(&values, tried)?;
+        let predicted = |test: usize, row: usize| relaxed.predicted[test][row];
+        let deviations = Deviations::of(self.tests, self.settings.weighting, &predicted);
+        let points: usize = self.tests.iter().map(|test| test.observations.len()).sum();
+        let mut quality = Quality {
+            points,
+            sum_of_squares: deviations.squares,
+            rmse: (deviations.squares / points as f64).sqrt(),
+            nmad_percent: deviations.nmad_percent(),
+            r_squared: 1.0 - deviations.squares / deviations.spread,
+            aicc: aicc(sum, counted, self.count(terms)),
+            weighted_sum: deviations.weighted,
+            largest_relative_error_percent: 100.0 * deviations.largest_relative,
+            verdict,
+            estimates: estimated,
+            at_bound: bounded,
+            correlation,
+            noise,
+            stable: stable_ranges(&*fitted, self.tests),
+            stretch_range: stretch_range(self.tests.iter()),
+            untested: untested(self.tests),
+            warnings: Vec::new(),
+        };
+        quality.warnings = warnings(&quality, &parameters, None);
+        quality
+            .warnings
+            .extend(self.warnings(&parameters, &quality, terms));
+        Ok(Fit {
+            fitted,
+            parameters,
+            quality,
+            settings: self.settings.clone(),
+            relaxed: Some(relaxed),
+            ..elastic
+        })
+    }
+
+    /// Whether a value is the logarithm of a time.
+    fn is_logarithmic(&self, index: usize) -> bool {
+        let of_law = self.law_parameters.len();
+        index > of_law && (index - of_law) % 2 == 1
+    }
+
+    /// The values with their uncertainty and correlation, times as they are.
+    fn estimated(
+        &self,
+        values: &[f64],
+        bounded: &[bool],
+        noise: Option<&CurveNoise>,
+    ) -> (Vec<Estimate>, DMatrix<f64>) {
+        let (mut estimated, correlation) = estimates(values, bounded, noise);
+        for (index, estimate) in estimated.iter_mut().enumerate() {
+            if self.is_logarithmic(index) {
+                *estimate = Estimate {
+                    value: estimate.value.exp(),
+                    standard_error: estimate.value.exp() * estimate.standard_error,
+                    interval: estimate.interval.map(f64::exp),
+                };
+            }
+        }
+        (estimated, correlation)
+    }
+
+    /// Which values a bound holds, and what is left.
+    fn judged(&self, terms: usize, values: &[f64]) -> Result<Judged, Error> {
+        let all = parameters(self.law_parameters, terms, self.resolved);
+        let scale = 1.0;
+        let limits = limits(self.law(), &all, &self.settings.bounds, scale);
+        let limits = transformed(limits, self.law_parameters.len())?;
+        let held = |(value, [low, high]): (&f64, &[f64; 2])| {
+            let near = |limit: f64| (value - limit).abs() <= 1e-6 * value.abs().max(1e-9);
+            near(*low) || near(*high)
+        };
+        let bounded: Vec<bool> = values.iter().zip(&limits).map(held).collect();
+        let jacobian = least_squares::jacobian(self.misfit, values, &bounded);
+        let free: Vec<usize> = (0..values.len()).filter(|index| !bounded[*index]).collect();
+        let mut residual = DVector::zeros(self.misfit.count());
+        self.misfit.evaluate(values, residual.as_mut_slice());
+        let law = self.misfit.law(values);
+        let left_over = LeftOver {
+            curves: self.misfit.curves(),
+            design: &jacobian.select_columns(&free),
+            residual: &residual,
+            rounded: rounded(self.tests, &*law, self.settings.weighting) * residual.len() as f64,
+        };
+        Ok((bounded, left_over.judge()))
+    }
+
+    fn law(&self) -> &'static Law {
+        self.misfit.entry()
+    }
+
+    /// The series, what it gives at every row, and what the data cover.
+    fn relaxed(&self, values: &[f64], tried: Vec<(usize, f64)>) -> Result<Relaxed, Error> {
+        let histories = History::all(self.tests, false)?;
+        let law = self.misfit.law(values);
+        let mut material = self.misfit.material(values);
+        let mut predicted: Vec<Vec<f64>> = self
+            .tests
+            .iter()
+            .map(|test| vec![f64::NAN; test.observations.len()])
+            .collect();
+        for history in &histories {
+            let data = &self.tests[history.test];
+            let long = history.long_time_stress(data, &*law);
+            let axis = history.states[0].observation.axis;
+            let rows = data.observations.iter().enumerate();
+            let rows = rows.filter(|(_, one)| one.axis == axis).map(|(row, _)| row);
+            for (row, stress) in rows.zip(history.stresses(data, &long, &material)) {
+                predicted[history.test][row] = stress;
+            }
+        }
+        material.covered = Covered {
+            times: Some(self.resolved),
+            rates: rates(self.tests),
+        };
+        Ok(Relaxed {
+            material,
+            of_law: self.law_parameters.len(),
+            predicted,
+            tried,
+        })
+    }
+
+    /// What a user must know of the series.
+    fn warnings(&self, parameters: &[Parameter], quality: &Quality, terms: usize) -> Vec<String> {
+        let mut found = Vec::new();
+        let [low, high] = self.resolved;
+        let held: Vec<&str> = parameters
+            .iter()
+            .zip(&quality.at_bound)
+            .filter(|(parameter, held)| **held && TIMES.contains(&parameter.key))
+            .map(|(parameter, _)| parameter.key)
+            .collect();
+        if !held.is_empty() {
+            found.push(format!(
+                "{} at the end of what the data resolve, {low:.4} to {high:.4} s: faster or slower relaxation is not told apart \
+                 from it",
+                held.join(", ")
+            ));
+        }
+        if terms == 0 {
+            found.push("no relaxation is seen: the law alone has the smallest AICc".to_owned());
+        }
+        let begun = self
+            .misfit
+            .histories
+            .iter()
+            .filter(|history| history.begins_stretched);
+        for history in begun {
+            let data = &self.tests[history.test];
+            let mut text = format!("{} begins stretched: ", data.name);
+            let _ = match data.rise > 0.0 {
+                true => write!(
+                    text,
+                    "the rise is taken as even over the {} s before",
+                    data.rise
+                ),
+                false => write!(
+                    text,
+                    "the rise is taken as sudden; `--ramp` says how long it took"
+                ),
+            };
+            found.push(text);
+        }
+        found
+    }
+}
+
+/// The slowest and the fastest stretching and letting back of some tests, in 1/s.
+fn rates(tests: &[TestData]) -> Option<[f64; 2]> {
+    let mut rates = Vec::new();
+    for data in tests {
+        let Times::Known(times) = &data.times else {
+            continue;
+        };
+        let axis = data.axes[0];
+        let rows = data.observations.iter().zip(times);
+        let rows: Vec<(f64, f64)> = rows
+            .filter(|(one, _)| one.axis == axis)
+            .map(|(one, time)| (*time, data.drawn_strain(one)))
+            .collect();
+        let strains: Vec<f64> = rows.iter().map(|(_, x)| *x).collect();
+        for branch in Branches::of(&strains).loading {
+            let [(begin, low), (end, high)] = [rows[branch.start], rows[branch.end - 1]];
+            if end > begin && high != low {
+                rates.push(((high - low) / (end - begin)).abs());
+            }
+        }
+    }
+    let [slowest, fastest] = extremes(rates);
+    (slowest <= fastest).then_some([slowest, fastest])
+}

@@ -1,0 +1,73 @@
+//! The parameters of a Prony series.
+
+use super::prony::MOST_SHARED;
+use crate::document::Bound;
+use crate::error::Error;
+use crate::material::parameters::Parameter;
+use crate::units::Dimension;
+
+/// How many terms a series has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Terms {
+    /// As many as AICc asks for.
+    Automatic,
+    /// So many.
+    Exactly(usize),
+}
+
+/// Keys of shares.
+pub const SHARES: [&str; Terms::MOST] = [
+    "share_1", "share_2", "share_3", "share_4", "share_5", "share_6",
+];
+/// Keys of times.
+pub const TIMES: [&str; Terms::MOST] = ["time_1", "time_2", "time_3", "time_4", "time_5", "time_6"];
+
+impl Terms {
+    /// The most terms of a series.
+    pub const MOST: usize = 6;
+
+    /// The numbers that are tried.
+    pub fn tried(self) -> std::ops::RangeInclusive<usize> {
+        match self {
+            Self::Automatic => 0..=Self::MOST,
+            Self::Exactly(terms) => terms.min(Self::MOST)..=terms.min(Self::MOST),
+        }
+    }
+}
+
+/// The parameters of a law with so many terms.
+pub fn parameters(law: &[Parameter], terms: usize, [low, high]: [f64; 2]) -> Vec<Parameter> {
+    let of_term = |index: usize| {
+        let share = Parameter {
+            key: SHARES[index],
+            value: f64::NAN,
+            dimension: Dimension::Ratio,
+            bound: Bound::Within(0.0, MOST_SHARED),
+            usual: [0.0, 1.0],
+        };
+        let time = Parameter {
+            key: TIMES[index],
+            dimension: Dimension::Time,
+            bound: Bound::Within(low, high),
+            usual: [low, high],
+            ..share.clone()
+        };
+        [share, time]
+    };
+    law.iter()
+        .cloned()
+        .chain((0..terms).flat_map(of_term))
+        .collect()
+}
+
+/// Limits with times by their logarithms.
+pub fn transformed(
+    limits: Result<Vec<[f64; 2]>, Error>,
+    of_law: usize,
+) -> Result<Vec<[f64; 2]>, Error> {
+    let mut limits = limits?;
+    for limit in limits[of_law..].iter_mut().skip(1).step_by(2) {
+        *limit = limit.map(f64::ln);
+    }
+    Ok(limits)
+}
