@@ -158,8 +158,8 @@ impl Part {
             Zero::Automatic => self.set_right(machine, Beginning::of(x, y), y),
             Zero::Displacement(_) | Zero::Force(_) => {
                 let reached = match zero {
-                    Zero::Displacement(u) => passes(x, u / machine.length * self.signs[0]),
-                    Zero::Force(f) => passes(y, f / machine.area * self.signs[1]),
+                    Zero::Displacement(u) => either(x, u / machine.length),
+                    Zero::Force(f) => either(y, f / machine.area),
                     _ => None,
                 };
                 let Some(place) = reached else {
@@ -284,6 +284,11 @@ fn cycles(count: usize) -> String {
         1 => "one cycle or hold".to_owned(),
         _ => format!("{count} cycles"),
     }
+}
+
+/// Where values first pass one, or its opposite: compression may be stated without its sign.
+fn either(values: &[f64], wanted: f64) -> Option<(usize, f64)> {
+    passes(values, wanted).or_else(|| passes(values, -wanted))
 }
 
 /// Where values first pass one, as a row and the part of the step behind it.

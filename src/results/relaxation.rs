@@ -248,8 +248,8 @@ fn over_frequency(card: &Card) -> LineChart {
         logarithmically(range).map(value)
     };
     let lines = vec![
-        Line::new("storage modulus E′", curve(0), PALETTE[0], Stroke::Solid),
-        Line::new("loss modulus E″", curve(1), PALETTE[1], Stroke::Solid),
+        Line::new("storage modulus", curve(0), PALETTE[0], Stroke::Solid),
+        Line::new("loss modulus", curve(1), PALETTE[1], Stroke::Solid),
     ];
     let band = card.viscosity.covered.times;
     let band = band.map(|[low, high]| [1.0 / (TAU * high), 1.0 / (TAU * low)]);

@@ -380,6 +380,14 @@ fn compression_is_negative_here_and_one_pull_stays_as_it_is() {
         pulled.remarks
     );
     assert_eq!(pulled.observations.len(), 50);
+    let more = [("test", "compression"), ("zero", "0.5 mm")];
+    let stated = read(&text, &[&SPECIMEN[..], &more].concat()).unwrap();
+    let shifted = |one: &Observation| (one.strains[0] + 0.1 / 20.0).abs() < 1e-12;
+    assert!(stated.observations.iter().any(shifted));
+    let scattered = text
+        .replacen("0,0\n", "0.0002,0\n-0.0002,0\n", 1)
+        .replace(",-0", ",0");
+    assert!(read(&scattered, &[&SPECIMEN[..], &more[..1]].concat()).is_ok());
     assert_eq!(pulled.observations[7].strains[0], 0.1 * 7.0 * (1.0 / 20.0));
 }
 

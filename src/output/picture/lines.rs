@@ -160,7 +160,8 @@ impl LineChart {
             .x_label_area_size(units(48))
             .y_label_area_size(units(74))
             .build_cartesian_2d(left..right, bottom..top)?;
-        if let Some(([from, to], _)) = &self.band {
+        if let Some((range, _)) = &self.band {
+            let [from, to] = range.map(|end| self.x.scale.position(end).unwrap_or(end));
             let corners = [(from.max(left), bottom), (to.min(right), top)];
             chart.draw_series([Rectangle::new(corners, look.band().filled())])?;
         }
