@@ -121,7 +121,7 @@ fn render(block: &Block, pictures: &[&Drawn]) -> Markup {
 fn inline(words: &str) -> Markup {
     let parts: Vec<&str> = words.split('`').collect();
     // A backtick without another one is itself.
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return html! { (words) };
     }
     html! {
