@@ -21,7 +21,7 @@ use std::slice::from_ref;
 use rayon::prelude::*;
 
 use crate::error::{Diagnostic, Error};
-use crate::studies::Progress;
+use crate::studies::{PreparedStudy, Progress};
 
 mod altered;
 mod figures;
@@ -129,6 +129,10 @@ impl Sweep {
             .iter()
             .map(|run| (run, done.remove(&run.number)))
             .collect();
+        // Faults are told before anything is computed, the same ones each time.
+        let wanted = done.par_iter().filter(|(_, row)| row.is_none());
+        let checked = wanted.map(|(run, _)| self.ready(run).map(drop));
+        checked.find_first(Result::is_err).unwrap_or(Ok(()))?;
         let row = |(run, done): (&Run, Option<Row>)| match done {
             Some(row) => Ok(row),
             None => {
@@ -140,8 +144,8 @@ impl Sweep {
         done.into_par_iter().map(row).collect()
     }
 
-    fn row(&self, run: &Run, attend: &dyn Fn()) -> Result<Row, Error> {
-        attend();
+    /// The study of a run, read.
+    fn ready(&self, run: &Run) -> Result<PreparedStudy, Error> {
         let told = |error: Error| match error {
             Error::Input(faults) => {
                 let named = |fault: Diagnostic| Diagnostic {
@@ -152,8 +156,12 @@ impl Sweep {
             }
             other => other,
         };
-        let ready = self.study.with(&self.keys(), &run.settings).map_err(told)?;
-        match ready.compute(Progress::to(&|_| attend())) {
+        self.study.with(&self.keys(), &run.settings).map_err(told)
+    }
+
+    fn row(&self, run: &Run, attend: &dyn Fn()) -> Result<Row, Error> {
+        attend();
+        match self.ready(run)?.compute(Progress::to(&|_| attend())) {
             Ok(results) => Ok(Row::of(run, &results.outcome, results.passed())),
             Err(fault @ Error::Solve { .. }) => Ok(Row::failed(run, fault.to_string())),
             Err(other) => Err(other),

@@ -94,7 +94,7 @@ fn a_reader_points_drags_and_chooses() {
     let stress = row(
         &browser,
         "explorer-values",
-        "largest principal cauchy stress",
+        "largest principal Cauchy stress",
     );
     let force = number(&results["steps"][1], &["finite_element", "force_N"]);
     let mean = force / (50.0 * 2.0) * 1.5;

@@ -164,7 +164,8 @@ fn label(name: &str) -> String {
     let words = words
         .replace('_', " ")
         .replace("mises", "Mises")
-        .replace("cauchy", "Cauchy");
+        .replace("cauchy", "Cauchy")
+        .replace("green lagrange", "Green-Lagrange");
     format!("{words}{unit}")
 }
 
