@@ -4,12 +4,12 @@
 //! every freedom of [`super::freedoms`] and all edges let go: what is left then is noise more surely. Made white by the latter, the
 //! data tell which freedom takes more from the misfit than noise would let it (F test, in one linearised step).
 
-use super::edge_place::MovedEdge;
 use super::equations::Equations;
 use super::field_estimate::{Contradiction, ForceCheck};
 use super::knowledge::EdgeCondition;
 use super::linear_model::{Model, Reference};
 use super::mesh_error::MeshError;
+use super::moved_edges::MovedEdge;
 use super::rows::{Rows, soundness};
 use super::search::{NearestField, Scored};
 use super::task::{Edge, Task};
@@ -65,37 +65,34 @@ pub fn judge(
     let base = Model::of_search(&rows, found);
     let noise = base.noise(&rows);
     let columns = found.freedoms(own)?;
-    let moved = found.moved_edges(edges)?;
-    let found = &*found;
-    let released = |goes: &dyn Fn(&str) -> bool| {
-        let scored = let_go(task, found, edges, goes)?;
-        Some(Model::of_score(&rows, found, &scored))
-    };
     let all = all.map(|scored| Model::of_score(&rows, found, &scored));
     let trials = Trials {
         reference: Reference::new(&rows, noise.as_ref(), (&base, all.as_ref()), &columns, own),
         rows: &rows,
-        found,
         base: &base,
     };
     let mut mends: Vec<Mend> = columns
         .iter()
-        .map(|(freedom, design)| trials.mend(freedom.clone(), &base.with(&rows, [design])))
+        .map(|(freedom, design)| trials.mend(found, freedom.clone(), &base.with(&rows, [design])))
         .collect();
-    let together = all.as_ref().map(|model| trials.mend(Freedom::Edges, model));
+    let together = all
+        .as_ref()
+        .map(|model| trials.mend(found, Freedom::Edges, model));
     let correlation = noise.as_ref().map(|noise| rows.correlation(noise));
     let reasons = reasons(mends.iter().chain(&together), correlation, found);
     let mut contradiction = None;
     if !reasons.is_empty() {
         let alone = |name: &str| {
-            let model = released(&|other| other == name)?;
-            Some(trials.mend(Freedom::Edge(name.to_owned()), &model))
+            let scored = let_go(task, found, edges, &|other| other == name)?;
+            let model = Model::of_score(&rows, found, &scored);
+            Some(trials.mend(found, Freedom::Edge(name.to_owned()), &model))
         };
         let each: Vec<Mend> = said(edges).into_iter().filter_map(alone).collect();
         contradiction = contradicted(together.as_ref(), &each);
         mends.extend(together.filter(|_| each.len() > 1));
         mends.extend(each);
-        mends.extend(moved.into_iter().filter_map(|edge| trials.moved(edge)));
+        let moved = found.moved_edges(edges)?.into_iter();
+        mends.extend(moved.filter_map(|edge| trials.moved(found, edge)));
     }
     // What hardly moves the misfit mends nothing.
     let left = base.plain_left(&rows, found);
@@ -124,24 +121,23 @@ pub fn judge(
 /// What freedoms are tried on.
 struct Trials<'a> {
     rows: &'a Rows,
-    found: &'a NearestField<'a>,
     base: &'a Model,
     reference: Reference,
 }
 
 impl Trials<'_> {
-    fn mend(&self, freedom: Freedom, model: &Model) -> Mend {
+    fn mend(&self, found: &NearestField, freedom: Freedom, model: &Model) -> Mend {
         Mend {
-            left: model.plain_left(self.rows, self.found),
+            left: model.plain_left(self.rows, found),
             ..self.reference.test(freedom, self.base, model)
         }
     }
 
     /// What an edge that lies elsewhere mends, and how far; `None` where the data do not say.
-    fn moved(&self, (edge, design): MovedEdge) -> Option<Mend> {
+    fn moved(&self, found: &NearestField, (edge, design): MovedEdge) -> Option<Mend> {
         let outwards = self.reference.factor(self.rows, self.base, &design)?;
         let model = self.base.with(self.rows, [&design]);
-        Some(self.mend(Freedom::MovedEdge { edge, outwards }, &model))
+        Some(self.mend(found, Freedom::MovedEdge { edge, outwards }, &model))
     }
 }
 
