@@ -32,7 +32,7 @@ pub mod wrinkling;
 
 pub use array::{Array, Components};
 pub use block::{Block, Content, Figure};
-pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke, curve_through};
+pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke};
 pub use check::{Check, Wanted, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};
 pub use drawing::{Drawing, MeshFigure, NamedLines, mesh_outlines};

@@ -82,28 +82,22 @@ const TIMES: [&str; 10] = [
 
 impl Role {
     const fn strain(measure: Option<&'static str>, axis: usize) -> Self {
-        let kind = Kind::Strain;
-        Self {
-            kind,
-            measure,
-            axis,
-        }
+        Self::measured(Kind::Strain, measure, axis)
     }
 
     const fn stress(measure: Option<&'static str>, axis: usize) -> Self {
-        let kind = Kind::Stress;
+        Self::measured(Kind::Stress, measure, axis)
+    }
+
+    const fn other(kind: Kind) -> Self {
+        Self::measured(kind, None, 0)
+    }
+
+    const fn measured(kind: Kind, measure: Option<&'static str>, axis: usize) -> Self {
         Self {
             kind,
             measure,
             axis,
-        }
-    }
-
-    const fn other(kind: Kind) -> Self {
-        Self {
-            kind,
-            measure: None,
-            axis: 0,
         }
     }
 

@@ -76,8 +76,8 @@ pub enum Stroke {
     Filled,
 }
 
-/// Computed points and, between them, cubics that keep their shape (those of [`ScalarFunction::table`]), for a line that is a curve.
-pub fn curve_through(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+/// Computed points and, between them, cubics that keep their shape (those of [`ScalarFunction::table`]).
+fn curve_through(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     const PARTS: i32 = 16;
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let Ok(cubics) = ScalarFunction::table(points.clone()) else {
@@ -119,6 +119,15 @@ impl Line {
             colour,
             stroke,
         }
+    }
+
+    /// Computed points, or the curve through them: cubics that keep their shape.
+    pub fn curve(label: &str, points: Vec<[f64; 2]>, colour: [u8; 3], stroke: Stroke) -> Self {
+        let points = match stroke {
+            Stroke::Points => points,
+            _ => curve_through(points),
+        };
+        Self::new(label, points, colour, stroke)
     }
 
     /// A curve that is solid within a range of x and dashed outside of it.

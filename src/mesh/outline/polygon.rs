@@ -82,15 +82,18 @@ fn keep(line: &[[f64; 2]], near: f64, kept: &mut Vec<[f64; 2]>) {
     }
 }
 
+/// By how much a line turns from one edge to the next, in rad from −π to π.
+pub fn turn_between(before: [[f64; 2]; 2], next: [[f64; 2]; 2]) -> f64 {
+    let direction = |[a, b]: [[f64; 2]; 2]| (b[1] - a[1]).atan2(b[0] - a[0]);
+    let change = direction(next) - direction(before);
+    change.sin().atan2(change.cos())
+}
+
 /// The middles of edges no longer than `most` at whose ends a line turns by more than `turn` one way and then the other.
 pub fn steps(line: &[[f64; 2]], turn: f64, most: f64) -> Vec<[f64; 2]> {
     let edges: Vec<[[f64; 2]; 2]> = Polygon(line).edges().collect();
     let count = edges.len();
-    let direction = |[a, b]: &[[f64; 2]; 2]| (b[1] - a[1]).atan2(b[0] - a[0]);
-    let turn_at = |i: usize| {
-        let change = direction(&edges[i]) - direction(&edges[(i + count - 1) % count]);
-        change.sin().atan2(change.cos())
-    };
+    let turn_at = |i: usize| turn_between(edges[(i + count - 1) % count], edges[i]);
     let is_step = |i: &usize| {
         let [first, second] = [turn_at(*i), turn_at((i + 1) % count)];
         let sharp = first.abs() > turn && second.abs() > turn && first * second < 0.0;

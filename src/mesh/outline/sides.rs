@@ -5,7 +5,7 @@
 //! the inside of a U, belong to none: they are no part of what is gripped or pulled beside them. Where the hull bridges the angle
 //! between two sides, as that of an L, its edges are named by where they face themselves.
 
-use super::polygon::distance;
+use super::polygon::{distance, turn_between};
 use crate::mesh::geometry::{distance as length, polygon_area};
 
 /// A turn of more than this is a corner: 40°.
@@ -115,12 +115,8 @@ fn hull(line: &[[f64; 2]]) -> Vec<usize> {
 /// Numbers of edges that follow each other from corner to corner; of a closed line the first one may begin before a corner. A
 /// round line faces all sides: each of its edges is for itself.
 fn chains(edges: &[Edge], closed: bool) -> Vec<Vec<usize>> {
-    let direction = |[a, b]: &Edge| (b[1] - a[1]).atan2(b[0] - a[0]);
     let count = edges.len();
-    let turns = |i: usize| {
-        let turn = direction(&edges[i]) - direction(&edges[(i + count - 1) % count]);
-        turn.sin().atan2(turn.cos()).abs() > CORNER
-    };
+    let turns = |i: usize| turn_between(edges[(i + count - 1) % count], edges[i]).abs() > CORNER;
     let first = match closed {
         true => (0..count).find(|i| turns(*i)).unwrap_or_default(),
         false => 0,

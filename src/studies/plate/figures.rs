@@ -6,8 +6,8 @@ use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::results::{
-    Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, curve_through,
-    material_chart, sheet_figures,
+    Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, material_chart,
+    sheet_figures,
 };
 use crate::solve::State;
 
@@ -187,12 +187,8 @@ fn force(results: &Results) -> Drawing {
         let solutions =
             steps.filter_map(|step| results.models(step)[model].zip(results.measures(step)[model]));
         let points = solutions.map(|(state, measures)| [100.0 * state.factor, measures.force]);
-        let points: Vec<_> = [[0.0, 0.0]].into_iter().chain(points).collect();
-        let points = match stroke {
-            Stroke::Points => points,
-            _ => curve_through(points),
-        };
-        Line::new(MODELS[model], points, colour, stroke)
+        let points = [[0.0, 0.0]].into_iter().chain(points).collect();
+        Line::curve(MODELS[model], points, colour, stroke)
     };
     let lines = [
         (2, FINITE_ELEMENT, Stroke::Solid),

@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::{
     Array, Axis, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, PALETTE, Panel,
-    Stroke, curve_through, mesh_outlines, sheet_figures,
+    Stroke, mesh_outlines, sheet_figures,
 };
 use crate::studies::pictures::Shown;
 
@@ -131,12 +131,8 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let chart = |(group, (axis, _)): (usize, (usize, f64))| {
         let line = |model: usize| {
             let points = points(model, group, axis);
-            let enough = points.len() > 1;
-            let points = match STROKES[model] {
-                Stroke::Points => points,
-                _ => curve_through(points),
-            };
-            enough.then(|| Line::new(named[model].name, points, COLOURS[model], STROKES[model]))
+            (points.len() > 1)
+                .then(|| Line::curve(named[model].name, points, COLOURS[model], STROKES[model]))
         };
         let y = format!("force along {} [N]", ["x", "y"][axis]);
         let lines = [2, 0, 1].into_iter().filter_map(line).collect();
