@@ -74,13 +74,21 @@ def finite(array: Floats, argument: str) -> Floats:
     return array
 
 
-def _value(value: Any) -> str:
+def scalar(value: Any) -> str | None:
+    """A truth or a number as a study has it; nothing of anything else."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (float, np.floating)):
         return repr(float(value))
+    return None
+
+
+def _value(value: Any) -> str:
+    text = scalar(value)
+    if text is not None:
+        return text
     if isinstance(value, str):
         escapes = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
         return '"' + "".join(escapes.get(letter, letter) for letter in value) + '"'

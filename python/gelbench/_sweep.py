@@ -17,7 +17,7 @@ from . import _core
 from ._errors import WriteError, fault
 from ._plots import band_over_steps, inline
 from ._progress import Progress, callback
-from ._quantities import Floats, PathLike, SupportsUnits
+from ._quantities import Floats, PathLike, SupportsUnits, scalar
 from ._study import Factors, Plate, Specimen
 from ._tests import Fit
 
@@ -56,12 +56,9 @@ class Band(NamedTuple):
 
 def _word(value: Any, key: str) -> str:
     """One value as a text, as a study has it."""
-    if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
-    if isinstance(value, (int, np.integer)):
-        return str(int(value))
-    if isinstance(value, (float, np.floating)):
-        return repr(float(value))
+    text = scalar(value)
+    if text is not None:
+        return text
     if isinstance(value, SupportsUnits):
         return f"{float(value.magnitude)!r} {getattr(value, 'units', ''):~}".rstrip()
     if isinstance(value, (str, os.PathLike)):

@@ -1,5 +1,7 @@
 import os
 import subprocess
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -26,3 +28,25 @@ def command():
         return done.returncode, done.stdout, done.stderr
 
     return run
+
+
+@pytest.fixture
+def counted_meanwhile():
+    """How far a thread counts, a step each millisecond, while another one works."""
+
+    def count(work):
+        counted, ended = 0, threading.Event()
+
+        def other():
+            work()
+            ended.set()
+
+        worker = threading.Thread(target=other)
+        worker.start()
+        while not ended.is_set():
+            counted += 1
+            time.sleep(0.001)
+        worker.join()
+        return counted
+
+    return count

@@ -174,21 +174,9 @@ def test_bars_of_tqdm_move(plate):
     assert bar.n == 2
 
 
-def test_other_threads_go_on_while_a_model_is_solved():
+def test_other_threads_go_on_while_a_model_is_solved(counted_meanwhile):
     large = gb.Plate(cells=(120, 40))
-    counted, ended = 0, threading.Event()
-
-    def solve():
-        large.solve("mass-spring", [0.5])
-        ended.set()
-
-    worker = threading.Thread(target=solve)
-    worker.start()
-    while not ended.is_set():
-        counted += 1
-        time.sleep(0.001)
-    worker.join()
-    assert counted > 10
+    assert counted_meanwhile(lambda: large.solve("mass-spring", [0.5])) > 10
 
 
 def test_threads_solve_side_by_side(plate):

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import textwrap
-import threading
 import time
 
 import gelbench as gb
@@ -208,20 +207,8 @@ def test_progress_is_told_of_each_run_and_may_stop_the_sweep(study):
     assert sorted(told) == [f"run {number}" for number in range(1, 6)] and len(table) == 5
 
 
-def test_other_threads_go_on_meanwhile(study):
-    counted, ended = 0, threading.Event()
-
-    def work():
-        gb.sweep(study, VARIED, samples=12)
-        ended.set()
-
-    worker = threading.Thread(target=work)
-    worker.start()
-    while not ended.is_set():
-        counted += 1
-        time.sleep(0.001)
-    worker.join()
-    assert counted > 10
+def test_other_threads_go_on_meanwhile(study, counted_meanwhile):
+    assert counted_meanwhile(lambda: gb.sweep(study, VARIED, samples=12)) > 10
 
 
 PROGRAM = """
