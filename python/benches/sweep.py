@@ -4,13 +4,13 @@ Both solve neo-Hookean plates of random stiffness and thickness in plane stress,
 length, with biquadratic elements on one mesh. They take turns, a few plates each, so that a busy machine slows down both.
 
     pip install felupe
-    python benches/sweep.py [plates of each] [plates in a turn]
+    python benches/sweep.py --plates 1000 --turn 25 --models sweep
 """
 
 from __future__ import annotations
 
+import argparse
 import os
-import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -20,6 +20,11 @@ import numpy as np
 
 LENGTH, WIDTH = 150.0, 50.0
 STRETCHES = [0.15, 0.3, 0.5, 0.75, 1.0]
+OWN = {
+    "sweep": "gelbench, sweep: three models, three meshes, own errors",
+    "finite-element": "gelbench, finite elements alone",
+    "corrected": "gelbench, corrected alone",
+}
 SETTINGS = {"finite_element": {"cells": [60, 20]}, "output": {"report": False}}
 
 
@@ -76,8 +81,12 @@ def timed(work):
 
 
 def main():
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
-    turn = int(sys.argv[2]) if len(sys.argv) > 2 else 10
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("--plates", type=int, default=100, help="plates of each")
+    arguments.add_argument("--turn", type=int, default=10, help="plates in a turn")
+    arguments.add_argument("--models", nargs="+", choices=OWN, default=list(OWN), help="what of gelbench runs beside FElupe")
+    given = arguments.parse_args()
+    count, turn = given.plates, given.turn
     rng = np.random.default_rng(1)
     c10, thickness = rng.uniform(0.03, 0.07, count), rng.uniform(1.0, 3.0, count)
     loop, workers = Loop(), ThreadPoolExecutor(os.cpu_count())
@@ -91,12 +100,8 @@ def main():
         one = lambda values: plate(*values).solve(model, STRETCHES).force  # noqa: E731
         return lambda own: list(workers.map(one, zip(c10[own], thickness[own])))
 
-    runners = {
-        "FElupe, one loop": lambda own: [loop.force(*values) for values in zip(c10[own], thickness[own])],
-        "gelbench, sweep: three models, three meshes, own errors": swept,
-        "gelbench, finite elements alone": single("finite-element"),
-        "gelbench, corrected alone": single("corrected"),
-    }
+    runners = {"FElupe, one loop": lambda own: [loop.force(*values) for values in zip(c10[own], thickness[own])]}
+    runners |= {OWN[model]: swept if model == "sweep" else single(model) for model in given.models}
     for run in runners.values():
         run(slice(0, 1))
     seconds, forces = {name: [] for name in runners}, {name: [] for name in runners}
