@@ -27,18 +27,25 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Finds out what the columns mean.
-    pub fn new(head: &Head) -> Faulty<Self> {
-        let test = head.choice("test", None, &Test::NAMES)?;
+    /// Finds out what the columns mean; all that is missing is told at once.
+    pub fn new(head: &Head) -> Result<Self, Vec<Diagnostic>> {
         let roles = roles(head);
-        check_columns(head, &roles, test)?;
-        let (strain, strains) = strains(head, &roles)?;
-        let (stress_measure, stresses) = stresses(head, &roles)?;
-        let strain_ratio = if test == Test::Biaxial && strains[1].is_none() {
-            Some(strain_ratio(head)?)
-        } else {
-            None
+        let mut faults = Faults::default();
+        let test = faults.of(head.choice("test", None, &Test::NAMES));
+        let strains = faults.of(strains(head, &roles));
+        let stresses = faults.of(stresses(head, &roles));
+        let machine = faults.of(machine(head, &roles));
+        let (Some(test), Some((strain, strains)), Some((stress_measure, stresses)), Some(machine)) =
+            (test, strains, stresses, machine)
+        else {
+            return Err(faults.0);
         };
+        faults.of(check_columns(head, &roles, test));
+        let ratio = (test == Test::Biaxial && strains[1].is_none()).then(|| strain_ratio(head));
+        let strain_ratio = ratio.and_then(|ratio| faults.of(ratio));
+        if !faults.0.is_empty() {
+            return Err(faults.0);
+        }
         Ok(Self {
             test,
             stress_measure,
@@ -46,7 +53,7 @@ impl Layout {
             strains,
             stresses,
             strain_ratio,
-            machine: machine(head, &roles)?,
+            machine,
             time: time(head, &roles),
         })
     }
@@ -93,7 +100,7 @@ impl Layout {
         let observations = kept;
         let stresses = observations.iter().map(|one| one.stress.abs());
         let largest_stress = stresses.fold(0.0, f64::max);
-        check_signs(head, &observations)?;
+        check_signs(head, &observations, self.test)?;
         let widest = |axis: usize| {
             let strains = observations.iter().map(|one| one.strains[axis].abs());
             strains.fold(0.0, f64::max)
@@ -184,7 +191,7 @@ impl Layout {
 const SCATTER: f64 = 1e-3;
 
 /// Data that say nothing, or a test of compression that counts pressing as positive, are refused.
-fn check_signs(head: &Head, observations: &[Observation]) -> Faulty<()> {
+fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Faulty<()> {
     let strains = || observations.iter().map(|one| one.strains[one.axis]);
     let nothing = observations.iter().all(|one| one.stress == 0.0)
         || observations
@@ -193,6 +200,19 @@ fn check_signs(head: &Head, observations: &[Observation]) -> Faulty<()> {
     if nothing {
         let hint = "look at the columns and their units";
         return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
+    }
+    // Against the strain of the one axis that is driven a stress is only while it recoils; of two, the second may be held back.
+    let work = || {
+        observations
+            .iter()
+            .map(|one| one.strains[one.axis] * one.stress)
+    };
+    let against = !work().any(|work| work > 0.0) && work().any(|work| work < 0.0);
+    if against && test != Test::Biaxial {
+        let message = "the stresses have the sign that is opposite to the strains";
+        let hint =
+            "tension is positive in both columns, compression negative: turn the sign of one";
+        return Err(head.fault(0..0, message, hint));
     }
     let compression = head.setting("test", None)?.as_deref() == Some("compression");
     // A machine's reading at rest scatters about zero.
@@ -203,6 +223,33 @@ fn check_signs(head: &Head, observations: &[Observation]) -> Faulty<()> {
         return Err(head.fault(head.place("test"), message, hint));
     }
     Ok(())
+}
+
+/// What is missing or wrong, each once.
+#[derive(Default)]
+struct Faults(Vec<Diagnostic>);
+
+impl Faults {
+    /// What was found, or nothing where it is a fault.
+    fn of<T>(&mut self, found: Faulty<T>) -> Option<T> {
+        let fault = match found {
+            Ok(found) => return Some(found),
+            Err(fault) => *fault,
+        };
+        if self.0.iter().all(|known| known.message != fault.message) {
+            self.0.push(fault);
+        }
+        None
+    }
+}
+
+/// A test begins at a stretch of 1; what begins beyond this factor of it may be in percent.
+const AT_REST: f64 = 10.0;
+
+/// Whether a column of stretches without a unit holds plain ratios.
+fn is_plain_stretch(head: &Head, column: usize) -> bool {
+    let values = head.table.rows.iter().map(|(row, _)| row[column].abs());
+    values.fold(f64::INFINITY, f64::min) < AT_REST
 }
 
 /// Column and factor to a ratio, or to MPa.
@@ -228,7 +275,12 @@ fn strains(head: &Head, roles: &[Role]) -> Faulty<(StrainColumn, [Option<Scaled>
             let unit = head.factor("strain unit", named, Dimension::Length)?;
             unit / head.required_quantity("length", Dimension::Length)?
         } else {
-            head.factor("strain unit", named, Dimension::Ratio)?
+            let plain = measure == StrainColumn::Stretch && is_plain_stretch(head, column);
+            let unit = head.setting("strain unit", named.unit.as_deref())?;
+            match unit {
+                None if plain => 1.0,
+                _ => head.factor("strain unit", named, Dimension::Ratio)?,
+            }
         };
         Ok((column, factor))
     };

@@ -45,7 +45,7 @@ impl TestData {
 
     fn of_table(table: &Table, reading: &Statements) -> Result<Self, Error> {
         let head = Head::new(table, &KEYS, reading)?;
-        let layout = Layout::new(&head).map_err(|fault| input(*fault))?;
+        let layout = Layout::new(&head).map_err(Error::Input)?;
         let hint = "every row holds finite numbers; units stand in the line of names";
         table.check_numbers(layout.columns(), hint)?;
         layout.read(&head).map_err(|fault| input(*fault))

@@ -102,11 +102,11 @@ fn figures(fit: &Fit) -> String {
     let residuals = match fit.parameters.is_empty() {
         true => "  the curve is taken as it was measured; nothing is fitted\n".to_owned(),
         false => format!(
-            "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {:.2}, largest relative error {:.2} %, sum of squares {} MPa²\n",
+            "  RMSE {:.4e} MPa, NMAD {:.3} %, R² {:.6}, AICc {}, largest relative error {:.2} %, sum of squares {} MPa²\n",
             quality.rmse,
             quality.nmad_percent,
             quality.r_squared,
-            quality.aicc,
+            criterion(quality.aicc),
             quality.largest_relative_error_percent,
             digits(quality.sum_of_squares, 6)
         ),
@@ -178,6 +178,14 @@ pub fn curves(
     text
 }
 
+/// AICc, which parameters as many as points do not have.
+fn criterion(aicc: f64) -> String {
+    match aicc.is_finite() {
+        true => format!("{aicc:.2}"),
+        false => "none".to_owned(),
+    }
+}
+
 /// The laws by AICc.
 pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
     let mut text = String::from(
@@ -186,10 +194,10 @@ pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
     for fit in fits {
         let quality = &fit.quality;
         text += &format!(
-            "{:<24}{:>10}{:>14.2}{:>13.4e}{:>10.3}{:>18.2}  {:<20}  {}\n",
+            "{:<24}{:>10}{:>14}{:>13.4e}{:>10.3}{:>18.2}  {:<20}  {}\n",
             fit.law.name,
             fit.parameters.len(),
-            quality.aicc,
+            criterion(quality.aicc),
             quality.rmse,
             quality.nmad_percent,
             quality.largest_relative_error_percent,

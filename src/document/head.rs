@@ -113,12 +113,17 @@ impl<'a> Head<'a> {
         names: &[(&'static str, T)],
     ) -> Faulty<T> {
         let value = self.setting(key, named)?;
-        let value = value.ok_or_else(|| self.missing(key, names[0].0))?;
+        let known = || names.iter().map(|(name, _)| *name).collect::<Vec<_>>();
+        let value = value.ok_or_else(|| {
+            let mut fault = self.missing(key, names[0].0);
+            let hint = fault.hint.take().unwrap_or_default();
+            fault.hint = Some(format!("{hint}; it is one of {}", known().join(", ")));
+            fault
+        })?;
         if let Some((_, choice)) = names.iter().find(|(name, _)| *name == value) {
             return Ok(*choice);
         }
-        let known: Vec<_> = names.iter().map(|(name, _)| *name).collect();
-        let hint = suggestion(&value, &known, "it must be one of");
+        let hint = suggestion(&value, &known(), "it must be one of");
         Err(self.fault(
             self.place(key),
             format!("the {key} `{value}` is not known"),
