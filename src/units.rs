@@ -66,7 +66,9 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("N", Dimension::Force, 1.0),
     ("mN", Dimension::Force, 1e-3),
     ("kN", Dimension::Force, 1e3),
+    ("µN", Dimension::Force, 1e-6),
     ("gf", Dimension::Force, 9.80665e-3),
+    ("kgf", Dimension::Force, 9.80665),
     ("lbf", Dimension::Force, 4.448_221_615_260_5),
     ("MPa", Dimension::Stress, 1.0),
     ("kPa", Dimension::Stress, 1e-3),
@@ -99,9 +101,12 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("MPa·s", Dimension::Viscosity, 1.0),
     ("K", Dimension::Temperature, 1.0),
     ("cm^3/mol", Dimension::MolarVolume, 1e3),
+    ("mL/mol", Dimension::MolarVolume, 1e3),
     ("mm^3/mol", Dimension::MolarVolume, 1.0),
     ("m^3/mol", Dimension::MolarVolume, 1e9),
     ("mol/m^3", Dimension::Concentration, 1e-9),
+    ("mol/L", Dimension::Concentration, 1e-6),
+    ("mmol/L", Dimension::Concentration, 1e-9),
     ("mol/cm^3", Dimension::Concentration, 1e-3),
     ("mol/mm^3", Dimension::Concentration, 1.0),
     ("rad", Dimension::Angle, 1.0),
@@ -109,6 +114,11 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
     ("%", Dimension::Ratio, 1e-2),
 ];
+
+/// The unit of temperature whose zero is not that of K: it has no factor.
+const CELSIUS: [&str; 2] = ["°C", "degC"];
+/// 0 °C in K.
+const ICE_POINT: f64 = 273.15;
 
 impl Dimension {
     /// All of them.
@@ -157,6 +167,11 @@ impl Dimension {
             .iter()
             .filter(move |(_, dimension, _)| *dimension == self)
             .map(|(symbol, ..)| *symbol)
+            .chain(
+                CELSIUS
+                    .into_iter()
+                    .filter(move |_| self == Self::Temperature),
+            )
     }
 
     /// The unit of this dimension inside the program; empty for a ratio.
@@ -277,6 +292,15 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
         .replace('²', "^2")
         .replace('μ', "µ")
         .replace('*', "·");
+    if CELSIUS.contains(&&*normalised) {
+        return match dimension {
+            Dimension::Temperature => admitted(number + ICE_POINT, dimension),
+            _ => Err(QuantityFault::WrongDimension {
+                unit: unit.to_owned(),
+                found: Dimension::Temperature,
+            }),
+        };
+    }
     match UNITS.iter().find(|(symbol, ..)| *symbol == normalised) {
         Some((_, found, factor)) if *found == dimension => admitted(number * factor, dimension),
         Some((_, found, _)) => Err(QuantityFault::WrongDimension {
@@ -296,9 +320,12 @@ fn admitted(value: f64, dimension: Dimension) -> Result<f64, QuantityFault> {
 /// written as `-`.
 ///
 /// # Errors
-/// A [`QuantityFault`] when the unit is missing, unknown or of another dimension.
+/// A [`QuantityFault`] when the unit is missing, unknown or of another dimension, or has a zero of its own (°C).
 pub fn factor(unit: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     match (dimension, unit) {
+        (_, offset) if CELSIUS.contains(&offset) => {
+            Err(QuantityFault::UnknownUnit(offset.to_owned()))
+        }
         (Dimension::Ratio, "-" | "–" | "1" | "mm/mm" | "m/m" | "in/in") => Ok(1.0),
         _ => parse(&format!("1 {unit}"), dimension),
     }
@@ -330,55 +357,4 @@ pub(crate) fn number_length(text: &str) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantities_are_converted_to_internal_units() {
-        assert_eq!(parse("15 cm", Dimension::Length), Ok(150.0));
-        assert_eq!(parse("2mm", Dimension::Length), Ok(2.0));
-        assert_eq!(parse("-1.5e-1 m", Dimension::Length), Ok(-150.0));
-        assert_eq!(parse("61.1 kPa", Dimension::Stress), Ok(61.1 * 1e-3));
-        assert_eq!(parse("1020 kg/m³", Dimension::Density), Ok(1020.0 * 1e-12));
-        assert_eq!(parse("9.81 m/s²", Dimension::Acceleration), Ok(9810.0));
-        assert_eq!(parse("3 kPa*s", Dimension::Viscosity), Ok(3e-3));
-        assert_eq!(parse("50 %", Dimension::Ratio), Ok(0.5));
-        assert_eq!(parse("0.5", Dimension::Ratio), Ok(0.5));
-    }
-
-    #[test]
-    fn faults_are_told_apart() {
-        assert_eq!(
-            parse("15", Dimension::Length),
-            Err(QuantityFault::MissingUnit)
-        );
-        assert_eq!(
-            parse("cm", Dimension::Length),
-            Err(QuantityFault::NotANumber)
-        );
-        assert_eq!(parse("", Dimension::Length), Err(QuantityFault::NotANumber));
-        assert_eq!(
-            parse("1e999 mm", Dimension::Length),
-            Err(QuantityFault::NotANumber)
-        );
-        assert_eq!(
-            parse("15,0 cm", Dimension::Length),
-            Err(QuantityFault::DecimalComma)
-        );
-        assert_eq!(
-            parse("1e150 mm", Dimension::Length),
-            Err(QuantityFault::OutOfRange(Dimension::Length))
-        );
-        assert_eq!(
-            parse("15 furlong", Dimension::Length),
-            Err(QuantityFault::UnknownUnit("furlong".into()))
-        );
-        assert_eq!(
-            parse("15 MPa", Dimension::Length),
-            Err(QuantityFault::WrongDimension {
-                unit: "MPa".into(),
-                found: Dimension::Stress
-            })
-        );
-    }
-}
+mod tests;
