@@ -210,6 +210,7 @@ impl<'a> Climb<'a> {
     ) -> Result<Iteration, SolveFault> {
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
         let mut whole: Option<Iteration> = None;
+        self.check_operators()?;
         for _ in 0..LINEARISATIONS {
             let level = &mut self.levels[index];
             level
@@ -254,6 +255,14 @@ impl<'a> Climb<'a> {
         }
         let inverted = self.multigrid.invert_coarsest();
         inverted.map_err(|NotPositiveDefinite| SolveFault::NotPositiveDefinite)
+    }
+
+    /// Where the coarsest operator that was written last has no inverse, nothing can be iterated.
+    fn check_operators(&self) -> Result<(), SolveFault> {
+        match self.multigrid.is_inverted() {
+            true => Ok(()),
+            false => Err(SolveFault::NotPositiveDefinite),
+        }
     }
 
     /// F(u) in N at the nodes of the finest grid, the reactions at the grips; nothing where J is not positive.

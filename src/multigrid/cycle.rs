@@ -69,12 +69,20 @@ impl Multigrid {
             .ok_or(NotPositiveDefinite)
     }
 
+    /// Whether the coarsest operator has an inverse: without it there is no cycle.
+    pub fn is_inverted(&self) -> bool {
+        self.coarsest.is_some()
+    }
+
     /// The right-hand side of a grid, to be written.
     pub fn right_hand_side(&mut self, level: usize) -> &mut Vector {
         &mut self.levels[level].b
     }
 
     /// One V-cycle from zero on a grid and all coarser ones; the result.
+    ///
+    /// # Panics
+    /// Where the coarsest operator has no inverse, see [`Self::is_inverted`].
     pub fn cycle(&mut self, level: usize) -> &Vector {
         self.descend(level);
         &self.levels[level].x

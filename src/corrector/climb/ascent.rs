@@ -190,8 +190,9 @@ impl Climb<'_> {
     }
 
     /// The next grid, or a finer one, by Newton's method along a path of load steps from rest.
-    fn step_up_by_load_path(&self, ascent: &mut Ascent, stretch: f64) -> Result<(), Error> {
+    fn step_up_by_load_path(&mut self, ascent: &mut Ascent, stretch: f64) -> Result<(), Error> {
         let found = self.along_load_path(ascent.index + 1, stretch)?;
+        self.write_operators(&found);
         let [coarse, fine] = [ascent.index, found.index].map(|index| &self.levels[index].grid);
         let interpolated = ascent.field.onto(coarse, fine);
         ascent.take(found.index, found.field, interpolated);

@@ -132,6 +132,12 @@ impl Climb<'_> {
         })
     }
 
+    /// Writes the operators of its grid and of all coarser ones at an equilibrium. Where that cannot be done, what is finer is
+    /// iterated with those of before, or found along a path of load steps, too.
+    pub(super) fn write_operators(&mut self, found: &Equilibrium) {
+        self.linearise_below(found.index, &found.field).ok();
+    }
+
     fn load_path(&self, index: usize, stretch: f64) -> Result<Equilibrium, PathEnd> {
         let grid = &self.levels[index].grid;
         let energy = energy(self.problem, self.scheme, grid);

@@ -154,6 +154,7 @@ impl Climb<'_> {
     /// Corrects a field that is near the result, with the operators written before, to a share of its
     /// discretisation error.
     fn near(&mut self, field: &mut Field, error: f64) -> Result<Iteration, SolveFault> {
+        self.check_operators()?;
         let finest = self.levels.len() - 1;
         let limit = self.settings.tolerance * error;
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);

@@ -55,6 +55,7 @@ impl Climb<'_> {
             }
         }
         let found = self.along_load_path(self.start, stretch)?;
+        self.write_operators(&found);
         let (grid, left) = (&self.levels[found.index].grid, found.left);
         let work = vec![(grid.nodes(), Work::default())];
         let way = Way::from_start(Start::LoadPath, grid.cells());

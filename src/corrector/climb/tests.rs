@@ -7,7 +7,8 @@ use crate::corrector::Solver;
 use crate::corrector::plate::{KnownConditions, PlateCorrector};
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
-use crate::material::Card;
+use crate::material::volume::bulk_modulus;
+use crate::material::{Card, PlaneState, Volume, VolumeEnergy};
 use crate::mesh::{CellShape, Mesh};
 use crate::solve::NewtonSettings;
 
@@ -325,4 +326,35 @@ fn finite_elements_of_nine_nodes_have_the_biquadratic_equations() {
     let mut climb = Climb::even(&problem, [30, 10], DifferenceScheme::Biquadratic, TIGHT);
     let field = climb.correct(0.5).unwrap().field.to_nodes();
     assert!(largest_difference(&field, &solved[0].displacement) < 1e-6);
+}
+
+#[test]
+fn sheets_in_plane_strain_are_climbed_however_little_their_volume_changes() {
+    let loads = [
+        (0.3, 0.5),
+        (0.49, 1.0),
+        (0.4999, 0.15),
+        (0.4999, 1.0),
+        (0.4999, -0.1),
+    ];
+    for (poisson, stretch) in loads {
+        let mut problem = problem("neo-hooke", [150.0, 50.0], stretch);
+        let volume = Volume {
+            bulk_modulus: bulk_modulus(problem.law.shear_modulus(), poisson),
+            energy: VolumeEnergy::default(),
+            plane: PlaneState::Strain,
+        };
+        let sheet = Arc::clone(&problem.law).with_volume(volume);
+        problem.law = sheet.unwrap();
+        let model = FiniteElements::new(&problem, [12, 4], Element::Q2);
+        let settings = NewtonSettings {
+            tolerance: 1e-11,
+            max_iterations: 60,
+        };
+        let solved = model.solve(&problem, settings, &|_| ()).unwrap();
+        let mut climb = Climb::even(&problem, [24, 8], DifferenceScheme::Biquadratic, TIGHT);
+        let climbed = climb.correct(stretch).unwrap();
+        let off = largest_difference(&climbed.field.to_nodes(), &solved[0].displacement);
+        assert!(off < 1e-5, "ν = {poisson}, {stretch}: {off} mm");
+    }
 }
