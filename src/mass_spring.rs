@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use crate::error::Error;
 use crate::material::law::HyperelasticLaw;
-use crate::material::sheet::Kinematics;
+use crate::material::stability::in_plane_poisson_ratio;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{ClampedPlate, Model};
 use crate::solve::vector::gather;
@@ -90,12 +90,6 @@ fn isotropic_shares(law: &dyn HyperelasticLaw) -> [f64; 2] {
         4.0 / (3.0 * (1.0 + nu)),
         (3.0 * nu - 1.0) / (2.0 * (1.0 - nu * nu)),
     ]
-}
-
-/// The sheet's ν in its plane at small strain.
-fn in_plane_poisson_ratio(law: &dyn HyperelasticLaw) -> f64 {
-    let tangent = law.response(&Kinematics::rest()).tangent;
-    tangent[(0, 3)] / tangent[(0, 0)]
 }
 
 /// A word where springs alone stand for a sheet that changes its volume and has another ν in its plane than they have.

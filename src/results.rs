@@ -18,6 +18,7 @@ mod fit;
 mod grid;
 mod identification;
 mod json;
+pub mod locking;
 mod material;
 mod picture_style;
 mod relaxation;

@@ -29,6 +29,12 @@ pub fn stable_range(law: &dyn HyperelasticLaw, mode: Mode) -> [f64; 2] {
     SEARCHED.map(|end| stable_until(law, mode, end.ln()).exp())
 }
 
+/// A sheet's ν in its plane at small strain: that of the material in plane stress, ν/(1 − ν) in plane strain.
+pub fn in_plane_poisson_ratio(law: &dyn HyperelasticLaw) -> f64 {
+    let tangent = law.response(&Kinematics::rest()).tangent;
+    tangent[(0, 3)] / tangent[(0, 0)]
+}
+
 /// The strain of the first state between rest and `end` that is not stable.
 fn stable_until(law: &dyn HyperelasticLaw, mode: Mode, end: f64) -> f64 {
     const STEPS: i32 = 1000;

@@ -14,6 +14,7 @@ use crate::error::{Diagnostic, Error};
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
 use crate::material::{Card, HyperelasticLaw};
 use crate::mesh::Mesh;
+use crate::results::locking;
 
 mod alike;
 mod area;
@@ -131,6 +132,11 @@ impl MarkerStudy {
         if placed.outside > 0 {
             let message = format!("markers outside of the mesh: {}", placed.outside);
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
+        }
+        if let Some(reason) = locking::reason(&*card.law).filter(|_| locking::locks(&mesh)) {
+            let message = format!("{reason}: stresses are too large");
+            let hint = "take cells of the second degree, such as `--cells triangle6`";
+            warnings.push(Diagnostic::warning("", message).hint(hint));
         }
         let mut all = field.warnings;
         doubts.extend(check_thickness(&mesh, request.thickness));

@@ -1,11 +1,13 @@
 //! What a reader of a plate's figures must know about them.
 
+use crate::corrector::DifferenceScheme;
+use crate::finite_element::Element;
 use crate::mass_spring;
 use crate::problem::ClampedPlate;
 use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
-use crate::results::wrinkling;
+use crate::results::{locking, wrinkling};
 
 /// Reactions further from balance than this, relative to the largest, deserve a word.
 const BALANCED: f64 = 1e-9;
@@ -16,6 +18,14 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
     if !study.lattice.area_term {
         all.extend(mass_spring::warning(&*study.problem.law));
     }
+    let corrected = study.corrector.scheme != DifferenceScheme::Biquadratic;
+    let finite_elements = study.reference.element == Element::Q1;
+    let [_, names @ ..] = MODELS;
+    let locking = names.into_iter().zip([corrected, finite_elements]);
+    let locking: Vec<&str> = locking
+        .filter_map(|(name, locks)| locks.then_some(name))
+        .collect();
+    all.extend(locking::warning(&*study.problem.law, &locking));
     all.extend(compression(study, results));
     all.extend(instability(results));
     all.extend(imbalance(results));

@@ -10,7 +10,7 @@ use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::results::wrinkling;
+use crate::results::{locking, wrinkling};
 
 /// All warnings, each in a sentence.
 pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
@@ -28,6 +28,11 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     let strained: Vec<_> = strained.collect();
     let lattice = mass_spring::warning(&*specimen.problem.law);
     let mut all: Vec<String> = lattice.into_iter().chain(compression).collect();
+    let [_, corrected, finite_elements] = models.named();
+    let locking = [corrected, finite_elements].into_iter();
+    let locking = locking.filter(|model| locking::locks(&model.solution.mesh));
+    let locking: Vec<&str> = locking.map(|model| model.name).collect();
+    all.extend(locking::warning(&*specimen.problem.law, &locking));
     all.extend(beyond(&specimen.card, &strained));
     all.extend(unstable(&specimen.card, &strained));
     all
