@@ -278,6 +278,11 @@ fn what_cannot_change_its_volume_is_told() {
         ["law = \"neo-hooke\"", "law = \"blatz-ko\""],
     );
     assert!(own.contains("of its own"), "{own}");
+    let water = told("plane-strain", "bulk_modulus = \"2.2 GPa\"", ["", ""]);
+    assert!(
+        water.contains("times its shear modulus") && water.contains("`poisson_ratio = 0.4999`"),
+        "{water}"
+    );
     let unknown = told("thick", "poisson_ratio = 0.3", ["", ""]);
     assert!(unknown.contains("plane-strain"), "{unknown}");
 }

@@ -20,8 +20,12 @@ use super::exponential::second_quotient;
 use super::sheet::PlaneState;
 use crate::document::{Bound, name_of};
 
+/// The largest Poisson's ratio of a material that changes its volume.
+pub const LARGEST_POISSON_RATIO: f64 = 0.4999;
+
 /// The Poisson's ratios of a material that changes its volume.
-pub const POISSON_RATIO: Bound = Bound::Range(-0.9, 0.4999, "between -0.9 and 0.4999");
+pub const POISSON_RATIO: Bound =
+    Bound::Range(-0.9, LARGEST_POISSON_RATIO, "between -0.9 and 0.4999");
 
 /// How a material resists a change of its volume.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,6 +11,7 @@ use crate::mass_spring::LARGEST_ASPECT;
 use crate::material::curve::Mode;
 use crate::material::parameters::OffsetTreatment;
 use crate::material::stability::{SEARCHED, stable_range};
+use crate::material::volume::{LARGEST_POISSON_RATIO, bulk_modulus};
 use crate::material::{Card, HyperelasticLaw, NeoHooke, PlaneState};
 use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
@@ -97,7 +98,29 @@ fn in_plane(section: &Section<'_>, card: Card) -> Option<Card> {
         let hint = "give the card a `[volume]` with `poisson_ratio` or `bulk_modulus`";
         section.fault(KEY, &message, hint);
     }
-    found
+    found.filter(|card| changes_volume_enough(section, card))
+}
+
+/// Whether a sheet in plane strain changes its volume as much as displacements alone can say; that it does not is recorded. Beyond,
+/// pressures of κ times what rounding and iteration leave of a change of volume hide the stress.
+fn changes_volume_enough(section: &Section<'_>, card: &Card) -> bool {
+    const ROUNDED: f64 = 1.001;
+    let largest = bulk_modulus(1.0, LARGEST_POISSON_RATIO);
+    let ratio = card.law.bulk_modulus().unwrap_or(0.0) / card.law.shear_modulus();
+    let enough = ratio <= ROUNDED * largest;
+    if !enough {
+        let message = format!(
+            "the card `{}` has a bulk modulus of {ratio:.0} times its shear modulus: in plane strain gelbench computes sheets of up to \
+             {largest:.0} times, a Poisson's ratio of {LARGEST_POISSON_RATIO}",
+            card.name
+        );
+        let hint = format!(
+            "write `poisson_ratio = {LARGEST_POISSON_RATIO}` under `[volume]` of the card: stresses are then about 0.02 % from those of a body that keeps \
+             its volume"
+        );
+        section.fault("sheet", &message, &hint);
+    }
+    enough
 }
 
 /// The plate of a section without its stretches, and the cells of its lattice.
