@@ -32,6 +32,14 @@ pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     })
 }
 
+/// A small probability for people; one that is too small for a number is less than another.
+pub fn small_probability(probability: f64) -> String {
+    match probability < f64::MIN_POSITIVE {
+        true => format!("less than {:.0e}", f64::MIN_POSITIVE),
+        false => format!("{probability:.0e}"),
+    }
+}
+
 /// An estimated value with its uncertainty, in the unit of the value.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Estimate {
@@ -140,6 +148,12 @@ pub fn inverse(matrix: &DMatrix<f64>, least: f64) -> Option<DMatrix<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_probability_is_told_as_zero() {
+        assert_eq!(small_probability(3.4e-12), "3e-12");
+        assert_eq!(small_probability(0.0), "less than 2e-308");
+    }
 
     /// Tables of Student, F and χ² at their usual levels.
     #[test]

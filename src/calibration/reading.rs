@@ -57,4 +57,6 @@ fn input(fault: Diagnostic) -> Error {
 }
 
 #[cfg(test)]
+mod missing_tests;
+#[cfg(test)]
 mod tests;

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::statistics::small_probability;
+
 /// The answer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
 pub enum Answer {
@@ -71,7 +73,8 @@ impl Reason {
     pub fn words(self) -> String {
         match self {
             Self::Freedom(probability) => format!(
-                "other equations take so much from the misfit as by noise in {probability:.0e} of cases"
+                "other equations take so much from the misfit as by noise in {} of cases",
+                small_probability(probability)
             ),
             Self::Long(length) => format!(
                 "what is left correlates over {length:.3} mm, too far to be told from a misfit"

@@ -8,7 +8,7 @@ use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, small_probability};
 
 impl MarkerStudy {
     /// What makes the figures of the frames doubtful, of all of them first.
@@ -103,8 +103,8 @@ fn edges(estimate: &FieldEstimate) -> Option<Doubt> {
         }
     };
     let message = format!(
-        "the data contradict what is said of {which}: let go, the misfit falls as by noise in {:.0e} of cases",
-        found.probability
+        "the data contradict what is said of {which}: let go, the misfit falls as by noise in {} of cases",
+        small_probability(found.probability)
     );
     Some((
         message,
