@@ -81,6 +81,14 @@ pub struct MarkerStudy {
     pub unknown_gap: Option<f64>,
 }
 
+/// The warning about a mesh whose cells lock.
+fn too_stiff(law: &dyn HyperelasticLaw, mesh: &Mesh) -> Option<Diagnostic> {
+    let reason = locking::reason(law).filter(|_| locking::locks(mesh))?;
+    let message = format!("{reason}: stresses are too large");
+    let hint = "take cells of the second degree, such as `--cells triangle6`";
+    Some(Diagnostic::warning("", message).hint(hint))
+}
+
 impl MarkerStudy {
     /// Reads everything.
     ///
@@ -133,11 +141,7 @@ impl MarkerStudy {
             let message = format!("markers outside of the mesh: {}", placed.outside);
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
-        if let Some(reason) = locking::reason(&*card.law).filter(|_| locking::locks(&mesh)) {
-            let message = format!("{reason}: stresses are too large");
-            let hint = "take cells of the second degree, such as `--cells triangle6`";
-            warnings.push(Diagnostic::warning("", message).hint(hint));
-        }
+        warnings.extend(too_stiff(&*card.law, &mesh));
         let mut all = field.warnings;
         doubts.extend(check_thickness(&mesh, request.thickness));
         all.extend(warnings);
