@@ -50,6 +50,7 @@ mod shell;
 mod sweep;
 mod terminal;
 mod test_reading;
+mod workbench;
 
 const SAMPLES: &str = "\
 Samples:
@@ -62,6 +63,7 @@ Samples:
   gelbench identify spring.csv               spring and dashpot functions from recorded force and motion
   gelbench correct markers.csv …             make measured displacements satisfy the physics
   gelbench sweep my_plate.toml --vary …      compute it many times, some of its keys changed
+  gelbench workbench my_plate.toml           open it in the window, where it is installed
   gelbench validate                          redo the publication's claims, write output/validation/REPORT.md
   gelbench materials list                    the cards that come along
   gelbench materials show pva-10             one card with its moduli and its source
@@ -186,6 +188,12 @@ enum Command {
         #[arg(long, value_name = "FOLDER", default_value = "output/man")]
         output: PathBuf,
     },
+    /// Open the workbench: sheets to pull by hand, where the program `gelbench-workbench` is installed
+    #[command(after_help = "Sample: gelbench workbench examples/pva_plate.toml")]
+    Workbench {
+        /// Studies, cards, tests and measured fields that lie on its table
+        files: Vec<PathBuf>,
+    },
     /// Look at material cards, fit laws to measured curves, convert test data
     Materials {
         #[command(subcommand)]
@@ -249,6 +257,7 @@ fn perform(command: Command) -> u8 {
             cases.extend(field.then(|| validation::REAL_MEASUREMENTS.to_owned()));
             validate(&cases, quick, output)
         }
+        Command::Workbench { files } => workbench::open(&files),
         Command::Materials { command } => materials::run(command),
     };
     outcome.unwrap_or_else(|error| {

@@ -15,12 +15,12 @@ mod picture;
 pub mod vtk;
 
 #[cfg(feature = "pictures")]
-pub use files::{save, write, write_document, write_grids, write_picture};
+pub use files::{TakesFiles, save, write, write_document, write_frame, write_grids, write_picture};
 #[cfg(feature = "pictures")]
 pub use folder::{BrokenOff, Left, ResultFolder, Unfinished, identity, refuse_inputs};
 pub use markdown::markdown;
 #[cfg(feature = "pictures")]
-pub use picture::{Drawn, PictureFault, png};
+pub use picture::{Drawn, PictureFault, picture, png};
 
 /// The JSON Schema that `report.json` follows, whatever the kind of the study:
 ///

@@ -188,3 +188,29 @@ fn shells_and_manuals_know_every_command() {
         );
     }
 }
+
+#[test]
+fn the_workbench_is_started_where_it_is_installed_and_else_it_is_said_how() {
+    let folder = TempDir::new().unwrap();
+    let own = folder.path().join("gelbench");
+    let built = assert_cmd::cargo::cargo_bin("gelbench");
+    fs::hard_link(&built, &own)
+        .or_else(|_| fs::copy(&built, &own).map(|_| ()))
+        .unwrap();
+    let start = || {
+        let mut command = assert_cmd::Command::new(&own);
+        command.args(["workbench", "a.toml", "b.csv"]);
+        command.env("PATH", folder.path()).assert()
+    };
+    let told = words(&start().code(2).get_output().stderr);
+    assert!(told.contains("cargo install --path workbench"), "{told}");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let window = folder.path().join("gelbench-workbench");
+        fs::write(&window, "#!/bin/sh\necho \"opens $*\"\nexit 7\n").unwrap();
+        fs::set_permissions(&window, fs::Permissions::from_mode(0o755)).unwrap();
+        let printed = words(&start().code(7).get_output().stdout);
+        assert_eq!(printed, "opens a.toml b.csv\n");
+    }
+}

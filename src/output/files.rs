@@ -16,8 +16,30 @@ use super::vtk;
 use crate::document::name_of;
 use crate::error::{Diagnostic, Error};
 use crate::results::{
-    Block, Content, Drawing, Figure, GridSeries, PictureFormat, PictureStyle, Results,
+    Block, Content, Drawing, Figure, GridSeries, NamedGrid, PictureFormat, PictureStyle, Results,
 };
+
+/// Takes the files of a run: a folder of results, or a list in memory.
+pub trait TakesFiles {
+    /// Takes a file; `name` is relative to the folder, with `/` between its parts.
+    ///
+    /// # Errors
+    /// [`Error::Write`] when it would replace an input, or when it cannot be written.
+    fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Error>;
+}
+
+impl TakesFiles for ResultFolder {
+    fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Error> {
+        ResultFolder::add(self, name, bytes)
+    }
+}
+
+impl TakesFiles for Vec<(String, Vec<u8>)> {
+    fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Error> {
+        self.push((name.to_owned(), bytes.to_vec()));
+        Ok(())
+    }
+}
 
 /// Writes everything that a study has found into a folder: grids, tables and, where it is wanted, the report for machines;
 /// then pictures and the report for people. Returns a warning for each picture that cannot be drawn.
@@ -27,7 +49,7 @@ use crate::results::{
 pub fn write(
     results: &Results,
     with_report: bool,
-    folder: &mut ResultFolder,
+    folder: &mut dyn TakesFiles,
 ) -> Result<Vec<Diagnostic>, Error> {
     let outcome = &results.outcome;
     let mut grids = outcome.grids.iter();
@@ -71,7 +93,7 @@ pub fn write(
 /// # Errors
 /// [`Error::Write`] when it cannot be written.
 pub fn write_picture(
-    folder: &mut ResultFolder,
+    folder: &mut dyn TakesFiles,
     name: &str,
     drawing: &Drawing,
 ) -> Result<Drawn, Error> {
@@ -123,7 +145,7 @@ impl ReportPicture {
 }
 
 fn write_pictures(
-    folder: &mut ResultFolder,
+    folder: &mut dyn TakesFiles,
     figures: &[Figure],
     style: &PictureStyle,
 ) -> Result<Vec<ReportPicture>, Error> {
@@ -143,11 +165,27 @@ fn faults(drawn: &[ReportPicture]) -> Vec<Diagnostic> {
     faults.cloned().collect()
 }
 
+/// Writes the grids of a corrected frame into the folder `vtk`, and its tables beside it.
+///
+/// # Errors
+/// [`Error::Write`] with the file that could not be written.
+pub fn write_frame(
+    folder: &mut dyn TakesFiles,
+    grids: &[NamedGrid],
+    tables: &[(String, String)],
+) -> Result<(), Error> {
+    for NamedGrid { name, grid, .. } in grids {
+        folder.add(&format!("vtk/{name}.vtu"), &vtk::grid(grid))?;
+    }
+    let mut tables = tables.iter();
+    tables.try_for_each(|(name, table)| folder.add(name, table.as_bytes()))
+}
+
 /// Writes the grids of a series into the folder `vtk`.
 ///
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
-pub fn write_grids(folder: &mut ResultFolder, series: &GridSeries) -> Result<(), Error> {
+pub fn write_grids(folder: &mut dyn TakesFiles, series: &GridSeries) -> Result<(), Error> {
     let mut files = vtk::files(series);
     files.try_for_each(|(name, bytes)| folder.add(&format!("vtk/{name}"), &bytes))
 }
@@ -158,7 +196,7 @@ pub fn write_grids(folder: &mut ResultFolder, series: &GridSeries) -> Result<(),
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
 pub fn write_document(
-    folder: &mut ResultFolder,
+    folder: &mut dyn TakesFiles,
     name: &str,
     blocks: &[Block],
     figures: &[Figure],
@@ -169,7 +207,7 @@ pub fn write_document(
 }
 
 fn add_document(
-    folder: &mut ResultFolder,
+    folder: &mut dyn TakesFiles,
     name: &str,
     blocks: &[Block],
     (pictures, explorer): (&[ReportPicture], Option<&Explorer>),

@@ -7,6 +7,8 @@ pub mod field;
 pub mod history;
 pub mod kind;
 pub mod material;
+pub mod outputs;
+pub mod playing;
 pub mod report;
 pub mod scene;
 pub mod studies;

@@ -9,8 +9,10 @@ use web_sys::HtmlCanvasElement;
 
 use crate::logic::background::{Worker, answer};
 use crate::logic::engine::Engine;
+use crate::logic::engine::motion::Mover;
 use crate::logic::field::FieldCorrector;
 use crate::logic::material::Fitter;
+use crate::logic::outputs::Writer;
 use crate::logic::scene::{Model, Scene};
 use crate::logic::studies::Runner;
 use crate::measure::Measure;
@@ -46,6 +48,8 @@ pub fn work(worker: &str, question: &[u8]) -> Option<Vec<u8>> {
         Engine::NAME => answer::<Engine>(question),
         Fitter::NAME => answer::<Fitter>(question),
         Runner::NAME => answer::<Runner>(question),
+        Mover::NAME => answer::<Mover>(question),
+        Writer::NAME => answer::<Writer>(question),
         FieldCorrector::NAME => answer::<FieldCorrector>(question),
         _ => None,
     }
@@ -55,6 +59,14 @@ pub fn work(worker: &str, question: &[u8]) -> Option<Vec<u8>> {
 #[wasm_bindgen]
 pub fn told() -> String {
     TOLD.with_borrow(Clone::clone)
+}
+
+/// A link that restores a study, which the page's own address becomes too.
+pub fn link(study: &str) -> Option<String> {
+    let location = web_sys::window()?.location();
+    let escaped = String::from(js_sys::encode_uri_component(study));
+    location.set_hash(&escaped).ok()?;
+    location.href().ok()
 }
 
 /// Notes what is on the table.

@@ -4,6 +4,7 @@ pub mod app;
 pub mod chart;
 pub mod colours;
 pub mod controls;
+pub mod exports;
 pub mod field;
 pub mod figures;
 pub mod files;

@@ -10,7 +10,7 @@ use crate::corrector::estimation::{Answer, FieldEstimate};
 use crate::error::Error;
 use crate::markers::Frame;
 use crate::output::{self, ResultFolder};
-use crate::results::{NamedGrid, Results};
+use crate::results::Results;
 use crate::studies::markers::written::{self, FrameFiles, SERIES, played};
 use crate::studies::markers::{ComparedFrames, MarkerStudy, SHOWN};
 use crate::studies::pictures::Pictures;
@@ -121,11 +121,6 @@ fn write(
     folder: &mut ResultFolder,
 ) -> Result<(), Error> {
     let files = FrameFiles::new(field, frame, estimate);
-    for NamedGrid { name, grid, .. } in &files.grids {
-        folder.add(&format!("vtk/{name}.vtu"), &output::vtk::grid(grid))?;
-    }
-    for (name, table) in &files.tables {
-        folder.add(name, table.as_bytes())?;
-    }
+    output::write_frame(folder, &files.grids, &files.tables)?;
     folder.keep(&part(frame), estimate)
 }

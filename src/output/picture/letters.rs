@@ -4,16 +4,20 @@ use std::fmt::Write;
 use std::sync::LazyLock;
 
 use ab_glyph::{Font, FontRef, OutlineCurve, Point};
+#[cfg(not(target_arch = "wasm32"))]
 use plotters::style::FontStyle;
 use quick_xml::escape::unescape;
 
-use super::design::{DrawResult, FAMILY};
+use super::design::DrawResult;
+#[cfg(not(target_arch = "wasm32"))]
+use super::design::FAMILY;
 
 const REGULAR: &[u8] = include_bytes!("../fonts/dejavu-sans-regular.ttf");
 const BOLD: &[u8] = include_bytes!("../fonts/dejavu-sans-bold.ttf");
 
-/// The regular and the bold letters; plotters, which asks how large they are, gets them too.
+/// The regular and the bold letters; plotters, which asks how large they are, gets them too, but in a browser, where it asks that.
 static FONTS: LazyLock<[FontRef<'static>; 2]> = LazyLock::new(|| {
+    #[cfg(not(target_arch = "wasm32"))]
     for (style, bytes) in [(FontStyle::Normal, REGULAR), (FontStyle::Bold, BOLD)] {
         plotters::style::register_font(FAMILY, style, bytes)
             .ok()

@@ -12,14 +12,17 @@ use gelbench::results::nodal_states;
 use gelbench::solve::{LinearSolver, Loading, Tangent, compliance};
 
 use super::background::Worker;
-use super::scene::{Colour, Grip, Model, Scene};
+use super::scene::{Colour, Grip, Known, Model, Scene};
 
 mod bodies;
+mod known;
+pub mod motion;
 mod path;
 mod plate;
 
+pub use bodies::Bodies;
+use bodies::Body;
 pub use bodies::meshes;
-use bodies::{Bodies, Body};
 
 /// What is to be solved.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -127,15 +130,27 @@ impl Engine {
         let bodies = self.bodies.as_mut().expect("bodies were made");
         let (grip, colour) = (task.scene.grip, task.scene.look.colour);
         let sheet = bodies.sheet.clone();
+        let known = task.scene.look.known;
+        let partly = match task.model == Model::Corrected && known != Known::ALL {
+            true => Some(bodies.partly_known(grip, known)?),
+            false => None,
+        };
         let body = bodies.body(task.model)?;
-        let force = body.follow(&sheet, grip, task.settled)?;
+        // What is not known at the boundary is no state that the next one goes on from.
+        let (kept, force) = match partly {
+            Some(field) => (Some(std::mem::replace(&mut body.displacement, field)), None),
+            None => (None, body.follow(&sheet, grip, task.settled)?),
+        };
         let (force, moment) = body.reaction(&sheet, grip, force);
         let values = values(body, &sheet, colour);
         let multipliers = match &task.springs {
             Some(springs) => Some(multipliers(body, &sheet, grip, springs)?),
             None => None,
         };
-        let displacement = body.displacement.clone();
+        let displacement = match kept {
+            Some(before) => std::mem::replace(&mut body.displacement, before),
+            None => body.displacement.clone(),
+        };
         let (mesh, lattice) = (&bodies.made(task.model).mesh, &bodies.lattice);
         let on_lattice =
             (task.model == Model::Elements).then(|| mesh.displacement_on(&displacement, lattice));

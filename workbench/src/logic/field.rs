@@ -1,22 +1,19 @@
 //! Measured fields: files of markers are looked at, then corrected, beside the drawing.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 use web_time::Instant;
 
-use gelbench::budget::Budget;
-use gelbench::corrector::estimation::{Answer, EdgeCondition, FieldEstimate};
+use gelbench::corrector::estimation::{Answer, FieldEstimate};
 use gelbench::document::with_files;
 use gelbench::error::{Diagnostic, Error};
-use gelbench::markers::{ChosenColumns, Frame, ReadSettings};
-use gelbench::mesh::{CellShape, Mesh};
-use gelbench::output::vtk;
-use gelbench::results::{Drawing, Panel, mesh_outlines, nodal_states};
-use gelbench::studies::markers::written::{self, FrameFiles};
-use gelbench::studies::markers::{ComparedFrames, Conditions, MarkerStudy, MeshSource, Request};
-use gelbench::units::{Dimension, parse};
+use gelbench::markers::Frame;
+use gelbench::mesh::Mesh;
+use gelbench::output::{self, vtk};
+use gelbench::results::{Drawing, Panel, Results, mesh_outlines, nodal_states};
+use gelbench::studies::markers::written::{self, FrameFiles, SERIES, played};
+use gelbench::studies::markers::{ComparedFrames, MarkerStudy};
 
 use super::background::Worker;
 use super::engine::Fault;
@@ -24,28 +21,11 @@ use super::report::Report;
 use super::scene::CardFile;
 use super::studies::{NamedFile, paths};
 
-/// What is known of an edge.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
-pub enum Edge {
-    /// Nothing is said: the data decide.
-    Unnamed,
-    /// No traction acts on it.
-    Free,
-    /// It moved as a rigid body.
-    Rigid,
-    /// Its displacement is unknown.
-    Unknown,
-}
+mod edges;
+mod request;
 
-impl Edge {
-    /// All of them with their names.
-    pub const ALL: [(&'static str, Self); 4] = [
-        ("the data decide", Self::Unnamed),
-        ("free", Self::Free),
-        ("rigid", Self::Rigid),
-        ("unknown", Self::Unknown),
-    ];
-}
+pub use edges::{Edge, middle, nearest};
+use request::{length, request};
 
 /// A measured field and what is said of it, texts as a user writes them.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -125,13 +105,16 @@ impl Worker for FieldCorrector {
     const NAME: &'static str = "corrector";
 
     fn answer(&mut self, question: &FieldQuestion) -> Result<FieldAnswer, Fault> {
-        let own = (
-            question.card.reference(),
-            question.card.text.clone().into_bytes(),
-        );
-        let files: Vec<NamedFile> = question.files.iter().cloned().chain([own]).collect();
-        with_files(paths(&files), || answer(question)).map_err(Fault::from)
+        with_own_files(question, || answer(question)).map_err(Fault::from)
     }
+}
+
+/// Does something with the files of a question, and with no others.
+fn with_own_files<T>(question: &FieldQuestion, work: impl FnOnce() -> T) -> T {
+    let card = &question.card;
+    let own = (card.reference(), card.text.clone().into_bytes());
+    let files: Vec<NamedFile> = question.files.iter().cloned().chain([own]).collect();
+    with_files(paths(&files), work)
 }
 
 fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
@@ -144,32 +127,13 @@ fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
             corrected: None,
         });
     }
-    let mut compared = ComparedFrames::default();
-    for frame in &study.series.frames {
-        compared.push(frame, study.estimate_frame(frame)?);
-    }
-    let estimates = compared.into_estimates();
-    let name = question.files.first().map_or("field", |(name, _)| name);
-    let seconds = begun.elapsed().as_secs_f64();
-    let results = written::results(
-        &study,
-        &estimates,
-        (name.to_owned(), String::new()),
-        seconds,
-    );
+    let estimates = estimates(&study)?;
+    let results = results(question, &study, &estimates, begun);
     let mut report = Report::from(results);
     let frames = || study.series.frames.iter().zip(&estimates);
     for (frame, estimate) in frames() {
         let files = FrameFiles::new(&study, frame, estimate);
-        let grids = files
-            .grids
-            .iter()
-            .map(|grid| (format!("{}.vtu", grid.name), vtk::grid(&grid.grid)));
-        let tables = files
-            .tables
-            .iter()
-            .map(|(name, text)| (name.clone(), text.clone().into_bytes()));
-        report.files.extend(grids.chain(tables));
+        output::write_frame(&mut report.files, &files.grids, &files.tables)?;
     }
     let corrected = frames()
         .map(|(frame, estimate)| corrected(&study, frame, estimate))
@@ -180,72 +144,91 @@ fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
     })
 }
 
-/// A length that a user writes; nothing where the text is empty.
-fn length(what: &str, text: &str) -> Result<Option<f64>, Error> {
-    if text.trim().is_empty() {
-        return Ok(None);
+fn estimates(study: &MarkerStudy) -> Result<Vec<FieldEstimate>, Error> {
+    let mut compared = ComparedFrames::default();
+    for frame in &study.series.frames {
+        compared.push(frame, study.estimate_frame(frame)?);
     }
-    let read = parse(text.trim(), Dimension::Length);
-    read.map(Some)
-        .map_err(|fault| Error::input(format!("{what} {fault}"), "such as \"2 mm\""))
+    Ok(compared.into_estimates())
 }
 
-fn request(question: &FieldQuestion) -> Result<Request, Error> {
-    let thickness = length("the thickness", &question.thickness)?;
-    let thickness = thickness.filter(|value| *value > 0.0).ok_or_else(|| {
-        Error::input(
-            "the thickness at rest is not said",
-            "write it with its unit, such as \"2 mm\"",
-        )
-    })?;
-    let columns = question
-        .columns
-        .split(',')
-        .filter(|column| !column.trim().is_empty());
-    let columns = ChosenColumns::parse(columns).map_err(|fault| Error::Input(vec![fault]))?;
-    let condition = |edge: &Edge| match edge {
-        Edge::Unnamed => None,
-        Edge::Free => Some(EdgeCondition::Free),
-        Edge::Rigid => Some(EdgeCondition::Rigid),
-        Edge::Unknown => Some(EdgeCondition::Unknown),
-    };
-    let edges = question.edges.iter();
-    let edges = edges.filter_map(|(name, edge)| Some((name.clone(), condition(edge)?)));
-    Ok(Request {
-        files: question
-            .files
-            .iter()
-            .map(|(name, _)| PathBuf::from(name))
-            .collect(),
-        reading: ReadSettings {
-            unit: unit(&question.unit)?,
-            columns,
-            downwards: question.downwards,
-            ..ReadSettings::default()
-        },
-        material: question.card.reference(),
-        thickness,
-        mesh: MeshSource::Data,
-        cell_size: length("the size of cells", &question.cell_size)?,
-        shape: CellShape::Triangle6,
-        holes: true,
-        conditions: Conditions {
-            edges: edges.collect(),
-            edge_gap: length("the gap to the edge", &question.edge_gap)?,
-            ..Conditions::default()
-        },
-        forces: None,
-        budget: Budget::USUAL,
+fn results(
+    question: &FieldQuestion,
+    study: &MarkerStudy,
+    estimates: &[FieldEstimate],
+    begun: Instant,
+) -> Results {
+    let name = question.files.first().map_or("field", |(name, _)| name);
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let known = edges::written(&question.edges, &question.edge_gap);
+    let seconds = begun.elapsed().as_secs_f64();
+    written::results(study, estimates, (stem.to_owned(), known), seconds)
+}
+
+/// Everything that `gelbench correct` writes, what it is told of the specimen, and the line that does it again.
+///
+/// # Errors
+/// As of the correction itself.
+pub fn files(question: &FieldQuestion) -> Result<Vec<NamedFile>, Error> {
+    with_own_files(question, || {
+        let begun = Instant::now();
+        let study = MarkerStudy::prepare(request(question)?)?;
+        let estimates = estimates(&study)?;
+        let mut files: Vec<NamedFile> = Vec::new();
+        for (frame, estimate) in study.series.frames.iter().zip(&estimates) {
+            let own = FrameFiles::new(&study, frame, estimate);
+            output::write_frame(&mut files, &own.grids, &own.tables)?;
+        }
+        let players = SERIES.map(|series| {
+            let player = vtk::collection(&played(&study, series));
+            (format!("vtk/{series}.pvd"), player)
+        });
+        files.extend(players);
+        files.push(("vtk/view.py".to_owned(), vtk::VIEW.as_bytes().to_vec()));
+        let results = results(question, &study, &estimates, begun);
+        output::write(&results, true, &mut files)?;
+        let known = edges::written(&question.edges, &question.edge_gap);
+        files.push((KNOWN.to_owned(), known.into_bytes()));
+        let again = format!("{}\n", question.command());
+        files.push(("command.txt".to_owned(), again.into_bytes()));
+        Ok(files)
     })
 }
 
-/// A unit such as `mm`, or the length of a pixel such as `0.05 mm`.
-fn unit(text: &str) -> Result<Option<f64>, Error> {
-    let text = text.trim();
-    let begins_with_number = text.starts_with(|first: char| first.is_ascii_digit() || first == '.');
-    match text.is_empty() || begins_with_number {
-        true => length("the unit", text),
-        false => length("the unit", &format!("1 {text}")),
+/// What is known of the specimen, among the files that go out.
+const KNOWN: &str = "known.toml";
+
+impl FieldQuestion {
+    /// The line of the command that does the same.
+    pub fn command(&self) -> String {
+        let quoted = |text: &str| match text.contains([' ', '\'', '"', '$', '(', ';', '&']) {
+            true => format!("'{}'", text.replace('\'', "'\\''")),
+            false => text.to_owned(),
+        };
+        let names = self.files.iter().map(|(name, _)| quoted(name));
+        let mut words: Vec<String> = ["gelbench".to_owned(), "correct".to_owned()]
+            .into_iter()
+            .chain(names)
+            .collect();
+        let card = self.card.reference();
+        let options = [
+            ("--material", card.as_str()),
+            ("--thickness", &self.thickness),
+            ("--unit", &self.unit),
+            ("--columns", &self.columns),
+            ("--cell-size", &self.cell_size),
+            ("--study", KNOWN),
+        ];
+        for (option, value) in options {
+            if !value.trim().is_empty() {
+                words.extend([option.to_owned(), quoted(value.trim())]);
+            }
+        }
+        if let Some(down) = self.downwards {
+            let axis = if down { "down" } else { "up" };
+            words.extend(["--y-axis".to_owned(), axis.to_owned()]);
+        }
+        words.join(" ")
     }
 }
 

@@ -69,6 +69,7 @@ impl Kind {
         };
         let is_test = KEYS.iter().any(states) || columns < 4;
         let path = PathBuf::from(name);
+        let text = beginning(text);
         let as_field = || {
             let files = [(path.clone(), text.as_bytes().to_vec())];
             with_files(files, || {
@@ -81,6 +82,15 @@ impl Kind {
             false => Self::Field,
         }
     }
+}
+
+/// Lines by which a table is told: no frame waits for a long one.
+const LINES: usize = 300;
+
+/// The first lines of a text.
+fn beginning(text: &str) -> &str {
+    let end = text.match_indices('\n').nth(LINES);
+    end.map_or(text, |(end, _)| &text[..end])
 }
 
 #[cfg(test)]

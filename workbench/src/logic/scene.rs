@@ -115,6 +115,32 @@ pub struct Look {
     pub multipliers: bool,
     /// Whether cells are drawn.
     pub cells: bool,
+    /// What the corrector knows of the boundary of a plate.
+    #[serde(default)]
+    pub known: Known,
+}
+
+/// What the corrector knows of the boundary of a plate: T.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
+pub struct Known {
+    /// Where the grips are.
+    pub grips: bool,
+    /// That no traction acts on the long edges.
+    pub free_edges: bool,
+}
+
+impl Known {
+    /// Everything.
+    pub const ALL: Self = Self {
+        grips: true,
+        free_edges: true,
+    };
+}
+
+impl Default for Known {
+    fn default() -> Self {
+        Self::ALL
+    }
 }
 
 impl Model {
@@ -259,6 +285,7 @@ impl Default for Scene {
                 colour: Colour::Stress,
                 multipliers: false,
                 cells: false,
+                known: Known::ALL,
             },
         }
     }

@@ -1,7 +1,8 @@
 //! The scene as a study that `gelbench run` takes, and a study as a scene.
 //!
 //! A plate that is only stretched is a study of plates; whatever else two grips do is a study of specimens. How the
-//! scene is shown stands in a comment, which gelbench does not read.
+//! scene is shown stands in a comment, which gelbench does not read, and so does a card of the user's own: the study alone, or a
+//! link with it, restores the scene.
 
 use std::path::Path;
 
@@ -19,6 +20,9 @@ use super::scene::{CardFile, Grip, Look, Outline, Scene};
 /// What a comment with the look begins with.
 const LOOK: &str = "# shown: ";
 
+/// What a comment with a card begins with.
+const CARD: &str = "# card: ";
+
 impl Scene {
     /// The study, with the name of its card.
     pub fn study(&self) -> String {
@@ -35,7 +39,14 @@ impl Scene {
             }
             _ => self.specimen(card, grip),
         };
-        format!("# A study of the workbench.\n{LOOK}{look}\n{body}")
+        let card = match self.card.is_shipped() {
+            true => String::new(),
+            false => {
+                let card = serde_json::to_string(&self.card).expect("a card is plain data");
+                format!("{CARD}{card}\n")
+            }
+        };
+        format!("# A study of the workbench.\n{LOOK}{look}\n{card}{body}")
     }
 
     fn plate(&self, card: &str, stretch: f64) -> String {
@@ -88,7 +99,11 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`] with every fault of the study, or where it is none of a sheet between two grips.
     pub fn open(file: &Path, text: &str, cards: &[CardFile]) -> Result<Self, Error> {
-        let (text, own) = with_known_card(text, cards);
+        let enclosed = text.lines().find_map(|line| line.strip_prefix(CARD));
+        let enclosed = enclosed.and_then(|card| serde_json::from_str(card).ok());
+        // A card that is known is newer than the one that the study was saved with.
+        let cards: Vec<CardFile> = cards.iter().cloned().chain(enclosed).collect();
+        let (text, own) = with_known_card(text, &cards);
         let shown = text.lines().find_map(|line| line.strip_prefix(LOOK));
         let look = shown.and_then(|look| serde_json::from_str(look).ok());
         let scene = match case_of(&file.display().to_string(), &text)? {
@@ -314,11 +329,16 @@ mod tests {
         scene.card.text.push_str("\n# changed\n");
         let text = scene.study();
         assert!(text.contains("card = \"my gel.toml\""), "{text}");
-        assert_eq!(
-            Scene::open(Path::new("saved.toml"), &text, &[scene.card.clone()]).unwrap(),
-            scene
-        );
-        let fault = Scene::open(Path::new("saved.toml"), &text, &[]).unwrap_err();
+        let open = |text: &str, cards: &[CardFile]| Scene::open("saved.toml".as_ref(), text, cards);
+        assert_eq!(open(&text, &[]).unwrap(), scene, "the card is enclosed");
+        let mut newer = scene.card.clone();
+        newer.text.push_str("# once more\n");
+        let found = open(&text, std::slice::from_ref(&newer)).unwrap();
+        assert_eq!(found.card, newer);
+        let bare = text.lines().filter(|line| !line.starts_with(CARD));
+        let bare = bare.collect::<Vec<_>>().join("\n");
+        assert_eq!(open(&bare, &[scene.card.clone()]).unwrap(), scene);
+        let fault = open(&bare, &[]).unwrap_err();
         assert!(fault.to_string().contains("my gel.toml"), "{fault}");
     }
 

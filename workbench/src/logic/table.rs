@@ -7,7 +7,8 @@ use gelbench::mesh::Mesh;
 use super::deviations::Deviation;
 use super::engine::{Answer, Fault, Solved, Task, meshes};
 use super::history::History;
-use super::scene::{CardFile, Colour, Grip, Model, Scene};
+use super::playing::Playing;
+use super::scene::{CardFile, Grip, Model, Scene};
 
 /// What a user does.
 #[derive(Clone, Debug)]
@@ -25,6 +26,13 @@ pub enum Action {
     Undo,
     /// Takes it again.
     Redo,
+    /// Lets the sheet go: its right grip opens, and the models move from where they are.
+    LetGo {
+        /// Shear viscosity in MPa·s besides the card's.
+        damping: f64,
+    },
+    /// Ends the motion: the grip holds the sheet where it held it before.
+    Hold,
     /// Opens a study or a card.
     Open {
         /// The name of the file.
@@ -75,6 +83,8 @@ pub struct Table {
     holding: bool,
     cards: Vec<CardFile>,
     message: Option<Fault>,
+    moving: Option<Playing>,
+    motions: u64,
 }
 
 impl Table {
@@ -97,6 +107,8 @@ impl Table {
             holding: false,
             cards: Vec::new(),
             message: None,
+            moving: None,
+            motions: 0,
         }
     }
 
@@ -199,6 +211,8 @@ impl Table {
             }
             Action::Undo => self.scene.undo(),
             Action::Redo => self.scene.redo(),
+            Action::LetGo { damping } => self.begin_motion(damping),
+            Action::Hold => self.moving = None,
             Action::Open { file, text } => {
                 if let Err(error) = self.open(&file, &text) {
                     self.message = Some(error.into());
@@ -207,6 +221,7 @@ impl Table {
         }
         self.revision += 1;
         self.lay_out();
+        self.end_other_motions();
     }
 
     /// Meshes a new sheet; what was found of the old one is put away.
@@ -262,8 +277,16 @@ impl Table {
         let scene = self.scene();
         let plain = Scene::default().look;
         let colour = scene.look.colour;
+        let known = match model {
+            Model::Corrected => scene.look.known,
+            _ => plain.known,
+        };
         let mut asked = scene.clone();
-        asked.look = super::scene::Look { colour, ..plain };
+        asked.look = super::scene::Look {
+            colour,
+            known,
+            ..plain
+        };
         let settled = model != Model::Corrected || !self.holding;
         let springs = self
             .springs_at_grip()
@@ -327,55 +350,13 @@ impl Table {
     pub fn forget_tasks(&mut self) {
         self.oldest = self.numbers + 1;
     }
-
-    /// Compares the models that have the grip where the finite elements have it.
-    fn compare(&mut self) {
-        let Some(elements) = self.shown(Model::Elements) else {
-            return;
-        };
-        let Ok([lattice, _]) = &self.meshes else {
-            return;
-        };
-        let scene = Scene {
-            grip: elements.grip,
-            ..self.scene().clone()
-        };
-        let of = |model: Model| {
-            let shown = self
-                .shown(model)
-                .filter(|shown| shown.grip == elements.grip)?;
-            Deviation::of(&scene, lattice, &shown.solved, &elements.solved)
-        };
-        self.deviations = [Model::Springs, Model::Corrected].map(of);
-    }
-
-    /// What colours the nodes of a model, and whether it belongs to the place that the model is shown at.
-    pub fn values(&self, model: Model) -> Option<Vec<f64>> {
-        let shown = self.shown(model)?;
-        let solved = &shown.solved;
-        if self.scene().look.colour != Colour::Distance {
-            let fits = solved.values.len() * 2 == solved.displacement.len();
-            return fits.then(|| solved.values.clone());
-        }
-        if model == Model::Elements {
-            return Some(vec![0.0; solved.displacement.len() / 2]);
-        }
-        let elements = self
-            .shown(Model::Elements)
-            .filter(|other| other.grip == shown.grip)?;
-        let expected = elements.solved.on_lattice.as_ref()?;
-        let pairs = solved
-            .displacement
-            .chunks_exact(2)
-            .zip(expected.chunks_exact(2));
-        Some(
-            pairs
-                .map(|(u, v)| (u[0] - v[0]).hypot(u[1] - v[1]))
-                .collect(),
-        )
-    }
 }
 
+mod compared;
+mod moving;
 mod open;
+
+pub use moving::Drawn;
+
 #[cfg(test)]
 mod tests;

@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use eframe::egui::{self, CentralPanel, Key, KeyboardShortcut, Modifiers, Panel, Ui};
 
+use super::exports::Exports;
 use super::field::Fields;
+use super::fonts;
 use super::material::Materials;
 use super::sheet::Sheets;
 use super::study::{Studies, plain};
-use super::{files, fonts};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Engine;
+use crate::logic::engine::motion::Mover;
 use crate::logic::kind::Kind;
 use crate::logic::material::TestFile;
 use crate::logic::scene::Scene;
@@ -18,6 +20,8 @@ use crate::logic::table::{Action, Table};
 use crate::measure::Measure;
 
 mod inbox;
+mod motion;
+mod outputs;
 mod panels;
 
 use inbox::Inbox;
@@ -56,6 +60,12 @@ pub struct Workbench {
     /// What lies on the table.
     pub table: Table,
     engines: [Background<Engine>; 3],
+    movers: [Background<Mover>; 3],
+    exports: Exports,
+    damping: f64,
+    /// Whether the sheet is let go when the mouse lets the grip go, and whether it is to be now.
+    springs_back: bool,
+    lets_go: bool,
     sheets: Sheets,
     tab: Tab,
     materials: Materials,
@@ -77,8 +87,14 @@ impl Workbench {
         let context = context.clone();
         let wake: Wake = Arc::new(move || context.request_repaint());
         let background = || Background::new(Arc::clone(&wake));
+        let mover = || Background::new(Arc::clone(&wake));
         Self {
             engines: [background(), background(), background()],
+            movers: [mover(), mover(), mover()],
+            exports: Exports::new(Arc::clone(&wake)),
+            damping: 0.0,
+            springs_back: false,
+            lets_go: false,
             sheets: Sheets::default(),
             tab: Tab::Sheet,
             materials: Materials::new(Arc::clone(&wake)),
@@ -173,6 +189,11 @@ impl Workbench {
         &self.fields
     }
 
+    /// The same, to say more of them.
+    pub fn fields_mut(&mut self) -> &mut Fields {
+        &mut self.fields
+    }
+
     /// Studies of any kind.
     pub fn studies(&self) -> &Studies {
         &self.studies
@@ -188,6 +209,12 @@ impl Workbench {
         self.receive(ui.ctx());
         self.keys(ui);
         Panel::top("bar").show(ui, |ui| self.bar(ui));
+        if !self.told.is_empty() {
+            Panel::bottom("told").show(ui, |ui| self.told(ui));
+        }
+        if self.is_guided() {
+            Panel::top("guide").show(ui, |ui| self.guide(ui));
+        }
         match self.tab {
             Tab::Sheet => self.sheet_tab(ui),
             Tab::Material => {
@@ -198,7 +225,7 @@ impl Workbench {
             }
             Tab::Field => {
                 self.fields.take_card(&self.table.scene().card);
-                CentralPanel::default().show(ui, |ui| self.fields.show(ui));
+                CentralPanel::default().show(ui, |ui| self.fields.show(ui, &mut self.table));
             }
             Tab::Study => drop(CentralPanel::default().show(ui, |ui| self.studies.show(ui))),
         }
@@ -222,6 +249,10 @@ impl Workbench {
                 self.table.take(answer);
             }
         }
+        if let Some(told) = self.exports.receive() {
+            self.told = told;
+        }
+        self.play(context);
         self.materials.receive();
         self.fields.receive();
         self.studies.receive();
@@ -234,6 +265,9 @@ impl Workbench {
     fn send(&mut self) {
         for task in self.table.tasks() {
             self.engines[task.model as usize].ask(task);
+        }
+        for question in self.table.motion_questions() {
+            self.movers[question.model as usize].ask(question);
         }
     }
 
@@ -267,6 +301,12 @@ impl Workbench {
     fn stop(&mut self) {
         let busy = self.is_busy();
         self.engines.iter_mut().for_each(Background::stop);
+        self.movers.iter_mut().for_each(Background::stop);
+        self.lets_go = false;
+        if self.table.moving().is_some() {
+            self.table.act(Action::Hold);
+        }
+        self.exports.stop();
         self.materials.stop();
         self.fields.stop();
         self.studies.stop();
@@ -278,19 +318,13 @@ impl Workbench {
 
     fn is_busy(&self) -> bool {
         let sheets = self.engines.iter().any(Background::is_busy);
-        sheets || self.materials.is_busy() || self.fields.is_busy() || self.studies.is_busy()
-    }
-
-    fn save(&mut self) {
-        let scene = self.table.scene().clone();
-        let study = files::save("workbench.toml", scene.study().as_bytes());
-        let card = (!scene.card.is_shipped())
-            .then(|| files::save(&scene.card.reference(), scene.card.text.as_bytes()));
-        let told = [Some(study), card].into_iter().flatten();
-        self.told = told
-            .map(|told| told.unwrap_or_else(|fault| fault))
-            .collect::<Vec<_>>()
-            .join("; ");
+        let moving = self.movers.iter().any(Background::is_busy);
+        sheets
+            || moving
+            || self.exports.is_busy()
+            || self.materials.is_busy()
+            || self.fields.is_busy()
+            || self.studies.is_busy()
     }
 }
 

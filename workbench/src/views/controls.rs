@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, table: &Table) -> (Scene, bool) {
     outline(ui, &mut scene, &mut hold);
     ui.add_space(6.0);
     ui.heading("Material");
-    card(ui, &mut scene, table.cards());
+    card(ui, "card", &mut scene.card, table.cards());
     ui.add_space(6.0);
     ui.heading("Right grip");
     grip(ui, &mut scene, &mut hold);
@@ -93,24 +93,23 @@ fn outline(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
     hold(response);
 }
 
-fn card(ui: &mut Ui, scene: &mut Scene, own: &[CardFile]) {
-    ComboBox::from_label("card")
-        .selected_text(&scene.card.name)
+/// The cards to choose from: those that come along, and the user's own.
+pub fn card(ui: &mut Ui, label: &str, chosen: &mut CardFile, own: &[CardFile]) {
+    ComboBox::from_label(label)
+        .selected_text(&chosen.name)
+        .width(150.0)
         .show_ui(ui, |ui| {
             for (name, _) in CARDS {
-                if ui
-                    .selectable_label(scene.card.name == *name, *name)
-                    .clicked()
-                {
-                    scene.card = CardFile::shipped(name).expect("a shipped card");
+                if ui.selectable_label(chosen.name == *name, *name).clicked() {
+                    *chosen = CardFile::shipped(name).expect("a shipped card");
                 }
             }
             for card in own {
                 if ui
-                    .selectable_label(scene.card.name == card.name, &card.name)
+                    .selectable_label(chosen.name == card.name, &card.name)
                     .clicked()
                 {
-                    scene.card = card.clone();
+                    *chosen = card.clone();
                 }
             }
         });
@@ -173,6 +172,11 @@ fn look(ui: &mut Ui, scene: &mut Scene) {
     ui.checkbox(&mut look.multipliers, "multipliers as arrows")
         .on_hover_text("where the springs contradict the physics: the derivative of the smallest ½‖u − ū‖² by the forces at the nodes");
     ui.checkbox(&mut look.cells, "cells");
+    if scene.outline == Outline::Plate {
+        ui.label("The corrector knows");
+        ui.checkbox(&mut look.known.grips, "where the grips are");
+        ui.checkbox(&mut look.known.free_edges, "that the long edges are free");
+    }
     ui.label(
         RichText::new("Pull the bar at the right end, or its knob to turn it.")
             .small()

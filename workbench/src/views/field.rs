@@ -2,20 +2,25 @@
 
 use std::collections::BTreeMap;
 
-use eframe::egui::{
-    Button, Color32, ComboBox, Grid, RichText, ScrollArea, Slider, Stroke, TextEdit, Ui,
-};
+use eframe::egui::{Button, Grid, ScrollArea, TextEdit, Ui};
 
-use gelbench::results::{Drawing, PALETTE, Scale};
-
-use super::{figures, report, study};
+use super::surface::View;
+use super::{controls, exports, figures, report, study};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Fault;
-use crate::logic::field::{
-    CorrectedFrame, Edge, FieldAnswer, FieldCorrector, FieldQuestion, Preview,
-};
+use crate::logic::field::{Edge, FieldAnswer, FieldCorrector, FieldQuestion, Preview};
+use crate::logic::outputs::Wanted;
 use crate::logic::scene::CardFile;
 use crate::logic::studies::NamedFile;
+use crate::logic::table::Table;
+
+mod edges;
+mod frames;
+
+use edges::Asked;
+
+/// The width from which what is said and what was found stand side by side.
+const WIDE: f32 = 900.0;
 
 /// The field that comes along, with noise, outliers and what is known of its edges.
 const EXAMPLE: &[u8] = include_bytes!("../../../examples/measured_plate.csv");
@@ -29,6 +34,12 @@ pub struct Fields {
     field: usize,
     residuals: bool,
     told: String,
+    /// What was asked last.
+    done: Option<FieldQuestion>,
+    asked: Asked,
+    view: Option<View>,
+    /// What was seen of the files last.
+    seen: Option<Preview>,
 }
 
 impl Fields {
@@ -53,11 +64,16 @@ impl Fields {
             field: 0,
             residuals: true,
             told: String::new(),
+            done: None,
+            asked: None,
+            view: None,
+            seen: None,
         }
     }
 
     /// Takes a file of markers; another one before it is another frame.
     pub fn put(&mut self, file: NamedFile) {
+        self.seen = None;
         self.question.files.retain(|(known, _)| *known != file.0);
         self.question.files.push(file);
         self.question.files.sort();
@@ -93,7 +109,15 @@ impl Fields {
             correct,
             ..self.question.clone()
         };
+        self.done = Some(self.said_of_edges());
         self.corrector.ask(question);
+    }
+
+    /// The question without the edges of which nothing is said.
+    fn said_of_edges(&self) -> FieldQuestion {
+        let mut question = self.question.clone();
+        question.edges.retain(|_, edge| *edge != Edge::Unnamed);
+        question
     }
 
     /// Corrects the field that is there.
@@ -116,6 +140,7 @@ impl Fields {
                 self.question
                     .edges
                     .retain(|name, _| preview.edges.contains(name));
+                self.seen = Some(preview.clone());
             }
             self.found = Some(answer);
             self.frame = usize::MAX;
@@ -137,22 +162,102 @@ impl Fields {
         self.found.as_ref()
     }
 
+    /// What of it may go out, by name.
+    pub fn offers(&self) -> Vec<(String, Wanted)> {
+        let Some(Ok(FieldAnswer { preview, corrected })) = &self.found else {
+            return Vec::new();
+        };
+        let mut offers = Vec::new();
+        if let Some((frames, _)) = corrected {
+            let question = FieldQuestion {
+                correct: true,
+                ..self.question.clone()
+            };
+            let all = "everything that `gelbench correct` writes".to_owned();
+            offers.push((all, Wanted::Correction(Box::new(question))));
+            let drawing = frames.get(self.frame).and_then(|frame| self.drawing(frame));
+            offers.extend(
+                drawing
+                    .iter()
+                    .flat_map(|drawing| exports::pictures("the corrected field", "field", drawing)),
+            );
+        }
+        offers.extend(exports::pictures("the mesh", "mesh", &preview.drawing));
+        offers
+    }
+
+    /// What is said of an edge.
+    pub fn edge(&self, name: &str) -> Option<&Edge> {
+        self.question.edges.get(name)
+    }
+
+    /// Says what is known of an edge.
+    pub fn say(&mut self, name: &str, edge: Edge) {
+        self.question.edges.insert(name.to_owned(), edge);
+    }
+
+    /// Where the mesh was drawn last.
+    pub fn view(&self) -> Option<View> {
+        self.view
+    }
+
     /// Shows the view.
-    pub fn show(&mut self, ui: &mut Ui) {
+    pub fn show(&mut self, ui: &mut Ui, table: &mut Table) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             self.files(ui);
             if self.question.files.is_empty() {
                 return;
             }
-            self.said(ui);
             let found = self.found.take();
-            match &found {
-                None => (),
-                Some(Err(fault)) => figures::fault(ui, fault),
-                Some(Ok(answer)) => self.answer(ui, answer),
+            let answer = found.as_ref().and_then(|found| found.as_ref().ok());
+            let corrected = answer.is_some_and(|answer| answer.corrected.is_some());
+            if corrected && ui.available_width() > WIDE {
+                ui.columns(2, |columns| {
+                    self.question(&mut columns[0], table, found.as_ref());
+                    self.results(&mut columns[1], answer);
+                });
+            } else {
+                self.question(ui, table, found.as_ref());
+                self.results(ui, answer);
             }
             self.found = found.or(self.found.take());
         });
+    }
+
+    /// What is said of the field, and what is seen of it.
+    fn question(
+        &mut self,
+        ui: &mut Ui,
+        table: &mut Table,
+        found: Option<&Result<FieldAnswer, Fault>>,
+    ) {
+        self.said(ui, table);
+        if let Some(Err(fault)) = found {
+            figures::fault(ui, fault);
+        }
+        if let Some(preview) = self.seen.take() {
+            self.preview(ui, &preview);
+            self.seen = Some(preview);
+        }
+    }
+
+    fn results(&mut self, ui: &mut Ui, answer: Option<&FieldAnswer>) {
+        let corrected = answer.and_then(|answer| answer.corrected.as_ref());
+        let Some((frames, found)) = corrected else {
+            return;
+        };
+        if self.done.as_ref() != Some(&self.said_of_edges()) {
+            let ink = ui.visuals().warn_fg_color;
+            ui.colored_label(
+                ink,
+                "What is said has changed since: `correct` takes it into account.",
+            );
+        }
+        self.frames(ui, frames);
+        if let Some(told) = study::outputs(ui, &found.files) {
+            self.told = told;
+        }
+        ui.collapsing("report", |ui| report::show(ui, "field", found));
     }
 
     fn files(&mut self, ui: &mut Ui) {
@@ -177,16 +282,21 @@ impl Fields {
         });
         if let Some(number) = gone {
             self.question.files.remove(number);
-            self.found = None;
+            (self.found, self.seen) = (None, None);
             if !self.question.files.is_empty() {
                 self.look();
             }
         }
     }
 
-    fn said(&mut self, ui: &mut Ui) {
+    fn said(&mut self, ui: &mut Ui, table: &mut Table) {
+        let mut chosen = table.scene().card.clone();
+        controls::card(ui, "material", &mut chosen, table.cards());
+        if chosen != table.scene().card {
+            table.take_card(chosen, false);
+            self.question.card = table.scene().card.clone();
+        }
         let FieldQuestion {
-            card,
             thickness,
             unit,
             columns,
@@ -195,7 +305,6 @@ impl Fields {
             downwards,
             ..
         } = &mut self.question;
-        ui.label(format!("material: {} (that of the sheet)", card.name));
         Grid::new("said of the field")
             .num_columns(4)
             .show(ui, |ui| {
@@ -243,129 +352,24 @@ impl Fields {
         }
     }
 
-    fn answer(&mut self, ui: &mut Ui, answer: &FieldAnswer) {
-        self.edges(ui, &answer.preview);
-        let Some((frames, found)) = &answer.corrected else {
-            self.preview(ui, &answer.preview);
-            return;
-        };
-        self.frames(ui, frames);
-        if let Some(told) = study::outputs(ui, &found.files) {
-            self.told = told;
-        }
-        ui.collapsing("report", |ui| report::show(ui, "field", found));
-    }
-
-    fn edges(&mut self, ui: &mut Ui, preview: &Preview) {
-        ui.horizontal_wrapped(|ui| {
-            for (number, name) in preview.edges.iter().enumerate() {
-                let [r, g, b] = PALETTE[number % PALETTE.len()];
-                let edge = self
-                    .question
-                    .edges
-                    .entry(name.clone())
-                    .or_insert(Edge::Unnamed);
-                let ink = Color32::from_rgb(r, g, b);
-                let label = RichText::new(name).color(ink).strong();
-                let shown = Edge::ALL.iter().find(|(_, known)| known == edge);
-                let chosen = ComboBox::new(("edge", name), label).width(100.0);
-                chosen
-                    .selected_text(shown.map_or("", |(name, _)| name))
-                    .show_ui(ui, |ui| {
-                        for (name, value) in Edge::ALL {
-                            ui.selectable_value(edge, value, name);
-                        }
-                    });
-            }
-        });
-    }
-
-    fn preview(&self, ui: &mut Ui, preview: &Preview) {
+    fn preview(&mut self, ui: &mut Ui, preview: &Preview) {
         for warning in &preview.warnings {
             ui.colored_label(ui.visuals().warn_fg_color, warning);
         }
-        ui.label(&preview.mesh);
-        if let Drawing::Mesh(figure) = &preview.drawing {
-            let view = report::mesh(ui, figure);
-            let painter = ui.painter();
-            let ink = ui.visuals().strong_text_color();
-            for [rest, found] in &preview.markers {
-                let (from, to) = (view.at(*rest), view.at(*found));
-                painter.circle_filled(from, 1.5, ink);
-                painter.line_segment([from, to], Stroke::new(0.7, ink.gamma_multiply(0.5)));
-            }
-        }
+        ui.add_space(4.0);
+        ui.label(format!(
+            "{}. Click an edge and say what is known of it:",
+            preview.mesh
+        ));
+        self.mesh(ui, preview);
+        self.edges(ui, preview);
         ui.collapsing("how the file was understood", |ui| {
             for line in &preview.understood {
                 ui.label(line);
             }
         });
-    }
-
-    fn frames(&mut self, ui: &mut Ui, frames: &[CorrectedFrame]) {
-        self.frame = self.frame.min(frames.len().saturating_sub(1));
-        if frames.len() > 1 {
-            ui.add(Slider::new(&mut self.frame, 0..=frames.len() - 1).text("frame"));
-        }
-        let Some(frame) = frames.get(self.frame) else {
-            return;
-        };
-        let ink = match frame.explained {
-            true => ui.visuals().strong_text_color(),
-            false => ui.visuals().error_fg_color,
-        };
-        ui.label(
-            RichText::new(format!(
-                "verdict, frame {}: {}",
-                frame.number, frame.verdict
-            ))
-            .color(ink)
-            .strong(),
-        );
-        for (edge, [x, y]) in &frame.forces {
-            let axis = |[value, low, high]: &[f64; 3]| match frame.explained {
-                true => format!("{value:.4} N ({low:.4} … {high:.4})"),
-                false => format!("{value:.4} N (no interval)"),
-            };
-            ui.label(format!("force on {edge}: x {}, y {}", axis(x), axis(y)));
-        }
-        ui.horizontal_wrapped(|ui| {
-            for (number, (name, _)) in frame.fields.iter().enumerate() {
-                ui.selectable_value(&mut self.field, number, name);
-            }
-            ui.checkbox(&mut self.residuals, "residuals of the markers");
+        ui.collapsing("the same with the command", |ui| {
+            ui.monospace(self.question.command());
         });
-        self.field = self.field.min(frame.fields.len().saturating_sub(1));
-        if let Some((name, panel)) = frame.fields.get(self.field) {
-            report::panels(ui, name, Scale::Linear, std::slice::from_ref(panel));
-        }
-        if self.residuals {
-            residuals(ui, frame);
-        }
-    }
-}
-
-/// What is left of every marker, enlarged; those that are far off in another colour.
-fn residuals(ui: &mut Ui, frame: &CorrectedFrame) {
-    let places: Vec<[f64; 2]> = frame.residuals.iter().map(|(place, ..)| *place).collect();
-    let sizes = frame.residuals.iter().filter(|(.., trust)| *trust > 0.5);
-    let largest = sizes
-        .map(|(_, left, _)| left[0].hypot(left[1]))
-        .fold(0.0, f64::max);
-    let Some([low, high]) = super::colours::range(places.iter().map(|place| place[0])) else {
-        return;
-    };
-    let enlarged = 0.04 * (high - low) / largest.max(1e-12);
-    ui.label(format!("residuals of the markers at rest, {enlarged:.1} times as long; far off in the colour of faults"));
-    let (view, area) = report::room(ui, places.iter());
-    let painter = ui.painter().with_clip_rect(area);
-    for (place, left, trust) in &frame.residuals {
-        let ink = match *trust > 0.5 {
-            true => ui.visuals().text_color(),
-            false => ui.visuals().error_fg_color,
-        };
-        let to = [0, 1].map(|axis| place[axis] + enlarged * left[axis]);
-        painter.circle_filled(view.at(*place), 1.5, ink);
-        painter.line_segment([view.at(*place), view.at(to)], Stroke::new(1.0, ink));
     }
 }

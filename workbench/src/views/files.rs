@@ -1,5 +1,9 @@
 //! Files that go out: into the folder in which the program was started, or as downloads of the browser.
 
+#[cfg(target_arch = "wasm32")]
+use crate::logic::outputs::archive;
+use crate::logic::studies::NamedFile;
+
 /// Gives a file to the user; says where it is.
 ///
 /// # Errors
@@ -15,6 +19,43 @@ pub fn save(name: &str, content: &[u8]) -> Result<String, String> {
         )
     })?;
     Ok(format!("saved as {}", path.display()))
+}
+
+/// Gives files to the user: one by itself, several in a folder of a name; says where they are.
+///
+/// # Errors
+/// Says why they could not be written.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn give(name: &str, files: &[NamedFile]) -> Result<String, String> {
+    if let [(name, content)] = files {
+        return save(name, content);
+    }
+    let folder =
+        std::path::absolute(name).map_err(|cause| format!("cannot write {name}: {cause}"))?;
+    for (name, content) in files {
+        let path = folder.join(name);
+        let parent = path.parent().unwrap_or(&folder);
+        let written = std::fs::create_dir_all(parent).and_then(|()| std::fs::write(&path, content));
+        written.map_err(|cause| {
+            format!(
+                "cannot write {}: {cause}; start the workbench in a folder that you may write to",
+                path.display()
+            )
+        })?;
+    }
+    Ok(format!("{} files in {}", files.len(), folder.display()))
+}
+
+/// Gives files to the user as a download: one by itself, several as an archive of a name; says so.
+///
+/// # Errors
+/// Says why they could not be given.
+#[cfg(target_arch = "wasm32")]
+pub fn give(name: &str, files: &[NamedFile]) -> Result<String, String> {
+    match files {
+        [(name, content)] => save(name, content),
+        _ => save(&format!("{name}.zip"), &archive(files)?),
+    }
 }
 
 /// Gives a file to the user as a download; says so.

@@ -2,7 +2,16 @@
 
 use eframe::egui::{RichText, Ui};
 
-use crate::logic::scene::{Colour, Grip, Layout, Look, Model, Scene};
+use crate::logic::scene::{Colour, Grip, Known, Layout, Look, Model, Scene};
+
+/// What a guided scene lays on the table.
+#[derive(Clone, Copy)]
+pub enum Shows {
+    /// A sheet between two grips.
+    Sheet(fn() -> Scene),
+    /// The measured field that comes along, corrected.
+    MeasuredField,
+}
 
 /// A scene with what is to be seen in it.
 pub struct Guided {
@@ -10,8 +19,8 @@ pub struct Guided {
     pub title: &'static str,
     /// What is to be seen, and what to try.
     pub text: &'static str,
-    /// The scene.
-    pub scene: fn() -> Scene,
+    /// What lies on the table.
+    pub shows: Shows,
 }
 
 /// What the workbench is, in three sentences.
@@ -20,27 +29,41 @@ pub const THREE_SENTENCES: &str = "A sheet of gel is held between two grips, and
     compared with. Everything is computed here, on your own machine, and no data leave it.";
 
 /// The guided scenes.
-pub const SCENES: [Guided; 3] = [
+pub const SCENES: [Guided; 5] = [
     Guided {
         title: "Why springs are wrong",
         text: "The colours say how far the springs are from the finite elements, and the arrows (multipliers) where they contradict \
                the physics: at the clamps, and over the width, because a lattice of springs has a Poisson's ratio of ⅓ and the gel \
                one of ½. Pull the grip: the departure hardly gets better. Take another card: it stays.",
-        scene: why_springs_are_wrong,
+        shows: Shows::Sheet(why_springs_are_wrong),
     },
     Guided {
         title: "What one correction does",
         text: "The same nodes, before and after the correction, on one colour scale. The corrected field is the nearest one that is \
                in equilibrium: its departure is a hundred times nearer to the finite elements. Turn the knob of the grip and pull \
                across: springs and corrected springs follow in every frame, the finite elements as soon as they are solved.",
-        scene: what_one_correction_does,
+        shows: Shows::Sheet(what_one_correction_does),
+    },
+    Guided {
+        title: "What T decides",
+        text: "T is what is known at the boundary: where the grips are, and that nothing pulls at the long edges. Here the corrector \
+               is not told of the edges, and its field is hardly nearer to the finite elements than the springs'. Tick `that the \
+               long edges are free` at the lower end of the controls: not the springs decide, but what is known.",
+        shows: Shows::Sheet(what_t_decides),
+    },
+    Guided {
+        title: "Noisy field",
+        text: "Markers of a camera, with noise and some that were lost from sight, and the field nearest to them that is in \
+               equilibrium: forces with intervals come out, although no force was measured. Click the right edge of the mesh, say \
+               that it is free, and correct again: it was held, the data are not explained any more, and the verdict says so.",
+        shows: Shows::MeasuredField,
     },
     Guided {
         title: "Few springs, then climb",
         text: "A lattice of 12 × 4 cells. Move the slider `cells across` to the right: more springs do not come nearer to the finite \
                elements, because what is wrong is not their number; the corrected field does, with about the third power of it. \
                It climbs from a few springs to any number of cells in milliseconds.",
-        scene: few_springs_then_climb,
+        shows: Shows::Sheet(few_springs_then_climb),
     },
 ];
 
@@ -51,6 +74,7 @@ fn shown(models: [Model; 2], colour: Colour) -> Look {
         colour,
         multipliers: false,
         cells: false,
+        known: Known::ALL,
     }
 }
 
@@ -80,6 +104,20 @@ fn what_one_correction_does() -> Scene {
     }
 }
 
+fn what_t_decides() -> Scene {
+    Scene {
+        grip: stretched(0.5),
+        look: Look {
+            known: Known {
+                free_edges: false,
+                ..Known::ALL
+            },
+            ..shown([Model::Springs, Model::Corrected], Colour::Distance)
+        },
+        ..Scene::default()
+    }
+}
+
 fn few_springs_then_climb() -> Scene {
     Scene {
         grip: stretched(0.5),
@@ -95,10 +133,6 @@ fn few_springs_then_climb() -> Scene {
 /// Shows the three sentences and the scenes; the number of the one that was chosen.
 pub fn show(ui: &mut Ui, current: Option<usize>) -> Option<usize> {
     let mut chosen = None;
-    ui.label(match current {
-        None => THREE_SENTENCES,
-        Some(number) => SCENES[number].text,
-    });
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new("Scenes:").strong());
         for (number, scene) in SCENES.iter().enumerate() {
@@ -110,6 +144,10 @@ pub fn show(ui: &mut Ui, current: Option<usize>) -> Option<usize> {
                 chosen = Some(number);
             }
         }
+    });
+    ui.label(match current {
+        None => THREE_SENTENCES,
+        Some(number) => SCENES[number].text,
     });
     chosen
 }

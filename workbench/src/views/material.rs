@@ -4,13 +4,14 @@ use eframe::egui::{Button, ComboBox, DragValue, Grid, RichText, ScrollArea, Text
 
 use gelbench::calibration::KEYS;
 use gelbench::material::Card;
-use gelbench::material::registry::{CARDS, LAWS, MARLOW_TABLE};
+use gelbench::material::registry::{LAWS, MARLOW_TABLE};
 use gelbench::results::material_chart;
 
-use super::{chart, figures, files};
+use super::{chart, controls, exports, figures, files};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Fault;
 use crate::logic::material::{FitQuestion, Fitted, Fitter, Ranking, TestFile, stable_ranges};
+use crate::logic::outputs::Wanted;
 use crate::logic::scene::CardFile;
 use crate::logic::table::Table;
 
@@ -75,6 +76,24 @@ impl Materials {
         self.found.as_ref()
     }
 
+    /// What of it may go out, by name.
+    pub fn offers(&self) -> Vec<(String, Wanted)> {
+        let mut offers = Vec::new();
+        if let Some((_, Ok(card))) = &self.read {
+            let chart = material_chart(card);
+            offers.extend(exports::chart("the card's curves", "curves", &chart));
+        }
+        let found = self.found.as_ref().and_then(|found| found.as_ref().ok());
+        if let Some(fit) = found.and_then(|ranking| ranking.fits.get(self.chosen)) {
+            for (number, chart) in fit.charts.iter().enumerate() {
+                let what = ["the fit", "its residuals"][number.min(1)];
+                let name = ["fit", "residuals"][number.min(1)];
+                offers.extend(exports::chart(what, name, chart));
+            }
+        }
+        offers
+    }
+
     /// Shows the view.
     pub fn show(&mut self, ui: &mut Ui, table: &mut Table) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -96,24 +115,11 @@ impl Materials {
         ui.heading("Card");
         let file = table.scene().card.clone();
         ui.horizontal_wrapped(|ui| {
-            ComboBox::from_label("card")
-                .selected_text(&file.name)
-                .show_ui(ui, |ui| {
-                    for (name, _) in CARDS {
-                        if ui.selectable_label(file.name == *name, *name).clicked() {
-                            table
-                                .take_card(CardFile::shipped(name).expect("a shipped card"), false);
-                        }
-                    }
-                    for own in table.cards().to_vec() {
-                        if ui
-                            .selectable_label(file.name == own.name, &own.name)
-                            .clicked()
-                        {
-                            table.take_card(own, false);
-                        }
-                    }
-                });
+            let mut chosen = file.clone();
+            controls::card(ui, "card", &mut chosen, table.cards());
+            if chosen != file {
+                table.take_card(chosen, false);
+            }
             if ui.button("save card").clicked() {
                 let saved = files::save(
                     &format!("{}.toml", file.name.trim_end_matches(".toml")),

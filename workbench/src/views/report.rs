@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{Grid, Mesh as Triangles, Rect, RichText, Sense, Shape, Stroke, Ui, vec2};
+use eframe::egui::{
+    Color32, Grid, Mesh as Triangles, Rect, RichText, Sense, Shape, Stroke, Ui, vec2,
+};
 
 use gelbench::results::{Drawing, FieldFigure, MeshFigure, PALETTE, Panel, Scale, Values};
 
@@ -129,7 +131,7 @@ pub fn panels(ui: &mut Ui, quantity: &str, scale: Scale, panels: &[Panel]) {
     sheet::colour_bar(ui, &name, range, bar);
 }
 
-fn surface(panel: &Panel, view: View, ink: impl Fn(f64) -> eframe::egui::Color32) -> Triangles {
+fn surface(panel: &Panel, view: View, ink: impl Fn(f64) -> Color32) -> Triangles {
     let mut drawn = Triangles::default();
     let points = &panel.surface.points;
     match &panel.values {
@@ -168,8 +170,16 @@ pub fn room<'a>(ui: &mut Ui, places: impl Iterator<Item = &'a [f64; 2]> + Clone)
     )
 }
 
-/// A mesh and the names of its edges, each in a colour; the view, so that more can be drawn on it.
-pub fn mesh(ui: &mut Ui, figure: &MeshFigure) -> View {
+/// The colour of an edge: those of a mesh differ, whatever their order.
+pub fn edge_colour(figure: &MeshFigure, name: &str) -> Color32 {
+    let groups = figure.groups.iter();
+    let place = groups.filter(|group| *group.name < *name).count();
+    let [r, g, b] = PALETTE[place % PALETTE.len()];
+    Color32::from_rgb(r, g, b)
+}
+
+/// A mesh and its edges, each in a colour; the view and where it is, so that more can be drawn on it.
+pub fn mesh(ui: &mut Ui, figure: &MeshFigure) -> (View, Rect) {
     let (view, area) = room(ui, figure.cells.iter().flatten());
     let painter = ui.painter().with_clip_rect(area.expand(8.0));
     let faint = Stroke::new(0.5, ui.visuals().text_color().gamma_multiply(0.4));
@@ -177,12 +187,11 @@ pub fn mesh(ui: &mut Ui, figure: &MeshFigure) -> View {
     for cell in &figure.cells {
         painter.add(Shape::closed_line(places(cell), faint));
     }
-    for (number, group) in figure.groups.iter().enumerate() {
-        let [r, g, b] = PALETTE[number % PALETTE.len()];
-        let ink = eframe::egui::Color32::from_rgb(r, g, b);
+    for group in &figure.groups {
+        let ink = edge_colour(figure, &group.name);
         for line in &group.lines {
             painter.add(Shape::line(places(line), Stroke::new(3.0, ink)));
         }
     }
-    view
+    (view, area)
 }

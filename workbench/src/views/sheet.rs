@@ -13,7 +13,7 @@ use super::colours::{colour, most_of};
 use super::grip::{self, Held};
 use super::surface::{View, draw, triangles};
 use crate::logic::scene::{Layout, Model, Scene};
-use crate::logic::table::Table;
+use crate::logic::table::{Drawn, Table};
 
 /// Multipliers that are drawn at most.
 const ARROWS: usize = 300;
@@ -21,7 +21,7 @@ const ARROWS: usize = 300;
 /// What was drawn last: it is drawn again where nothing changed.
 #[derive(Default)]
 pub struct Sheets {
-    drawn: [Option<Drawn>; 3],
+    drawn: [Option<Painted>; 3],
     triangles: [Option<(usize, Vec<u32>)>; 3],
     range: Option<(u64, [f64; 2])>,
     /// The largest stretch and motion across that the view has room for.
@@ -39,7 +39,7 @@ struct Place<'a> {
     outline_only: bool,
 }
 
-struct Drawn {
+struct Painted {
     revision: u64,
     view: View,
     range: [f64; 2],
@@ -75,14 +75,16 @@ impl Sheets {
             };
             self.sheet(&place, *model);
             label(&place, *model, own.min + vec2(6.0, 4.0 + line));
-            if number == 0 || !over {
+            if table.moving().is_some() {
+                held = Some(Held::nothing(place.view.at([table.scene().size[0], 0.0])));
+            } else if number == 0 || !over {
                 let own = grip::show(ui, table.scene(), place.view, model.name());
                 if held.is_none() || own.to.is_some() || own.holding || own.released {
                     held = Some(own);
                 }
             }
         }
-        colour_bar(ui, table.scene().look.colour.name(), range, bar);
+        colour_bar(ui, table.shown_colour().name(), range, bar);
         if !held.as_ref().is_some_and(|held| held.holding) {
             self.room = room(table.scene());
         }
@@ -94,8 +96,7 @@ impl Sheets {
         if let Some((_, range)) = self.range.filter(|(known, _)| *known == table.revision()) {
             return range;
         }
-        let values = models.iter().filter_map(|model| table.values(*model));
-        let range = most_of(values.flatten()).unwrap_or([0.0, 1.0]);
+        let range = most_of(table.spanned(models)).unwrap_or([0.0, 1.0]);
         self.range = Some((table.revision(), range));
         range
     }
@@ -112,17 +113,17 @@ impl Sheets {
 
     fn sheet(&mut self, place: &Place, model: Model) {
         let table = place.table;
-        let (Some(mesh), Some(shown)) = (table.mesh(model), table.shown(model)) else {
+        let (Some(mesh), Some(drawn)) = (table.mesh(model), table.drawn(model)) else {
             return;
         };
-        let displacement = &shown.solved.displacement;
+        let displacement = &drawn.displacement[..];
         if displacement.len() != 2 * mesh.nodes.len() {
             return;
         }
         if !place.outline_only {
             place
                 .painter
-                .add(Shape::Mesh(self.surface(place, model, mesh)));
+                .add(Shape::Mesh(self.surface(place, model, mesh, &drawn)));
         }
         let ink = match table.scene().look.layout {
             Layout::Over => model_colour(model),
@@ -137,12 +138,12 @@ impl Sheets {
         if table.scene().look.cells && !place.outline_only {
             lines.cells();
         }
-        if model == Model::Springs && table.scene().look.multipliers {
+        if model == Model::Springs && table.scene().look.multipliers && table.moving().is_none() {
             lines.multipliers();
         }
     }
 
-    fn surface(&mut self, place: &Place, model: Model, mesh: &Mesh) -> Arc<Triangles> {
+    fn surface(&mut self, place: &Place, model: Model, mesh: &Mesh, now: &Drawn) -> Arc<Triangles> {
         let Place {
             table, view, range, ..
         } = *place;
@@ -153,7 +154,6 @@ impl Sheets {
         if let Some(drawn) = known {
             return Arc::clone(&drawn.surface);
         }
-        let nodes = mesh.nodes.len();
         let corners = &mut self.triangles[model as usize];
         if corners
             .as_ref()
@@ -162,15 +162,13 @@ impl Sheets {
             *corners = Some((table.sheet_number(), triangles(mesh)));
         }
         let (_, corners) = corners.as_ref().expect("triangles were made");
-        let values = table.values(model).unwrap_or_else(|| vec![f64::NAN; nodes]);
-        let displacement = table
-            .shown(model)
-            .map_or(&[][..], |shown| &shown.solved.displacement);
-        let surface = draw(mesh, corners, displacement, view, |node| {
-            colour(values[node], range)
+        let values = table.drawn_values(model);
+        let value = |node: usize| values.as_ref().map_or(f64::NAN, |values| values[node]);
+        let surface = draw(mesh, corners, &now.displacement, view, |node| {
+            colour(value(node), range)
         });
         let surface = Arc::new(surface);
-        *slot = Some(Drawn {
+        *slot = Some(Painted {
             revision: table.revision(),
             view,
             range,
@@ -201,9 +199,13 @@ pub fn model_colour(model: Model) -> Color32 {
 
 fn label(place: &Place, model: Model, at: Pos2) {
     let Place { table, ui, .. } = place;
-    let follows = match table.shown(model) {
-        Some(shown) if shown.grip == table.scene().grip => "",
-        _ if table.fault(model).is_some() => " – no solution here, see below",
+    let fault = match table.moving() {
+        Some(moving) => moving.fault(model),
+        None => table.fault(model),
+    };
+    let follows = match table.drawn(model) {
+        Some(drawn) if drawn.follows => "",
+        _ if fault.is_some() => " – no solution here, see below",
         _ => " – follow …",
     };
     let ink = match table.scene().look.layout {

@@ -5,10 +5,12 @@ use eframe::egui::{Button, RichText, ScrollArea, TextEdit, Ui};
 use gelbench::studies::plate;
 use gelbench::validation::CASES;
 
+use super::exports::{self, Offer};
 use super::{figures, files, report};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Fault;
-use crate::logic::report::Report;
+use crate::logic::outputs::Wanted;
+use crate::logic::report::{Part, Report};
 use crate::logic::studies::{NamedFile, Runner, StudyQuestion};
 
 /// The state of the view.
@@ -71,6 +73,28 @@ impl Studies {
     /// What was found.
     pub fn found(&self) -> Option<&Result<Report, Fault>> {
         self.found.as_ref()
+    }
+
+    /// What of it may go out, by name.
+    pub fn offers(&self) -> Vec<Offer> {
+        let all = "everything that `gelbench run` writes".to_owned();
+        let mut offers = vec![(all, Wanted::Study(self.question()))];
+        let found = self.found.as_ref().and_then(|found| found.as_ref().ok());
+        let parts = found.map_or(&[][..], |report| &report.parts).iter();
+        let drawings = parts.filter_map(|part| match part {
+            Part::Picture(drawing, _) => Some(drawing),
+            _ => None,
+        });
+        for (number, drawing) in drawings.enumerate() {
+            let number = number + 1;
+            let what = format!("picture {number}");
+            offers.extend(exports::pictures(
+                &what,
+                &format!("picture_{number}"),
+                drawing,
+            ));
+        }
+        offers
     }
 
     /// Shows the view.
@@ -138,6 +162,12 @@ impl Studies {
 
     /// Runs the study.
     pub fn run(&mut self) {
+        let question = self.question();
+        self.found = None;
+        self.runner.ask(question);
+    }
+
+    fn question(&self) -> StudyQuestion {
         let study = self.name.clone();
         let own = (study.clone(), self.text.clone().into_bytes());
         let others = self
@@ -146,8 +176,7 @@ impl Studies {
             .filter(|(name, _)| *name != study)
             .cloned();
         let files = others.chain([own]).collect();
-        self.found = None;
-        self.runner.ask(StudyQuestion { study, files });
+        StudyQuestion { study, files }
     }
 }
 

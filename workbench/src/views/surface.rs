@@ -64,6 +64,11 @@ impl View {
         )
     }
 
+    /// What lies at a place of the screen, in mm.
+    pub fn place(&self, on_screen: Pos2) -> [f64; 2] {
+        self.way(on_screen - self.origin)
+    }
+
     /// What a way on the screen is in mm.
     pub fn way(&self, on_screen: eframe::egui::Vec2) -> [f64; 2] {
         [on_screen.x, -on_screen.y].map(|way| f64::from(way / self.scale))
@@ -124,6 +129,8 @@ mod tests {
         let way = view.at([30.0, 20.0]) - view.at([20.0, 15.0]);
         let [x, y] = view.way(way);
         assert!((x - 10.0).abs() < 1e-4 && (y - 5.0).abs() < 1e-4);
+        let [x, y] = view.place(view.at([30.0, 20.0]));
+        assert!((x - 30.0).abs() < 1e-4 && (y - 20.0).abs() < 1e-4);
         assert!(screen.contains(view.at([0.0, 0.0])) && screen.contains(view.at([150.0, 40.0])));
     }
 }

@@ -47,7 +47,7 @@ pub struct Bodies {
 }
 
 /// The energy of a model.
-enum Energy {
+pub(super) enum Energy {
     Springs(Box<MassSpring>),
     Sheet(Box<SheetEnergy>),
 }
@@ -59,7 +59,7 @@ pub struct Body {
     /// ux, uy of node after node in mm.
     pub displacement: Vec<f64>,
     grip: Grip,
-    energy: Energy,
+    pub(super) energy: Energy,
     quick: Option<Quick>,
 }
 
@@ -130,6 +130,11 @@ impl Bodies {
         Ok(self.made[index].as_mut().expect("a body was made"))
     }
 
+    /// The plate, where the sheet is one.
+    pub fn plate(&self) -> Option<&ClampedPlate> {
+        self.plate.as_ref().map(|(plate, _)| plate)
+    }
+
     /// A model that was made.
     pub fn made(&self, model: Model) -> &Body {
         self.made[model as usize].as_ref().expect("a body was made")
@@ -195,7 +200,7 @@ impl Body {
         }
     }
 
-    fn potential(&self) -> &dyn Potential {
+    pub(super) fn potential(&self) -> &dyn Potential {
         match &self.energy {
             Energy::Springs(springs) => springs.potential(),
             Energy::Sheet(sheet) => &**sheet,
@@ -237,6 +242,14 @@ impl Body {
         let found = path::reach(self, sheet, grip)?;
         (self.displacement, self.grip) = (found, grip);
         Ok(None)
+    }
+
+    /// The springs, where it consists of them.
+    pub fn springs(&self) -> Option<&MassSpring> {
+        match &self.energy {
+            Energy::Springs(springs) => Some(springs),
+            Energy::Sheet(_) => None,
+        }
     }
 
     /// Where the grip was in the last state.

@@ -13,6 +13,7 @@ impl Table {
         let table = text.parse::<toml::Table>().unwrap_or_default();
         if !table.contains_key("law") {
             let scene = Scene::open(Path::new(file), text, &self.cards)?;
+            self.remember(&scene.card);
             self.scene.change(scene, false);
             return Ok(());
         }
@@ -32,12 +33,17 @@ impl Table {
         self.take_card(card, false);
     }
 
-    /// The same while something may be held, such as a slider of a parameter.
-    pub fn take_card(&mut self, card: CardFile, gesture: bool) {
+    /// Keeps a card of the user's own among those to choose from.
+    fn remember(&mut self, card: &CardFile) {
         if !card.is_shipped() {
             self.cards.retain(|known| known.name != card.name);
             self.cards.push(card.clone());
         }
+    }
+
+    /// The same while something may be held, such as a slider of a parameter.
+    pub fn take_card(&mut self, card: CardFile, gesture: bool) {
+        self.remember(&card);
         let scene = Box::new(Scene {
             card,
             ..self.scene().clone()

@@ -5,7 +5,7 @@ use eframe::egui::{self, CentralPanel, Panel, RichText, ScrollArea, Theme, Ui};
 use super::{Tab, Workbench};
 use crate::logic::scene::{Model, Scene};
 use crate::logic::table::Action;
-use crate::views::guide::SCENES;
+use crate::views::guide::{SCENES, Shows};
 use crate::views::{chart, controls, figures, guide};
 
 /// Text sizes that are offered, as factors.
@@ -21,9 +21,6 @@ const NARROW: f32 = 640.0;
 
 impl Workbench {
     pub(super) fn sheet_tab(&mut self, ui: &mut Ui) {
-        if self.shows_guide {
-            Panel::top("guide").show(ui, |ui| self.guide(ui));
-        }
         let wide = ui.available_width() > NARROW;
         if self.shows_controls.unwrap_or(wide) {
             Panel::left("controls").default_size(250.0).show(ui, |ui| {
@@ -75,6 +72,7 @@ impl Workbench {
             if ui.button("save study").on_hover_text(hint).clicked() {
                 self.save();
             }
+            ui.menu_button("export", |ui| self.offered(ui));
             ui.separator();
             let dark = ui.visuals().dark_mode;
             let other = if dark { "light" } else { "dark" };
@@ -108,11 +106,45 @@ impl Workbench {
         });
     }
 
-    fn guide(&mut self, ui: &mut Ui) {
-        if let Some(number) = guide::show(ui, self.guided) {
-            self.guided = Some(number);
-            self.change((SCENES[number].scene)(), false);
+    pub(super) fn guide(&mut self, ui: &mut Ui) {
+        let Some(number) = guide::show(ui, self.guided) else {
+            return;
+        };
+        self.guided = Some(number);
+        match SCENES[number].shows {
+            Shows::Sheet(scene) => {
+                self.tab = Tab::Sheet;
+                self.change(scene(), false);
+            }
+            Shows::MeasuredField => {
+                self.tab = Tab::Field;
+                self.change(Scene::default(), false);
+                self.fields.take_card(&self.table.scene().card);
+                self.fields.open_example();
+                self.fields.correct();
+            }
         }
+    }
+
+    /// Whether what the guide says belongs to the view that is shown.
+    pub(super) fn is_guided(&self) -> bool {
+        let shows = self.guided.map(|number| SCENES[number].shows);
+        self.shows_guide
+            && match self.tab {
+                Tab::Sheet => !matches!(shows, Some(Shows::MeasuredField)),
+                Tab::Field => matches!(shows, Some(Shows::MeasuredField)),
+                Tab::Material | Tab::Study => false,
+            }
+    }
+
+    /// What the program has to say, until it is read.
+    pub(super) fn told(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(&self.told);
+            if ui.small_button("close").clicked() {
+                self.told.clear();
+            }
+        });
     }
 
     fn change(&mut self, scene: Scene, gesture: bool) {
@@ -122,6 +154,9 @@ impl Workbench {
 
     fn controls(&mut self, ui: &mut Ui) {
         let (scene, held) = controls::show(ui, &self.table);
+        ui.add_space(6.0);
+        ui.heading("Motion");
+        self.motion_controls(ui);
         if scene != *self.table.scene() {
             self.change(scene, held);
         } else if !held && !ui.input(|input| input.pointer.any_down()) {
@@ -134,6 +169,7 @@ impl Workbench {
             figures::fault(ui, fault);
             return;
         }
+        self.player(ui);
         let Some(held) = self.sheets.show(ui, &self.table) else {
             ui.label("No model is shown: choose one under `Shown`.");
             return;
@@ -148,13 +184,11 @@ impl Workbench {
         }
         if held.released {
             self.table.act(Action::EndGesture);
+            self.lets_go = self.springs_back;
         }
     }
 
     fn figures(&mut self, ui: &mut Ui) {
-        if !self.told.is_empty() {
-            ui.label(&self.told);
-        }
         if let Some(message) = self.table.message() {
             figures::fault(ui, message);
         }

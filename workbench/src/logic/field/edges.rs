@@ -1,0 +1,193 @@
+//! The edges of a measured sheet: what is said of them, and which one lies under the pointer.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use gelbench::corrector::estimation::EdgeCondition;
+use gelbench::error::Error;
+use gelbench::results::MeshFigure;
+
+use super::length;
+
+/// What is known of an edge.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+pub enum Edge {
+    /// Nothing is said: the data decide.
+    #[default]
+    Unnamed,
+    /// No traction acts on it.
+    Free,
+    /// It moved as a rigid body.
+    Rigid,
+    /// Its displacement along X and Y, as a user writes it; along an axis without one the edge is free.
+    Known([String; 2]),
+    /// Its displacement is unknown.
+    Unknown,
+}
+
+impl Edge {
+    /// One of each kind.
+    pub fn all() -> [Self; 5] {
+        let known = Self::Known(["0 mm", "0 mm"].map(str::to_owned));
+        [Self::Unnamed, Self::Free, Self::Rigid, known, Self::Unknown]
+    }
+
+    /// What its kind is called.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Unnamed => "the data decide",
+            Self::Free => "free",
+            Self::Rigid => "rigid",
+            Self::Known(_) => "known",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    /// Whether another one is of the same kind.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+
+    /// What the corrector is told of the edge called `name`; nothing where the data decide.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a displacement is no length.
+    pub fn condition(&self, name: &str) -> Result<Option<EdgeCondition>, Error> {
+        Ok(Some(match self {
+            Self::Unnamed => return Ok(None),
+            Self::Free => EdgeCondition::Free,
+            Self::Rigid => EdgeCondition::Rigid,
+            Self::Unknown => EdgeCondition::Unknown,
+            Self::Known([x, y]) => EdgeCondition::Known([
+                length(&format!("ux of the edge {name}"), x)?,
+                length(&format!("uy of the edge {name}"), y)?,
+            ]),
+        }))
+    }
+
+    /// The edge in a file of `gelbench correct --study`; nothing where the data decide.
+    fn written(&self, name: &str) -> Option<String> {
+        let displacements = match self {
+            Self::Unnamed => return None,
+            Self::Known(axes) => {
+                let said = ["ux", "uy"].into_iter().zip(axes);
+                let said = said.filter(|(_, text)| !text.trim().is_empty());
+                said.map(|(key, text)| format!("{key} = {}\n", quoted(text.trim())))
+                    .collect()
+            }
+            _ => String::new(),
+        };
+        Some(format!(
+            "\n[[edges]]\nnames = [{}]\ncondition = \"{}\"\n{displacements}",
+            quoted(name),
+            self.name()
+        ))
+    }
+}
+
+/// A text as TOML writes it.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+/// What is known of a specimen as the file that `gelbench correct --study` takes.
+pub fn written(edges: &BTreeMap<String, Edge>, edge_gap: &str) -> String {
+    let mut text = String::from("# What is known of the specimen besides its markers.\n");
+    if !edge_gap.trim().is_empty() {
+        text += &format!("edge_gap = {}\n", quoted(edge_gap.trim()));
+    }
+    let said = edges.iter().filter_map(|(name, edge)| edge.written(name));
+    text.extend(said);
+    text
+}
+
+/// The edge that is nearest to a place in mm, where one is within reach.
+pub fn nearest(figure: &MeshFigure, place: [f64; 2], reach: f64) -> Option<&str> {
+    let distances = figure.groups.iter().flat_map(|group| {
+        let parts = group.lines.iter().flat_map(|line| line.windows(2));
+        parts.map(|part| (distance(place, [part[0], part[1]]), &group.name))
+    });
+    let (distance, name) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (distance <= reach).then_some(name)
+}
+
+/// From a place to a straight line between two others.
+fn distance([x, y]: [f64; 2], [[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> f64 {
+    let ([lx, ly], [px, py]) = ([bx - ax, by - ay], [x - ax, y - ay]);
+    let square = lx * lx + ly * ly;
+    let share = match square > 0.0 {
+        true => ((px * lx + py * ly) / square).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    (px - share * lx).hypot(py - share * ly)
+}
+
+/// Where the name of an edge is written: the middle of its longest line.
+pub fn middle(lines: &[Vec<[f64; 2]>]) -> Option<[f64; 2]> {
+    let line = lines.iter().max_by_key(|line| line.len())?;
+    line.get(line.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gelbench::mesh::{CellShape, Shape};
+    use gelbench::results::{Drawing, mesh_outlines};
+    use gelbench::studies::markers::Conditions;
+
+    fn strip() -> MeshFigure {
+        let mesh = Shape::Strip { size: [30.0, 10.0] }.mesh(4, CellShape::Quad9);
+        let Drawing::Mesh(mut figure) = mesh_outlines("", &mesh) else {
+            panic!("a mesh is drawn as one")
+        };
+        figure.groups.retain(|group| group.name != "boundary");
+        figure
+    }
+
+    #[test]
+    fn the_nearest_edge_is_hit_and_none_from_far_away() {
+        let figure = strip();
+        for (place, name) in [
+            ([0.5, 0.3], Some("left")),
+            ([31.0, -1.0], Some("right")),
+            ([12.0, 5.5], Some("top")),
+            ([12.0, -4.4], Some("bottom")),
+            ([15.0, 0.0], None),
+            ([50.0, 0.0], None),
+        ] {
+            assert_eq!(nearest(&figure, place, 1.2), name, "{place:?}");
+        }
+        assert_eq!(nearest(&figure, [f64::NAN; 2], 1.2), None);
+        let left = figure.groups.iter().find(|group| group.name == "left");
+        let [x, y] = middle(&left.unwrap().lines).unwrap();
+        assert!(x.abs() < 1e-9 && y.abs() < 2.6, "{x} {y}");
+    }
+
+    #[test]
+    fn what_is_written_is_what_the_command_reads() {
+        let known = Edge::Known(["12 mm".into(), " ".into()]);
+        let said = [
+            ("left", Edge::Rigid),
+            ("right", known),
+            ("top", Edge::Free),
+            ("a \"quoted\" edge", Edge::Unknown),
+            ("bottom", Edge::Unnamed),
+        ];
+        let edges = said.map(|(name, edge)| (name.to_owned(), edge)).into();
+        let text = written(&edges, "1.5 mm");
+        let read = Conditions::parse("known.toml", &text).unwrap();
+        assert_eq!(read.edge_gap, Some(1.5));
+        assert_eq!(read.edges.len(), 4, "{text}");
+        for (name, condition) in &read.edges {
+            assert_eq!(
+                edges[name].condition(name).unwrap().as_ref(),
+                Some(condition),
+                "{text}"
+            );
+        }
+        let wrong = Edge::Known(["twelve".into(), String::new()]);
+        let fault = wrong.condition("right").unwrap_err().to_string();
+        assert!(fault.contains("ux of the edge right"), "{fault}");
+    }
+}

@@ -1,0 +1,263 @@
+//! What goes out of a view, written beside the drawing by the library's own writers.
+
+use std::io::{Cursor, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use gelbench::budget::Budget;
+use gelbench::document::with_files;
+use gelbench::error::Error;
+use gelbench::output::{self, vtk};
+use gelbench::results::{
+    Drawing, FieldFigure, Grid, LineChart, Panel, PictureFormat, PictureStyle, Sheet,
+};
+use gelbench::studies::Progress;
+use gelbench::validation;
+
+use super::background::Worker;
+use super::engine::{Bodies, Fault};
+use super::field::{self, FieldQuestion};
+use super::scene::{Colour, Model, Scene};
+use super::studies::{NamedFile, StudyQuestion, paths};
+
+/// The format of a picture.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
+pub enum Format {
+    /// Pixels.
+    Png,
+    /// Lines and letters as curves.
+    Svg,
+}
+
+impl Format {
+    /// Both with their names.
+    pub const ALL: [(&'static str, Self); 2] = [("PNG", Self::Png), ("SVG", Self::Svg)];
+
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Svg => "svg",
+        }
+    }
+}
+
+/// The field of a model as it is shown: ux, uy of node after node in mm, and what colours the nodes.
+pub type ShownField = (Model, Vec<f64>, Vec<f64>);
+
+/// What shall go out.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub enum Wanted {
+    /// A picture under a name without its ending.
+    Picture(String, Drawing, Format),
+    /// The lines of a chart as a table, under a name without its ending.
+    Lines(String, LineChart),
+    /// A sheet: the fields of its models, with the stresses and strains that follow, as VTK files.
+    Vtk(Scene, Vec<ShownField>),
+    /// Places, displacements and colours of the nodes of its models as tables.
+    Nodes(Scene, Vec<ShownField>),
+    /// A sheet as it is shown.
+    SheetPicture(Scene, Vec<ShownField>, Format),
+    /// Everything that `gelbench correct` writes.
+    Correction(Box<FieldQuestion>),
+    /// Everything that `gelbench run` writes.
+    Study(StudyQuestion),
+}
+
+/// What goes out: a name for all of it, and the files.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Written {
+    /// The name of a folder for them.
+    pub name: String,
+    /// The files.
+    pub files: Vec<NamedFile>,
+}
+
+/// Writes what goes out.
+#[derive(Default)]
+pub struct Writer;
+
+impl Worker for Writer {
+    type Question = Wanted;
+    type Answer = Result<Written, Fault>;
+    const NAME: &'static str = "writer";
+
+    fn answer(&mut self, wanted: &Wanted) -> Result<Written, Fault> {
+        let written = |name: &str, files| {
+            Ok(Written {
+                name: name.to_owned(),
+                files,
+            })
+        };
+        match wanted {
+            Wanted::Picture(name, drawing, format) => {
+                written(name, vec![picture(name, drawing, *format)?])
+            }
+            Wanted::Lines(name, chart) => written(
+                name,
+                vec![(format!("{name}.csv"), lines(chart).into_bytes())],
+            ),
+            Wanted::Vtk(scene, fields) => {
+                let bodies = Bodies::of(scene)?;
+                written("sheet", grids(bodies, fields)?)
+            }
+            Wanted::Nodes(scene, fields) => {
+                let bodies = Bodies::of(scene)?;
+                written("sheet", nodes(bodies, scene, fields)?)
+            }
+            Wanted::SheetPicture(scene, fields, format) => {
+                let bodies = Bodies::of(scene)?;
+                let figure = Drawing::from(figure(bodies, scene, fields)?);
+                written("sheet", vec![picture("sheet", &figure, *format)?])
+            }
+            Wanted::Correction(question) => {
+                written(stem(question.files.first()), field::files(question)?)
+            }
+            Wanted::Study(question) => {
+                let name = question.study.trim_end_matches(".toml");
+                written(name, study(question)?)
+            }
+        }
+    }
+}
+
+/// The name of a file without its ending.
+fn stem(file: Option<&NamedFile>) -> &str {
+    let name = file.map_or("field", |(name, _)| name);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}
+
+fn picture(name: &str, drawing: &Drawing, format: Format) -> Result<NamedFile, Fault> {
+    let kind = match format {
+        Format::Png => PictureFormat::Png,
+        Format::Svg => PictureFormat::Svg,
+    };
+    match output::picture(drawing, kind, &PictureStyle::default()) {
+        Ok(bytes) => Ok((format!("{name}.{}", format.ending()), bytes)),
+        Err(fault) => Err(Fault {
+            message: format!("the picture cannot be drawn: {fault}"),
+            advice: "its numbers go out as a table".to_owned(),
+        }),
+    }
+}
+
+/// Every point of every line: `line, x, y` with the words of the axes.
+fn lines(chart: &LineChart) -> String {
+    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    let mut text = format!(
+        "line,{},{}\n",
+        quoted(&chart.x.label),
+        quoted(&chart.y.label)
+    );
+    for line in &chart.lines {
+        let label = quoted(&line.label);
+        text.extend(
+            line.points
+                .iter()
+                .map(|[x, y]| format!("{label},{x},{y}\n")),
+        );
+    }
+    text
+}
+
+/// The name of a model in names of files, as `gelbench run` has it.
+fn file_name(model: Model) -> &'static str {
+    match model {
+        Model::Springs => "mass_spring",
+        Model::Corrected => "corrected",
+        Model::Elements => "finite_element",
+    }
+}
+
+fn grids(mut bodies: Bodies, fields: &[ShownField]) -> Result<Vec<NamedFile>, Error> {
+    let mut files = Vec::new();
+    for (model, displacement, _) in fields {
+        bodies.body(*model)?;
+        let sheet = Sheet {
+            law: &*bodies.sheet.law,
+            thickness: bodies.sheet.thickness,
+        };
+        let body = bodies.made(*model);
+        let grid = Grid::sheet(sheet, &body.mesh, displacement);
+        files.push((format!("{}.vtu", file_name(*model)), vtk::grid(&grid)));
+        if let Some(springs) = body.springs() {
+            let bars = Grid::springs(springs, displacement);
+            files.push(("springs.vtu".to_owned(), vtk::grid(&bars)));
+        }
+    }
+    Ok(files)
+}
+
+/// The column of what colours a sheet.
+fn column(colour: Colour) -> &'static str {
+    match colour {
+        Colour::Displacement => "displacement_mm",
+        Colour::Stretch => "larger_principal_stretch",
+        Colour::Stress => "von_mises_stress_MPa",
+        Colour::Distance => "distance_to_finite_elements_mm",
+    }
+}
+
+fn nodes(
+    mut bodies: Bodies,
+    scene: &Scene,
+    fields: &[ShownField],
+) -> Result<Vec<NamedFile>, Error> {
+    let mut files = Vec::new();
+    for (model, displacement, values) in fields {
+        let mesh = &bodies.body(*model)?.mesh;
+        let mut text = format!("node,X_mm,Y_mm,ux_mm,uy_mm,{}\n", column(scene.look.colour));
+        let rows = mesh.nodes.iter().zip(displacement.chunks_exact(2));
+        for (node, ([x, y], u)) in rows.enumerate() {
+            let value = values.get(node).map_or(String::new(), f64::to_string);
+            text += &format!("{node},{x},{y},{},{},{value}\n", u[0], u[1]);
+        }
+        let name = format!("nodes_{}.csv", file_name(*model));
+        files.push((name, text.into_bytes()));
+    }
+    Ok(files)
+}
+
+fn figure(mut bodies: Bodies, scene: &Scene, fields: &[ShownField]) -> Result<FieldFigure, Error> {
+    let mut panels = Vec::new();
+    for (model, displacement, values) in fields {
+        let mesh = &bodies.body(*model)?.mesh;
+        let value = |node: usize| values.get(node).copied().unwrap_or(f64::NAN);
+        panels.push(Panel::at_nodes(model.name(), mesh, displacement, &value));
+    }
+    let title = format!("The grip at {}", scene.grip.describe());
+    Ok(FieldFigure::new(title, scene.look.colour.name(), panels))
+}
+
+/// Everything that the command writes for a study.
+fn study(question: &StudyQuestion) -> Result<Vec<NamedFile>, Error> {
+    with_files(paths(&question.files), || {
+        let study = validation::read(Path::new(&question.study), Budget::USUAL)?;
+        let results = study.compute(Progress::silent())?;
+        let mut files = Vec::new();
+        output::write(&results, true, &mut files)?;
+        Ok(files)
+    })
+}
+
+/// Files as one archive, as a browser gives them out.
+///
+/// # Errors
+/// Says why there is none, as where two files have the same name.
+pub fn archive(files: &[NamedFile]) -> Result<Vec<u8>, String> {
+    let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default();
+    for (name, content) in files {
+        let begun = archive.start_file(name.as_str(), options);
+        begun.map_err(|cause| format!("{name}: {cause}"))?;
+        let written = archive.write_all(content);
+        written.map_err(|cause| format!("{name}: {cause}"))?;
+    }
+    let whole = archive.finish();
+    whole
+        .map(Cursor::into_inner)
+        .map_err(|cause| cause.to_string())
+}
+
+#[cfg(test)]
+mod tests;

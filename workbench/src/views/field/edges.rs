@@ -1,0 +1,188 @@
+//! The mesh of a field with its edges: a click on one asks what is known of it.
+
+use eframe::egui::{
+    Align2, Color32, ComboBox, FontId, Grid, Id, Popup, PopupAnchor, PopupCloseBehavior, Pos2,
+    Response, RichText, Role, Sense, Shape, Stroke, TextEdit, Ui, WidgetInfo, vec2,
+};
+
+use gelbench::results::{Drawing, MeshFigure};
+
+use super::Fields;
+use crate::logic::field::{Edge, Preview, middle, nearest};
+use crate::views::report;
+use crate::views::surface::View;
+
+/// How far from an edge a click may be, in points: as wide as a finger.
+const REACH: f32 = 14.0;
+
+/// The edge that is asked about, and where on the screen.
+pub type Asked = Option<(String, Pos2)>;
+
+impl Fields {
+    /// One line for every edge, for those who use no mouse.
+    pub(super) fn edges(&mut self, ui: &mut Ui, preview: &Preview) {
+        let Drawing::Mesh(figure) = &preview.drawing else {
+            return;
+        };
+        Grid::new("edges").num_columns(3).show(ui, |ui| {
+            for name in &preview.edges {
+                let ink = report::edge_colour(figure, name);
+                let label = ui.label(RichText::new(name).color(ink).strong());
+                let edge = self.question.edges.entry(name.clone()).or_default();
+                let chosen = ComboBox::from_id_salt(("edge", name))
+                    .width(120.0)
+                    .selected_text(edge.name())
+                    .show_ui(ui, |ui| kinds(ui, edge));
+                chosen.response.labelled_by(label.id);
+                displacements(ui, name, edge);
+                ui.end_row();
+            }
+        });
+    }
+
+    /// The mesh, its edges and the markers of the last frame.
+    pub(super) fn mesh(&mut self, ui: &mut Ui, preview: &Preview) {
+        let Drawing::Mesh(figure) = &preview.drawing else {
+            return;
+        };
+        let (view, area) = report::mesh(ui, figure);
+        self.view = Some(view);
+        let response = ui.interact(
+            area.expand(6.0),
+            ui.scope_id().with("edges"),
+            Sense::click(),
+        );
+        response.widget_info(|| {
+            let label = "mesh of the field: click an edge and say what is known of it";
+            WidgetInfo::labeled(Role::Image, true, label)
+        });
+        markers(ui, view, preview);
+        let reach = view.way(vec2(REACH, 0.0))[0];
+        let at = |pointer: Pos2| nearest(figure, view.place(pointer), reach);
+        let under = response.hover_pos().and_then(at);
+        for name in &preview.edges {
+            let asked = self.asked.as_ref().is_some_and(|(asked, _)| asked == name);
+            let edge = self.question.edges.get(name);
+            let said = edge.filter(|edge| **edge != Edge::Unnamed);
+            draw(ui, view, figure, name, (said, asked || under == Some(name)));
+        }
+        if under.is_some() {
+            let icon = eframe::egui::CursorIcon::PointingHand;
+            ui.ctx().set_cursor_icon(icon);
+        }
+        if response.clicked() {
+            let pointer = response.interact_pointer_pos();
+            let clicked = pointer.and_then(|pointer| Some((at(pointer)?.to_owned(), pointer)));
+            self.asked = clicked;
+        } else {
+            self.ask_of_edge(ui, &response);
+        }
+    }
+
+    /// Asks what is known of the edge that was clicked.
+    fn ask_of_edge(&mut self, ui: &Ui, response: &Response) {
+        let Some((name, place)) = self.asked.clone() else {
+            return;
+        };
+        let edge = self.question.edges.entry(name.clone()).or_default();
+        let mut open = true;
+        let popup = Popup::new(
+            Id::unique(("edge is asked about", &name)),
+            ui.ctx().clone(),
+            PopupAnchor::Position(place),
+            response.layer_id,
+        );
+        popup
+            .open_bool(&mut open)
+            .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+            .show(|ui| {
+                ui.label(RichText::new(format!("the edge {name}")).strong());
+                kinds(ui, edge);
+                ui.horizontal(|ui| displacements(ui, &name, edge));
+            });
+        if !open {
+            self.asked = None;
+        }
+    }
+}
+
+/// What may be known of an edge, to choose from.
+fn kinds(ui: &mut Ui, edge: &mut Edge) {
+    for kind in Edge::all() {
+        let chosen = edge.is_like(&kind);
+        let hint = match kind {
+            Edge::Unnamed => "nothing is said: the data tell whether it is free",
+            Edge::Free => "no traction acts on it",
+            Edge::Rigid => "it moved as a rigid body, by unknown amounts: a grip",
+            Edge::Known(_) => "its displacement is known",
+            Edge::Unknown => "it is loaded in an unknown way and moved smoothly",
+        };
+        let label = ui.selectable_label(chosen, kind.name()).on_hover_text(hint);
+        if label.clicked() && !chosen {
+            *edge = kind;
+        }
+    }
+}
+
+/// The displacement of a known edge.
+fn displacements(ui: &mut Ui, name: &str, edge: &mut Edge) {
+    let Edge::Known(axes) = edge else {
+        return;
+    };
+    ui.horizontal(|ui| {
+        for (axis, text) in ["ux", "uy"].into_iter().zip(axes) {
+            let label = ui.label(axis);
+            let field = TextEdit::singleline(text)
+                .id_salt((name, axis))
+                .hint_text("free")
+                .desired_width(64.0);
+            ui.add(field).labelled_by(label.id);
+        }
+    });
+}
+
+fn markers(ui: &Ui, view: View, preview: &Preview) {
+    let painter = ui.painter();
+    let ink = ui.visuals().strong_text_color();
+    for [rest, found] in &preview.markers {
+        let (from, to) = (view.at(*rest), view.at(*found));
+        painter.circle_filled(from, 1.5, ink);
+        painter.line_segment([from, to], Stroke::new(0.7, ink.gamma_multiply(0.5)));
+    }
+}
+
+/// An edge with what is said of it; thicker where it is pointed at.
+fn draw(
+    ui: &Ui,
+    view: View,
+    figure: &MeshFigure,
+    name: &str,
+    (said, pointed): (Option<&Edge>, bool),
+) {
+    let painter = ui.painter();
+    let ink = report::edge_colour(figure, name);
+    let Some(group) = figure.groups.iter().find(|group| group.name == name) else {
+        return;
+    };
+    if pointed {
+        for line in &group.lines {
+            let places = line.iter().map(|place| view.at(*place)).collect();
+            painter.add(Shape::line(places, Stroke::new(7.0, ink)));
+        }
+    }
+    let Some(middle) = middle(&group.lines) else {
+        return;
+    };
+    let text = match said {
+        Some(edge) => format!("{name}: {}", edge.name()),
+        None => name.to_owned(),
+    };
+    let letters = painter.layout_no_wrap(text, FontId::proportional(12.0), Color32::PLACEHOLDER);
+    let clip = ui.clip_rect().shrink(2.0);
+    let place = Align2::CENTER_CENTER.anchor_size(view.at(middle), letters.size());
+    let inside = place.min.max(clip.min).min(clip.max - letters.size());
+    let paper = ui.visuals().panel_fill.gamma_multiply(0.85);
+    let back = eframe::egui::Rect::from_min_size(inside, letters.size()).expand(2.0);
+    painter.rect_filled(back, 3.0, paper);
+    painter.galley(inside, letters, ui.visuals().strong_text_color());
+}

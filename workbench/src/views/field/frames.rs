@@ -1,0 +1,87 @@
+//! The corrected frames of a field: verdict, forces, fields, residuals.
+
+use eframe::egui::{RichText, Slider, Stroke, Ui};
+
+use gelbench::results::{Drawing, FieldFigure, Scale};
+
+use super::Fields;
+use crate::logic::field::CorrectedFrame;
+use crate::views::colours::range;
+use crate::views::report;
+
+impl Fields {
+    pub(super) fn frames(&mut self, ui: &mut Ui, frames: &[CorrectedFrame]) {
+        self.frame = self.frame.min(frames.len().saturating_sub(1));
+        if frames.len() > 1 {
+            ui.add(Slider::new(&mut self.frame, 0..=frames.len() - 1).text("frame"));
+        }
+        let Some(frame) = frames.get(self.frame) else {
+            return;
+        };
+        let ink = match frame.explained {
+            true => ui.visuals().strong_text_color(),
+            false => ui.visuals().error_fg_color,
+        };
+        ui.label(
+            RichText::new(format!(
+                "verdict, frame {}: {}",
+                frame.number, frame.verdict
+            ))
+            .color(ink)
+            .strong(),
+        );
+        for (edge, [x, y]) in &frame.forces {
+            let axis = |[value, low, high]: &[f64; 3]| match frame.explained {
+                true => format!("{value:.4} N ({low:.4} … {high:.4})"),
+                false => format!("{value:.4} N (no interval)"),
+            };
+            ui.label(format!("force on {edge}: x {}, y {}", axis(x), axis(y)));
+        }
+        ui.horizontal_wrapped(|ui| {
+            for (number, (name, _)) in frame.fields.iter().enumerate() {
+                ui.selectable_value(&mut self.field, number, name);
+            }
+            ui.checkbox(&mut self.residuals, "residuals of the markers");
+        });
+        self.field = self.field.min(frame.fields.len().saturating_sub(1));
+        if let Some((name, panel)) = frame.fields.get(self.field) {
+            report::panels(ui, name, Scale::Linear, std::slice::from_ref(panel));
+        }
+        if self.residuals {
+            residuals(ui, frame);
+        }
+    }
+
+    /// The field that is shown, as the library draws it.
+    pub(super) fn drawing(&self, frame: &CorrectedFrame) -> Option<Drawing> {
+        let (name, panel) = frame.fields.get(self.field)?;
+        let title = format!("Frame {}", frame.number);
+        let figure = FieldFigure::new(title, name.clone(), [panel.clone()]);
+        Some(Drawing::from(figure))
+    }
+}
+
+/// What is left of every marker, enlarged; those that are far off in another colour.
+fn residuals(ui: &mut Ui, frame: &CorrectedFrame) {
+    let places: Vec<[f64; 2]> = frame.residuals.iter().map(|(place, ..)| *place).collect();
+    let sizes = frame.residuals.iter().filter(|(.., trust)| *trust > 0.5);
+    let largest = sizes
+        .map(|(_, left, _)| left[0].hypot(left[1]))
+        .fold(0.0, f64::max);
+    let Some([low, high]) = range(places.iter().map(|place| place[0])) else {
+        return;
+    };
+    let enlarged = 0.04 * (high - low) / largest.max(1e-12);
+    ui.label(format!("residuals of the markers at rest, {enlarged:.1} times as long; far off in the colour of faults"));
+    let (view, area) = report::room(ui, places.iter());
+    let painter = ui.painter().with_clip_rect(area);
+    for (place, left, trust) in &frame.residuals {
+        let ink = match *trust > 0.5 {
+            true => ui.visuals().text_color(),
+            false => ui.visuals().error_fg_color,
+        };
+        let to = [0, 1].map(|axis| place[axis] + enlarged * left[axis]);
+        painter.circle_filled(view.at(*place), 1.5, ink);
+        painter.line_segment([view.at(*place), view.at(to)], Stroke::new(1.0, ink));
+    }
+}
