@@ -1,6 +1,7 @@
 //! The page in the browser: it starts the program, on the page or as a worker, and tells what is on the table.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 use eframe::{WebOptions, WebRunner};
 use serde_json::json;
@@ -96,6 +97,9 @@ pub fn tell(bench: &Workbench) {
         .and_then(|found| found.as_ref().ok());
     let told = json!({
         "tab": format!("{:?}", bench.tab()),
+        "places": bench.places().iter().map(|(name, at)| (name, [at.x, at.y])).collect::<BTreeMap<_, _>>(),
+        "moving": table.moving().map(|moving| [moving.clock(), moving.computed(), moving.duration()]),
+        "told": bench.said(),
         "grip_at": bench.grip_at().map(|at| [at.x, at.y]),
         "fits": fits.map(|found| found.fits.iter().map(|fit| (&fit.law, &fit.parameters)).collect::<Vec<_>>()),
         "verdicts": frames.map(|(frames, _)| frames.iter().map(|frame| (&frame.verdict, &frame.forces)).collect::<Vec<_>>()),

@@ -176,3 +176,118 @@ fn frames_are_timed() {
         );
     }
 }
+
+#[test]
+fn a_link_restores_the_sheet_with_a_card_of_its_own() {
+    let mut scene = Scene {
+        cells: [24, 8],
+        ..Scene::default()
+    };
+    let card = scene.card.read().unwrap();
+    let parameter = &card.parameters[0];
+    let moved = scene
+        .card
+        .with_parameter(&card, parameter.key, 1.2 * parameter.value);
+    scene.card = moved.unwrap();
+    scene.grip.displacement = [30.0, 6.0];
+    scene.grip.angle = 0.1;
+    let Some(mut page) = Browser::open_with([1000, 700], &scene.study(), 0) else {
+        return;
+    };
+    let told = page.until(settled);
+    let study = told["study"].as_str().unwrap();
+    let restored = Scene::open("link.toml".as_ref(), study, &[]).unwrap();
+    assert!((restored.grip.angle - scene.grip.angle).abs() < 1e-12);
+    let grip = scene.grip;
+    assert_eq!(Scene { grip, ..restored }, scene);
+    compare_forces(&told);
+}
+
+#[test]
+fn the_sheet_is_let_go_and_held_again_in_the_browser() {
+    let Some(mut page) = Browser::open([1000, 700]) else {
+        return;
+    };
+    page.until(settled);
+    page.press("l");
+    page.until(|told| told["moving"][0].as_f64().is_some_and(|clock| clock > 0.02));
+    page.picture("sheet_let_go");
+    page.press("Escape");
+    page.until(|told| told["moving"].is_null());
+}
+
+#[test]
+fn pictures_tables_and_fields_go_out_of_the_browser() {
+    let Some(mut page) = Browser::open([1400, 900]) else {
+        return;
+    };
+    page.until(settled);
+    let folder = page.downloads();
+    for (offer, file, begin) in [
+        ("the fields as VTK", "sheet.zip", &b"PK"[..]),
+        ("the sheets as PNG", "sheet.png", b"\x89PNG"),
+        ("the sheets as SVG", "sheet.svg", b"<svg"),
+        ("force over stretch as CSV", "force.csv", b"line,"),
+        ("force over stretch as PNG", "force.png", b"\x89PNG"),
+    ] {
+        page.press_button("export");
+        page.picture("export");
+        page.press_button(offer);
+        let begun = Instant::now();
+        let path = folder.join(file);
+        while std::fs::metadata(&path).map_or(0, |about| about.len()) == 0 {
+            if begun.elapsed() > Duration::from_secs(60) {
+                let told = page.until(|_| true);
+                panic!("{offer} did not go out: {}", told["told"]);
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        assert!(std::fs::read(&path).unwrap().starts_with(begin), "{offer}");
+    }
+}
+
+#[test]
+#[ignore = "a minute: pictures for people to look at"]
+fn the_first_two_minutes() {
+    let Some(mut page) = Browser::open([1400, 900]) else {
+        return;
+    };
+    page.picture("newcomer_0_at_once");
+    let told = page.until(settled);
+    page.picture("newcomer_1_settled");
+    let at = [0, 1].map(|axis| told["grip_at"][axis].as_f64().unwrap());
+    page.drag(at, [at[0] + 120.0, at[1] - 30.0]);
+    page.picture("newcomer_2_while_it_follows");
+    page.until(settled);
+    page.picture("newcomer_3_pulled");
+    page.press_button("let go");
+    page.until(|told| told["moving"][0].as_f64().is_some_and(|clock| clock > 0.01));
+    page.picture("newcomer_4_let_go");
+    page.press("Escape");
+    for (number, scene) in [
+        "1 Why springs are wrong",
+        "2 What one correction does",
+        "3 What T decides",
+        "5 Few springs, then climb",
+        "4 Noisy field",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        page.press_button(scene);
+        std::thread::sleep(Duration::from_millis(300));
+        match scene.starts_with('4') {
+            true => page.until(|told| told["verdicts"].is_array()),
+            false => page.until(settled),
+        };
+        page.picture(&format!("newcomer_{}_{}", 5 + number, &scene[..1]));
+    }
+    for (number, tab) in ["material", "study"].into_iter().enumerate() {
+        page.press_button(tab);
+        std::thread::sleep(Duration::from_millis(500));
+        page.picture(&format!("newcomer_{}_{tab}", 10 + number));
+    }
+    page.press_button("sheet");
+    page.press_button("export");
+    page.picture("newcomer_12_export");
+}

@@ -145,7 +145,7 @@ fn every_guided_scene_is_solved_without_a_fault() {
                 };
                 until(&mut bench, corrected);
                 bench.step();
-                assert!(bench.query_by_label_contains("verdict").is_some());
+                assert!(bench.query_by_label_contains("verdict, frame").is_some());
             }
         }
         let faults = Model::ALL.map(|model| state(&bench).table.fault(model).cloned());

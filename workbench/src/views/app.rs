@@ -1,5 +1,6 @@
 //! The program: panels around the table, keys, files, and the models that are solved beside the drawing.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use eframe::egui::{self, CentralPanel, Key, KeyboardShortcut, Modifiers, Panel, Ui};
@@ -28,6 +29,7 @@ use inbox::Inbox;
 
 const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
+const LET_GO: Key = Key::L;
 const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
 
 /// Fits, corrects or runs what is shown.
@@ -77,6 +79,8 @@ pub struct Workbench {
     shows_controls: Option<bool>,
     told: String,
     grip_at: Option<egui::Pos2>,
+    /// Where some of the buttons were drawn last, by their words.
+    places: BTreeMap<String, egui::Pos2>,
     measure: Option<Measure>,
 }
 
@@ -92,7 +96,7 @@ impl Workbench {
             engines: [background(), background(), background()],
             movers: [mover(), mover(), mover()],
             exports: Exports::new(Arc::clone(&wake)),
-            damping: 0.0,
+            damping: motion::FIRST_DAMPING,
             springs_back: false,
             lets_go: false,
             sheets: Sheets::default(),
@@ -107,6 +111,7 @@ impl Workbench {
             shows_controls: None,
             told: String::new(),
             grip_at: None,
+            places: BTreeMap::new(),
             measure: None,
         }
     }
@@ -177,6 +182,16 @@ impl Workbench {
     /// Where the grip is on the screen, in points.
     pub fn grip_at(&self) -> Option<egui::Pos2> {
         self.grip_at
+    }
+
+    /// What the program has said last, as of a file that it has written.
+    pub fn said(&self) -> &str {
+        &self.told
+    }
+
+    /// Where the buttons were drawn last that a program may press: by their words, in points.
+    pub fn places(&self) -> &BTreeMap<String, egui::Pos2> {
+        &self.places
     }
 
     /// Shows a view.
@@ -291,6 +306,10 @@ impl Workbench {
                 Tab::Field => self.fields.correct(),
                 Tab::Study => self.studies.run(),
             }
+        }
+        let writes = ui.ctx().text_edit_focused();
+        if !writes && self.tab == Tab::Sheet && ui.input(|input| input.key_pressed(LET_GO)) {
+            self.lets_go = true;
         }
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.stop();

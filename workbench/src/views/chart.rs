@@ -8,6 +8,9 @@ use gelbench::results::{LineChart, Scale, Stroke};
 /// The height from which a chart has room for its legend.
 const LEGEND: f32 = 140.0;
 
+/// The sum of red, green and blue below which a line is not seen on a dark background.
+const DARK: u16 = 200;
+
 /// Draws a chart of some height; `name` tells it apart from others.
 pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
     let of_x = scaled(chart.x.scale);
@@ -15,6 +18,11 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
     let label = |axis: &gelbench::results::Axis| match axis.scale {
         Scale::Logarithmic => format!("log₁₀ {}", axis.label),
         _ => axis.label.clone(),
+    };
+    let (dark, strong) = (ui.visuals().dark_mode, ui.visuals().strong_text_color());
+    let ink = |[r, g, b]: [u8; 3]| match dark && u16::from(r) + u16::from(g) + u16::from(b) < DARK {
+        true => strong,
+        false => Color32::from_rgb(r, g, b),
     };
     let mut plot = Plot::new(name.to_owned());
     if height > LEGEND {
@@ -42,7 +50,7 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
         }
         for line in &chart.lines {
             let [r, g, b] = line.colour;
-            let ink = Color32::from_rgb(r, g, b);
+            let ink = ink(line.colour);
             let places = || -> PlotPoints<'_> {
                 let places = line.points.iter().map(|[x, y]| [of_x(*x), of_y(*y)]);
                 places

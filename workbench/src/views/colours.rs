@@ -43,7 +43,7 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     })
 }
 
-/// The range that holds 98 % of some numbers, and zero where they come near it; nothing where there are none. At corners stresses
+/// The range that holds 96 % of some numbers, and zero where they come near it; nothing where there are none. At corners stresses
 /// have no bound, and would leave one colour for all the rest.
 pub fn most_of(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     let mut finite: Vec<f64> = values
@@ -55,7 +55,7 @@ pub fn most_of(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
         let place = (share * last as f64).round() as usize;
         *finite.select_nth_unstable_by(place, f64::total_cmp).1
     };
-    let [low, high] = [0.01, 0.99].map(&mut at);
+    let [low, high] = [0.02, 0.98].map(&mut at);
     let near_zero = low > 0.0 && low < 0.1 * high;
     Some([if near_zero { 0.0 } else { low }, high])
 }

@@ -17,34 +17,47 @@ pub fn curve(table: &Table) -> LineChart {
             Model::Corrected => 0,
             Model::Elements => 2,
         }];
-        Line::new(model.name(), table.curve(model), colour, Stroke::Marked)
+        let mut points = table.curve(model);
+        // What is only stretched has no force at rest.
+        let grip = table.scene().grip;
+        if grip.displacement[1] == 0.0 && grip.angle == 0.0 && !points.is_empty() {
+            let rest = points.partition_point(|[stretch, _]| *stretch < 0.0);
+            if points.get(rest).is_none_or(|[stretch, _]| *stretch > 0.0) {
+                points.insert(rest, [0.0; 2]);
+            }
+        }
+        Line::new(model.name(), points, colour, Stroke::Marked)
     };
     let lines = Model::ALL.into_iter().filter(shown).map(line).collect();
     let x = Axis::linear("stretch [–]");
     LineChart::new("", x, Axis::linear("force along X [N]"), lines)
 }
 
+/// The width below which a table leaves the moment out.
+const NARROW: f32 = 560.0;
+
 /// The figures of all models in a table.
 pub fn table(ui: &mut Ui, table: &Table) {
-    Grid::new("figures")
-        .striped(true)
-        .num_columns(6)
-        .show(ui, |ui| {
-            for head in [
-                "",
-                "force x, y [N]",
-                "moment [N mm]",
-                "displacement [%]",
-                "departure [%]",
-                "force [%]",
-            ] {
+    let moment = ui.available_width() > NARROW;
+    Grid::new("figures").striped(true).show(ui, |ui| {
+        let heads = [
+            "",
+            "force x, y [N]",
+            "moment [N mm]",
+            "displacement [%]",
+            "departure [%]",
+            "force [%]",
+        ];
+        for (number, head) in heads.into_iter().enumerate() {
+            if number != 2 || moment {
                 ui.label(RichText::new(head).small());
             }
-            ui.end_row();
-            for model in Model::ALL {
-                row(ui, table, model);
-            }
-        });
+        }
+        ui.end_row();
+        for model in Model::ALL {
+            row(ui, table, model, moment);
+        }
+    });
     ui.label(
         RichText::new(
             "Deviations from the finite elements: of the displacement, of its departure from the motion that is linear \
@@ -55,17 +68,21 @@ pub fn table(ui: &mut Ui, table: &Table) {
     );
 }
 
-fn row(ui: &mut Ui, table: &Table, model: Model) {
+fn row(ui: &mut Ui, table: &Table, model: Model, moment: bool) {
     ui.label(model.name());
     match table.shown(model) {
         Some(shown) => {
             let [x, y] = shown.solved.force;
             ui.monospace(format!("{:9.4} {:9.4}", rounded(x, 4), rounded(y, 4)));
-            ui.monospace(format!("{:9.2}", rounded(shown.solved.moment, 2)));
+            if moment {
+                ui.monospace(format!("{:9.2}", rounded(shown.solved.moment, 2)));
+            }
         }
         None => {
             ui.label("…");
-            ui.label("");
+            if moment {
+                ui.label("");
+            }
         }
     }
     match table.deviation(model) {

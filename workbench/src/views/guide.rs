@@ -1,6 +1,6 @@
 //! The first minute: three sentences, and scenes that can be played with.
 
-use eframe::egui::{RichText, Ui};
+use eframe::egui::{Pos2, RichText, Ui};
 
 use crate::logic::scene::{Colour, Grip, Known, Layout, Look, Model, Scene};
 
@@ -130,17 +130,20 @@ fn few_springs_then_climb() -> Scene {
     }
 }
 
-/// Shows the three sentences and the scenes; the number of the one that was chosen.
-pub fn show(ui: &mut Ui, current: Option<usize>) -> Option<usize> {
+/// Shows the three sentences and the scenes; the number of the one that was chosen. `note` is told where each of them is.
+pub fn show(
+    ui: &mut Ui,
+    current: Option<usize>,
+    mut note: impl FnMut(&str, Pos2),
+) -> Option<usize> {
     let mut chosen = None;
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new("Scenes:").strong());
         for (number, scene) in SCENES.iter().enumerate() {
             let title = format!("{} {}", number + 1, scene.title);
-            if ui
-                .selectable_label(current == Some(number), title)
-                .clicked()
-            {
+            let response = ui.selectable_label(current == Some(number), &title);
+            note(&title, response.rect.center());
+            if response.clicked() {
                 chosen = Some(number);
             }
         }

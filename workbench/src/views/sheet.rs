@@ -84,6 +84,13 @@ impl Sheets {
                 }
             }
         }
+        if let Some(held) = held.as_ref().filter(|_| table.steps() == [false; 2]) {
+            let font = FontId::proportional(15.0);
+            let ink = ui.visuals().hyperlink_color;
+            let place = held.at + vec2(16.0, 0.0);
+            ui.painter()
+                .text(place, Align2::LEFT_CENTER, "pull me", font, ink);
+        }
         colour_bar(ui, table.shown_colour().name(), range, bar);
         if !held.as_ref().is_some_and(|held| held.holding) {
             self.room = room(table.scene());
@@ -205,7 +212,7 @@ fn label(place: &Place, model: Model, at: Pos2) {
     };
     let follows = match table.drawn(model) {
         Some(drawn) if drawn.follows => "",
-        _ if fault.is_some() => " – no solution here, see below",
+        _ if fault.is_some() => " – no solution here, as is said",
         _ => " – follow …",
     };
     let ink = match table.scene().look.layout {

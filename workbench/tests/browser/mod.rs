@@ -1,7 +1,7 @@
 //! Chromium without a display, told what to do over its own protocol, and a server for the page.
 
 use std::io::{BufRead, BufReader, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -10,6 +10,10 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket};
+
+mod server;
+
+use server::serve;
 
 /// How long something may take to come about.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -208,6 +212,49 @@ impl Browser {
         mouse("mouseReleased", to, 0);
     }
 
+    /// Clicks with the mouse.
+    pub fn click(&mut self, [x, y]: [f64; 2]) {
+        for (kind, buttons) in [("mouseMoved", 0), ("mousePressed", 1), ("mouseReleased", 0)] {
+            let button = if kind == "mouseMoved" { "none" } else { "left" };
+            self.call("Input.dispatchMouseEvent", &json!({
+                "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1
+            }));
+            std::thread::sleep(Duration::from_millis(60));
+        }
+    }
+
+    /// Presses a button that the page tells the place of.
+    pub fn press_button(&mut self, name: &str) {
+        let told = self.until(|told| told["places"][name].is_array());
+        // It may still be on its way to its place.
+        std::thread::sleep(Duration::from_millis(200));
+        let now = self.evaluate("window.gelbench.told()");
+        let told = if now.is_object() { now } else { told };
+        self.click([0, 1].map(|axis| told["places"][name][axis].as_f64().expect("a place")));
+    }
+
+    /// Presses a key.
+    pub fn press(&mut self, key: &str) {
+        for kind in ["keyDown", "keyUp"] {
+            self.call(
+                "Input.dispatchKeyEvent",
+                &json!({ "type": kind, "key": key, "code": key }),
+            );
+        }
+    }
+
+    /// A folder into which the browser puts what it is given.
+    pub fn downloads(&mut self) -> PathBuf {
+        let folder = self.folder.join("downloads");
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let path = folder.display().to_string();
+        self.call(
+            "Page.setDownloadBehavior",
+            &json!({ "behavior": "allow", "downloadPath": path }),
+        );
+        folder
+    }
+
     /// Presses a key with Control.
     pub fn press_with_control(&mut self, key: &str) {
         for kind in ["keyDown", "keyUp"] {
@@ -306,48 +353,4 @@ fn get(address: &str, path: &str) -> String {
     let mut body = vec![0; length];
     reader.read_exact(&mut body).expect("a body");
     String::from_utf8(body).expect("text")
-}
-
-/// Serves a folder to this machine; the port.
-fn serve(folder: PathBuf) -> u16 {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let port = listener.local_addr().expect("an address").port();
-    std::thread::spawn(move || {
-        for stream in listener.incoming().flatten() {
-            let folder = folder.clone();
-            std::thread::spawn(move || drop(answer(stream, &folder)));
-        }
-    });
-    port
-}
-
-fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
-    let mut line = String::new();
-    BufReader::new(stream.try_clone()?).read_line(&mut line)?;
-    let asked = line.split_whitespace().nth(1).unwrap_or("/");
-    let name = asked
-        .split('?')
-        .next()
-        .unwrap_or_default()
-        .trim_start_matches('/');
-    let name = if name.is_empty() { "index.html" } else { name };
-    let kind = match name.rsplit('.').next() {
-        Some("html") => "text/html",
-        Some("js") => "text/javascript",
-        Some("wasm") => "application/wasm",
-        _ => "application/octet-stream",
-    };
-    let found = std::fs::read(folder.join(name));
-    let status = if found.is_ok() {
-        "200 OK"
-    } else {
-        "404 Not Found"
-    };
-    let body = found.unwrap_or_default();
-    write!(
-        stream,
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n",
-        body.len()
-    )?;
-    stream.write_all(&body)
 }

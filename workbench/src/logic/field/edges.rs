@@ -123,10 +123,13 @@ fn distance([x, y]: [f64; 2], [[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> f64 {
     (px - share * lx).hypot(py - share * ly)
 }
 
-/// Where the name of an edge is written: the middle of its longest line.
+/// Where the name of an edge is written: the place on it that is nearest to the middle of all its places.
 pub fn middle(lines: &[Vec<[f64; 2]>]) -> Option<[f64; 2]> {
-    let line = lines.iter().max_by_key(|line| line.len())?;
-    line.get(line.len() / 2).copied()
+    let places = || lines.iter().flatten();
+    let count = places().count().max(1) as f64;
+    let mean = [0, 1].map(|axis| places().map(|place| place[axis]).sum::<f64>() / count);
+    let far = |place: &[f64; 2]| (place[0] - mean[0]).hypot(place[1] - mean[1]);
+    places().copied().min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
 #[cfg(test)]

@@ -7,6 +7,9 @@ use crate::logic::scene::Model;
 use crate::logic::table::Action;
 use crate::views::figures;
 
+/// Damping at first in kPa·s: a front that runs through the plate at the start is some millimetres wide, three cells.
+pub const FIRST_DAMPING: f64 = 0.02;
+
 /// Damping that is offered in kPa·s.
 const DAMPING: std::ops::RangeInclusive<f64> = 0.0..=1.0;
 
@@ -44,7 +47,10 @@ impl Workbench {
             let hint = "opens the grip: the sheet moves by its own inertia; Escape holds it again";
             match self.table.moving() {
                 None => {
-                    if ui.button("let go").on_hover_text(hint).clicked() {
+                    let response = ui.button("let go").on_hover_text(hint);
+                    self.places
+                        .insert("let go".to_owned(), response.rect.center());
+                    if response.clicked() {
                         self.lets_go = true;
                     }
                 }
@@ -59,6 +65,7 @@ impl Workbench {
         let slider = Slider::new(&mut self.damping, DAMPING)
             .logarithmic(true)
             .smallest_positive(1e-4)
+            .custom_formatter(|value, _| format!("{value:.4}"))
             .suffix(" kPa·s")
             .text("damping");
         let response = ui
@@ -95,13 +102,13 @@ impl Workbench {
                 return;
             }
             let slider = Slider::new(&mut time, 0.0..=duration)
-                .suffix(" ms")
-                .fixed_decimals(1);
+                .custom_formatter(|time, _| format!("{time:.1}"))
+                .suffix(" ms");
             wound = ui.add(slider.text("since it was let go")).changed();
             let slower = Slider::new(&mut slowness, 1.0..=1000.0)
                 .logarithmic(true)
-                .suffix(" ×")
-                .fixed_decimals(0);
+                .custom_formatter(|times, _| format!("{times:.0}"))
+                .suffix(" ×");
             ui.add(slower.text("slower than it is"));
             if complete {
                 ui.label(format!("energy kept to {strayed:.2} %"));

@@ -41,7 +41,9 @@ impl Workbench {
             ui.label("There is nothing to go out yet.");
         }
         for (name, wanted) in offers {
-            if ui.button(name).clicked() {
+            let response = ui.button(&name);
+            self.places.insert(name, response.rect.center());
+            if response.clicked() {
                 self.told = "being written …".to_owned();
                 self.exports.ask(wanted);
                 ui.close();

@@ -41,7 +41,8 @@ impl Workbench {
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new("gelbench").strong());
             for (name, tab) in Tab::ALL {
-                ui.selectable_value(&mut self.tab, tab, name);
+                let response = ui.selectable_value(&mut self.tab, tab, name);
+                self.places.insert(name.to_owned(), response.rect.center());
             }
             ui.separator();
             let open = self.shows_controls.unwrap_or(true);
@@ -72,7 +73,9 @@ impl Workbench {
             if ui.button("save study").on_hover_text(hint).clicked() {
                 self.save();
             }
-            ui.menu_button("export", |ui| self.offered(ui));
+            let export = ui.menu_button("export", |ui| self.offered(ui)).response;
+            self.places
+                .insert("export".to_owned(), export.rect.center());
             ui.separator();
             let dark = ui.visuals().dark_mode;
             let other = if dark { "light" } else { "dark" };
@@ -107,7 +110,11 @@ impl Workbench {
     }
 
     pub(super) fn guide(&mut self, ui: &mut Ui) {
-        let Some(number) = guide::show(ui, self.guided) else {
+        let places = &mut self.places;
+        let note = |name: &str, at| {
+            places.insert(name.to_owned(), at);
+        };
+        let Some(number) = guide::show(ui, self.guided, note) else {
             return;
         };
         self.guided = Some(number);

@@ -2,7 +2,7 @@
 
 use eframe::egui::{
     Align2, Color32, ComboBox, FontId, Grid, Id, Popup, PopupAnchor, PopupCloseBehavior, Pos2,
-    Response, RichText, Role, Sense, Shape, Stroke, TextEdit, Ui, WidgetInfo, vec2,
+    Rect, Response, RichText, Role, Sense, Shape, Stroke, TextEdit, Ui, WidgetInfo, vec2,
 };
 
 use gelbench::results::{Drawing, MeshFigure};
@@ -56,7 +56,7 @@ impl Fields {
             let label = "mesh of the field: click an edge and say what is known of it";
             WidgetInfo::labeled(Role::Image, true, label)
         });
-        markers(ui, view, preview);
+        markers(ui, (view, area), preview);
         let reach = view.way(vec2(REACH, 0.0))[0];
         let at = |pointer: Pos2| nearest(figure, view.place(pointer), reach);
         let under = response.hover_pos().and_then(at);
@@ -141,13 +141,13 @@ fn displacements(ui: &mut Ui, name: &str, edge: &mut Edge) {
     });
 }
 
-fn markers(ui: &Ui, view: View, preview: &Preview) {
-    let painter = ui.painter();
+fn markers(ui: &Ui, (view, area): (View, Rect), preview: &Preview) {
+    let painter = ui.painter().with_clip_rect(area.expand(8.0));
     let ink = ui.visuals().strong_text_color();
     for [rest, found] in &preview.markers {
         let (from, to) = (view.at(*rest), view.at(*found));
         painter.circle_filled(from, 1.5, ink);
-        painter.line_segment([from, to], Stroke::new(0.7, ink.gamma_multiply(0.5)));
+        painter.line_segment([from, to], Stroke::new(0.7, ink.gamma_multiply(0.25)));
     }
 }
 
@@ -182,7 +182,7 @@ fn draw(
     let place = Align2::CENTER_CENTER.anchor_size(view.at(middle), letters.size());
     let inside = place.min.max(clip.min).min(clip.max - letters.size());
     let paper = ui.visuals().panel_fill.gamma_multiply(0.85);
-    let back = eframe::egui::Rect::from_min_size(inside, letters.size()).expand(2.0);
+    let back = Rect::from_min_size(inside, letters.size()).expand(2.0);
     painter.rect_filled(back, 3.0, paper);
     painter.galley(inside, letters, ui.visuals().strong_text_color());
 }

@@ -13,7 +13,11 @@ impl Fields {
     pub(super) fn frames(&mut self, ui: &mut Ui, frames: &[CorrectedFrame]) {
         self.frame = self.frame.min(frames.len().saturating_sub(1));
         if frames.len() > 1 {
-            ui.add(Slider::new(&mut self.frame, 0..=frames.len() - 1).text("frame"));
+            let number = |place: f64| frames.get(place as usize).map_or(0, |frame| frame.number);
+            let slider = Slider::new(&mut self.frame, 0..=frames.len() - 1)
+                .custom_formatter(|place, _| number(place).to_string())
+                .text("frame");
+            ui.add(slider);
         }
         let Some(frame) = frames.get(self.frame) else {
             return;
