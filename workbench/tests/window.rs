@@ -148,6 +148,13 @@ fn every_guided_scene_is_solved_without_a_fault() {
                 assert!(bench.query_by_label_contains("verdict, frame").is_some());
             }
         }
+        let shown = |bench: &Workbench| {
+            let corrected = bench.table.shown(Model::Corrected);
+            corrected.is_some_and(|shown| shown.solved.multipliers.is_some())
+        };
+        if state(&bench).table.scene().look.multipliers {
+            until(&mut bench, shown);
+        }
         let faults = Model::ALL.map(|model| state(&bench).table.fault(model).cloned());
         assert!(faults.iter().all(Option::is_none), "{label}: {faults:?}");
     }

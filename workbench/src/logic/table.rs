@@ -8,7 +8,7 @@ use super::deviations::Deviation;
 use super::engine::{Answer, Fault, Solved, Task, meshes};
 use super::history::History;
 use super::playing::Playing;
-use super::scene::{CardFile, Grip, Model, Scene};
+use super::scene::{CardFile, Grip, Known, Model, Scene};
 
 /// What a user does.
 #[derive(Clone, Debug)]
@@ -76,6 +76,8 @@ pub struct Table {
     curves: [BTreeMap<i64, f64>; 3],
     /// What the curves were pulled with: motion across and turn.
     pulled: ([f64; 2], f64),
+    /// What the corrector knew then.
+    known: Known,
     numbers: u64,
     oldest: u64,
     revision: u64,
@@ -100,6 +102,7 @@ impl Table {
             deviations: [None; 2],
             curves: Default::default(),
             pulled: ([0.0; 2], 0.0),
+            known: Known::ALL,
             numbers: 0,
             oldest: 0,
             revision: 0,
@@ -228,8 +231,8 @@ impl Table {
     fn lay_out(&mut self) {
         let scene = self.scene.now();
         let pulled = ([0.0, scene.grip.displacement[1]], scene.grip.angle);
-        if pulled != self.pulled {
-            self.pulled = pulled;
+        if pulled != self.pulled || scene.look.known != self.known {
+            (self.pulled, self.known) = (pulled, scene.look.known);
             self.curves = Default::default();
         }
         if scene.same_sheet(&self.sheet) {
@@ -254,9 +257,7 @@ impl Table {
     fn wanted(&self) -> impl Iterator<Item = Model> + '_ {
         let look = self.scene().look;
         let wanted = move |model: &Model| {
-            look.models[*model as usize]
-                || *model == Model::Elements
-                || (*model == Model::Springs && look.multipliers)
+            look.models[*model as usize] || *model == Model::Elements || look.multipliers
         };
         Model::ALL.into_iter().filter(wanted)
     }

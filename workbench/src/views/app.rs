@@ -322,7 +322,8 @@ impl Workbench {
         self.engines.iter_mut().for_each(Background::stop);
         self.movers.iter_mut().for_each(Background::stop);
         self.lets_go = false;
-        if self.table.moving().is_some() {
+        let moved = self.table.moving().is_some();
+        if moved {
             self.table.act(Action::Hold);
         }
         self.exports.stop();
@@ -330,7 +331,7 @@ impl Workbench {
         self.fields.stop();
         self.studies.stop();
         self.table.forget_tasks();
-        if busy {
+        if busy && !moved {
             self.told = "stopped; what is changed next is computed anew".to_owned();
         }
     }

@@ -164,6 +164,7 @@ fn look(ui: &mut Ui, scene: &mut Scene) {
     ComboBox::from_label("colour")
         .selected_text(look.colour.name())
         .width(140.0)
+        .truncate()
         .show_ui(ui, |ui| {
             for colour in Colour::ALL {
                 ui.selectable_value(&mut look.colour, colour, colour.name());

@@ -70,7 +70,11 @@ pub fn table(ui: &mut Ui, table: &Table) {
 
 fn row(ui: &mut Ui, table: &Table, model: Model, moment: bool) {
     ui.label(model.name());
-    match table.shown(model) {
+    // A model that is not computed any more stays where it was: its figures belong to another grip.
+    let scene = table.scene();
+    let followed = scene.look.models[model as usize] || model == Model::Elements;
+    let shown = table.shown(model);
+    match shown.filter(|shown| followed || shown.grip == scene.grip) {
         Some(shown) => {
             let [x, y] = shown.solved.force;
             ui.monospace(format!("{:9.4} {:9.4}", rounded(x, 4), rounded(y, 4)));

@@ -1,6 +1,6 @@
 //! Studies of any kind: written here or dropped, run beside the drawing, their reports shown and given out.
 
-use eframe::egui::{Button, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Button, CollapsingHeader, RichText, ScrollArea, TextEdit, Ui};
 
 use gelbench::studies::plate;
 use gelbench::validation::CASES;
@@ -152,7 +152,8 @@ impl Studies {
             let names: Vec<_> = self.files.iter().map(|(name, _)| name.as_str()).collect();
             ui.label(format!("files that a study may name: {}", names.join(", ")));
         }
-        ui.collapsing("text of the study", |ui| {
+        let text = CollapsingHeader::new("text of the study").default_open(true);
+        text.show(ui, |ui| {
             let edit = TextEdit::multiline(&mut self.text)
                 .code_editor()
                 .desired_width(f32::INFINITY);

@@ -118,6 +118,7 @@ impl Workbench {
             return;
         };
         self.guided = Some(number);
+        self.told.clear();
         match SCENES[number].shows {
             Shows::Sheet(scene) => {
                 self.tab = Tab::Sheet;
