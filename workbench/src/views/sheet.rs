@@ -84,7 +84,8 @@ impl Sheets {
                 }
             }
         }
-        if let Some(held) = held.as_ref().filter(|_| table.steps() == [false; 2]) {
+        let untouched = table.steps() == [false; 2] && table.moving().is_none();
+        if let Some(held) = held.as_ref().filter(|_| untouched) {
             let font = FontId::proportional(15.0);
             let ink = ui.visuals().hyperlink_color;
             let place = held.at + vec2(16.0, 0.0);
