@@ -299,7 +299,7 @@ impl Whole<'_> {
             }
         }
         material.covered = Covered {
-            times: Some(self.resolved),
+            times: Some(self.resolved.map(without_rounding)),
             rates: rates(self.tests),
         };
         Ok(Relaxed {
@@ -353,6 +353,11 @@ impl Whole<'_> {
         }
         found
     }
+}
+
+/// A difference of times without the last digits, which subtraction leaves.
+fn without_rounding(time: f64) -> f64 {
+    format!("{time:.11e}").parse().unwrap_or(time)
 }
 
 /// The slowest and the fastest stretching and letting back of some tests, in 1/s.

@@ -282,7 +282,8 @@ fn limits(poisson_ratio: f64) -> Vec<(String, [Arc<dyn HyperelasticLaw>; 2])> {
         .collect()
 }
 
-/// The difference to the law that keeps its volume falls as 1/κ: stresses at two ratios extrapolate to its own.
+/// The difference to the law that keeps its volume falls as 1/κ, and so as 1 − 2ν: at ν = 0.4999 it is what the material does, up to
+/// 2.5 (1 − 2ν) of the stress, and stresses at two ratios extrapolate to its own.
 #[test]
 fn the_incompressible_limit_is_the_law_that_keeps_its_volume() {
     for ((name, [near, exact]), (_, [nearer, _])) in limits(0.4998).into_iter().zip(limits(0.4999))
@@ -295,7 +296,12 @@ fn the_incompressible_limit_is_the_law_that_keeps_its_volume() {
             let [near, nearer, exact] =
                 [&near, &nearer, &exact].map(|law| stress(&**law, &gradient(h)));
             let off = |found: &Gradient| (found - exact).norm() / exact.norm();
-            assert!(off(&nearer) < 5e-4, "{name} {h:?}: {:.1e}", off(&nearer));
+            let own = 1.0 - 2.0 * 0.4999;
+            assert!(
+                off(&nearer) < 2.5 * own,
+                "{name} {h:?}: {:.1e}",
+                off(&nearer)
+            );
             let limit = 2.0 * nearer - near;
             assert!(off(&limit) < 1e-6, "{name} {h:?}: {:.1e}", off(&limit));
         }
