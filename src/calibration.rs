@@ -22,6 +22,9 @@ mod roles;
 mod rounding;
 mod search;
 mod settings;
+mod softened;
+mod softening;
+mod softening_misfit;
 mod terms;
 mod test_data;
 mod verdict;
@@ -35,6 +38,9 @@ pub use quality::{Quality, StableRange};
 pub use reading::KEYS;
 pub use relaxation::fit_relaxation;
 pub use settings::{Bounds, FitSettings, Weighting};
+pub use softened::{Softened, SofteningCycle};
+pub use softening::fit_softening;
+pub use softening_misfit::Base;
 pub use terms::Terms;
 pub use test_data::{Observation, StrainColumn, Test, TestData, Times};
 pub use verdict::{Answer, Verdict};
@@ -43,6 +49,8 @@ pub use verdict::{Answer, Verdict};
 mod quality_tests;
 #[cfg(test)]
 mod relaxation_tests;
+#[cfg(test)]
+mod softening_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -93,7 +93,7 @@ impl FiniteElements {
         format!("{}, {}", self.element.name(), self.mesh.describe())
     }
 
-    /// The estimated error of a state, by the recovery on this mesh.
+    /// The estimated error of a state, by the recovery on this mesh; of a first loading, where the material softens.
     ///
     /// # Errors
     /// A [`SolveFault`] when the tangent at the state cannot be factorised.

@@ -220,13 +220,11 @@ impl MassSpring {
         format!("the spring from ({x:.1}, {y:.1}) to ({to_x:.1}, {to_y:.1}) mm")
     }
 
-    /// Stretch and force of every spring.
-    pub fn spring_states(&self, displacement: &[f64]) -> Vec<SpringState> {
+    /// Stretch and force of every spring of a lattice with a history, which is empty where it was never loaded.
+    pub fn spring_states(&self, displacement: &[f64], history: &[f64]) -> Vec<SpringState> {
         let state = |(index, spring): (usize, &Spring)| {
-            let pose = self.pose(
-                index,
-                &gather(self.lattice.element_unknowns(index), displacement),
-            );
+            let own = gather(self.lattice.element_unknowns(index), displacement);
+            let pose = self.lattice.pose_after(index, &own, history);
             SpringState {
                 stretch: pose.stretch,
                 force: spring.area * pose.response.nominal_stress,

@@ -16,6 +16,7 @@ mod rigid;
 pub mod sheet_energy;
 mod solution;
 mod ties;
+mod work;
 
 pub use balance::{Balance, Resultant};
 pub use boundary::BoundaryProblem;
@@ -25,6 +26,7 @@ pub use model::Model;
 pub use plate::{ClampedPlate, Measures};
 pub use reactions::{GroupState, Reactions};
 pub use solution::Solution;
+pub use work::Work;
 
 #[cfg(test)]
 mod tests;

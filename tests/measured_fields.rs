@@ -381,6 +381,7 @@ fn a_coarse_field_is_brought_onto_a_finer_mesh() {
     let sheet = Sheet {
         law: &*Card::load("pva-10", root()).unwrap().law,
         thickness: 2.0,
+        past: &[],
     };
     let finer = Mesh::plate([150.0, 50.0], [30, 10], CellShape::Quad9);
     let write = |name: &str, mesh: &Mesh, field: &[f64]| {

@@ -111,9 +111,13 @@ fn what_the_climb_leaves_is_a_small_share_of_the_discretisation_error() {
             );
             let energy = case.problem.finite_elements(finest);
             let model = case.problem.on(finest, &energy).unwrap();
-            let exact =
-                correct_without_multipliers(&model, &climbed.state.displacement, 1.0, SETTINGS)
-                    .unwrap();
+            let exact = correct_without_multipliers(
+                &model,
+                &climbed.state.displacement,
+                (1.0, &[]),
+                SETTINGS,
+            )
+            .unwrap();
             let left = root_mean_square(&climbed.state.displacement, &exact.displacement);
             let error = climbed.discretisation_error;
             assert!(
@@ -167,10 +171,18 @@ fn the_field_without_multipliers_is_that_with_them() {
         )
         .unwrap();
         let start = start.state.displacement;
-        let with = correct(&model, &start, &start, 1.0, CorrectorSettings::default()).unwrap();
+        let with = correct(
+            &model,
+            &start,
+            &start,
+            (1.0, &[]),
+            CorrectorSettings::default(),
+        )
+        .unwrap();
         for solver in [LinearSolver::Direct, LinearSolver::Multigrid] {
             let model = case.problem.on(&mesh, &energy).unwrap().solved_by(solver);
-            let without = correct_without_multipliers(&model, &start, 1.0, SETTINGS).unwrap();
+            let without =
+                correct_without_multipliers(&model, &start, (1.0, &[]), SETTINGS).unwrap();
             let apart = root_mean_square(&with.state.displacement, &without.displacement);
             assert!(apart < 1e-7, "{}: {apart} mm", case.name);
         }

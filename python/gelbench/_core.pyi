@@ -244,6 +244,7 @@ def fit(
     weighting: str,
     bounds: list[tuple[str, list[float]]],
     starts: int,
+    history: str | None = None,
     progress: _Told = None,
 ) -> tuple[str, MaterialCard, bytes]: ...
 def identify(

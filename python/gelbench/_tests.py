@@ -155,6 +155,8 @@ def fit(
     weighting: str = "absolute",
     bounds: Mapping[str, tuple[float, float]] | None = None,
     starts: int = 8,
+    relaxation: bool | int = False,
+    softening: bool = False,
     columns: tuple[str, str] = ("stretch [-]", "stress [MPa]"),
     progress: Progress | None = None,
 ) -> Fit:
@@ -183,6 +185,12 @@ def fit(
         Limits of parameters by key [MPa, or plain].
     starts : int
         Starts of the search that are improved.
+    relaxation : bool or int
+        A Prony series too, to tests with a column of times such as ``"time [s]"``: with as many terms as AICc asks for (True), or so
+        many. The law is that of long times.
+    softening : bool
+        How the material softens by its largest load (Mullins effect), to loading and unloading. The law is that of the first
+        loading.
     columns : tuple of str
         Heads of an array's columns.
     progress : callable or tqdm bar, optional
@@ -209,8 +217,19 @@ def fit(
         "strain unit": strain_unit,
     }
     said = {key: value for key, value in given.items() if value is not None}
+    if softening and relaxation is not False:
+        raise fault("softening", "relaxation and softening are fitted apart", "leave one of them out")
+    if law is None and (softening or relaxation is not False):
+        raise fault("law", "relaxation and softening are fitted on top of a law", "name it, such as \"yeoh\"")
+    history: str | None = None
+    if softening:
+        history = "softening"
+    elif relaxation is True:
+        history = "relaxation"
+    elif relaxation is not False:
+        history = str(relaxation)
     limits = [(key, [float(low), float(high)]) for key, (low, high) in (bounds or {}).items()]
-    return Fit(_core.fit(tables, law, name, said, weighting, limits, starts, callback(progress)))
+    return Fit(_core.fit(tables, law, name, said, weighting, limits, starts, history, callback(progress)))
 
 
 def _are_tests(data: Any) -> bool:

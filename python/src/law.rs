@@ -7,7 +7,9 @@ use std::sync::Arc;
 use gelbench::material::code::{Code, CodeLaw};
 use gelbench::material::law::TensionResponse;
 use gelbench::material::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
-use gelbench::material::{EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants, Volume};
+use gelbench::material::{
+    EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants, Softening, Volume,
+};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -196,6 +198,10 @@ impl HyperelasticLaw for Watched {
 
     fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {
         self.law.in_code(code, bulk_modulus)
+    }
+
+    fn softening(&self) -> Option<Softening> {
+        self.law.softening()
     }
 
     fn volume_ratio(&self, kinematics: &Kinematics) -> f64 {

@@ -9,7 +9,7 @@ use gelbench::error::{Error, suggestion};
 use gelbench::material::curve::{Mode, simple_shear};
 use gelbench::material::registry::{CARDS, LAWS, Law};
 use gelbench::material::stability::stable_range;
-use gelbench::material::{Card, HyperelasticLaw};
+use gelbench::material::{Card, HyperelasticLaw, SoftenedLaw};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -56,8 +56,13 @@ impl MaterialCard {
             return Err(input(format!("a parameter is {wrong}"), "give a number"));
         }
         let (made, entries) = law.with_values(&all, card.stress_measure, card.strain_measure);
+        let made: Arc<dyn HyperelasticLaw> = made.into();
+        let law: Arc<dyn HyperelasticLaw> = match card.law.softening() {
+            Some(softening) => Arc::new(SoftenedLaw::unloaded(made, softening)),
+            None => made,
+        };
         Ok(Card {
-            law: made.into(),
+            law,
             parameters: entries.parameters,
             text: String::new(),
             fit: None,

@@ -201,6 +201,7 @@ impl Solution {
             let sheet = Sheet {
                 law: &**law,
                 thickness: *thickness,
+                past: &[],
             };
             Grid::sheet(sheet, &self.mesh, displacement)
         })?;

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use gelbench::budget::Budget;
 use gelbench::error::{Diagnostic, Error};
+use gelbench::material::softened_law::check_memory;
 use gelbench::mesh::{CellShape, MeshData};
 use gelbench::studies::plate::results::run::one_model;
 use gelbench::studies::plate::{self, Study};
@@ -56,6 +57,7 @@ pub fn solve_plate(
     let work = |watch: &Arc<Watch>| {
         let study = Study::of_file(Path::new("plate"), study, budget(allow_large))?;
         let study = study.with_card(material.watched(watch));
+        check_memory(&*study.problem.law, "a single model in Python")?;
         let told = |what: &str| watch.tell(what);
         let start = Instant::now();
         let found = one_model(&study, kind, Progress::to(&told));
@@ -219,6 +221,7 @@ pub fn solve_specimen(
     let work = |watch: &Arc<Watch>| {
         let (_, read, _) = read_specimen(study, mesh, allow_large)?;
         let read = read.with_card(material.watched(watch));
+        check_memory(&*read.problem.law, "a single model in Python")?;
         let told = |what: &str| watch.tell(what);
         let start = Instant::now();
         let found = specimen::one_model(&read, kind, Progress::to(&told))?;

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use gelbench::calibration::{self, Bounds, FitSettings, Provenance, TestData, Weighting};
+use gelbench::calibration::{
+    self, Base, Bounds, Fit, FitSettings, Provenance, Terms, TestData, Weighting,
+};
 use gelbench::document::{Statements, Table};
 use gelbench::error::{Error, suggestion};
 use gelbench::identification::{
@@ -28,7 +30,7 @@ type Said = BTreeMap<String, String>;
 
 /// Fits a law, or the best of all, to tests by their names and tables.
 #[pyfunction]
-#[pyo3(signature = (tests, law, name, said, weighting, bounds, starts, progress=None))]
+#[pyo3(signature = (tests, law, name, said, weighting, bounds, starts, history=None, progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "each is a keyword of gelbench.fit"
@@ -42,10 +44,15 @@ pub fn fit(
     weighting: &str,
     bounds: Bounds,
     starts: u16,
+    history: Option<&str>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Fitted> {
     run(py, progress, |watch| {
-        let reading: Statements = said.into_iter().collect();
+        let mut reading: Statements = said.into_iter().collect();
+        if history.is_some() {
+            // What relaxes or softens is the whole record.
+            reading.entry("cycle".into()).or_insert("all".into());
+        }
         let read = tests.iter();
         let read = read.map(|(name, table)| TestData::parse(name, table, &reading));
         let tests_read = read.collect::<Result<Vec<_>, Error>>()?;
@@ -57,7 +64,7 @@ pub fn fit(
         let fit = match law {
             Some(name) => {
                 watch.tell(&name);
-                calibration::fit(named(&name)?, &tests_read, &settings)?
+                with_history(named(&name)?, &tests_read, &settings, history)?
             }
             None => {
                 watch.tell("all laws");
@@ -70,6 +77,7 @@ pub fn fit(
         let provenance = Provenance {
             files: tests.into_iter().map(|(name, _)| name).collect(),
             reading,
+            ..Provenance::default()
         };
         let text = calibration::card_text(&fit, &tests_read, &provenance);
         let card = Card::parse(&name, &format!("{name}.toml"), &text)?;
@@ -77,6 +85,31 @@ pub fn fit(
         let picture = drawn(&fit_picture(&fit, &tests_read))?;
         Ok((json, MaterialCard::of(card), picture))
     })
+}
+
+/// A law fitted to tests: alone, with softening, or with a Prony series of as many terms as are asked for or as AICc asks for.
+fn with_history(
+    law: &'static Law,
+    tests: &[TestData],
+    settings: &FitSettings,
+    history: Option<&str>,
+) -> Result<Fit, Error> {
+    let terms = match history {
+        None => return calibration::fit(law, tests, settings),
+        Some("softening") => return calibration::fit_softening(Base::Law(law), tests, settings),
+        Some("relaxation") => Terms::Automatic,
+        Some(text) => {
+            let number = text.parse().ok().filter(|terms| *terms <= Terms::MOST);
+            let told = || {
+                input(
+                    format!("relaxation={text} is no number of terms"),
+                    "True, or 0 to 6",
+                )
+            };
+            Terms::Exactly(number.ok_or_else(told)?)
+        }
+    };
+    calibration::fit_relaxation(law, tests, settings, terms)
 }
 
 fn named(name: &str) -> Result<&'static Law, Error> {

@@ -116,3 +116,34 @@ def test_a_force_that_the_field_cannot_have_is_told_and_no_interval_is_given(roo
     assert not found.explained and not found.passed
     assert found.forces["right"][0].interval is None
     assert any("6.5" in doubt for doubt in found.doubts)
+
+
+@pytest.mark.parametrize(
+    ("data", "option", "more"),
+    [
+        ("ramp_and_hold.csv", "--relaxation", {"relaxation": True}),
+        ("cyclic_loading.csv", "--softening", {"softening": True}),
+    ],
+)
+def test_what_depends_on_the_history_has_the_commands_figures_to_the_bit(command, root, tmp_path, data, option, more):
+    data = root / "examples" / data
+    code, _, told = command(
+        "materials", "fit", data, "--law", "neo-hooke", option, "--name", "gel", "--output", tmp_path, cwd=root
+    )
+    assert code == 0, told
+    theirs = json.loads((tmp_path / "gel.json").read_text())
+    fit = gb.fit(data, "neo-hooke", name="gel", **more)
+    own = dict(fit.json)
+    own.pop("data"), theirs.pop("data")
+    assert own == theirs
+    assert fit.parameters["c10"].interval is not None
+
+
+def test_a_history_needs_a_law_and_is_of_one_kind(root):
+    data = root / "examples/cyclic_loading.csv"
+    with pytest.raises(gb.InputError, match="name it"):
+        gb.fit(data, None, softening=True)
+    with pytest.raises(gb.InputError, match="fitted apart"):
+        gb.fit(data, "neo-hooke", softening=True, relaxation=2)
+    with pytest.raises(gb.InputError, match="number of terms"):
+        gb.fit(root / "examples/ramp_and_hold.csv", "neo-hooke", relaxation=9)

@@ -3,9 +3,11 @@
 use std::fmt::{Display, Write};
 
 use super::fit::Fit;
+use super::softened::Softened;
 use super::test_data::TestData;
 use crate::document::Statements;
 use crate::document::quoted;
+use crate::material::Softening;
 use crate::material::registry::MARLOW_TABLE;
 use crate::units::Dimension;
 
@@ -16,10 +18,15 @@ pub struct Provenance {
     pub files: Vec<String>,
     /// What was said about them next to their heads.
     pub reading: Statements,
+    /// The card on top of whose law softening was fitted, as the new card names it.
+    pub base_card: Option<String>,
 }
 
 /// A card that `gelbench materials refit` can make again.
 pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> String {
+    if let Some(base) = fit.softened.as_ref().and_then(|own| own.card.as_deref()) {
+        return softened_card(base, fit, provenance);
+    }
     let files = provenance.files.join(", ");
     let [specimen, source, doi] = ["specimen", "source", "doi"].map(|key| stated(tests, key));
     let title = match &specimen {
@@ -36,6 +43,7 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     text += "\n[parameters]\n";
     parameters(&mut text, fit);
     viscosity(&mut text, fit);
+    softening(&mut text, fit);
     text += "\n[data]\n";
     put(&mut text, "test", quoted(&kinds.join(", ")));
     put(
@@ -59,6 +67,27 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     text + &recipe(fit, provenance)
 }
 
+/// The text of a card with the softening of a fit in place of what it said of softening and fits before.
+fn softened_card(base: &str, fit: &Fit, provenance: &Provenance) -> String {
+    let mut text = format!(
+        "# The softening was fitted by `gelbench materials fit` to {}.\n",
+        provenance.files.join(", ")
+    );
+    let mut kept = true;
+    for line in base.lines() {
+        if line.trim_start().starts_with('[') {
+            let name = line.trim().trim_matches(['[', ']']);
+            kept = !["softening", "fit"].contains(&name);
+        }
+        if kept {
+            text += line;
+            text.push('\n');
+        }
+    }
+    softening(&mut text, fit);
+    text + &recipe(fit, provenance)
+}
+
 /// How the fit is made again.
 fn recipe(fit: &Fit, provenance: &Provenance) -> String {
     let mut text = String::from("\n[fit]\n");
@@ -75,6 +104,12 @@ fn recipe(fit: &Fit, provenance: &Provenance) -> String {
             "relaxation_terms",
             relaxed.material.relaxation.len(),
         );
+    }
+    if fit.softened.is_some() {
+        put(&mut text, "softening", true);
+    }
+    if let Some(base) = &provenance.base_card {
+        put(&mut text, "base_card", quoted(base));
     }
     let bounds = fit.settings.bounds.iter();
     let bounds = bounds.map(|(key, [low, high])| format!("{key}={low}..{high}"));
@@ -170,6 +205,25 @@ fn viscosity(text: &mut String, fit: &Fit) {
     }
 }
 
+/// The softening.
+fn softening(text: &mut String, fit: &Fit) {
+    let Some(Softened {
+        softening, of_law, ..
+    }) = &fit.softened
+    else {
+        return;
+    };
+    let error = |part: usize| error(fit, of_law + part);
+    let Softening { r, m, beta } = softening;
+    let _ = write!(
+        text,
+        "\n[softening]\nr = {r} # {}\nm = \"{m} MPa\" # {}\nbeta = {beta} # {}\n",
+        error(0),
+        error(1),
+        error(2)
+    );
+}
+
 /// The figures and the warnings of the fit in one line.
 fn note(fit: &Fit, tests: &[TestData]) -> String {
     let quality = &fit.quality;
@@ -188,6 +242,9 @@ fn note(fit: &Fit, tests: &[TestData]) -> String {
             note,
             "; the law is that of long times, {terms} terms of a Prony series"
         );
+    }
+    if fit.softened.is_some() {
+        note += "; the law is that of the first loading, softened after Ogden and Roxburgh";
     }
     if let Some(verdict) = &quality.verdict {
         note += "; left over: ";

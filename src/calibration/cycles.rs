@@ -166,6 +166,10 @@ impl Turns {
     /// What is said where it did.
     pub fn warning(&self, head: &Head) -> Option<Diagnostic> {
         let row = self.first?;
+        // Whoever says which cycles are taken knows that there are some.
+        if !matches!(Cycle::stated(head), Ok(None)) {
+            return None;
+        }
         let times = if self.count == 1 {
             "once".to_owned()
         } else {

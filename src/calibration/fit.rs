@@ -19,6 +19,7 @@ use super::misfit::Misfit;
 use super::quality::{Assessment, Quality};
 use super::search::Search;
 use super::settings::{FitSettings, MEASURE, limits};
+use super::softened::Softened;
 use super::test_data::{Observation, Test, TestData};
 use super::warnings::warnings;
 use crate::error::Error;
@@ -48,6 +49,8 @@ pub struct Fit {
     pub quality: Quality,
     /// The Prony series of a fit to what was measured over time; its shares and times follow the law's parameters.
     pub relaxed: Option<Relaxed>,
+    /// The softening of a fit to loading and unloading; its parameters follow the law's.
+    pub softened: Option<Softened>,
 }
 
 /// The relaxation of a fit.
@@ -67,6 +70,7 @@ impl Fit {
     /// The parameters of the law.
     pub fn law_parameters(&self) -> &[Parameter] {
         let count = self.relaxed.as_ref().map(|relaxed| relaxed.of_law);
+        let count = count.or(self.softened.as_ref().map(|softened| softened.of_law));
         &self.parameters[..count.unwrap_or(self.parameters.len())]
     }
 
@@ -189,6 +193,7 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         settings: settings.clone(),
         quality,
         relaxed: None,
+        softened: None,
     })
 }
 
@@ -230,10 +235,9 @@ fn take_curve(
         let message = format!(" has no parameter `{key}`");
         return Err(refuse(message, "leave the bound out"));
     }
-    let measure = test.stress_measure;
     let point = |one: &Observation| {
         let x = test.drawn_strain(one);
-        [x, measure.to_nominal(one.stress, x)]
+        [x, test.stress_measure.to_nominal(one.stress, x)]
     };
     let points: Vec<[f64; 2]> = test.observations.iter().map(point).collect();
     let curve = TableCurve::new(&points, true).map_err(|reason| {
@@ -269,6 +273,7 @@ fn take_curve(
         settings: settings.clone(),
         quality,
         relaxed: None,
+        softened: None,
     })
 }
 

@@ -4,6 +4,7 @@ use crate::document::{Statements, name_of};
 use crate::error::Diagnostic;
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
+use crate::material::sheet::{Gradient, Kinematics};
 
 /// The kinds of test that a sheet can be put to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,6 +138,26 @@ impl TestData {
             _ => law.biaxial(observation.strains)[axis],
         };
         self.stress_measure.of_nominal(nominal, x)
+    }
+
+    /// Energy in mJ/mm³ and nominal stress in MPa of a law at an observation.
+    pub fn state_of(&self, law: &dyn HyperelasticLaw, observation: &Observation) -> [f64; 2] {
+        let axis = observation.axis;
+        match self.test {
+            Test::Uniaxial => {
+                let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
+                let found = law.tension(direction, observation.strains[axis]);
+                [found.energy, found.nominal_stress]
+            }
+            _ => {
+                let [first, second] = observation.strains;
+                let kinematics = Kinematics::new(&Gradient::new(first, 0.0, 0.0, second));
+                kinematics.map_or([f64::NAN; 2], |kinematics| {
+                    let (energy, stress) = law.stress(&kinematics);
+                    [energy, stress[3 * axis]]
+                })
+            }
+        }
     }
 
     /// λ − 1 along the axis that the data are drawn over: the one of the stress in a uniaxial test, else the one

@@ -247,6 +247,7 @@ fn write(
     let sheet = Sheet {
         law: &*compared.law,
         thickness: compared.thickness,
+        past: &[],
     };
     for field in &compared.fields {
         let grid = match &compared.imported {

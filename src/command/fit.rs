@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 
+use super::fitted::{InTime, fitted, terms};
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use super::test_reading::ReadingArguments;
 use super::{fit_message, interrupt};
 use crate::calibration::{
-    self, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, Terms, TestData,
+    self, Base, Bounds, Conversion, Fit, FitSettings, Provenance, StrainColumn, Terms, TestData,
     Weighting,
 };
 use crate::document::Statements;
@@ -37,6 +38,12 @@ pub struct FitArguments {
     /// asks for, or so many
     #[arg(long, value_name = "TERMS", num_args = 0..=1, default_missing_value = "automatic", conflicts_with = "all")]
     relaxation: Option<String>,
+    /// Fit how the material softens by its largest load (Mullins effect, after Ogden and Roxburgh), to loading and unloading
+    #[arg(long, conflicts_with_all = ["all", "relaxation"])]
+    softening: bool,
+    /// Fit the softening alone, on top of the law of this card
+    #[arg(long, group = "laws", requires = "softening")]
+    card: Option<String>,
     /// absolute: differences of stress count alike; relative: relative differences do, where a stress below 1 % of its test's
     /// largest counts as that 1 %
     #[arg(long, default_value = "absolute")]
@@ -106,8 +113,8 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     arguments.printed.choose();
     let mut reading = arguments.reading.reading();
     let terms = arguments.relaxation.as_deref().map(terms).transpose()?;
-    if terms.is_some() {
-        // What relaxes is the whole record.
+    if terms.is_some() || arguments.softening {
+        // What relaxes or softens is the whole record.
         reading.entry("cycle".into()).or_insert("all".into());
     }
     let files = arguments.data.iter();
@@ -118,20 +125,12 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         bounds: bounds(&arguments.bounds)?,
         starts: arguments.starts.into(),
     };
-    let progress = Progress::of(0);
-    let fit = match &arguments.law {
-        Some(name) => {
-            progress.tell(name);
-            fitted(law(name)?, &tests, &settings, terms)?
-        }
-        None => {
-            progress.tell("all laws");
-            let (fits, reasons) = calibration::rank(&tests, &settings);
-            print(&fit_message::ranking(&fits, &reasons))?;
-            best(fits)?
-        }
+    let wanted = match arguments.softening {
+        true => InTime::Softening,
+        false => terms.map_or(InTime::Nothing, InTime::Relaxation),
     };
-    drop(progress);
+    let named = [&arguments.law, &arguments.card].map(Option::as_deref);
+    let fit = found(named, &tests, &settings, wanted)?;
     let first = arguments.data[0].file_stem().unwrap_or_default();
     let usual = || format!("{}-{}", first.to_string_lossy(), fit.law.name);
     let name = arguments.name.unwrap_or_else(usual);
@@ -149,6 +148,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         tests: &tests,
         data: &arguments.data,
         reading,
+        base: arguments.card.as_deref(),
     };
     let warning = written.into_folder(folder, &stem)?;
     warn(warning.as_slice());
@@ -162,33 +162,36 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     Ok(0)
 }
 
-/// How many terms a Prony series is asked for.
-fn terms(text: &str) -> Result<Terms, Error> {
-    let number = text.parse().ok().filter(|terms| *terms <= Terms::MOST);
-    match (text, number) {
-        ("automatic", _) => Ok(Terms::Automatic),
-        (_, Some(terms)) => Ok(Terms::Exactly(terms)),
-        _ => Err(Error::input(
-            format!("--relaxation {text} is no number of terms"),
-            format!(
-                "a number up to {}, or nothing, for as many as AICc asks for",
-                Terms::MOST
-            ),
-        )),
+/// The fit of a law, on top of a card, or of the best law where neither is named.
+fn found(
+    [of_law, card]: [Option<&str>; 2],
+    tests: &[TestData],
+    settings: &FitSettings,
+    wanted: InTime,
+) -> Result<Fit, Error> {
+    let progress = Progress::of(0);
+    let base = card.map(load).transpose()?;
+    match (of_law, &base) {
+        (_, Some(card)) => {
+            progress.tell(&card.name);
+            calibration::fit_softening(Base::Card(card), tests, settings)
+        }
+        (Some(name), _) => {
+            progress.tell(name);
+            fitted(law(name)?, tests, settings, wanted)
+        }
+        _ => {
+            progress.tell("all laws");
+            let (fits, reasons) = calibration::rank(tests, settings);
+            print(&fit_message::ranking(&fits, &reasons))?;
+            best(fits)
+        }
     }
 }
 
-/// A law fitted to tests, with a Prony series where terms are asked for.
-fn fitted(
-    law: &'static Law,
-    tests: &[TestData],
-    settings: &FitSettings,
-    terms: Option<Terms>,
-) -> Result<Fit, Error> {
-    match terms {
-        Some(terms) => calibration::fit_relaxation(law, tests, settings, terms),
-        None => calibration::fit(law, tests, settings),
-    }
+/// Whether a card comes along with the program.
+fn shipped(name: &str) -> bool {
+    CARDS.iter().any(|(known, _)| *known == name)
 }
 
 /// What is written of a fit.
@@ -197,6 +200,8 @@ struct Written<'a> {
     tests: &'a [TestData],
     data: &'a [PathBuf],
     reading: Statements,
+    /// The card on top of whose law softening was fitted.
+    base: Option<&'a str>,
 }
 
 impl Written<'_> {
@@ -217,6 +222,10 @@ impl Written<'_> {
                 .map(|path| relative(path, folder))
                 .collect(),
             reading: self.reading,
+            base_card: self.base.map(|card| match shipped(card) {
+                true => card.to_owned(),
+                false => relative(Path::new(card), folder),
+            }),
         };
         let text = calibration::card_text(self.fit, self.tests, &provenance);
         results.add(&card, text.as_bytes())?;
@@ -303,16 +312,27 @@ pub fn refit(name: &str) -> Outcome {
         let hint = "cards written by `gelbench materials fit` have one";
         return Err(Error::input(format!("the card {name} has no [fit]"), hint));
     };
-    let shipped = CARDS.iter().any(|(known, _)| *known == name);
-    let folder = Path::new(name).parent().filter(|_| !shipped);
+    let folder = Path::new(name).parent().filter(|_| !shipped(name));
     let tests = together(record.data.iter().map(|file| data(file, folder, record)))?;
     let settings = FitSettings {
         weighting: chosen("weighting", &record.weighting, &Weighting::NAMES)?,
         bounds: bounds(&record.bounds)?,
         starts: record.starts,
     };
-    let terms = record.relaxation_terms.map(Terms::Exactly);
-    let fit = fitted(law(&card.law_name)?, &tests, &settings, terms)?;
+    let fit = match &record.base_card {
+        Some(base) => {
+            let base = Card::load(base, folder.unwrap_or(Path::new("")))?;
+            calibration::fit_softening(Base::Card(&base), &tests, &settings)?
+        }
+        None => {
+            let terms = record.relaxation_terms.map(Terms::Exactly);
+            let wanted = match record.softening {
+                true => InTime::Softening,
+                false => terms.map_or(InTime::Nothing, InTime::Relaxation),
+            };
+            fitted(law(&card.law_name)?, &tests, &settings, wanted)?
+        }
+    };
     let (text, same) = fit_message::refit(&card, &fit, &tests);
     print(&text)?;
     Ok(u8::from(!same))

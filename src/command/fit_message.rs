@@ -22,6 +22,7 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
         }
     }
     text += &relaxation(fit);
+    text += &softening(fit);
     text += &parameters(fit);
     text += &correlation(fit);
     text += &figures(fit);
@@ -72,6 +73,27 @@ fn relaxation(fit: &Fit) -> String {
         "  at once      a sudden stress is {:.4} times that of long times, whose law this is\n",
         material.relaxation_function(0.0)
     )
+}
+
+/// What the cycles dissipate.
+fn softening(fit: &Fit) -> String {
+    let Some(softened) = &fit.softened else {
+        return String::new();
+    };
+    let mut text = String::new();
+    for (number, cycle) in softened.cycles.iter().enumerate() {
+        let work = |value: f64| digits(1e3 * value, 4);
+        text += &format!(
+            "  cycle {:<6} to λ = {:.3}: ∮ P dλ = {} measured, {} fitted (closed form {}), {} kJ/m³ dissipated by softening\n",
+            number + 1,
+            cycle.stretch,
+            work(cycle.measured),
+            work(cycle.fitted),
+            work(cycle.closed_form),
+            work(cycle.dissipated),
+        );
+    }
+    text
 }
 
 fn parameters(fit: &Fit) -> String {
@@ -224,7 +246,10 @@ pub fn refit(card: &Card, fit: &Fit, tests: &[TestData]) -> (String, bool) {
     let mut worst = 0.0_f64;
     let terms = card.viscosity.relaxation.iter();
     let terms = terms.flat_map(|term| [term.share, term.time]);
-    let old = card.parameters.iter().map(|old| old.value).chain(terms);
+    let softening = card.law.softening().into_iter();
+    let softening = softening.flat_map(|own| [own.r, own.m, own.beta]);
+    let of_law = card.parameters.iter().take(fit.law_parameters().len());
+    let old = of_law.map(|old| old.value).chain(terms).chain(softening);
     let parameters = old.zip(&fit.parameters);
     for ((old, new), estimate) in parameters.zip(&fit.quality.estimates) {
         let change = (new.value - old).abs();

@@ -22,7 +22,7 @@ pub enum Materials {
         /// Name of a card that comes along, or path of one ending in .toml
         card: String,
     },
-    /// Draw the curves of a card: uniaxial, planar and equibiaxial tension, simple shear; where it relaxes, its modulus over time, and
+    /// Draw the curves of a card: uniaxial, planar and equibiaxial tension, simple shear; where it softens, loading and unloading; where it relaxes, its modulus over time, and
     /// storage and loss modulus over frequency
     #[command(
         after_help = "Sample: gelbench materials plot pva-10    writes output/materials/pva-10_curves.png"
@@ -81,6 +81,7 @@ Samples:
   gelbench materials fit uniaxial.csv equibiaxial.csv planar.csv --law ogden-3 --weighting relative
   gelbench materials fit tensile.csv --all
   gelbench materials fit ramp_and_hold.csv --law neo-hooke --relaxation
+  gelbench materials fit cycles.csv --law yeoh --softening
   gelbench materials fit machine.csv --law gent --test uniaxial --area \"20 mm^2\" --length \"5 cm\" --bound jm=5..200";
 
 /// Runs one of the commands.

@@ -146,6 +146,27 @@ fn in_time(card: &Card) -> String {
     text
 }
 
+/// What unloading from some stretches dissipates, of a material that softens.
+fn softening(card: &Card) -> String {
+    let Some(softening) = card.law.softening() else {
+        return String::new();
+    };
+    let [low, high] = card.stretch_range;
+    let far = if high > 1.0 { high } else { low } - 1.0;
+    let from = |share: f64| {
+        let state = card.law.tension([1.0, 0.0], share * far);
+        let most = state.energy;
+        let [least, _] = softening.factor(0.0, most);
+        format!(
+            "  softening  back from λ = {:.3} in uniaxial tension: {:.4} of {:.4} kJ/m³ are dissipated, η falls to {least:.4}\n",
+            1.0 + share * far,
+            1e3 * softening.dissipated(most),
+            1e3 * most,
+        )
+    };
+    [0.5, 1.0].map(from).concat()
+}
+
 /// Everything about a card.
 pub fn card(card: &Card) -> String {
     let [low, high] = card.stretch_range;
@@ -165,6 +186,7 @@ pub fn card(card: &Card) -> String {
     }
     text += &format!("  moduli     {}\n", moduli(card));
     text += &in_time(card);
+    text += &softening(card);
     text += &format!(
         "  measures   {} stress, {} strain, offset {}\n",
         card.stress_measure.name(),

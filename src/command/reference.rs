@@ -295,6 +295,7 @@ fn example_of(takes: &Takes) -> String {
         }
         Takes::Count([low, _]) => low.to_string(),
         Takes::Counts([low, _], _) => format!("[{low}, {low}]"),
+        Takes::Number(bound) if bound.ends()[0] > 1.0 => "2.0".to_owned(),
         Takes::Number(_) => "1.0".to_owned(),
         Takes::Quantity(dimension, _) => quoted_example(*dimension),
         Takes::Quantities(dimension, _) => format!("[{}]", quoted_example(*dimension)),

@@ -13,6 +13,7 @@
 
 use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};
+use crate::material::softened_law::check_memory;
 use crate::multigrid::{Multigrid, NotPositiveDefinite};
 use crate::problem::ClampedPlate;
 
@@ -188,6 +189,7 @@ impl<'a> Climb<'a> {
     /// # Errors
     /// [`Error::Solve`] when no field was found.
     pub fn correct(&mut self, stretch: f64) -> Result<ClimbSolution, Error> {
+        check_memory(&*self.problem.law, "the climb")?;
         self.weakest = 1.0;
         let first = self.first_field(stretch)?;
         self.ascend(first, stretch)

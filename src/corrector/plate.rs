@@ -12,10 +12,10 @@ use super::{Corrector, CorrectorSettings, Describe, DifferenceScheme, Multiplier
 use crate::error::Error;
 use crate::mesh::{Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::problem::{ClampedPlate, Measures};
+use crate::problem::{ClampedPlate, Measures, Work};
 use crate::solve::State;
 use crate::solve::vector::largest;
-use crate::solve::{Assembly, Convergence, SparseRows};
+use crate::solve::{Assembly, Convergence, Potential, SparseRows};
 
 /// Name of the condition F.
 pub const EQUILIBRIUM: &str = "equilibrium";
@@ -50,6 +50,8 @@ pub struct CorrectedState {
     pub measures: Measures,
     /// What is left of all forces and moments together over the largest of them.
     pub balance: f64,
+    /// What was done on the material; `None` where it has no memory.
+    pub work: Option<Work>,
     /// The start and the field after each step of the direct method; none where the field climbed.
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
@@ -115,6 +117,17 @@ impl<'a> PlateCorrector<'a> {
             assembly,
             settings,
             names: PlateNames(scheme.mesh(mesh)),
+        }
+    }
+
+    /// The same after the plate has come to a corrected state, for a material that remembers it.
+    #[must_use]
+    pub fn after(self, state: &State) -> Self {
+        let mut history = state.history.clone();
+        self.energy.remember(&mut history, &state.displacement);
+        Self {
+            energy: self.energy.with_history(history),
+            ..self
         }
     }
 
@@ -246,17 +259,15 @@ impl<'a> PlateCorrector<'a> {
             factor: stretch,
             displacement,
             residual,
+            history: self.energy.history().to_vec(),
             load_steps: 1,
             convergence,
         };
+        let model = self.problem.on(self.mesh, &self.energy);
         CorrectedState {
             measures: Measures::of(self.mesh, &state),
-            balance: self
-                .problem
-                .on(self.mesh, &self.energy)
-                .reactions(&state)
-                .balance()
-                .relative(),
+            balance: model.reactions(&state).balance().relative(),
+            work: model.work(&state),
             state,
             steps: Vec::new(),
             multipliers: Vec::new(),

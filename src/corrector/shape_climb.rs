@@ -12,6 +12,7 @@ use super::climb::ClimbSettings;
 use super::specimen::correct;
 use crate::error::{Diagnostic, Error};
 use crate::mass_spring::MassSpring;
+use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
 use crate::problem::{BoundaryProblem, Model};
 use crate::solve::vector::{add_scaled, difference, norm};
@@ -71,6 +72,7 @@ pub fn climb(
     factor: f64,
     settings: ClimbSettings,
 ) -> Result<ShapeClimb, Error> {
+    check_memory(&*problem.law, "the climb")?;
     let (coarsest, finer) = meshes.split_first().expect("a mesh");
     let mut ascent = Ascent {
         state: begin(problem, coarsest, factor)?,
@@ -112,7 +114,13 @@ fn begin(problem: &BoundaryProblem, mesh: &Mesh, factor: f64) -> Result<State, E
             .mesh
             .interpolation_on(mesh)
             .apply(&state.displacement);
-        let corrected = correct(&model, &data, &data, factor, CorrectorSettings::default());
+        let corrected = correct(
+            &model,
+            &data,
+            &data,
+            (factor, &[]),
+            CorrectorSettings::default(),
+        );
         if let Ok(corrected) = corrected {
             return Ok(corrected.state);
         }
@@ -200,7 +208,7 @@ fn approach(
     factor: f64,
     share: f64,
 ) -> Option<(State, (usize, usize, f64))> {
-    let potential = model.potential(factor);
+    let potential = model.potential(factor, &[]);
     let newton = Newton::with_solver(&*potential, &model.held(), LinearSolver::Multigrid);
     let (mut displacement, mut residual) = (start.to_vec(), vec![0.0; start.len()]);
     let found = newton
@@ -211,6 +219,7 @@ fn approach(
         factor,
         displacement,
         residual,
+        history: Vec::new(),
         load_steps: 1,
         convergence: Convergence {
             residuals: vec![1.0, found.left],

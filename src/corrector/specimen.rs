@@ -30,7 +30,7 @@ pub struct CorrectedField {
     pub correction: Correction,
 }
 
-/// Corrects a displacement field on the nodes of a model at a load factor; the iteration begins at `start`.
+/// Corrects a displacement field on the nodes of a model at a load factor, of a body with a history; the iteration begins at `start`.
 ///
 /// # Errors
 /// A [`SolveFault`] when no corrected field was found.
@@ -38,10 +38,10 @@ pub fn correct(
     model: &Model,
     data: &[f64],
     start: &[f64],
-    factor: f64,
+    (factor, history): (f64, &[f64]),
     settings: CorrectorSettings,
 ) -> Result<CorrectedField, SolveFault> {
-    let potential = model.potential(factor);
+    let potential = model.potential(factor, history);
     let size = potential.unknowns();
     let assembly = Assembly::new(&*potential, &vec![false; size]);
     let held = model.held();
@@ -74,6 +74,7 @@ pub fn correct(
             factor,
             displacement,
             residual,
+            history: history.to_vec(),
             load_steps: 1,
             convergence,
         },
@@ -90,11 +91,11 @@ pub fn correct(
 pub fn correct_without_multipliers(
     model: &Model,
     start: &[f64],
-    factor: f64,
+    (factor, history): (f64, &[f64]),
     settings: NewtonSettings,
 ) -> Result<State, SolveFault> {
-    let potential = model.potential(factor);
+    let potential = model.potential(factor, history);
     let mut newton = Newton::with_solver(&*potential, &model.held(), model.linear_solver())?;
     let from = (&mut newton, start.to_vec());
-    equilibrium(model, (&*potential, factor), from, settings)
+    equilibrium(model, (&*potential, factor, history), from, settings)
 }

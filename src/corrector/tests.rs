@@ -16,6 +16,7 @@ use plate::KnownConditions;
 mod closed_forms;
 mod conditions;
 mod instrument;
+mod softening;
 
 const SETTINGS: CorrectorSettings = CorrectorSettings {
     tolerance: 1e-11,

@@ -282,7 +282,7 @@ fn springs_take_any_stiffness() {
     let direction: Vec<f64> = (0..u.len()).map(|i| (0.7 * i as f64).cos()).collect();
     let errors = crate::solve::assembly::derivative_errors(springs.potential(), &u, &direction);
     assert!(errors.iter().all(|error| *error < 1e-8), "{errors:?}");
-    let state = springs.spring_states(&u)[0];
+    let state = springs.spring_states(&u, &[])[0];
     let strain = state.stretch - 1.0;
     let expected = springs.springs[0].area * (0.1 + 0.3 * strain + 0.2 * strain * strain) * strain;
     assert!((state.force - expected).abs() < 1e-14);

@@ -6,6 +6,7 @@ use super::spring::{Spring, SpringPose, polygon_area};
 use super::spring_law::SpringLaw;
 use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::Mesh;
+use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible, Local, Potential};
 
 /// The energy of a lattice: springs, then cells.
@@ -74,7 +75,18 @@ impl Lattice {
         self.spring_law.tension(&*self.law, unit, strain)
     }
 
-    /// How a spring lies with the displacements `u` of its ends.
+    /// How a spring lies with the displacements `u` of its ends, whose largest energy so far is that of a history.
+    pub fn pose_after(&self, index: usize, u: &[f64], history: &[f64]) -> SpringPose {
+        let pose = self.pose(index, u);
+        let softened = self.law.softening().zip(history.get(index));
+        let response = softened.map(|(own, most)| own.tension(pose.response, *most));
+        SpringPose {
+            response: response.unwrap_or(pose.response),
+            ..pose
+        }
+    }
+
+    /// How a spring that was never loaded lies with the displacements `u` of its ends.
     pub fn pose(&self, index: usize, u: &[f64]) -> SpringPose {
         let rest_length = self.springs[index].rest_length;
         let direction = self.directions[index];
@@ -90,12 +102,29 @@ impl Lattice {
         }
     }
 
+    /// An element of the lattice whose springs have a history.
+    fn evaluate(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+        history: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        let energy = match element.checked_sub(self.springs.len()) {
+            None => Some(self.evaluate_spring(element, u, local, history)),
+            Some(cell) => self.evaluate_cell(cell, u, local),
+        };
+        energy
+            .filter(|energy| energy.is_finite())
+            .ok_or(Inadmissible { element })
+    }
+
     /// Energy a x₀ Ψ(λ), force a P and stiffness of one spring.
-    fn evaluate_spring(&self, index: usize, u: &[f64], local: Local<'_>) -> f64 {
+    fn evaluate_spring(&self, index: usize, u: &[f64], local: Local<'_>, history: &[f64]) -> f64 {
         let Spring {
             rest_length, area, ..
         } = self.springs[index];
-        let pose = self.pose(index, u);
+        let pose = self.pose_after(index, u, history);
         let response = pose.response;
         let force = area * response.nominal_stress;
         pose.add_force(force, local.residual);
@@ -159,6 +188,31 @@ impl Lattice {
     }
 }
 
+/// The energy of a lattice whose springs have a history.
+struct Remembering<'a> {
+    lattice: &'a Lattice,
+    history: &'a [f64],
+}
+
+impl Potential for Remembering<'_> {
+    fn connectivity(&self) -> &Connectivity {
+        self.lattice.connectivity()
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        self.lattice.evaluate(element, u, local, self.history)
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        self.lattice.instability(element, u)
+    }
+}
+
 /// Area of a cell with the displacements `u` of its corners, relative to the first of them.
 fn deformed_area(corners: &[[f64; 2]], u: &[f64]) -> f64 {
     let side = |i: usize| {
@@ -183,13 +237,35 @@ impl Potential for Lattice {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        let energy = match element.checked_sub(self.springs.len()) {
-            None => Some(self.evaluate_spring(element, u, local)),
-            Some(cell) => self.evaluate_cell(cell, u, local),
+        self.evaluate(element, u, local, &[])
+    }
+
+    fn after<'a>(&'a self, history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
+        self.law.softening()?;
+        let lattice = self;
+        (!history.is_empty()).then(|| Box::new(Remembering { lattice, history }) as _)
+    }
+
+    /// The largest energy of each spring; areas do not soften.
+    fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
+        if self.law.softening().is_none() {
+            return;
+        }
+        history.resize(self.springs.len(), 0.0);
+        for (index, most) in history.iter_mut().enumerate() {
+            let own = gather(self.element_unknowns(index), u);
+            *most = most.max(self.pose(index, &own).response.energy);
+        }
+    }
+
+    fn dissipated(&self, history: &[f64]) -> f64 {
+        let Some(softening) = self.law.softening() else {
+            return 0.0;
         };
-        energy
-            .filter(|energy| energy.is_finite())
-            .ok_or(Inadmissible { element })
+        let springs = self.springs.iter().zip(history);
+        let parts = springs
+            .map(|(spring, most)| spring.area * spring.rest_length * softening.dissipated(*most));
+        parts.sum()
     }
 
     /// A spring whose force falls while it grows.

@@ -8,6 +8,8 @@ use super::law::HyperelasticLaw;
 use super::neo_hooke::NeoHooke;
 use super::parameters::{OffsetTreatment, Parameter, Parameters, StrainMeasure, StressMeasure};
 use super::registry::{CARDS, LAWS, Law};
+use super::softened_law::SoftenedLaw;
+use super::softening::Softening;
 use super::viscosity::{Covered, Relaxation, ViscousMaterial};
 use super::volume::Volume;
 use crate::document::{Bound, Document, Faults, Key, Section, file, read_text};
@@ -80,6 +82,10 @@ pub struct FitRecord {
     pub bounds: Vec<String>,
     /// How many terms of a Prony series were fitted; `None` where the law alone was.
     pub relaxation_terms: Option<usize>,
+    /// Whether softening was fitted.
+    pub softening: bool,
+    /// The card on top of whose law it was, relative to this one; `None` where the law was fitted with it.
+    pub base_card: Option<String>,
 }
 
 impl Card {
@@ -138,6 +144,8 @@ impl Card {
         if root.has("viscosity") {
             card.viscosity = read_viscosity(&root.section("viscosity"));
         }
+        let softening = root.has("softening").then(|| root.section("softening"));
+        let softening = softening.map(|section| Softening::read(&section));
         card.read_data(&root.section("data"));
         card.read_source(&root.section("source"));
         card.fit = root.has("fit").then(|| read_fit(&root.section("fit")));
@@ -154,6 +162,9 @@ impl Card {
         (card.parameters, card.choices) = (entries.parameters, entries.choices);
         if let Some(volume) = volume {
             card.resist(&volume);
+        }
+        if let Some(softening) = softening {
+            card.law = Arc::new(SoftenedLaw::unloaded(card.law, softening));
         }
         card
     }
@@ -336,6 +347,8 @@ fn read_fit(section: &Section) -> FitRecord {
         relaxation_terms: section
             .has("relaxation_terms")
             .then(|| section.count("relaxation_terms", 0, 6)),
+        softening: section.has("softening") && section.flag("softening"),
+        base_card: section.has("base_card").then(|| section.text("base_card")),
     };
     section.unknown_keys();
     record

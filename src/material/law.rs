@@ -6,6 +6,7 @@ use nalgebra::Matrix4;
 
 use super::code::{Code, CodeLaw};
 use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse, cofactor};
+use super::softening::Softening;
 use super::volume::Volume;
 
 /// A hyperelastic law, as a sheet in its plane sees it: incompressible and in plane stress unless it says otherwise.
@@ -127,6 +128,12 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     where
         Self: 'static,
     {
+        None
+    }
+
+    /// How the material softens by its largest load; `None` where it remembers nothing. Energy, stress and tangent are those of the
+    /// first loading, from which those after it follow.
+    fn softening(&self) -> Option<Softening> {
         None
     }
 

@@ -6,7 +6,8 @@
 //!
 //! | gelbench | goes out as |
 //! |---|---|
-//! | load factor s | one step for each, as s grows: the total time is the load factor |
+//! | load factor s | one step for each: the total time is the load factor while it grows, else the way that it went |
+//! | softening | `*MULLINS EFFECT` of Abaqus |
 //! | clamp, displacement, roller, symmetry | prescribed on a node set |
 //! | grip with a given force | nodes that follow one of them (`*EQUATION`), which takes the force; not for FEBio |
 //! | rotation | prescribed node by node |

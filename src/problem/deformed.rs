@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::softened_law::stress_after;
 use crate::mesh::Mesh;
 
 /// A sheet with the displacements of its nodes, whichever model they come from.
@@ -12,6 +13,7 @@ pub struct DeformedSheet {
     mesh: Mesh,
     displacement: Vec<f64>,
     law: Arc<dyn HyperelasticLaw>,
+    past: Vec<Vec<f64>>,
 }
 
 /// Stress at a point of a sheet, in MPa.
@@ -67,7 +69,14 @@ impl DeformedSheet {
             mesh,
             displacement,
             law,
+            past: Vec::new(),
         }
+    }
+
+    /// The same after some displacement fields: a material that softens remembers them. Without them it was never loaded before.
+    #[must_use]
+    pub fn after(self, past: Vec<Vec<f64>>) -> Self {
+        Self { past, ..self }
     }
 
     /// The mesh at rest.
@@ -105,7 +114,10 @@ impl DeformedSheet {
     /// [`PointFault`].
     pub fn stress_at(&self, point: [f64; 2]) -> Result<Stress, PointFault> {
         let kinematics = self.kinematics_at(point)?;
-        let (_, stress) = self.law.stress(&kinematics);
+        let (cell, local) = self.locate(point)?;
+        let gradient = |field: &Vec<f64>| Gradient::from(self.mesh.gradient_at(field, cell, local));
+        let past = self.past.iter().map(gradient);
+        let (_, stress) = stress_after(&*self.law, &kinematics, past);
         Ok(Stress {
             first_piola_kirchhoff: stress.into(),
             cauchy: self.law.cauchy_stress(&kinematics, &stress),

@@ -100,9 +100,13 @@ impl Loads {
     }
 
     /// The potential of an energy with these loads at a load factor.
-    pub fn on<'a>(&'a self, energy: &'a dyn Potential, factor: f64) -> Box<dyn Potential + 'a> {
+    pub fn on<'a>(
+        &'a self,
+        energy: Box<dyn Potential + 'a>,
+        factor: f64,
+    ) -> Box<dyn Potential + 'a> {
         if self.is_empty() {
-            return Box::new(energy);
+            return energy;
         }
         let unknowns = energy.unknowns();
         let force = |unknown: &usize| (*unknown, factor * self.force(*unknown));

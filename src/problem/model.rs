@@ -5,12 +5,13 @@ use super::groups::shares;
 use super::loads::Loads;
 use super::rigid::free_motions;
 use super::ties::TiedPotential;
+use super::work::Work;
 use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::solve::vector::add_scaled;
 use crate::solve::{
-    Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State, Tangent,
-    compliance, follow, influence,
+    Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State,
+    Tangent, compliance, follow, influence,
 };
 
 /// Names an element or the end of a path.
@@ -149,6 +150,28 @@ impl<'a> Model<'a> {
         self.loads.add_forces(forces);
     }
 
+    /// The strain energy of the body with a history.
+    pub(super) fn energy_after<'b>(&'b self, history: &'b [f64]) -> Box<dyn Potential + 'b> {
+        let after = self.energy.after(history);
+        after.unwrap_or_else(|| Box::new(self.energy))
+    }
+
+    /// What was done on the material up to a state; `None` where it has no memory.
+    pub fn work(&self, state: &State) -> Option<Work> {
+        let history = self.remembered(state);
+        if history.is_empty() {
+            return None;
+        }
+        let energy = self.energy_after(&history);
+        let mut residual = vec![0.0; state.displacement.len()];
+        let all = Assembly::residual(&*energy, &state.displacement, &mut residual);
+        let dissipated = self.energy.dissipated(&history);
+        Some(Work {
+            stored: all.unwrap_or(f64::NAN) - dissipated,
+            dissipated,
+        })
+    }
+
     /// The end of a path as an error.
     pub fn error(&self, end: &PathEnd) -> Error {
         Error::Solve {
@@ -245,7 +268,7 @@ impl<'a> Model<'a> {
         let Some(first) = states.first() else {
             return Vec::new();
         };
-        let (potential, held) = (self.potential(first.factor), self.held());
+        let (potential, held) = (self.potential(first.factor, &[]), self.held());
         match Tangent::new(&*potential, &held, self.linear_solver) {
             Err(fault) => vec![Err(fault); states.len()],
             Ok(mut tangent) => {
@@ -287,7 +310,7 @@ impl<'a> Model<'a> {
             }
             force = Some(unit);
         }
-        let at = (state.factor, &*state.displacement);
+        let at = (state.factor, &*state.displacement, &*state.history);
         let mut field = match force {
             Some(force) => compliance(tangent, self, at, &force)?,
             None => influence(tangent, self, at, &motion)?,
@@ -319,8 +342,14 @@ impl Loading for Model<'_> {
         }
     }
 
-    fn potential(&self, factor: f64) -> Box<dyn Potential + '_> {
-        let loads = self.loads.on(self.energy, factor);
+    fn remembered(&self, state: &State) -> Vec<f64> {
+        let mut history = state.history.clone();
+        self.energy.remember(&mut history, &state.displacement);
+        history
+    }
+
+    fn potential<'b>(&'b self, factor: f64, history: &'b [f64]) -> Box<dyn Potential + 'b> {
+        let loads = self.loads.on(self.energy_after(history), factor);
         if self.constraints.ties.is_empty() {
             loads
         } else {

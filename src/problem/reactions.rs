@@ -32,7 +32,7 @@ impl Model<'_> {
         let Constraints { held, ties, forces } = &self.constraints;
         let mut internal = vec![0.0; state.displacement.len()];
         let loads = self.loads.without_pulls();
-        let potential = loads.on(self.energy, state.factor);
+        let potential = loads.on(self.energy_after(&state.history), state.factor);
         if Assembly::residual(&*potential, &state.displacement, &mut internal).is_err() {
             internal.fill(f64::NAN);
         }

@@ -7,6 +7,7 @@ use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::stability::is_stable;
 use crate::mesh::{Mesh, QuadraturePoint};
+use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible, Local, Potential};
 
 /// Where the energy is sampled: the displacement gradient there as a combination of nodal values.
@@ -27,6 +28,8 @@ pub struct SheetEnergy {
     points: Vec<SamplingPoint>,
     /// Where the points of each cell begin.
     point_starts: Vec<usize>,
+    /// The largest energy of every point so far in mJ/mm³; nothing where it was never loaded, or remembers nothing.
+    history: Vec<f64>,
 }
 
 impl SheetEnergy {
@@ -41,6 +44,7 @@ impl SheetEnergy {
             connectivity: Connectivity::new(2 * nodes),
             points: Vec::new(),
             point_starts: vec![0],
+            history: Vec::new(),
         };
         for (nodes, points) in cells {
             energy.connectivity.push_nodes(nodes);
@@ -80,14 +84,87 @@ impl SheetEnergy {
         }
     }
 
+    /// The energy of the same cells of a body with a history.
+    #[must_use]
+    pub fn with_history(self, history: Vec<f64>) -> Self {
+        Self { history, ..self }
+    }
+
+    /// The history that it has.
+    pub fn history(&self) -> &[f64] {
+        &self.history
+    }
+
     /// The sampling points of a cell.
     pub fn cell_points(&self, cell: usize) -> &[SamplingPoint] {
         &self.points[self.point_starts[cell]..self.point_starts[cell + 1]]
     }
 
+    /// An element of the body with a history.
+    fn evaluate(
+        &self,
+        element: usize,
+        u: &[f64],
+        mut local: Local<'_>,
+        history: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        let softening = self.law.softening().filter(|_| !history.is_empty());
+        let softening = softening.map(|own| (own, &history[self.point_starts[element]..]));
+        let mut energy = 0.0;
+        for (index, point) in self.cell_points(element).iter().enumerate() {
+            let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
+            let (density, stress) = match &mut local.stiffness {
+                None => {
+                    let virgin = self.law.stress(&kinematics);
+                    softening.map_or(virgin, |(own, most)| own.stress(virgin, most[index]))
+                }
+                Some(stiffness) => {
+                    let virgin = self.law.response(&kinematics);
+                    let response =
+                        softening.map_or(virgin, |(own, most)| own.response(virgin, most[index]));
+                    let tangent = response.tangent * point.volume;
+                    add_stiffness(stiffness, &point.gradients, tangent.as_slice());
+                    (response.energy, response.first_piola_kirchhoff_stress)
+                }
+            };
+            energy += point.volume * density;
+            point.add_force(&stress, local.residual);
+        }
+        if energy.is_finite() {
+            Ok(energy)
+        } else {
+            Err(Inadmissible { element })
+        }
+    }
+
     /// The material.
     pub fn law(&self) -> &dyn HyperelasticLaw {
         &*self.law
+    }
+}
+
+/// The energy of a sheet with a history.
+struct Remembering<'a> {
+    energy: &'a SheetEnergy,
+    history: &'a [f64],
+}
+
+impl Potential for Remembering<'_> {
+    fn connectivity(&self) -> &Connectivity {
+        self.energy.connectivity()
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        self.energy.evaluate(element, u, local, self.history)
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        self.energy.instability(element, u)
     }
 }
 
@@ -128,28 +205,40 @@ impl Potential for SheetEnergy {
         &self,
         element: usize,
         u: &[f64],
-        mut local: Local<'_>,
+        local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        let mut energy = 0.0;
-        for point in self.cell_points(element) {
-            let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
-            let (density, stress) = match &mut local.stiffness {
-                None => self.law.stress(&kinematics),
-                Some(stiffness) => {
-                    let response = self.law.response(&kinematics);
-                    let tangent = response.tangent * point.volume;
-                    add_stiffness(stiffness, &point.gradients, tangent.as_slice());
-                    (response.energy, response.first_piola_kirchhoff_stress)
+        self.evaluate(element, u, local, &self.history)
+    }
+
+    fn after<'a>(&'a self, history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
+        self.law.softening()?;
+        let energy = self;
+        (!history.is_empty()).then(|| Box::new(Remembering { energy, history }) as _)
+    }
+
+    fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
+        if self.law.softening().is_none() {
+            return;
+        }
+        history.resize(self.points.len(), 0.0);
+        for element in 0..self.elements() {
+            let own = gather(self.element_unknowns(element), u);
+            let first = self.point_starts[element];
+            for (most, point) in history[first..].iter_mut().zip(self.cell_points(element)) {
+                if let Ok(kinematics) = point.kinematics(&own) {
+                    *most = most.max(self.law.stress(&kinematics).0);
                 }
-            };
-            energy += point.volume * density;
-            point.add_force(&stress, local.residual);
+            }
         }
-        if energy.is_finite() {
-            Ok(energy)
-        } else {
-            Err(Inadmissible { element })
-        }
+    }
+
+    fn dissipated(&self, history: &[f64]) -> f64 {
+        let Some(softening) = self.law.softening() else {
+            return 0.0;
+        };
+        let points = self.points.iter().zip(history);
+        let parts = points.map(|(point, most)| point.volume * softening.dissipated(*most));
+        parts.sum()
     }
 
     /// The first sampling point at which the law is not stable after Drucker.

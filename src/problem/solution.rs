@@ -2,6 +2,7 @@
 
 use super::model::Model;
 use super::reactions::GroupState;
+use super::work::Work;
 use crate::mesh::Mesh;
 use crate::solve::State;
 
@@ -16,6 +17,8 @@ pub struct Solution {
     groups: Vec<Vec<GroupState>>,
     /// What is left of all forces and moments together over the largest of them, in each state.
     pub balances: Vec<f64>,
+    /// What was done on the material up to each state; `None` where it has no memory.
+    pub works: Vec<Option<Work>>,
 }
 
 impl Solution {
@@ -26,12 +29,22 @@ impl Solution {
             (reactions.at_groups(groups), reactions.balance().relative())
         };
         let (groups, balances) = states.iter().map(follow).unzip();
+        let works = states.iter().map(|state| model.work(state)).collect();
         Self {
             mesh: model.mesh.clone(),
             groups,
             balances,
+            works,
             states,
         }
+    }
+
+    /// The displacement fields before the load factor of a number, which a body with a memory remembers; none where the material
+    /// has no memory.
+    pub fn past(&self, step: usize) -> Vec<&[f64]> {
+        let remembers = self.works.iter().any(Option::is_some);
+        let before = self.states.iter().take(step).filter(|_| remembers);
+        before.map(|state| &state.displacement[..]).collect()
     }
 
     /// How many load factors were reached.

@@ -6,6 +6,7 @@ use crate::units::parse_linear_length;
 use samples::{CLAMP, moved, problem, solved, strip, turned};
 
 pub mod samples;
+mod softening;
 
 /// Supports and loads by group.
 type Conditions = (Vec<(&'static str, Support)>, Vec<(&'static str, Load)>);
@@ -196,6 +197,7 @@ fn an_influence_field_is_refused_where_the_tangent_is_not_positive_definite() {
             .flat_map(|[x, _]| [-0.1 * factor * x, 0.0])
             .collect(),
         residual: Vec::new(),
+        history: Vec::new(),
         load_steps: 1,
         convergence: Convergence::default(),
     };

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::relaxation::relaxation_picture;
+use super::softening::{softening_json, softening_picture};
 use super::stress_unit::readable;
 use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
 use crate::calibration::{Fit, Observation, Test, TestData};
@@ -76,6 +77,9 @@ impl Group<'_> {
 pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
     if let Some(relaxed) = &fit.relaxed {
         return relaxation_picture(fit, relaxed, tests);
+    }
+    if let Some(softened) = &fit.softened {
+        return softening_picture(fit, softened, tests);
     }
     let zero = fit.quality.stretch_range.map(|stretch| [stretch, 0.0]);
     let mut drawn = Drawn {
@@ -239,6 +243,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "resolved_times_s": relaxed.material.covered.times,
             "rates_per_s": relaxed.material.covered.rates,
         })),
+        "softening": fit.softened.as_ref().map(softening_json),
         "correlation": rows.map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
         "points": quality.points,
         "sum_of_squares_MPa2": quality.sum_of_squares,

@@ -71,15 +71,15 @@ impl Grid {
         let connectivity = cells.flat_map(|cell| mesh.cell(cell)).copied().collect();
         Self::new(&mesh.nodes, kinds.collect(), connectivity)
             .with([Array::displacement(displacement)])
-            .with(nodal(sheet.law, mesh, displacement))
+            .with(nodal(sheet, mesh, displacement))
             .with_in_cells(in_cells(sheet, mesh, displacement))
     }
 
-    /// The springs of a lattice.
-    pub fn springs(model: &MassSpring, displacement: &[f64]) -> Self {
+    /// The springs of a lattice with a history, which is empty where it was never loaded.
+    pub fn springs(model: &MassSpring, displacement: &[f64], history: &[f64]) -> Self {
         let connectivity = model.springs.iter().flat_map(|spring| spring.nodes);
         let cells = vec![GridCell::Line; model.springs.len()];
-        let states = model.spring_states(displacement);
+        let states = model.spring_states(displacement, history);
         let of =
             |name, value: fn(&SpringState) -> f64| Array::scalars(name, states.iter().map(value));
         Self::new(&model.mesh.nodes, cells, connectivity.collect())

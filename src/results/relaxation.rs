@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::softening::loops;
 use super::stress_unit::{Unit, readable};
 use super::{Axis, Drawing, Line, LineChart, PALETTE, Scale, Stroke, material_chart};
 use crate::calibration::{Fit, Relaxed, TestData, Times};
@@ -178,13 +179,18 @@ fn turns_back(rows: &[[f64; 4]]) -> bool {
     furthest - last > 0.2 * (high - low)
 }
 
-/// The curves of a card: the usual tests, and where it relaxes, its modulus over time and over frequency.
+/// The curves of a card: the usual tests, where it softens loading and unloading, and where it relaxes, its modulus over time and over frequency.
 pub fn card_curves(card: &Card) -> Drawing {
     let material = &card.viscosity;
-    if material.is_none() {
+    let loops = loops(card);
+    if material.is_none() && loops.is_none() {
         return material_chart(card).into();
     }
     let mut charts = vec![(material_chart(card), 400)];
+    charts.extend(loops.map(|loops| (loops, 340)));
+    if material.is_none() {
+        return Drawing::Charts(charts);
+    }
     if !material.relaxation.is_empty() {
         charts.push((over_time(card), 280));
     }

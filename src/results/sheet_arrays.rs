@@ -13,11 +13,27 @@ pub struct Sheet<'a> {
     pub law: &'a dyn HyperelasticLaw,
     /// Thickness in mm.
     pub thickness: f64,
+    /// The displacement fields before, which a law with a memory remembers.
+    pub past: &'a [&'a [f64]],
+}
+
+impl<'a> Sheet<'a> {
+    /// The same after some displacement fields.
+    #[must_use]
+    pub fn after(self, past: &'a [&'a [f64]]) -> Self {
+        Self { past, ..self }
+    }
+
+    /// The fields before and the present one.
+    fn fields(self, displacement: &'a [f64]) -> Vec<&'a [f64]> {
+        let past = self.past.iter().copied();
+        past.chain([displacement]).collect()
+    }
 }
 
 /// What follows from the mean of the displacement gradients that the cells around each node have there.
-pub fn nodal(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
-    let states = nodal_states(law, mesh, displacement);
+pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
+    let states = nodal_states(sheet.law, mesh, &sheet.fields(displacement));
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states.iter().map(value));
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
         Array::symmetric_tensors(name, states.iter().map(value))
@@ -41,7 +57,7 @@ pub fn nodal(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> [A
 /// What follows from the displacement gradients in the centres of the cells. The nominal stress is Pᵀ: its first index is the
 /// reference direction.
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 12] {
-    let states = cell_states(sheet.law, mesh, displacement);
+    let states = cell_states(sheet.law, mesh, &sheet.fields(displacement));
     let wrinkling = Wrinkling::of_cells(sheet.law, mesh, &states);
     let states = || states.iter();
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states().map(value));

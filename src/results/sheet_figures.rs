@@ -52,21 +52,26 @@ impl SheetField {
     }
 }
 
-/// One picture for each field: the models side by side, each with its name, mesh and displacements. `file` makes the name of
+/// A model: name, mesh and displacement fields.
+pub type Deformed<'a> = (String, &'a Mesh, Vec<&'a [f64]>);
+
+/// One picture for each field: the models side by side, each with its name, mesh and displacement fields: the present one last, and
+/// before it those that a law with a memory remembers. `file` makes the name of
 /// a file from that of a field, and `at` says where on the path they are.
 pub fn sheet_figures(
     fields: &[SheetField],
     law: &dyn HyperelasticLaw,
-    models: &[(String, &Mesh, &[f64])],
+    models: &[Deformed],
     at: &str,
     file: &dyn Fn(&str) -> String,
 ) -> Vec<Figure> {
     let states: Vec<Vec<LocalState>> = models
         .iter()
-        .map(|(_, mesh, u)| nodal_states(law, mesh, u))
+        .map(|(_, mesh, fields)| nodal_states(law, mesh, fields))
         .collect();
     let figure = |field: &SheetField| {
-        let panel = |((label, mesh, u), states): (&(String, &Mesh, &[f64]), &Vec<LocalState>)| {
+        let panel = |((label, mesh, fields), states): (&Deformed, &Vec<LocalState>)| {
+            let u = fields.last().copied().unwrap_or_default();
             Panel::at_nodes(label, mesh, u, &|node| field.value(&states[node]))
         };
         let (title, quantity) = field.title();

@@ -3,7 +3,8 @@
 use nalgebra::Vector4;
 
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::Kinematics;
+use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::softened_law::stress_after;
 use crate::mesh::Mesh;
 
 /// What the material says of a displacement gradient.
@@ -24,20 +25,25 @@ pub struct LocalState {
 }
 
 impl LocalState {
-    /// Of a displacement gradient H₁₁, H₁₂, H₂₁, H₂₂; no numbers where it turns the sheet inside out.
-    pub fn of(law: &dyn HyperelasticLaw, gradient: [f64; 4]) -> Self {
-        // A cell may fold between the points where a solution is held to be sound.
-        let Ok(kinematics) = Kinematics::new(&Vector4::from(gradient)) else {
+    /// Of displacement gradients H₁₁, H₁₂, H₂₁, H₂₂, the present one last and those that a law with a memory remembers before it; no
+    /// numbers where it turns the sheet inside out.
+    pub fn of(law: &dyn HyperelasticLaw, gradients: &[[f64; 4]]) -> Self {
+        let Some((gradient, past)) = gradients.split_last() else {
             return Self::unknown();
         };
-        let (energy, p) = law.stress(&kinematics);
+        // A cell may fold between the points where a solution is held to be sound.
+        let Ok(kinematics) = Kinematics::new(&Vector4::from(*gradient)) else {
+            return Self::unknown();
+        };
+        let past = past.iter().map(|gradient| Vector4::from(*gradient));
+        let (energy, p) = stress_after(law, &kinematics, past);
         let [s11, s12, s22] = law.cauchy_stress(&kinematics, &p);
         let [c11, c12, c22] = kinematics.stretch_change;
         let thickness = law.thickness_stretch(&kinematics);
         let [larger, smaller] = kinematics.principal_stretches();
         Self {
             first_piola_kirchhoff: p.into(),
-            cauchy: [s11, s22, law.thickness_stress(&kinematics), s12],
+            cauchy: [s11, s22, thickness_stress(law, &kinematics, &p), s12],
             green_lagrange: [c11, c22, thickness * thickness - 1.0, c12].map(|c| 0.5 * c),
             stretches: [larger, smaller, thickness],
             i1_minus_3: kinematics.invariants.i1_minus_3,
@@ -82,25 +88,41 @@ fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
     [mean + radius, mean - radius]
 }
 
-/// The states in the centres of the cells.
-pub fn cell_states(
-    law: &dyn HyperelasticLaw,
-    mesh: &Mesh,
-    displacement: &[f64],
-) -> Vec<LocalState> {
+/// σ₃₃ with the stress P in the plane, both softened alike.
+fn thickness_stress(law: &dyn HyperelasticLaw, kinematics: &Kinematics, p: &Gradient) -> f64 {
+    let virgin = law.thickness_stress(kinematics);
+    if virgin == 0.0 || law.softening().is_none() {
+        return virgin;
+    }
+    virgin * p.norm() / law.stress(kinematics).1.norm()
+}
+
+/// The states in the centres of the cells, of displacement fields as [`LocalState::of`] takes gradients.
+pub fn cell_states(law: &dyn HyperelasticLaw, mesh: &Mesh, fields: &[&[f64]]) -> Vec<LocalState> {
     let state = |cell: usize| {
         let centre = mesh.shape(cell).centre();
-        LocalState::of(law, mesh.gradient_at(displacement, cell, centre))
+        let gradient = |field: &&[f64]| mesh.gradient_at(field, cell, centre);
+        let gradients: Vec<[f64; 4]> = fields.iter().map(gradient).collect();
+        LocalState::of(law, &gradients)
     };
     (0..mesh.cell_count()).map(state).collect()
 }
 
 /// The states at the nodes: those of the mean of the displacement gradients that the cells around a node have there.
-pub fn nodal_states(
-    law: &dyn HyperelasticLaw,
-    mesh: &Mesh,
-    displacement: &[f64],
-) -> Vec<LocalState> {
+pub fn nodal_states(law: &dyn HyperelasticLaw, mesh: &Mesh, fields: &[&[f64]]) -> Vec<LocalState> {
+    let gradients: Vec<Vec<[f64; 4]>> = fields
+        .iter()
+        .map(|field| nodal_gradients(mesh, field))
+        .collect();
+    let state = |node: usize| {
+        let own: Vec<[f64; 4]> = gradients.iter().map(|field| field[node]).collect();
+        LocalState::of(law, &own)
+    };
+    (0..mesh.nodes.len()).map(state).collect()
+}
+
+/// The mean of the displacement gradients that the cells around each node have there.
+fn nodal_gradients(mesh: &Mesh, displacement: &[f64]) -> Vec<[f64; 4]> {
     let mut sums = vec![([0.0; 4], 0.0); mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
         let locals = mesh.shape(cell).natural_nodes();
@@ -115,8 +137,10 @@ pub fn nodal_states(
             }
         }
     }
-    let state = |(sum, count): &([f64; 4], f64)| LocalState::of(law, sum.map(|sum| sum / count));
-    sums.iter().map(state).collect()
+    let means = sums.iter();
+    means
+        .map(|(sum, count)| sum.map(|sum| sum / count))
+        .collect()
 }
 
 #[cfg(test)]
@@ -138,7 +162,7 @@ mod tests {
             let u: Vec<f64> = moved
                 .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
                 .collect();
-            let [nodal, cells] = [nodal_states, cell_states].map(|of| of(&LAW, &mesh, &u));
+            let [nodal, cells] = [nodal_states, cell_states].map(|of| of(&LAW, &mesh, &[&u]));
             assert_eq!(
                 (nodal.len(), cells.len()),
                 (mesh.nodes.len(), mesh.cell_count())
@@ -163,7 +187,7 @@ mod tests {
     #[test]
     fn simple_shear_has_its_equivalent_stress() {
         // σ₁₁ = μ γ², σ₁₂ = μ γ with μ = 2 C₁₀.
-        let state = LocalState::of(&LAW, [0.0, 0.4, 0.0, 0.0]);
+        let state = LocalState::of(&LAW, &[[0.0, 0.4, 0.0, 0.0]]);
         let expected = (0.16_f64.powi(2) + 3.0 * 0.16).sqrt();
         assert!((state.von_mises() - expected).abs() < 1e-12, "{state:?}");
         let [larger, smaller] = state.principal_cauchy();
@@ -178,7 +202,7 @@ mod tests {
             .iter()
             .flat_map(|[x, _]| [0.02 * x * x, 0.0])
             .collect();
-        let states = nodal_states(&LAW, &mesh, &u);
+        let states = nodal_states(&LAW, &mesh, &[&u]);
         let inside = mesh.nodes.iter().zip(&states);
         for ([x, _], state) in inside.filter(|([x, _], _)| *x > 0.5 && *x < 3.5) {
             let stretch = 1.0 + 0.04 * x;
@@ -188,7 +212,7 @@ mod tests {
 
     #[test]
     fn what_is_inside_out_has_no_numbers() {
-        let state = LocalState::of(&LAW, [-2.0, 0.0, 0.0, 0.0]);
+        let state = LocalState::of(&LAW, &[[-2.0, 0.0, 0.0, 0.0]]);
         assert!(state.von_mises().is_nan() && state.largest_principal_strain().is_nan());
     }
 }

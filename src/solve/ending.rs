@@ -25,19 +25,19 @@ const SOFT: f64 = 0.1;
 /// keeps from the load has rounding alone, about 1e-10; the stretching of a bar some 0.1.
 const DRIVEN: f64 = 1e-3;
 
-/// The reason behind a fault at load factor `factor` after the equilibrium `previous`: a material that lost its
+/// The reason behind a fault at a load factor, with a history, after the equilibrium `previous`: a material that lost its
 /// stability, a load that has its maximum, a mode of buckling; the fault itself where it is none of these.
 pub fn diagnose(
     newton: &mut Newton,
     loading: &dyn Loading,
     previous: Option<&State>,
-    factor: f64,
+    (factor, history): (f64, &[f64]),
     fault: SolveFault,
 ) -> SolveFault {
     if matches!(fault, SolveFault::NotFinite(_)) {
         return fault;
     }
-    let potential = loading.potential(factor);
+    let potential = loading.potential(factor, history);
     let unstable = |u: &[f64]| {
         let (element, state) = unstable_element(&*potential, u)?;
         let element = loading.describe(element);
@@ -59,7 +59,7 @@ pub fn diagnose(
     };
     let most = (0..mode.len()).max_by(|a, b| mode[*a].abs().total_cmp(&mode[*b].abs()));
     let place = most.map_or_else(String::new, |unknown| loading.describe_unknown(unknown));
-    if !is_driven(newton, loading, factor, &u, &mode) {
+    if !is_driven(newton, loading, (factor, history), &u, &mode) {
         return SolveFault::Buckling { place };
     }
     let factor = previous.map_or(0.0, |state| state.factor);
@@ -100,10 +100,16 @@ fn unstable_element(potential: &dyn Potential, u: &[f64]) -> Option<(usize, Stri
 }
 
 /// Whether the loads push along a mode.
-fn is_driven(newton: &Newton, loading: &dyn Loading, factor: f64, u: &[f64], mode: &[f64]) -> bool {
+fn is_driven(
+    newton: &Newton,
+    loading: &dyn Loading,
+    (factor, history): (f64, &[f64]),
+    u: &[f64],
+    mode: &[f64],
+) -> bool {
     let residual = |factor: f64| {
         let mut residual = vec![0.0; u.len()];
-        Assembly::residual(&*loading.potential(factor), u, &mut residual).map(|_| residual)
+        Assembly::residual(&*loading.potential(factor, history), u, &mut residual).map(|_| residual)
     };
     let (Ok(loaded), Ok(unloaded)) = (residual(factor), residual(0.0)) else {
         return false;

@@ -5,13 +5,13 @@ use super::newton::{Newton, NewtonSettings};
 use super::potential::Potential;
 use crate::error::SolveFault;
 
-/// The equilibrium at a load factor, with its potential, from a guess: held unknowns are imposed on it.
+/// The equilibrium at a load factor, with its potential, which belongs to a history, from a guess: held unknowns are imposed on it.
 ///
 /// # Errors
 /// As [`Newton::solve`].
 pub fn equilibrium(
     loading: &dyn Loading,
-    (potential, factor): (&dyn Potential, f64),
+    (potential, factor, history): (&dyn Potential, f64, &[f64]),
     (newton, mut displacement): (&mut Newton, Vec<f64>),
     settings: NewtonSettings,
 ) -> Result<State, SolveFault> {
@@ -29,6 +29,7 @@ pub fn equilibrium(
         factor,
         displacement,
         residual,
+        history: history.to_vec(),
         load_steps: 1,
         convergence,
     })

@@ -15,8 +15,13 @@ pub trait Loading {
     /// as held, after the ones that they follow.
     fn impose(&self, factor: f64, displacement: &mut [f64]);
 
-    /// The potential at a load factor; its pattern must not depend on the factor.
-    fn potential(&self, factor: f64) -> Box<dyn Potential + '_>;
+    /// The potential at a load factor of a body with a history; its pattern must depend on neither.
+    fn potential<'a>(&'a self, factor: f64, history: &'a [f64]) -> Box<dyn Potential + 'a>;
+
+    /// The history of a body that has come to an equilibrium: empty for one without memory.
+    fn remembered(&self, _state: &State) -> Vec<f64> {
+        Vec::new()
+    }
 
     /// How systems with the tangent are solved.
     fn linear_solver(&self) -> LinearSolver {
@@ -43,6 +48,8 @@ pub struct State {
     pub displacement: Vec<f64>,
     /// ∂Π/∂u: zero at free unknowns, reactions at held ones.
     pub residual: Vec<f64>,
+    /// What the body remembers of the load factors before; empty where it was never loaded, or has no memory.
+    pub history: Vec<f64>,
     /// Equilibria on the way from the state before, this one included; 1 when it was reached in one go.
     pub load_steps: usize,
     /// How the last of them was reached.

@@ -54,6 +54,9 @@ const EASY: usize = 6;
 /// is approached by shorter steps: halved where they fail, doubled after easy ones. Those that a journal has kept are not
 /// solved again.
 ///
+/// What a body remembers changes at the load factors that are given alone: on the way to one of them it is a body with the history
+/// of the one before, and what is found there does not depend on the steps.
+///
 /// # Errors
 /// [`PathEnd`] with the load factor at which no equilibrium was found and the states before it.
 pub fn follow(
@@ -113,10 +116,10 @@ pub fn follow(
 pub fn influence(
     tangent: &mut Tangent,
     loading: &dyn Loading,
-    (factor, displacement): (f64, &[f64]),
+    (factor, displacement, history): (f64, &[f64], &[f64]),
     motion: &[f64],
 ) -> Result<Vec<f64>, SolveFault> {
-    let potential = loading.potential(factor);
+    let potential = loading.potential(factor, history);
     let describe = |element| loading.describe(element);
     tangent.influence(&*potential, displacement, motion, &describe)
 }
@@ -130,10 +133,10 @@ pub fn influence(
 pub fn compliance(
     tangent: &mut Tangent,
     loading: &dyn Loading,
-    (factor, displacement): (f64, &[f64]),
+    (factor, displacement, history): (f64, &[f64], &[f64]),
     forces: &[f64],
 ) -> Result<Vec<f64>, SolveFault> {
-    let potential = loading.potential(factor);
+    let potential = loading.potential(factor, history);
     let describe = |element| loading.describe(element);
     tangent.respond(&*potential, displacement, forces, &describe)
 }
@@ -153,7 +156,7 @@ impl<'a> Path<'a> {
         settings: NewtonSettings,
         factor: f64,
     ) -> Result<Self, SolveFault> {
-        let (potential, solver) = (loading.potential(factor), loading.linear_solver());
+        let (potential, solver) = (loading.potential(factor, &[]), loading.linear_solver());
         let newton = Newton::with_solver(&*potential, &loading.held(), solver)?;
         Ok(Self {
             loading,
@@ -171,6 +174,7 @@ impl<'a> Path<'a> {
         factor: f64,
     ) -> Result<State, (SolveFault, Option<Box<State>>)> {
         let from_rest = SHORTEST_FROM_REST * factor.abs();
+        let history = from.map_or_else(Vec::new, |state| self.loading.remembered(state));
         let (mut last, mut load_steps, mut halved) = (None::<Box<State>>, 0, false);
         loop {
             let previous = last.as_deref().or(from);
@@ -182,7 +186,7 @@ impl<'a> Path<'a> {
             } else {
                 start + self.step.copysign(rest)
             };
-            match self.solve_at(previous, aim) {
+            match self.solve_at(previous, aim, &history) {
                 Ok(state) => {
                     load_steps += 1;
                     let log = &state.convergence;
@@ -205,20 +209,31 @@ impl<'a> Path<'a> {
                     halved = true;
                 }
                 Err(fault) => {
-                    let fault = diagnose(&mut self.newton, self.loading, previous, aim, fault);
+                    let fault = diagnose(
+                        &mut self.newton,
+                        self.loading,
+                        previous,
+                        (aim, &history),
+                        fault,
+                    );
                     return Err((fault, last));
                 }
             }
         }
     }
 
-    fn solve_at(&mut self, previous: Option<&State>, factor: f64) -> Result<State, SolveFault> {
-        let potential = self.loading.potential(factor);
+    fn solve_at(
+        &mut self,
+        previous: Option<&State>,
+        factor: f64,
+        history: &[f64],
+    ) -> Result<State, SolveFault> {
+        let potential = self.loading.potential(factor, history);
         let guess = match self.loading.guess(factor, previous) {
             Some(guess) => guess,
             None => self.predict(previous, factor, &*potential)?,
         };
-        let at = (&*potential, factor);
+        let at = (&*potential, factor, history);
         equilibrium(self.loading, at, (&mut self.newton, guess), self.settings)
     }
 
@@ -292,7 +307,7 @@ mod tests {
 
         fn impose(&self, _: f64, _: &mut [f64]) {}
 
-        fn potential(&self, factor: f64) -> Box<dyn Potential + '_> {
+        fn potential<'a>(&'a self, factor: f64, _: &'a [f64]) -> Box<dyn Potential + 'a> {
             Box::new(Loaded(self, factor))
         }
 

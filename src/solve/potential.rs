@@ -62,6 +62,19 @@ pub trait Potential: Sync {
         None
     }
 
+    /// The same energy of a body with a history, which is empty where the body was never loaded; `None` for a body without memory.
+    fn after<'a>(&'a self, _history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
+        None
+    }
+
+    /// Takes the state `u` into a history; a body without memory leaves it empty.
+    fn remember(&self, _history: &mut Vec<f64>, _u: &[f64]) {}
+
+    /// What a body with a history has dissipated, in mJ.
+    fn dissipated(&self, _history: &[f64]) -> f64 {
+        0.0
+    }
+
     /// Length of u.
     fn unknowns(&self) -> usize {
         self.connectivity().unknowns()
@@ -98,6 +111,53 @@ impl<P: Potential + ?Sized> Potential for &P {
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         (**self).instability(element, u)
+    }
+
+    fn after<'a>(&'a self, history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
+        (**self).after(history)
+    }
+
+    fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
+        (**self).remember(history, u);
+    }
+
+    fn dissipated(&self, history: &[f64]) -> f64 {
+        (**self).dissipated(history)
+    }
+}
+
+impl Potential for Box<dyn Potential + '_> {
+    fn connectivity(&self) -> &Connectivity {
+        (**self).connectivity()
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        (**self).evaluate_element(element, u, local)
+    }
+
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        (**self).skew_couplings()
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        (**self).instability(element, u)
+    }
+
+    fn after<'a>(&'a self, history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
+        (**self).after(history)
+    }
+
+    fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
+        (**self).remember(history, u);
+    }
+
+    fn dissipated(&self, history: &[f64]) -> f64 {
+        (**self).dissipated(history)
     }
 }
 

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use crate::corrector::estimation::{FieldEstimate, RegressedLaw, Specimen, estimate, transfer};
 use crate::error::{Diagnostic, Error};
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
+use crate::material::softened_law::check_memory;
 use crate::material::{Card, HyperelasticLaw};
 use crate::mesh::Mesh;
 use crate::results::locking;
@@ -104,6 +105,7 @@ impl MarkerStudy {
     /// # Errors
     /// As [`Self::prepare`].
     pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
+        check_memory(&*card.law, "a correction of measured fields")?;
         let mut field = read(&request.files, &request.reading)?;
         let told = request
             .conditions

@@ -8,6 +8,7 @@ use crate::dynamics::{Dashpots, SheetViscosity, Viscosity};
 use crate::error::{Diagnostic, Error};
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::{DashpotLaw, MassSpring};
+use crate::material::softened_law::check_memory;
 use crate::results::Outcome;
 use crate::studies::{Computation, Kind, Progress};
 
@@ -53,6 +54,7 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
 /// # Errors
 /// [`Error::Solve`] where a model has no solution.
 pub fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error> {
+    check_memory(&*plate.problem.law, "a motion in time")?;
     let springs = MassSpring::new(&plate.problem, plate.cells, plate.lattice)
         .with_spring_law(plate.springs.clone());
     let dashpots = Dashpots::new(&springs, &plate.dashpots);

@@ -17,6 +17,7 @@ mod read;
 mod results;
 mod statement;
 mod warnings;
+mod work;
 
 pub use problem::{Outline, Refinement, Specimen};
 use results::end::{End, tell};

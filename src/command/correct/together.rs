@@ -13,6 +13,7 @@ use crate::command::terminal::{Outcome, print_report, warn};
 use crate::corrector::estimation::JointSettings;
 use crate::error::Error;
 use crate::material::Card;
+use crate::material::softened_law::check_memory;
 use crate::output::{self, ResultFolder};
 use crate::studies::markers::joint::{CorrectedSpecimen, JointStudy, NamedSpecimen, results};
 use crate::studies::markers::{Conditions, MarkerStudy, Request, worst_answer};
@@ -70,9 +71,12 @@ pub fn run(options: Options) -> Outcome {
 fn read(options: Options) -> Result<(JointStudy, Vec<PathBuf>), Error> {
     let mut all_inputs = options.inputs();
     let materials = [&options.material].into_iter().chain(&options.laws);
-    let cards: Result<Vec<Card>, Error> = materials
-        .map(|card| Card::load(card, Path::new(".")))
-        .collect();
+    let load = |card: &String| {
+        let card = Card::load(card, Path::new("."))?;
+        check_memory(&*card.law, "a correction of measured fields")?;
+        Ok(card)
+    };
+    let cards: Result<Vec<Card>, Error> = materials.map(load).collect();
     let files = options.specimen.clone();
     let settings = JointSettings {
         groups: options.leave_out,

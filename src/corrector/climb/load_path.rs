@@ -74,7 +74,7 @@ impl Loading for GridLoading<'_> {
         }
     }
 
-    fn potential(&self, _: f64) -> Box<dyn Potential + '_> {
+    fn potential<'a>(&'a self, _: f64, _: &'a [f64]) -> Box<dyn Potential + 'a> {
         Box::new(self.energy)
     }
 
@@ -173,7 +173,7 @@ impl Climb<'_> {
         };
         let (u, b) = (u.to_nodes(), b.to_nodes());
         let mut tangent = Tangent::new(&energy, &loading.held(), LinearSolver::Direct)?;
-        let mut x = compliance(&mut tangent, &loading, (1.0, &u), &b)?;
+        let mut x = compliance(&mut tangent, &loading, (1.0, &u, &[]), &b)?;
         let mut image = vec![0.0; x.len()];
         let product = Assembly::add_product(&energy, &u, &x, &mut image);
         product.map_err(|fault| SolveFault::Inverted {

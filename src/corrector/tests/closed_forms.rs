@@ -212,7 +212,7 @@ fn a_corrected_specimen_is_in_equilibrium_with_loads_supports_and_ties() {
         .zip(&state.displacement)
         .map(|(n, u)| u + 0.05 * n)
         .collect();
-    let found = specimen::correct(&model, &data, &state.displacement, 1.0, SETTINGS);
+    let found = specimen::correct(&model, &data, &state.displacement, (1.0, &[]), SETTINGS);
     let found = found.unwrap();
     assert!(largest_difference(&found.state.displacement, &state.displacement) < 1e-8);
     // Stationary in every unknown: W (u − ū) + Bᵀ ψ = 0.
@@ -228,7 +228,7 @@ fn a_corrected_specimen_is_in_equilibrium_with_loads_supports_and_ties() {
     let left: Vec<f64> = moved.iter().zip(&pull).map(|(a, b)| a + b).collect();
     assert!(largest(&left) < 1e-9, "{:.1e}", largest(&left));
     let mut residual = vec![0.0; data.len()];
-    let potential = model.potential(1.0);
+    let potential = model.potential(1.0, &[]);
     let stored = Assembly::residual(&*potential, &state.displacement, &mut residual).unwrap();
     assert!((found.state.convergence.energy / stored - 1.0).abs() < 1e-8);
     assert_eq!(potential.unknowns(), data.len());

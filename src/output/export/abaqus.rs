@@ -11,7 +11,7 @@
 
 use super::model::{Constraint, Model};
 use super::text::{ascii, number};
-use crate::material::{Card, Code, CodeLaw};
+use crate::material::{Card, Code, CodeLaw, Softening};
 use crate::mesh::CellShape;
 
 /// Lines of an input file.
@@ -117,7 +117,7 @@ fn ties(model: &Model, deck: &mut Deck) {
 
 /// One load factor.
 fn step(model: &Model, before: f64, factor: f64, deck: &mut Deck) {
-    let period = factor - before;
+    let period = (factor - before).abs();
     deck.line(&format!("** load factor {factor}"));
     deck.line("*STEP, NLGEOM, INC=1000");
     deck.line("*STATIC");
@@ -263,6 +263,10 @@ fn material(model: &Model, deck: &mut Deck) {
                 deck.line(&format!("{}, {}", number(stress), number(strain)));
             }
         }
+    }
+    if let Some(Softening { r, m, beta }) = model.given.card.law.softening() {
+        deck.line("*MULLINS EFFECT");
+        deck.line(&[r, m, beta].map(number).join(", "));
     }
 }
 

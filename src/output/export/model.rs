@@ -46,6 +46,15 @@ impl Export<'_> {
             };
             return Err(Diagnostic::error("", message).hint(hint));
         }
+        if self.card.law.softening().is_some() && code != Code::Abaqus {
+            let message = format!(
+                "{} has no softening that equals that of the card `{}`",
+                code.name(),
+                self.card.name
+            );
+            let hint = "export to Abaqus, which has it (*MULLINS EFFECT), or leave out the card's `[softening]`";
+            return Err(Diagnostic::error("", message).hint(hint));
+        }
         let law = self.card.law.in_code(code, self.bulk_modulus(code));
         let known = law.filter(|law| code == Code::Abaqus || *law != CodeLaw::TensionCurve);
         known.ok_or_else(|| {

@@ -45,7 +45,7 @@ fn a_pressure_s_energy_force_and_stiffness_are_derivatives_at_finite_strain() {
         let model = problem.on(&mesh, &none).unwrap();
         let u = bent(&mesh);
         let direction: Vec<f64> = (0..u.len()).map(|i| (1.0 + 3.7 * i as f64).sin()).collect();
-        let errors = derivative_errors(&*model.potential(0.8), &u, &direction);
+        let errors = derivative_errors(&*model.potential(0.8, &[]), &u, &direction);
         assert!(
             errors[0] < 1e-9 && errors[1] < 1e-9,
             "{shape:?}: {errors:?}"
@@ -67,7 +67,7 @@ fn the_tangent_of_a_pressure_that_ends_freely_is_complete() {
         );
         let none = Nothing(Connectivity::new(2 * mesh.nodes.len()));
         let model = problem.on(&mesh, &none).unwrap();
-        let potential = model.potential(1.0);
+        let potential = model.potential(1.0, &[]);
         let u = bent(&mesh);
         let size = u.len();
         let assembly = Assembly::new(&*potential, &vec![false; size]);

@@ -25,7 +25,11 @@ pub fn figures(
     let stress = pictures.in_cells("Nominal stress", "largest component [MPa]", &stress);
     let thickness = |cell: usize| estimate.cells[cell].thickness;
     let thickness = pictures.in_cells("Thickness", "thickness [mm]", &thickness);
-    let deformed = [(pictures.at.clone(), &field.mesh, &estimate.displacement[..])];
+    let deformed = [(
+        pictures.at.clone(),
+        &field.mesh,
+        vec![&estimate.displacement[..]],
+    )];
     let law = field.law(estimate);
     let file = |name: &str| format!("{name}.png");
     let states = sheet_figures(sheet, &*law, &deformed, &pictures.at, &file);

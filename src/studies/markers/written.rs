@@ -165,6 +165,7 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
     let sheet = Sheet {
         law: &*law,
         thickness: field.thickness,
+        past: &[],
     };
     let nodal = |name, values: &Vec<f64>| Array::vectors(name, values.iter().copied());
     let mut grid = Grid::sheet(sheet, &field.mesh, &estimate.displacement).with([

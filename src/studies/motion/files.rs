@@ -115,7 +115,7 @@ fn stress_figures(
     let at_instant = |instant: usize| {
         let deformed = plates.iter().filter_map(|plate| {
             let [displacement, _] = *plate.motion.get(instant)?;
-            Some((plate.name.to_owned(), plate.mesh, displacement))
+            Some((plate.name.to_owned(), plate.mesh, vec![displacement]))
         });
         let deformed: Vec<_> = deformed.collect();
         let at = format!("t = {} s", brief(times[instant]));
@@ -308,6 +308,7 @@ pub fn grids(
     let sheet = Sheet {
         law: &*plate.problem.law,
         thickness: plate.problem.thickness,
+        past: &[],
     };
     let times = springs.history.times();
     let series = |plate: &PlateMotion| {

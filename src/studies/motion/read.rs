@@ -14,6 +14,7 @@ use crate::finite_element::Element;
 use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
 use crate::material::Card;
 use crate::material::card::read_viscosity;
+use crate::material::softened_law::WITHOUT;
 use crate::material::viscosity::{Covered, ViscousMaterial};
 use crate::problem::ClampedPlate;
 use crate::studies::pictures::Pictures;
@@ -130,6 +131,13 @@ fn read_material(section: &Section, folder: &Path) -> Material {
         let message =
             "the viscous stress is that of a sheet that keeps its volume, and this card's does not";
         section.fault("card", message, hint);
+    }
+    if card
+        .as_ref()
+        .is_some_and(|card| card.law.softening().is_some())
+    {
+        let message = "this card softens, and a motion in time has no memory of the largest load";
+        section.fault("card", message, WITHOUT);
     }
     section.unknown_keys();
     Material {

@@ -27,8 +27,13 @@ pub fn figures(study: &Study, results: &Results) -> Vec<Figure> {
     all.extend(stress_figures(study, results));
     let caption = "Deviation from the finite elements over stretch.";
     all.push(Figure::new("errors.png", caption, errors(results)));
-    let caption = "Grip force over stretch, and how far it is from the finite elements'; between the stretches of the study the curves \
-                   are cubics that keep their shape.";
+    let caption = match results.remembers {
+        true => "Grip force over stretch, and how far it is from the finite elements'.",
+        false => {
+            "Grip force over stretch, and how far it is from the finite elements'; between the stretches of the study the curves \
+             are cubics that keep their shape."
+        }
+    };
     all.push(Figure::new("force.png", caption, force(results)));
     let caption = "Residual of springs and finite elements, and correction of the corrected field, over iteration at the last \
                    stretch with a solution.";
@@ -77,7 +82,13 @@ fn stress_figures(study: &Study, results: &Results) -> Vec<Figure> {
     let steps = pictures.shown.steps(&study.problem.stretches, last);
     let at_step = |step: usize| {
         let at = ClampedPlate::describe_step(results.comparison[step].stretch);
-        let models = deformed(results, step);
+        let models = (0..MODELS.len()).filter_map(|model| {
+            let (label, mesh, u) = deformed_model(results, step, model)?;
+            let mut fields = results.past(model, step);
+            fields.push(u);
+            Some((label, mesh, fields))
+        });
+        let models: Vec<_> = models.collect();
         let file = |name: &str| format!("{name}_{:03}.png", step + 1);
         sheet_figures(&pictures.fields, &*study.problem.law, &models, &at, &file)
     };
@@ -86,16 +97,19 @@ fn stress_figures(study: &Study, results: &Results) -> Vec<Figure> {
 
 /// The models that have a solution at a stretch, with their names and meshes.
 fn deformed(results: &Results, step: usize) -> Vec<(String, &Mesh, &[f64])> {
-    let labels = [
-        MODELS[0].to_owned(),
-        MODELS[1].to_owned(),
-        format!("{} ({})", MODELS[2], results.finest().model.describe()),
-    ];
-    let meshes = labels.into_iter().zip(results.meshes());
-    let models = meshes.zip(results.models(step));
+    let models = 0..MODELS.len();
     models
-        .filter_map(|((label, mesh), state)| Some((label, mesh, &state?.displacement[..])))
+        .filter_map(|model| deformed_model(results, step, model))
         .collect()
+}
+
+fn deformed_model(results: &Results, step: usize, model: usize) -> Option<(String, &Mesh, &[f64])> {
+    let state = results.models(step)[model]?;
+    let label = match model {
+        2 => format!("{} ({})", MODELS[2], results.finest().model.describe()),
+        _ => MODELS[model].to_owned(),
+    };
+    Some((label, results.meshes()[model], &state.displacement))
 }
 
 fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
@@ -187,8 +201,12 @@ fn force(results: &Results) -> Drawing {
         let solutions =
             steps.filter_map(|step| results.models(step)[model].zip(results.measures(step)[model]));
         let points = solutions.map(|(state, measures)| [100.0 * state.factor, measures.force]);
-        let points = [[0.0, 0.0]].into_iter().chain(points).collect();
-        Line::curve(MODELS[model], points, colour, stroke)
+        let points: Vec<_> = [[0.0, 0.0]].into_iter().chain(points).collect();
+        match results.remembers {
+            // Loading and unloading are no function of the stretch.
+            true => Line::new(MODELS[model], points, colour, stroke),
+            false => Line::curve(MODELS[model], points, colour, stroke),
+        }
     };
     let lines = [
         (2, FINITE_ELEMENT, Stroke::Solid),

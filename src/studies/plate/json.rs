@@ -57,7 +57,13 @@ fn step(results: &Results, index: usize, step: &StepComparison) -> Step {
     let springs = model(step.mass_spring.as_ref(), springs.zip(measures[0]));
     let finest = finest.zip(measures[2]);
     let finest = finest.map(|finest| finite_element(results, index, step, finest));
-    let models = [springs, corrected, json!(finest)];
+    let mut models = [springs, corrected, json!(finest)];
+    for (model, work) in models.iter_mut().zip(results.works(index)) {
+        if let (Some(work), false) = (work, model.is_null()) {
+            model["stored_mJ"] = json!(work.stored);
+            model["dissipated_mJ"] = json!(work.dissipated);
+        }
+    }
     Step {
         at: step.stretch,
         models: KEYS.map(str::to_owned).into_iter().zip(models).collect(),

@@ -113,6 +113,9 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     section.unknown_keys();
     let corrector = read_corrector(&root.section("corrector"), &plate, (problem.size, cells));
     let reference = read_reference(&root.section("finite_element"), &problem, cells);
+    if problem.law.softening().is_some() {
+        check_memory(&root, lattice, corrector);
+    }
     let tolerances = Tolerances::read(&root.section("tolerances"), true);
     let places = ("factors", Dimension::Ratio);
     let pictures = Pictures::read(&root.section("pictures"), places, &problem.stretches);
@@ -143,6 +146,21 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
         );
     }
     Some(study)
+}
+
+/// What cannot follow a material that softens.
+fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<Correction>) {
+    if lattice.area_term {
+        let message = "the areas of the lattice do not soften with the card's material";
+        let hint = "leave out `area_term`: the springs soften";
+        root.section("mass_spring")
+            .fault("area_term", message, hint);
+    }
+    if corrector.is_some_and(|corrector| corrector.climb.is_some()) {
+        let message = "this card softens, and the climb has no memory of the largest load";
+        let hint = "write method = \"direct\", or leave out the card's `[softening]`";
+        root.section("corrector").fault("method", message, hint);
+    }
 }
 
 fn read_corrector(
@@ -256,14 +274,21 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
         return stretches;
     }
     let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
+    let remembers = card.is_some_and(|card| card.law.softening().is_some());
+    let repeated = |pair: &[f64]| pair[1] == pair[0];
     if !one_sign {
         let hint = "every path begins at rest: write one study for the tension and one for the compression";
         section.fault(KEY, "must have one sign", hint);
-    } else if stretches
-        .windows(2)
-        .any(|pair| pair[1].abs() <= pair[0].abs())
+    } else if remembers && stretches.windows(2).any(repeated) {
+        let hint =
+            "a material that softens may be unloaded and loaded again, but not stay where it is";
+        section.fault(KEY, "must differ from one to the next", hint);
+    } else if !remembers
+        && stretches
+            .windows(2)
+            .any(|pair| pair[1].abs() <= pair[0].abs())
     {
-        let hint = "sort them by their size and leave out repetitions";
+        let hint = "sort them by their size and leave out repetitions; only a card with `[softening]` remembers how it was loaded";
         section.fault(KEY, "must go from small to large", hint);
     }
     if let Some(card) = card {

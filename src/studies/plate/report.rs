@@ -18,6 +18,7 @@ pub fn blocks(study: &Study, results: &Results, outcome: &Outcome) -> Vec<Block>
     blocks.extend(deviations(study, results));
     blocks.extend(pictures("Pictures", outcome));
     blocks.extend(forces(results));
+    blocks.extend(work(results));
     blocks.extend(accuracy::error_budget(study, results));
     blocks.extend(accuracy::reference(study, results));
     blocks.extend(accuracy::balance(study, results));
@@ -154,5 +155,38 @@ fn forces(results: &Results) -> Vec<Block> {
     vec![
         Block::heading("Force, width at mid length and strain energy"),
         Block::table(&head, results.comparison.iter().enumerate().map(row)),
+    ]
+}
+
+/// What is stored and what softening has dissipated; nothing where the material has no memory.
+fn work(results: &Results) -> Vec<Block> {
+    if !results.remembers {
+        return Vec::new();
+    }
+    let row = |(index, step): (usize, &StepComparison)| {
+        let works = results.works(index);
+        let mut cells = vec![ClampedPlate::percent(step.stretch)];
+        cells.extend(works.map(|work| figure(work.map(|work| work.stored), 4)));
+        cells.extend(works.map(|work| figure(work.map(|work| work.dissipated), 4)));
+        cells
+    };
+    let head = [
+        "stretch [%]",
+        "stored, mass-spring [mJ]",
+        "stored, corrected [mJ]",
+        "stored, finite elements [mJ]",
+        "dissipated, mass-spring [mJ]",
+        "dissipated, corrected [mJ]",
+        "dissipated, finite elements [mJ]",
+    ];
+    vec![
+        Block::heading("Stored and dissipated energy"),
+        Block::table(&head, results.comparison.iter().enumerate().map(row)),
+        Block::Paragraph(
+            "The material softens by its largest load, at every point for itself: the stretches follow one another as the study lists \
+             them, and what a point remembers changes at these stretches alone. The work of the grips is stored or dissipated; \
+             what is dissipated grows with the largest load and does not come back. The strain energies above are both together."
+                .to_owned(),
+        ),
     ]
 }

@@ -7,7 +7,7 @@ use crate::finite_element::FiniteElements;
 use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
-use crate::problem::{Measures, Solution};
+use crate::problem::{Measures, Solution, Work};
 use crate::solve::State;
 
 mod requirement;
@@ -45,6 +45,8 @@ pub struct Results {
     pub comparison: Vec<StepComparison>,
     /// Why models have no solution at stretches of the study, in the order in which they were solved.
     pub ends: Vec<Error>,
+    /// Whether the material softens by its largest load.
+    pub remembers: bool,
     /// Wall-clock times: what, and seconds.
     pub times: Vec<(&'static str, f64)>,
 }
@@ -62,6 +64,25 @@ impl Results {
             self.uncorrected.states.get(step),
             corrected.map(|corrected| &corrected.state),
             self.finest().solution.states.get(step),
+        ]
+    }
+
+    /// The displacement fields of a model before a stretch, which a material that softens remembers; none where it does not.
+    pub fn past(&self, model: usize, step: usize) -> Vec<&[f64]> {
+        let remembers = self.remembers;
+        let before = (0..step).filter(|_| remembers);
+        let field = |before: usize| Some(&self.models(before)[model]?.displacement[..]);
+        before.filter_map(field).collect()
+    }
+
+    /// What was done on the material up to a stretch in each of them; nothing where it has no memory.
+    pub fn works(&self, step: usize) -> [Option<Work>; 3] {
+        let of = |solution: &Solution| *solution.works.get(step)?;
+        let corrected = self.corrected[step].as_ref();
+        [
+            of(&self.uncorrected),
+            corrected.and_then(|own| own.work),
+            of(&self.finest().solution),
         ]
     }
 

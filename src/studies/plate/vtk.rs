@@ -12,24 +12,31 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
     let sheet = Sheet {
         law: &*study.problem.law,
         thickness: study.problem.thickness,
+        past: &[],
     };
     let lattice = &results.springs.mesh;
     let finest = results.finest();
-    let on_lattice = |step: usize, solution: &State| {
+    let on_lattice = |model: usize, step: usize, solution: &State| {
         let u = &solution.displacement;
+        let past = results.past(model, step);
         let reference = results.reference_on_lattice.get(step);
         let difference = reference.map(|reference| Array::to_finite_elements(u, reference));
-        Grid::sheet(sheet, lattice, u).with(difference)
+        Grid::sheet(sheet.after(&past), lattice, u).with(difference)
     };
     let springs = |step: usize| Some((step, results.uncorrected.states.get(step)?));
     let steps = || 0..study.problem.stretches.len();
     let mass_spring = steps().filter_map(springs);
-    let mass_spring = mass_spring.map(|(step, solution)| (step, on_lattice(step, solution)));
+    let mass_spring = mass_spring.map(|(step, solution)| (step, on_lattice(0, step, solution)));
     let bars = steps().filter_map(springs);
-    let bars = bars.map(|(step, own)| (step, Grid::springs(&results.springs, &own.displacement)));
+    let bars = bars.map(|(step, own)| {
+        (
+            step,
+            Grid::springs(&results.springs, &own.displacement, &own.history),
+        )
+    });
     let corrected = steps().filter_map(|step| Some((step, results.corrected[step].as_ref()?)));
     let corrected = corrected.map(|(step, state)| {
-        let grid = on_lattice(step, &state.state);
+        let grid = on_lattice(1, step, &state.state);
         (step, grid.with(multipliers(state)))
     });
     let elements = finest
@@ -40,6 +47,8 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
         .map(|(step, solution)| {
             let error = results.estimates[step].as_ref();
             let error = error.map(|estimate| Array::estimated_error(&estimate.energy));
+            let past = results.past(2, step);
+            let sheet = sheet.after(&past);
             let grid = Grid::sheet(sheet, &finest.model.mesh, &solution.displacement);
             (step, grid.with_in_cells(error))
         });

@@ -76,7 +76,9 @@ fn stress_figures(specimen: &Specimen, models: &Models, last: usize) -> Vec<Figu
     let at_step = |step: usize| {
         let deformed = named.iter().filter_map(|model| {
             let u = model.solution.displacement(step)?;
-            Some((model.name.to_owned(), &model.solution.mesh, u))
+            let mut fields = model.solution.past(step);
+            fields.push(u);
+            Some((model.name.to_owned(), &model.solution.mesh, fields))
         });
         let deformed: Vec<_> = deformed.collect();
         let number = match pictures.shown {
@@ -131,8 +133,12 @@ fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let chart = |(group, (axis, _)): (usize, (usize, f64))| {
         let line = |model: usize| {
             let points = points(model, group, axis);
-            (points.len() > 1)
-                .then(|| Line::curve(named[model].name, points, COLOURS[model], STROKES[model]))
+            let (name, colour, stroke) = (named[model].name, COLOURS[model], STROKES[model]);
+            (points.len() > 1).then(|| match specimen.problem.law.softening() {
+                // Loading and unloading are no function of the load factor.
+                Some(_) => Line::new(name, points, colour, stroke),
+                None => Line::curve(name, points, colour, stroke),
+            })
         };
         let y = format!("force along {} [N]", ["x", "y"][axis]);
         let lines = [2, 0, 1].into_iter().filter_map(line).collect();
@@ -159,8 +165,10 @@ fn estimated_error(models: &Models, step: usize, at: &str) -> Option<FieldFigure
 /// The fields of each model, as far as it goes; `expected` are the finite elements' displacements at the lattice's nodes.
 pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec<GridSeries> {
     let (on_lattice, reference) = (&models.on_lattice, &models.reference);
-    let lattice = &on_lattice.springs.mesh;
-    let field = |mesh, u: &[f64]| Grid::sheet(specimen.sheet(), mesh, u);
+    let field = |solution: &Solution, step: usize| {
+        let (past, u) = (solution.past(step), &solution.states[step].displacement);
+        Grid::sheet(specimen.sheet().after(&past), &solution.mesh, u)
+    };
     let series = |name: &str, reached: usize, grid: &dyn Fn(usize) -> Grid| {
         let steps = specimen.factors.iter().take(reached).enumerate();
         let steps = steps.map(|(step, factor)| (*factor, grid(step)));
@@ -171,20 +179,17 @@ pub fn grids(specimen: &Specimen, models: &Models, expected: &[Vec<f64>]) -> Vec
         series(name, model.reached(), &|step| {
             let u = &model.states[step].displacement;
             let difference = expected.get(step).map(|v| Array::to_finite_elements(u, v));
-            field(lattice, u).with(difference)
+            field(model, step).with(difference)
         })
     };
     let springs = series("springs", uncorrected.reached(), &|step| {
-        Grid::springs(&on_lattice.springs, &uncorrected.states[step].displacement)
+        let state = &uncorrected.states[step];
+        Grid::springs(&on_lattice.springs, &state.displacement, &state.history)
     });
     let elements = series("finite_element", reference.reached(), &|step| {
         let error = reference.estimates[step].as_ref();
         let error = error.map(|estimate| Array::estimated_error(&estimate.energy));
-        field(
-            &reference.finest.mesh,
-            &reference.finest.states[step].displacement,
-        )
-        .with_in_cells(error)
+        field(&reference.finest, step).with_in_cells(error)
     });
     let all = [
         on_lattice_of("mass_spring", uncorrected),

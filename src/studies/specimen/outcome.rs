@@ -8,7 +8,7 @@ use super::results::lattice::Start;
 use super::results::models::{Models, NamedSolution};
 use super::results::verdict::{Deviation, checks};
 use super::warnings::warnings;
-use super::{forces, statement};
+use super::{forces, statement, work};
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::Judgement;
 use crate::problem::Solution;
@@ -27,6 +27,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
     blocks.extend(starts(specimen, models).map(Block::Paragraph));
     blocks.extend(models.reference.history());
     blocks.extend(forces::table(specimen, models));
+    blocks.extend(work::blocks(specimen, models));
     blocks.extend(statement::blocks(specimen));
     let quantities = |step: usize| Step {
         at: specimen.factors[step],
@@ -86,6 +87,10 @@ fn quantities(
             return (key, Value::Null);
         };
         quantities["groups"] = groups;
+        if let Some(work) = own.solution.works.get(step).copied().flatten() {
+            quantities["stored_mJ"] = json!(work.stored);
+            quantities["dissipated_mJ"] = json!(work.dissipated);
+        }
         let value = measured.at(own.solution, step);
         quantities[format!("measured_{}", measured.unit())] = json!(value);
         (key, quantities.take())

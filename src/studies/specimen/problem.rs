@@ -95,6 +95,7 @@ impl Specimen {
         Sheet {
             law: &*self.problem.law,
             thickness: self.problem.thickness,
+            past: &[],
         }
     }
 

@@ -60,7 +60,10 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let path = root
         .section("path")
         .requiring(&["factors", "measured_group"]);
-    let factors = read_factors(&path);
+    let remembers = card
+        .as_ref()
+        .is_some_and(|card| card.law.softening().is_some());
+    let factors = read_factors(&path, remembers);
     let group = path.text("measured_group");
     path.unknown_keys();
     path.affords(
@@ -103,12 +106,22 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     Some(specimen)
 }
 
-fn read_factors(path: &Section) -> Vec<f64> {
+/// The load factors, ascending unless the material remembers how it was loaded.
+fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
     let factors = path.multiples("factors", Bound::Positive, f64::INFINITY);
-    let falls = factors.windows(2).any(|pair| pair[1] <= pair[0]);
+    let falls = factors.windows(2).any(|pair| match remembers {
+        true => pair[1] == pair[0],
+        false => pair[1] <= pair[0],
+    });
+    if remembers && falls {
+        let message = "must differ from one to the next";
+        path.fault("factors", message, "such as [0.5, 1.0, 0.5]");
+        return factors;
+    }
     if path.has("factors") && (factors.is_empty() || falls) {
         let message = "must be one or more ascending load factors";
-        path.fault("factors", message, "such as [0.5, 1.0]");
+        let hint = "such as [0.5, 1.0]; only a card with `[softening]` remembers how it was loaded";
+        path.fault("factors", message, hint);
     }
     factors
 }
@@ -189,8 +202,15 @@ fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refi
     })
 }
 
-/// A force that nodes share equally is another one on a mesh that is refined locally.
+/// A force that nodes share equally is another one on a mesh that is refined locally, and a material that softens has no error estimate to
+/// refine by.
 fn check_refinement(root: &Section, specimen: &Specimen) {
+    if specimen.refinement.is_some() && specimen.problem.law.softening().is_some() {
+        let message = "this card softens, and the error estimate that refines the mesh has no memory of the largest load";
+        let hint = "leave out `adaptive`, or the card's `[softening]`";
+        root.section("finite_element")
+            .fault("adaptive", message, hint);
+    }
     let forces = |(_, load): &(String, Load)| matches!(load, Load::Force(_));
     if specimen.refinement.is_some() && specimen.problem.loads.iter().any(forces) {
         let message = "a force is shared by the nodes of its group, which local refinement changes";

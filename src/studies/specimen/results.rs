@@ -3,6 +3,7 @@
 use super::problem::Specimen;
 use crate::compare::imported::ModelField;
 use crate::error::Error;
+use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::studies::{ModelKind, OneModel, Progress};
@@ -98,6 +99,10 @@ pub fn fields(
     factor: f64,
     progress: Progress,
 ) -> Result<[ModelField; 3], Error> {
+    check_memory(
+        &*specimen.problem.law,
+        "a comparison with another program's field",
+    )?;
     specimen.factors.retain(|before| *before < factor);
     specimen.factors.push(factor);
     let mut ends = Vec::new();

@@ -168,7 +168,7 @@ impl Engine {
 
 /// What colours the nodes.
 fn values(body: &Body, sheet: &bodies::Sheet, colour: Colour) -> Vec<f64> {
-    let states = || nodal_states(&*sheet.law, &body.mesh, &body.displacement).into_iter();
+    let states = || nodal_states(&*sheet.law, &body.mesh, &[&body.displacement]).into_iter();
     match colour {
         Colour::Displacement => {
             let vectors = body.displacement.chunks_exact(2);
@@ -194,9 +194,13 @@ fn multipliers(
     }
     let model = body.model(sheet, grip)?;
     let change: Vec<f64> = springs.iter().zip(corrected).map(|(s, u)| s - u).collect();
-    let tangent = Tangent::new(&*model.potential(1.0), &model.held(), LinearSolver::Direct);
-    let found =
-        tangent.and_then(|mut tangent| compliance(&mut tangent, &model, (1.0, corrected), &change));
+    let tangent = Tangent::new(
+        &*model.potential(1.0, &[]),
+        &model.held(),
+        LinearSolver::Direct,
+    );
+    let found = tangent
+        .and_then(|mut tangent| compliance(&mut tangent, &model, (1.0, corrected, &[]), &change));
     found.map_err(|fault| Error::Solve {
         model: "multipliers".into(),
         step: grip.describe(),

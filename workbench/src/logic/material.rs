@@ -106,6 +106,7 @@ fn fit(question: &FitQuestion) -> Result<Ranking, Error> {
             .map(|file| file.name.clone())
             .collect(),
         reading: question.reading.clone(),
+        base_card: None,
     };
     let fitted = |fit: &Fit| fitted(fit, &tests, &provenance);
     Ok(Ranking {

@@ -176,12 +176,13 @@ fn grids(mut bodies: Bodies, fields: &[ShownField]) -> Result<Vec<NamedFile>, Er
         let sheet = Sheet {
             law: &*bodies.sheet.law,
             thickness: bodies.sheet.thickness,
+            past: &[],
         };
         let body = bodies.made(*model);
         let grid = Grid::sheet(sheet, &body.mesh, displacement);
         files.push((format!("{}.vtu", file_name(*model)), vtk::grid(&grid)));
         if let Some(springs) = body.springs() {
-            let bars = Grid::springs(springs, displacement);
+            let bars = Grid::springs(springs, displacement, &[]);
             files.push(("springs.vtu".to_owned(), vtk::grid(&bars)));
         }
     }

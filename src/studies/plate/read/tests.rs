@@ -162,3 +162,40 @@ fn a_stretch_beyond_the_stability_of_the_law_is_a_warning() {
         "{told}"
     );
 }
+
+/// A study of a card that softens, with more text.
+fn softening(more: &str) -> Result<Study, Error> {
+    let card = crate::material::Card::load("neo-hooke", Path::new("."))
+        .unwrap()
+        .text;
+    let card = format!("{card}\n[softening]\nr = 1.6\nm = \"5 kPa\"\nbeta = 0.1\n");
+    let files = [("soft.toml".into(), card.into_bytes())];
+    let text = format!("[material]\ncard = \"soft.toml\"\n{more}");
+    crate::document::with_files(files, || parse(&text))
+}
+
+#[test]
+fn only_a_material_that_softens_is_unloaded() {
+    let history = "[load]\nstretches = [\"30 %\", \"60 %\", \"20 %\", \"60 %\"]\n";
+    let told = faults(history);
+    assert!(
+        told[0].contains("from small to large") && told[0].contains("[softening]"),
+        "{told:?}"
+    );
+    let direct = "[corrector]\nmethod = \"direct\"\n";
+    let study = softening(&format!("{history}{direct}")).unwrap();
+    assert_eq!(study.problem.stretches, [0.3, 0.6, 0.2, 0.6]);
+    let refused = |text: &str, words: &[&str]| {
+        let fault = softening(text).unwrap_err().to_string();
+        assert!(words.iter().all(|word| fault.contains(word)), "{fault}");
+    };
+    refused(history, &["corrector.method", "climb", "direct"]);
+    refused(
+        &format!("{direct}[mass_spring]\narea_term = true\n"),
+        &["area_term", "do not soften"],
+    );
+    refused(
+        &format!("{direct}[load]\nstretches = [\"30 %\", \"30 %\"]\n"),
+        &["must differ"],
+    );
+}

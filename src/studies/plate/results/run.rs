@@ -11,6 +11,7 @@ use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
 use crate::finite_element::recovery::Recovery;
 use crate::mass_spring::MassSpring;
+use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
 use crate::problem::{ClampedPlate, Measures, Model, Solution};
 use crate::solve::{NewtonSettings, State};
@@ -28,6 +29,9 @@ pub fn progress_steps(study: &Study) -> usize {
 /// # Errors
 /// [`Error::Solve`] of the first model where no model has any solution.
 pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
+    if study.lattice.area_term {
+        check_memory(&*study.problem.law, "the area term of the lattice")?;
+    }
     let mut run = Run::new(study, progress);
     let plate = &study.problem;
     let springs = MassSpring::new(plate, study.cells, study.lattice);
@@ -38,6 +42,10 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let estimates = run.timed("finite elements' error", |_| {
         let recovery = Recovery::new(&finest.model.mesh);
         let states = &finest.solution.states;
+        if plate.law.softening().is_some() {
+            // Recovery knows no history.
+            return vec![None; states.len()];
+        }
         let found = finest.model.estimates(plate, states, &recovery).into_iter();
         found.map(Result::ok).collect()
     });
@@ -50,20 +58,27 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let reference_field = Reference::new(plate, meshes);
     let lattice = &springs.mesh;
     let compare = |(step, stretch): (usize, &f64)| {
-        let deviation = |state, measures| reference_field.deviation(lattice, state, measures, step);
+        let deviation = |state, past: &[&[f64]], measures| {
+            reference_field.deviation(lattice, (state, past), measures, step)
+        };
         let springs = uncorrected.states.get(step);
+        let past = corrected[..step].iter().flatten();
+        let past: Vec<&[f64]> = past.map(|own| &own.state.displacement[..]).collect();
         StepComparison {
             stretch: *stretch,
-            mass_spring: springs.and_then(|state| deviation(state, Measures::of(lattice, state))),
+            mass_spring: springs.and_then(|state| {
+                deviation(state, &uncorrected.past(step), Measures::of(lattice, state))
+            }),
             corrected: corrected[step]
                 .as_ref()
-                .and_then(|own| deviation(&own.state, own.measures)),
+                .and_then(|own| deviation(&own.state, &past, own.measures)),
             reference: reference_field.self_convergence(step),
         }
     };
     Ok(Results {
         reference_on_lattice: reference_field.displacements_on(lattice),
         comparison: plate.stretches.iter().enumerate().map(compare).collect(),
+        remembers: plate.law.softening().is_some(),
         springs,
         uncorrected,
         corrected,
@@ -187,17 +202,29 @@ impl<'a> Run<'a> {
     fn correct(&mut self, springs: &Solution) -> Vec<Option<CorrectedState>> {
         let (study, plate, lattice) = (self.study, &self.study.problem, &springs.mesh);
         let settings = &study.corrector;
-        let corrector = PlateCorrector::new(plate, lattice, settings.scheme, settings.direct);
+        let mut corrector = Some(PlateCorrector::new(
+            plate,
+            lattice,
+            settings.scheme,
+            settings.direct,
+        ));
         let even = |climb| Climb::even(plate, study.cells, settings.scheme, climb);
         let mut climb = settings.climb.map(even);
+        let remembers = plate.law.softening().is_some();
         let mut correct = |(step, stretch): (usize, &f64)| {
             let affine = || plate.affine(lattice, *stretch);
             let data = springs
                 .displacement(step)
                 .map_or_else(affine, <[f64]>::to_vec);
+            let own = corrector.take()?;
             let corrected = match &mut climb {
-                Some(climb) => corrector.climb(climb, &data, *stretch),
-                None => corrector.correct(&data, *stretch, KnownConditions::ALL),
+                Some(climb) => own.climb(climb, &data, *stretch),
+                None => own.correct(&data, *stretch, KnownConditions::ALL),
+            };
+            // What a body remembers of a state that was not found is not known: nothing follows it.
+            corrector = match &corrected {
+                Ok(found) => Some(own.after(&found.state)),
+                Err(_) => (!remembers).then_some(own),
             };
             tell(self.progress, "corrector", *stretch);
             corrected.map_err(|end| self.ends.push(end)).ok()
@@ -230,6 +257,10 @@ pub fn fields(
     stretch: f64,
     progress: Progress,
 ) -> Result<[ModelField; 3], Error> {
+    check_memory(
+        &*study.problem.law,
+        "a comparison with another program's field",
+    )?;
     let stretches = &mut study.problem.stretches;
     stretches.retain(|before| *before * stretch > 0.0 && before.abs() < stretch.abs());
     stretches.push(stretch);

@@ -25,6 +25,8 @@ struct Last {
     groups: Vec<GroupState>,
     /// Whether it lies between two load factors of the study, so that nothing else holds it.
     between: bool,
+    /// The fields before, where the material remembers them.
+    past: Vec<Vec<f64>>,
 }
 
 impl End {
@@ -41,6 +43,14 @@ impl End {
                 groups: model.reactions(state).at_groups(&specimen.groups()),
                 state: state.clone(),
                 between: end.last.is_some(),
+                past: match specimen.problem.law.softening() {
+                    Some(_) => end
+                        .states
+                        .iter()
+                        .map(|state| state.displacement.clone())
+                        .collect(),
+                    None => Vec::new(),
+                },
             }),
         }
     }
@@ -102,7 +112,9 @@ pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &
             file,
         ]);
         if last.between {
-            let grid = Grid::sheet(specimen.sheet(), &last.mesh, &last.state.displacement);
+            let past: Vec<&[f64]> = last.past.iter().map(Vec::as_slice).collect();
+            let sheet = specimen.sheet().after(&past);
+            let grid = Grid::sheet(sheet, &last.mesh, &last.state.displacement);
             outcome.grids.push(GridSeries::single(&last.file, grid));
         }
     }

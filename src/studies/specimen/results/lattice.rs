@@ -7,7 +7,7 @@ use crate::error::{Error, SolveFault};
 use crate::mass_spring::MassSpring;
 use crate::problem::{Model, Solution};
 use crate::solve::vector::difference;
-use crate::solve::{NewtonSettings, PathEnd, State};
+use crate::solve::{Loading, NewtonSettings, PathEnd, State};
 use crate::studies::Progress;
 use crate::studies::specimen::problem::Specimen;
 
@@ -135,7 +135,9 @@ impl<'a> Corrections<'a> {
         let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
         for (step, factor) in self.specimen.factors.iter().enumerate() {
             let springs = uncorrected.displacement(step);
-            match self.at(step, *factor, springs, &change) {
+            let history = states.last().map(|before| self.model.remembered(before));
+            let at = (step, *factor, &*history.unwrap_or_default());
+            match self.at(at, springs, &change) {
                 Ok((state, start)) => {
                     if let Some(data) = springs {
                         change = difference(&state.displacement, data);
@@ -155,8 +157,7 @@ impl<'a> Corrections<'a> {
     /// Corrects the springs' field at a load factor; where there is none, or no way from it, load steps lead there.
     fn at(
         &mut self,
-        step: usize,
-        factor: f64,
+        (step, factor, history): (usize, f64, &[f64]),
         springs: Option<&[f64]>,
         change: &[f64],
     ) -> Result<(State, Start), Box<End>> {
@@ -167,7 +168,7 @@ impl<'a> Corrections<'a> {
                 .zip(change)
                 .map(|(u, change)| u + change)
                 .collect();
-            if let Ok(field) = self.correct(data, &near, factor) {
+            if let Ok(field) = self.correct(data, &near, (factor, history)) {
                 return Ok((field, Start::Springs));
             }
         }
@@ -188,15 +189,15 @@ impl<'a> Corrections<'a> {
         };
         let reached = reached.displacement.clone();
         let start = springs.map_or(Start::Alone, |_| Start::LoadSteps);
-        let found = self.correct(springs.unwrap_or(&reached), &reached, factor);
+        let found = self.correct(springs.unwrap_or(&reached), &reached, (factor, history));
         let found = found.map_err(|fault| Box::new(End::at(&model.name, factor, fault)));
         found.map(|field| (field, start))
     }
 
-    fn correct(&self, data: &[f64], start: &[f64], factor: f64) -> Result<State, SolveFault> {
+    fn correct(&self, data: &[f64], start: &[f64], at: (f64, &[f64])) -> Result<State, SolveFault> {
         if data.len() >= LARGE {
-            return correct_without_multipliers(self.model, start, factor, NEWTON);
+            return correct_without_multipliers(self.model, start, at, NEWTON);
         }
-        Ok(correct(self.model, data, start, factor, CORRECTOR)?.state)
+        Ok(correct(self.model, data, start, at, CORRECTOR)?.state)
     }
 }

@@ -7,6 +7,7 @@ use gelbench::budget::Budget;
 use gelbench::corrector::DifferenceScheme;
 use gelbench::error::Error;
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
+use gelbench::material::softened_law::check_memory;
 use gelbench::material::{Card, HyperelasticLaw};
 use gelbench::mesh::{CellShape, Mesh, Side};
 use gelbench::problem::sheet_energy::SheetEnergy;
@@ -96,6 +97,7 @@ impl Bodies {
     pub fn of(scene: &Scene) -> Result<Self, Error> {
         let [lattice, elements] = meshes(scene)?;
         let card = Card::parse(&scene.card.name, &scene.card.reference(), &scene.card.text)?;
+        check_memory(&*card.law, "the workbench")?;
         let sheet = Sheet {
             law: card.law,
             thickness: scene.thickness,

@@ -36,8 +36,8 @@ impl Loading for OnTheWay<'_> {
         }
     }
 
-    fn potential(&self, _: f64) -> Box<dyn Potential + '_> {
-        self.model.potential(1.0)
+    fn potential<'a>(&'a self, _: f64, _: &'a [f64]) -> Box<dyn Potential + 'a> {
+        self.model.potential(1.0, &[])
     }
 
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {

@@ -1,0 +1,139 @@
+//! The softening of a fit: its parameters, and the cycles of the tests with what each of them dissipates.
+
+use super::cycles::Branches;
+use super::test_data::{Observation, Test, TestData};
+use crate::material::{HyperelasticLaw, Softening};
+
+/// The softening of a fit.
+#[derive(Clone, Debug)]
+pub struct Softened {
+    /// Its parameters.
+    pub softening: Softening,
+    /// How many of the fit's parameters are the law's; none where the law is that of a card.
+    pub of_law: usize,
+    /// The text of the card whose law it is; `None` where the law is found.
+    pub card: Option<String>,
+    /// The fitted stresses at all observations of each test, in the measure of the data, in MPa.
+    pub predicted: Vec<Vec<f64>>,
+    /// The cycles of all tests.
+    pub cycles: Vec<SofteningCycle>,
+}
+
+/// Loading and unloading from one beginning of a loading to the next one, or to the end of the record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SofteningCycle {
+    /// The test's name.
+    pub test: String,
+    /// The stretch at the end of the loading.
+    pub stretch: f64,
+    /// ∮ P dλ of the measured stresses by trapezoids, in mJ/mm³; not a number where the test has stresses that do work along
+    /// another axis and were not measured.
+    pub measured: f64,
+    /// The same of the fitted ones.
+    pub fitted: f64,
+    /// The difference of Ψ between the cycle's ends, which the fitted one comes near to with short steps.
+    pub closed_form: f64,
+    /// D after the cycle less that before it.
+    pub dissipated: f64,
+}
+
+/// The cycles of a test with the stresses that a law with softening has at all its observations.
+pub fn cycles(
+    data: &TestData,
+    law: &dyn HyperelasticLaw,
+    softening: Softening,
+    predicted: &[f64],
+) -> Vec<SofteningCycle> {
+    let record = Record::of(data, law, predicted);
+    let mut most = 0.0_f64;
+    let ends = record.ends();
+    let of_cycle = |pair: &[usize]| {
+        let own = &record.rows[pair[0]..=pair[1]];
+        let [first, last] = [own[0].energy, own[own.len() - 1].energy];
+        let before = most.max(first);
+        most = own.iter().fold(before, |most, row| most.max(row.energy));
+        let [measured, fitted] = record.work(own);
+        let far = own.iter().map(|row| row.strain);
+        let far = far.fold(
+            0.0,
+            |most: f64, x| if x.abs() > most.abs() { x } else { most },
+        );
+        SofteningCycle {
+            test: data.name.clone(),
+            stretch: 1.0 + far,
+            measured,
+            fitted,
+            closed_form: softening.energy(last, most) - softening.energy(first, before),
+            dissipated: softening.dissipated(most) - softening.dissipated(before),
+        }
+    };
+    ends.windows(2).map(of_cycle).collect()
+}
+
+/// A row along the axis that does work.
+struct Row {
+    strain: f64,
+    /// W₀ in mJ/mm³.
+    energy: f64,
+    /// Measured and fitted nominal stress in MPa.
+    stresses: [f64; 2],
+}
+
+/// The rows of a test along the axis that does work.
+struct Record {
+    rows: Vec<Row>,
+    /// How many such axes there are; not a number where the work is not that of one stress.
+    axes: f64,
+}
+
+impl Record {
+    fn of(data: &TestData, law: &dyn HyperelasticLaw, predicted: &[f64]) -> Self {
+        let axis = match data.test {
+            Test::Uniaxial => data.axes[0],
+            _ => data.drawn_axis,
+        };
+        let rows = data.observations.iter().zip(predicted);
+        let rows = rows.filter(|(one, _)| one.axis == axis);
+        let row = |(one, fitted): (&Observation, &f64)| {
+            let x = one.strains[axis];
+            let nominal = |stress| data.stress_measure.to_nominal(stress, x);
+            Row {
+                strain: data.drawn_strain(one),
+                energy: data.state_of(law, one)[0],
+                stresses: [one.stress, *fitted].map(nominal),
+            }
+        };
+        Self {
+            rows: rows.map(row).collect(),
+            axes: match data.test {
+                Test::Uniaxial | Test::Planar => 1.0,
+                Test::Equibiaxial => 2.0,
+                Test::Biaxial => f64::NAN,
+            },
+        }
+    }
+
+    /// The rows at which cycles begin, and the last one.
+    fn ends(&self) -> Vec<usize> {
+        let strains: Vec<f64> = self.rows.iter().map(|row| row.strain).collect();
+        let branches = Branches::of(&strains);
+        let mut ends: Vec<usize> = branches.loading.iter().map(|rows| rows.start).collect();
+        if let Some(first) = ends.first_mut() {
+            *first = 0;
+        }
+        ends.extend(self.rows.len().checked_sub(1));
+        ends
+    }
+
+    /// ∫ P dλ of measured and fitted stresses over some rows, by trapezoids, in mJ/mm³.
+    fn work(&self, rows: &[Row]) -> [f64; 2] {
+        let mut work = [0.0; 2];
+        for pair in rows.windows(2) {
+            let along = self.axes * (pair[1].strain - pair[0].strain);
+            for (part, sum) in work.iter_mut().enumerate() {
+                *sum += 0.5 * (pair[0].stresses[part] + pair[1].stresses[part]) * along;
+            }
+        }
+        work
+    }
+}

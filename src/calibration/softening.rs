@@ -1,0 +1,278 @@
+//! Softening: a law with the pseudo-elasticity of Ogden and Roxburgh fitted to loading and unloading.
+//!
+//! The rows of a test are its history, in the order of the file: Wₘ of a row is the largest W₀ of it and of those before. The
+//! law's parameters are found together with r, m and β, or they are those of a card, and r, m and β alone are found.
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::fit::{Fit, check_measures, fit};
+use super::least_squares::{self, Precision, Residuals, minimise, sum_of_squares};
+use super::quality::{
+    Deviations, Quality, aicc, estimates, rounded, stable_ranges, stretch_range, untested,
+};
+use super::settings::{FitSettings, limits};
+use super::softened::{Softened, cycles};
+use super::softening_misfit::{Base, SOFTENING, SofteningMisfit, softening_parameters};
+use super::test_data::{Observation, TestData};
+use super::verdict::LeftOver;
+use super::warnings::warnings;
+use crate::error::Error;
+use crate::material::parameters::Parameter;
+use crate::material::registry::{Law, MARLOW_TABLE};
+use crate::material::{Card, HyperelasticLaw, SoftenedLaw};
+
+/// Fits a law that softens to some tests together.
+///
+/// # Errors
+/// [`Error::Input`] where the tests never unload, where there are too few points, and as [`fit`].
+pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
+    check_measures(tests)?;
+    check_cycles(tests)?;
+    let first = first_loading(base, tests, settings)?;
+    let (of_law, scale) = (first.parameters.clone(), first.fitted.youngs_modulus());
+    let misfit = SofteningMisfit::new(base, of_law.len(), tests, settings);
+    let largest = misfit.largest_energy(&*first.fitted);
+    let mut parameters = of_law;
+    parameters.extend(softening_parameters(largest));
+    let rows = misfit.count();
+    if rows <= parameters.len() + 1 {
+        let message = format!(
+            "{} parameters need more than {rows} points",
+            parameters.len()
+        );
+        return Err(Error::input(message, "measure more points"));
+    }
+    let bounds = limits(first.law, &parameters, &settings.bounds, scale)?;
+    let start: Vec<f64> = parameters.iter().map(|one| one.value).collect();
+    let values = minimum(&misfit, &start, &bounds, largest).ok_or_else(|| {
+        let message = format!("{}: no softening describes the data", first.law.name);
+        Error::input(message, "look at the strains, or choose another law")
+    })?;
+    let whole = Whole {
+        misfit: &misfit,
+        tests,
+        settings,
+        bounds: &bounds,
+    };
+    Ok(whole.finished(first, parameters, &values))
+}
+
+/// That the tests unload somewhere: softening is not seen in a first loading.
+fn check_cycles(tests: &[TestData]) -> Result<(), Error> {
+    let falls = |data: &TestData| {
+        let strain = |one: &Observation| data.drawn_strain(one).abs();
+        let mut most = 0.0_f64;
+        let after = data.observations.iter().map(|one| {
+            most = most.max(strain(one));
+            most - strain(one)
+        });
+        let fall = after.fold(0.0, f64::max);
+        fall > 0.1 * most
+    };
+    if tests.iter().any(falls) {
+        return Ok(());
+    }
+    let hint =
+        "softening is fitted to loading and unloading: give the whole record, with `--cycle all`";
+    Err(Error::input("no test unloads", hint))
+}
+
+/// The law that the search begins with.
+struct First {
+    law: &'static Law,
+    fitted: Arc<dyn HyperelasticLaw>,
+    /// Those that are found together with the softening.
+    parameters: Vec<Parameter>,
+    choices: Vec<(&'static str, String)>,
+}
+
+/// The law of the first loading: fitted to the rows that no earlier one exceeds, or that of a card.
+fn first_loading(base: Base, tests: &[TestData], settings: &FitSettings) -> Result<First, Error> {
+    let law = match base {
+        Base::Law(law) => law,
+        Base::Card(card) => return of_card(card),
+    };
+    if law.name == MARLOW_TABLE {
+        let message = format!("{MARLOW_TABLE} takes a curve as it is, without unloading");
+        let hint =
+            "choose a law with parameters, or give a card of the first loading with `--card`";
+        return Err(Error::input(message, hint));
+    }
+    let own = |(key, _): &&(String, [f64; 2])| !SOFTENING.contains(&&**key);
+    let of_law = FitSettings {
+        bounds: settings.bounds.iter().filter(own).cloned().collect(),
+        ..settings.clone()
+    };
+    let rising: Vec<TestData> = tests.iter().map(rising).collect();
+    let found = fit(law, &rising, &of_law)?;
+    Ok(First {
+        law,
+        fitted: found.fitted.into(),
+        parameters: found.parameters,
+        choices: found.choices,
+    })
+}
+
+/// A card as the law of the first loading, without parameters to be found.
+fn of_card(card: &Card) -> Result<First, Error> {
+    let law = Law::named(&card.law_name).ok_or_else(|| {
+        let message = format!("the law of the card `{}` is none of gelbench's", card.name);
+        Error::input(
+            message,
+            "take a card with a law of `gelbench materials list`",
+        )
+    })?;
+    Ok(First {
+        law,
+        fitted: Arc::clone(&card.law),
+        parameters: Vec::new(),
+        choices: Vec::new(),
+    })
+}
+
+/// The rows of a test that no earlier one exceeds by more than a hundredth.
+fn rising(data: &TestData) -> TestData {
+    let mut most = 0.0_f64;
+    let mut rows = Vec::new();
+    for one in &data.observations {
+        let strain = data.drawn_strain(one).abs();
+        most = most.max(strain);
+        if strain >= 0.99 * most {
+            rows.push(*one);
+        }
+    }
+    TestData {
+        observations: rows,
+        ..data.clone()
+    }
+}
+
+/// The best values from several softenings, that of the start among them.
+fn minimum(
+    misfit: &SofteningMisfit,
+    start: &[f64],
+    bounds: &[[f64; 2]],
+    largest: f64,
+) -> Option<Vec<f64>> {
+    let of_law = start.len() - SOFTENING.len();
+    let mut starts = Vec::new();
+    for r in [1.3, 2.0, 4.0] {
+        for width in [0.05, 0.3] {
+            for beta in [0.01, 0.3] {
+                let own = [r, width * largest, beta];
+                let mut values: Vec<f64> = start[..of_law].iter().copied().chain(own).collect();
+                for (value, [low, high]) in values.iter_mut().zip(bounds) {
+                    *value = value.clamp(*low, *high);
+                }
+                starts.push(values);
+            }
+        }
+    }
+    let improved = |start: &Vec<f64>| {
+        let found = minimise(misfit, start, bounds, Precision::Rough)?;
+        Some((sum_of_squares(misfit, &found), found))
+    };
+    let rough: Vec<(f64, Vec<f64>)> = starts.par_iter().filter_map(improved).collect();
+    let (_, best) = rough.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(minimise(misfit, &best, bounds, Precision::Full).unwrap_or(best))
+}
+
+/// What the values that were found are judged by.
+struct Whole<'a> {
+    misfit: &'a SofteningMisfit<'a>,
+    tests: &'a [TestData],
+    settings: &'a FitSettings,
+    bounds: &'a [[f64; 2]],
+}
+
+impl Whole<'_> {
+    fn finished(&self, first: First, mut parameters: Vec<Parameter>, values: &[f64]) -> Fit {
+        for (parameter, value) in parameters.iter_mut().zip(values) {
+            parameter.value = *value;
+        }
+        let fitted = self.misfit.law(values);
+        let predicted = self.misfit.stresses(values);
+        let softening = self.misfit.softening(values);
+        let mut quality = self.quality(&*fitted, values, &predicted);
+        quality.warnings = warnings(&quality, &parameters, None);
+        let tests = self.tests.iter().zip(&predicted);
+        let of_tests = tests.flat_map(|(data, own)| cycles(data, &*fitted, softening, own));
+        let softened = Softened {
+            softening,
+            of_law: self.misfit.of_law,
+            card: match self.misfit.base {
+                Base::Law(_) => None,
+                Base::Card(card) => Some(card.text.clone()),
+            },
+            cycles: of_tests.collect(),
+            predicted,
+        };
+        Fit {
+            law: first.law,
+            fitted: Box::new(SoftenedLaw::unloaded(fitted, softening)),
+            parameters,
+            choices: first.choices,
+            curve: Vec::new(),
+            stress_measure: self.misfit.measure(),
+            settings: self.settings.clone(),
+            quality,
+            relaxed: None,
+            softened: Some(softened),
+        }
+    }
+
+    fn quality(
+        &self,
+        law: &dyn HyperelasticLaw,
+        values: &[f64],
+        predicted: &[Vec<f64>],
+    ) -> Quality {
+        let held = |(value, [low, high]): (&f64, &[f64; 2])| {
+            let near = |limit: f64| (value - limit).abs() <= 1e-6 * value.abs().max(1e-9);
+            near(*low) || near(*high)
+        };
+        let at_bound: Vec<bool> = values.iter().zip(self.bounds).map(held).collect();
+        let jacobian = least_squares::jacobian(self.misfit, values, &at_bound);
+        let free: Vec<usize> = (0..values.len())
+            .filter(|index| !at_bound[*index])
+            .collect();
+        let mut residual = DVector::zeros(self.misfit.count());
+        self.misfit.evaluate(values, residual.as_mut_slice());
+        let weighting = self.settings.weighting;
+        let left_over = LeftOver {
+            curves: self.misfit.curves(),
+            design: &jacobian.select_columns(&free),
+            residual: &residual,
+            rounded: rounded(self.tests, law, weighting) * residual.len() as f64,
+        };
+        let (verdict, noise) = left_over.judge().unzip();
+        let (estimated, correlation) = estimates(values, &at_bound, noise.as_ref());
+        let deviations = Deviations::of(self.tests, weighting, &|test, row| predicted[test][row]);
+        let points = self.misfit.count();
+        let n = points as f64;
+        let effective = verdict.map_or(n, |verdict| verdict.effective_points);
+        let count = (values.len() + 1) as f64;
+        Quality {
+            points,
+            sum_of_squares: deviations.squares,
+            rmse: (deviations.squares / n).sqrt(),
+            nmad_percent: deviations.nmad_percent(),
+            r_squared: 1.0 - deviations.squares / deviations.spread,
+            aicc: aicc(deviations.weighted, [n, effective], count),
+            weighted_sum: deviations.weighted,
+            largest_relative_error_percent: 100.0 * deviations.largest_relative,
+            verdict,
+            estimates: estimated,
+            at_bound,
+            correlation,
+            noise,
+            stable: stable_ranges(law, self.tests),
+            stretch_range: stretch_range(self.tests.iter()),
+            untested: untested(self.tests),
+            warnings: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! A law that softens, at a point and along a strip.
+
+use std::sync::Arc;
+
+use super::code::{Code, CodeLaw};
+use super::law::{HyperelasticLaw, TensionResponse};
+use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
+use super::softening::Softening;
+use crate::error::Error;
+
+/// A law whose points all had the same largest energy: that of a load step, while it stays the same.
+#[derive(Clone, Debug)]
+pub struct SoftenedLaw {
+    /// The law of the material that was never loaded.
+    pub virgin: Arc<dyn HyperelasticLaw>,
+    /// How it softens.
+    pub softening: Softening,
+    /// Wₘ in mJ/mm³.
+    pub largest_energy: f64,
+}
+
+impl SoftenedLaw {
+    /// A material that was never loaded.
+    pub fn unloaded(virgin: Arc<dyn HyperelasticLaw>, softening: Softening) -> Self {
+        Self {
+            virgin,
+            softening,
+            largest_energy: 0.0,
+        }
+    }
+}
+
+impl HyperelasticLaw for SoftenedLaw {
+    fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
+        let virgin = self.virgin.stress(kinematics);
+        self.softening.stress(virgin, self.largest_energy)
+    }
+
+    fn response(&self, kinematics: &Kinematics) -> SheetResponse {
+        let virgin = self.virgin.response(kinematics);
+        self.softening.response(virgin, self.largest_energy)
+    }
+
+    fn tension(&self, direction: [f64; 2], strain: f64) -> TensionResponse {
+        let virgin = self.virgin.tension(direction, strain);
+        self.softening.tension(virgin, self.largest_energy)
+    }
+
+    fn volume_ratio(&self, kinematics: &Kinematics) -> f64 {
+        self.virgin.volume_ratio(kinematics)
+    }
+
+    fn thickness_stretch(&self, kinematics: &Kinematics) -> f64 {
+        self.virgin.thickness_stretch(kinematics)
+    }
+
+    fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
+        self.virgin.thickness_gradient(kinematics)
+    }
+
+    fn thickness_stress(&self, kinematics: &Kinematics) -> f64 {
+        let (energy, _) = self.virgin.stress(kinematics);
+        let [factor, _] = self.softening.factor(energy, self.largest_energy);
+        factor * self.virgin.thickness_stress(kinematics)
+    }
+
+    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &Gradient) -> [f64; 3] {
+        self.virgin.cauchy_stress(kinematics, stress)
+    }
+
+    fn plane_state(&self) -> PlaneState {
+        self.virgin.plane_state()
+    }
+
+    fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
+        Some(Arc::new(Self {
+            virgin: self.virgin.in_plane_strain()?,
+            ..self.clone()
+        }))
+    }
+
+    fn bulk_modulus(&self) -> Option<f64> {
+        self.virgin.bulk_modulus()
+    }
+
+    /// That of the first loading: the softening is [`HyperelasticLaw::softening`]'s.
+    fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {
+        self.virgin.in_code(code, bulk_modulus)
+    }
+
+    fn softening(&self) -> Option<Softening> {
+        Some(self.softening)
+    }
+
+    fn statements(&self) -> Vec<(&'static str, String)> {
+        let Softening { r, m, beta } = self.softening;
+        let told =
+            format!("r = {r}, m = {m} MPa, β = {beta} (Ogden and Roxburgh, of the whole energy)");
+        let mut all = self.virgin.statements();
+        all.push(("softening", told));
+        all
+    }
+
+    fn is_objective(&self) -> bool {
+        self.virgin.is_objective()
+    }
+
+    fn is_isotropic(&self) -> bool {
+        self.virgin.is_isotropic()
+    }
+}
+
+impl Softening {
+    /// Energy, stress and slope of a strip with free edges: they are free where they were.
+    pub fn tension(&self, virgin: TensionResponse, most: f64) -> TensionResponse {
+        let [factor, slope] = self.factor(virgin.energy, most);
+        let stress = virgin.nominal_stress;
+        TensionResponse {
+            energy: self.energy(virgin.energy, most),
+            nominal_stress: factor * stress,
+            slope: factor * virgin.slope + slope * stress * stress,
+        }
+    }
+}
+
+/// That a material does not soften, for what has no memory of its largest load.
+///
+/// # Errors
+/// [`Error::Input`] where it does.
+pub fn check_memory(law: &dyn HyperelasticLaw, what: &str) -> Result<(), Error> {
+    match law.softening() {
+        None => Ok(()),
+        Some(_) => {
+            let message =
+                format!("the material softens, and {what} has no memory of its largest load");
+            Err(Error::input(message, WITHOUT))
+        }
+    }
+}
+
+/// Energy and stress of a law at a state, after its point was in some others: those of a material that softens by the largest of
+/// their energies, else the law's own.
+pub fn stress_after(
+    law: &dyn HyperelasticLaw,
+    now: &Kinematics,
+    past: impl IntoIterator<Item = Gradient>,
+) -> (f64, Gradient) {
+    let virgin = law.stress(now);
+    let Some(softening) = law.softening() else {
+        return virgin;
+    };
+    let states = past.into_iter().filter_map(|h| Kinematics::new(&h).ok());
+    let energies = states.map(|state| law.stress(&state).0);
+    softening.stress(virgin, energies.fold(0.0, f64::max))
+}
+
+/// What to do where a material must not soften.
+pub const WITHOUT: &str =
+    "leave out the card's `[softening]`: its law is then that of the first loading";
+
+#[cfg(test)]
+mod tests;
