@@ -20,7 +20,7 @@ use nalgebra::Vector4;
 use crate::finite_element::FiniteElements;
 use crate::finite_element::convergence::{Richardson, of_distances, richardson};
 use crate::material::sheet::Kinematics;
-use crate::material::softened_law::stress_after;
+use crate::material::softened_law::StressAfter;
 use crate::mesh::{Mesh, NodalField};
 use crate::problem::{ClampedPlate, Measures};
 use crate::solve::State;
@@ -194,7 +194,7 @@ impl<'a> Reference<'a> {
     fn stress(&self, gradient: [f64; 4], past: impl Iterator<Item = [f64; 4]>) -> Vector4<f64> {
         match Kinematics::new(&Vector4::from(gradient)) {
             Ok(kinematics) => {
-                stress_after(&*self.problem.law, &kinematics, past.map(Vector4::from)).1
+                StressAfter::new(&*self.problem.law, &kinematics, past.map(Vector4::from)).stress
             }
             Err(_) => Vector4::repeat(f64::NAN),
         }

@@ -114,6 +114,14 @@ fn a_strip_is_loaded_unloaded_and_loaded_again() {
     }
     let page = fs::read_to_string(folder.path().join("output/softening_strip/report.md")).unwrap();
     assert!(page.contains("Stored and dissipated energy"));
+    // ParaView shows every step, and how soft each cell is.
+    let vtk = folder.path().join("output/softening_strip/vtk");
+    let steps = fs::read_to_string(vtk.join("corrected.pvd")).unwrap();
+    for step in 1..=9 {
+        assert!(steps.contains(&format!("timestep=\"{step}\"")), "{steps}");
+    }
+    let grid = fs::read(vtk.join("finite_element_004.vtu")).unwrap();
+    assert!(String::from_utf8_lossy(&grid).contains("softening_factor"));
 }
 
 #[test]

@@ -138,20 +138,42 @@ pub fn check_memory(law: &dyn HyperelasticLaw, what: &str) -> Result<(), Error> 
     }
 }
 
-/// Energy and stress of a law at a state, after its point was in some others: those of a material that softens by the largest of
-/// their energies, else the law's own.
-pub fn stress_after(
-    law: &dyn HyperelasticLaw,
-    now: &Kinematics,
-    past: impl IntoIterator<Item = Gradient>,
-) -> (f64, Gradient) {
-    let virgin = law.stress(now);
-    let Some(softening) = law.softening() else {
-        return virgin;
-    };
-    let states = past.into_iter().filter_map(|h| Kinematics::new(&h).ok());
-    let energies = states.map(|state| law.stress(&state).0);
-    softening.stress(virgin, energies.fold(0.0, f64::max))
+/// A law at a state, after its point was in some others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StressAfter {
+    /// Ψ, the work that was done on the point, in mJ/mm³.
+    pub energy: f64,
+    /// First Piola–Kirchhoff stress in MPa.
+    pub stress: Gradient,
+    /// η; 1 for a law without softening.
+    pub factor: f64,
+}
+
+impl StressAfter {
+    /// Of a material that softens by the largest of the energies before, else the law's own.
+    pub fn new(
+        law: &dyn HyperelasticLaw,
+        now: &Kinematics,
+        past: impl IntoIterator<Item = Gradient>,
+    ) -> Self {
+        let virgin = law.stress(now);
+        let Some(softening) = law.softening() else {
+            return Self {
+                energy: virgin.0,
+                stress: virgin.1,
+                factor: 1.0,
+            };
+        };
+        let states = past.into_iter().filter_map(|h| Kinematics::new(&h).ok());
+        let most = states.map(|state| law.stress(&state).0).fold(0.0, f64::max);
+        let (energy, stress) = softening.stress(virgin, most);
+        let [factor, _] = softening.factor(virgin.0, most);
+        Self {
+            energy,
+            stress,
+            factor,
+        }
+    }
 }
 
 /// What to do where a material must not soften.

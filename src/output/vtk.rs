@@ -150,11 +150,14 @@ fn attribute(array: &Array) -> Attribute {
     })
 }
 
-/// ParaView's collection of `.vtu` files by their names, with the stretch or the load factor as their times.
+/// ParaView's collection of `.vtu` files by their names, with the stretch or the load factor as their times; with the number of the
+/// step where those fall or come again, because ParaView shows one file at each time, in the order of the times.
 pub fn collection(grids: &[(f64, String)]) -> Vec<u8> {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
-    let steps = grids.iter();
-    let data_set = |writer: &mut Writer<Vec<u8>>, (time, name): &(f64, String)| {
+    let rising = grids.windows(2).all(|pair| pair[0].0 < pair[1].0);
+    let steps = grids.iter().enumerate();
+    let data_set = |writer: &mut Writer<Vec<u8>>, (step, (time, name)): (usize, &(f64, String))| {
+        let time = if rising { *time } else { (step + 1) as f64 };
         let (time, file) = (time.to_string(), format!("{name}.vtu"));
         let attributes = [
             ("timestep", time.as_str()),
@@ -229,6 +232,14 @@ mod tests {
             collection.contains("timestep=\"0.25\" part=\"0\" file=\"corrected_00002.vtu\""),
             "{collection}"
         );
+        let back = [0.5, 1.0, 0.5].map(|factor| (factor, "a".to_owned()));
+        let collection = String::from_utf8(super::collection(&back)).unwrap();
+        for step in 1..=3 {
+            assert!(
+                collection.contains(&format!("timestep=\"{step}\"")),
+                "{collection}"
+            );
+        }
         let end = GridSeries::single("corrected_end", point);
         assert_eq!(super::files(&end).count(), 1);
     }

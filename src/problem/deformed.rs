@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
-use crate::material::softened_law::stress_after;
+use crate::material::softened_law::StressAfter;
 use crate::mesh::Mesh;
 
 /// A sheet with the displacements of its nodes, whichever model they come from.
@@ -117,7 +117,7 @@ impl DeformedSheet {
         let (cell, local) = self.locate(point)?;
         let gradient = |field: &Vec<f64>| Gradient::from(self.mesh.gradient_at(field, cell, local));
         let past = self.past.iter().map(gradient);
-        let (_, stress) = stress_after(&*self.law, &kinematics, past);
+        let StressAfter { stress, .. } = StressAfter::new(&*self.law, &kinematics, past);
         Ok(Stress {
             first_piola_kirchhoff: stress.into(),
             cauchy: self.law.cauchy_stress(&kinematics, &stress),

@@ -55,8 +55,8 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
 }
 
 /// What follows from the displacement gradients in the centres of the cells. The nominal stress is Pᵀ: its first index is the
-/// reference direction.
-pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 12] {
+/// reference direction. Of a material that softens, what it has left of the stress is one more.
+pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let states = cell_states(sheet.law, mesh, &sheet.fields(displacement));
     let wrinkling = Wrinkling::of_cells(sheet.law, mesh, &states);
     let states = || states.iter();
@@ -71,7 +71,7 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 12] 
     let compressed = wrinkling.compressed.iter();
     let compressed = compressed.map(|is| f64::from(u8::from(*is)));
     let thickness = states().map(|state| sheet.thickness * state.stretches[2]);
-    [
+    let mut arrays = vec![
         Array::tensors("nominal_stress_MPa", nominal),
         tensors("cauchy_stress_MPa", |state| state.cauchy),
         of("von_mises_stress_MPa", LocalState::von_mises),
@@ -89,5 +89,9 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 12] 
         of("first_invariant_I1", |state| 3.0 + state.i1_minus_3),
         Array::scalars("thickness_mm", thickness),
         of("energy_density_mJ_per_mm3", |state| state.energy),
-    ]
+    ];
+    if sheet.law.softening().is_some() {
+        arrays.push(of("softening_factor", |state| state.softening_factor));
+    }
+    arrays
 }

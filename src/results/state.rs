@@ -3,8 +3,8 @@
 use nalgebra::Vector4;
 
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::{Gradient, Kinematics};
-use crate::material::softened_law::stress_after;
+use crate::material::sheet::Kinematics;
+use crate::material::softened_law::StressAfter;
 use crate::mesh::Mesh;
 
 /// What the material says of a displacement gradient.
@@ -22,6 +22,8 @@ pub struct LocalState {
     pub i1_minus_3: f64,
     /// Energy per reference volume in mJ/mm³.
     pub energy: f64,
+    /// What softening has left of the stress; 1 without it.
+    pub softening_factor: f64,
 }
 
 impl LocalState {
@@ -36,18 +38,25 @@ impl LocalState {
             return Self::unknown();
         };
         let past = past.iter().map(|gradient| Vector4::from(*gradient));
-        let (energy, p) = stress_after(law, &kinematics, past);
+        let after = StressAfter::new(law, &kinematics, past);
+        let p = after.stress;
         let [s11, s12, s22] = law.cauchy_stress(&kinematics, &p);
         let [c11, c12, c22] = kinematics.stretch_change;
         let thickness = law.thickness_stretch(&kinematics);
         let [larger, smaller] = kinematics.principal_stretches();
         Self {
             first_piola_kirchhoff: p.into(),
-            cauchy: [s11, s22, thickness_stress(law, &kinematics, &p), s12],
+            cauchy: [
+                s11,
+                s22,
+                after.factor * law.thickness_stress(&kinematics),
+                s12,
+            ],
             green_lagrange: [c11, c22, thickness * thickness - 1.0, c12].map(|c| 0.5 * c),
             stretches: [larger, smaller, thickness],
             i1_minus_3: kinematics.invariants.i1_minus_3,
-            energy,
+            energy: after.energy,
+            softening_factor: after.factor,
         }
     }
 
@@ -59,6 +68,7 @@ impl LocalState {
             stretches: [f64::NAN; 3],
             i1_minus_3: f64::NAN,
             energy: f64::NAN,
+            softening_factor: f64::NAN,
         }
     }
 
@@ -86,15 +96,6 @@ impl LocalState {
 fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
     let (mean, radius) = (0.5 * (s11 + s22), (0.5 * (s11 - s22)).hypot(s12));
     [mean + radius, mean - radius]
-}
-
-/// σ₃₃ with the stress P in the plane, both softened alike.
-fn thickness_stress(law: &dyn HyperelasticLaw, kinematics: &Kinematics, p: &Gradient) -> f64 {
-    let virgin = law.thickness_stress(kinematics);
-    if virgin == 0.0 || law.softening().is_none() {
-        return virgin;
-    }
-    virgin * p.norm() / law.stress(kinematics).1.norm()
 }
 
 /// The states in the centres of the cells, of displacement fields as [`LocalState::of`] takes gradients.
@@ -145,11 +146,30 @@ fn nodal_gradients(mesh: &Mesh, displacement: &[f64]) -> Vec<[f64; 4]> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
-    use crate::material::NeoHooke;
+    use crate::material::{NeoHooke, SoftenedLaw, Softening};
     use crate::mesh::{CellShape, Shape};
 
     const LAW: NeoHooke = NeoHooke { c10: 0.5 };
+
+    #[test]
+    fn softening_takes_its_factor_from_all_stresses() {
+        let softening = Softening {
+            r: 2.0,
+            m: 0.01,
+            beta: 0.1,
+        };
+        let law = SoftenedLaw::unloaded(Arc::new(LAW), softening);
+        let [small, large] = [[0.2, 0.1, 0.0, -0.1], [0.6, 0.1, 0.0, -0.2]];
+        let [virgin, soft] = [&[small][..], &[large, small]].map(|past| LocalState::of(&law, past));
+        assert_eq!(virgin.softening_factor, 1.0);
+        assert!((0.5..0.9).contains(&soft.softening_factor));
+        for (soft_stress, stress) in soft.cauchy.iter().zip(virgin.cauchy) {
+            assert!((soft_stress - soft.softening_factor * stress).abs() < 1e-14);
+        }
+    }
 
     #[test]
     fn uniaxial_tension_has_its_stress_and_strain_at_every_node_and_in_every_cell() {
