@@ -5,11 +5,13 @@
 //! table ─reading─▶ TestData ─fit─▶ Fit ─quality─▶ Quality ─▶ card, picture, JSON
 //! ```
 
+mod assessment;
 mod card_text;
 mod conversion;
 mod cycles;
 mod fit;
 mod history;
+mod judged;
 mod layout;
 mod least_squares;
 mod misfit;

@@ -30,6 +30,7 @@ mod softening;
 mod state;
 mod stress_unit;
 mod surface;
+mod work;
 pub mod wrinkling;
 
 pub use array::{Array, Components};
@@ -51,6 +52,7 @@ pub use sheet_arrays::Sheet;
 pub use sheet_figures::{SheetField, sheet_figures};
 pub use state::{LocalState, cell_states, nodal_states};
 pub use surface::Surface;
+pub use work::work_blocks;
 
 /// What the publication claims, and what came out here.
 #[derive(Clone, Debug, PartialEq)]

@@ -31,7 +31,7 @@ pub use loading::{Loading, State};
 pub use newton::{Approach, Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
-pub use potential::{DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum};
+pub use potential::{After, DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum};
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, FactorFault, SparseLu};
 pub use tangent::Tangent;

@@ -14,9 +14,10 @@
 
 use rayon::prelude::*;
 
+use super::assessment::Assessment;
 use super::least_squares::{self, Residuals};
 use super::misfit::Misfit;
-use super::quality::{Assessment, Quality};
+use super::quality::Quality;
 use super::search::Search;
 use super::settings::{FitSettings, MEASURE, limits};
 use super::softened::Softened;

@@ -2,11 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::{self, Residuals};
-use super::misfit::Misfit;
 use super::settings::{SMALLEST_SHARE, Weighting};
 use super::test_data::{Observation, Test, TestData};
-use super::verdict::{LeftOver, Verdict};
+use super::verdict::Verdict;
 use crate::material::HyperelasticLaw;
 use crate::material::curve::Mode;
 use crate::material::stability::stable_range;
@@ -114,91 +112,6 @@ impl Quality {
     /// Whether the law is stable in the uniaxial, planar and equibiaxial tests as far as the data go.
     pub fn is_stable(&self) -> bool {
         self.stable.iter().all(StableRange::is_enough)
-    }
-}
-
-/// What is assessed: a law with its values and the tests that it was fitted to.
-pub(super) struct Assessment<'a> {
-    pub misfit: &'a Misfit<'a>,
-    pub weighting: Weighting,
-    pub tests: &'a [TestData],
-    pub law: &'a dyn HyperelasticLaw,
-    pub values: &'a [f64],
-    /// Lower and upper limit of each value.
-    pub bounds: &'a [[f64; 2]],
-}
-
-impl Assessment<'_> {
-    /// The figures of the fit, without warnings.
-    pub fn quality(&self) -> Quality {
-        let values = self.values;
-        let points = self.tests.iter().map(|test| test.observations.len()).sum();
-        let deviations = Deviations::of(self.tests, self.weighting, &|test, row| {
-            let data = &self.tests[test];
-            data.stress_of(self.law, &data.observations[row])
-        });
-        let at_bound = self.at_bound();
-        let judged = self.judge(&at_bound, points, deviations.weighted);
-        let (verdict, noise) = judged.unzip();
-        let (estimates, correlation) = estimates(values, &at_bound, noise.as_ref());
-        let n = points as f64;
-        let effective = verdict.map_or(n, |verdict| verdict.effective_points);
-        Quality {
-            points,
-            sum_of_squares: deviations.squares,
-            rmse: (deviations.squares / n).sqrt(),
-            nmad_percent: deviations.nmad_percent(),
-            r_squared: 1.0 - deviations.squares / deviations.spread,
-            aicc: aicc(
-                deviations.weighted,
-                [n, effective],
-                (values.len() + 1) as f64,
-            ),
-            weighted_sum: deviations.weighted,
-            largest_relative_error_percent: 100.0 * deviations.largest_relative,
-            verdict,
-            estimates,
-            correlation,
-            at_bound,
-            noise,
-            stable: stable_ranges(self.law, self.tests),
-            stretch_range: stretch_range(self.tests.iter()),
-            untested: untested(self.tests),
-            warnings: Vec::new(),
-        }
-    }
-
-    fn at_bound(&self) -> Vec<bool> {
-        let at_bound = |(value, [low, high]): (&f64, &[f64; 2])| {
-            let near = |limit: f64| (value - limit).abs() <= 1e-9 * value.abs().max(1e-300);
-            near(*low) || near(*high)
-        };
-        self.values.iter().zip(self.bounds).map(at_bound).collect()
-    }
-
-    /// What the residuals are, and what the values are worth that no bound holds.
-    fn judge(&self, fixed: &[bool], points: usize, weighted: f64) -> Option<(Verdict, CurveNoise)> {
-        let jacobian = least_squares::jacobian(self.misfit, self.values, fixed);
-        let free: Vec<usize> = (0..fixed.len()).filter(|index| !fixed[*index]).collect();
-        let rows = self.misfit.count();
-        let mut residual = DVector::zeros(rows);
-        self.misfit.evaluate(self.values, residual.as_mut_slice());
-        let left_over = LeftOver {
-            curves: self.misfit.curves(),
-            design: &jacobian.select_columns(&free),
-            residual: &residual,
-            rounded: rounded(self.tests, self.law, self.weighting) * rows as f64,
-        };
-        let (mut verdict, noise) = left_over.judge()?;
-        // Points that were gathered count as many as their means are the less scattered.
-        let estimates = self.values.len();
-        let [own, of_means] = [(weighted, points), (residual.norm_squared(), rows)]
-            .map(|(sum, count)| sum / (count - estimates.min(count - 1)) as f64);
-        if rows < points && verdict.answer.has_intervals() {
-            let gathered = points as f64 / rows as f64;
-            verdict.effective_points *= gathered * (own / of_means).min(1.0);
-        }
-        Some((verdict, noise))
     }
 }
 

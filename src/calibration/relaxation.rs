@@ -10,22 +10,20 @@ use std::fmt::Write;
 use super::cycles::Branches;
 use super::fit::{Fit, Relaxed, check_measures, fit};
 use super::history::History;
-use super::least_squares::{self, Residuals};
+use super::judged::{AT_BOUND, Judged, at_bound};
+use super::least_squares::Residuals;
 use super::prony::{Found, ViscousMisfit};
-use super::quality::{
-    Deviations, Quality, aicc, estimates, rounded, stable_ranges, stretch_range, untested,
-};
+use super::quality::{Deviations, Quality, aicc, estimates, rounded};
 use super::settings::{FitSettings, MEASURE, limits};
 use super::terms::{SHARES, TIMES, Terms, parameters, transformed};
 use super::test_data::{TestData, Times};
-use super::verdict::{LeftOver, Verdict};
 use super::warnings::warnings;
 use crate::error::Error;
 use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::{Law, MARLOW_TABLE};
 use crate::material::viscosity::Covered;
 use crate::statistics::{CurveNoise, Estimate, extremes};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 /// Fits a law with a Prony series to some tests together.
 ///
@@ -120,9 +118,6 @@ fn resolved(histories: &[History]) -> Result<[f64; 2], Error> {
     Err(Error::input("the times of the tests do not differ", hint))
 }
 
-/// Which values a bound holds, and what is left.
-type Judged = (Vec<bool>, Option<(Verdict, CurveNoise)>);
-
 /// What a chosen series is judged by.
 struct Whole<'a> {
     misfit: &'a ViscousMisfit<'a>,
@@ -148,8 +143,7 @@ impl Whole<'_> {
         let judged = nearest
             .map(|(terms, found)| self.judged(*terms, &found.1))
             .transpose()?;
-        let effective = judged.and_then(|(_, judged)| judged);
-        let effective = effective.map_or(rows, |(verdict, _)| verdict.effective_points);
+        let effective = judged.map_or(rows, |judged| judged.effective(rows));
         let criterion =
             |(terms, found): &(usize, Found)| aicc(found.0, [rows, effective], self.count(*terms));
         let tried: Vec<(usize, f64)> = candidates
@@ -174,7 +168,7 @@ impl Whole<'_> {
         tried: Vec<(usize, f64)>,
         counted: [f64; 2],
     ) -> Result<Fit, Error> {
-        let (bounded, judged) = self.judged(terms, &values)?;
+        let judged = self.judged(terms, &values)?;
         let mut parameters = parameters(self.law_parameters, terms, self.resolved);
         for (index, (parameter, value)) in parameters.iter_mut().zip(&values).enumerate() {
             parameter.value = if self.is_logarithmic(index) {
@@ -183,32 +177,13 @@ impl Whole<'_> {
                 *value
             };
         }
-        let (verdict, noise) = judged.unzip();
-        let (estimated, correlation) = self.estimated(&values, &bounded, noise.as_ref());
+        let estimated = self.estimated(&values, &judged.at_bound, judged.noise.as_ref());
         let fitted = self.misfit.law(&values);
         let relaxed = self.relaxed(&values, tried)?;
         let predicted = |test: usize, row: usize| relaxed.predicted[test][row];
         let deviations = Deviations::of(self.tests, self.settings.weighting, &predicted);
-        let points: usize = self.tests.iter().map(|test| test.observations.len()).sum();
-        let mut quality = Quality {
-            points,
-            sum_of_squares: deviations.squares,
-            rmse: (deviations.squares / points as f64).sqrt(),
-            nmad_percent: deviations.nmad_percent(),
-            r_squared: 1.0 - deviations.squares / deviations.spread,
-            aicc: aicc(sum, counted, self.count(terms)),
-            weighted_sum: deviations.weighted,
-            largest_relative_error_percent: 100.0 * deviations.largest_relative,
-            verdict,
-            estimates: estimated,
-            at_bound: bounded,
-            correlation,
-            noise,
-            stable: stable_ranges(&*fitted, self.tests),
-            stretch_range: stretch_range(self.tests.iter()),
-            untested: untested(self.tests),
-            warnings: Vec::new(),
-        };
+        let aicc = aicc(sum, counted, self.count(terms));
+        let mut quality = judged.quality((&*fitted, self.tests), &deviations, estimated, aicc);
         quality.warnings = warnings(&quality, &parameters, None);
         quality
             .warnings
@@ -255,23 +230,11 @@ impl Whole<'_> {
         let scale = 1.0;
         let limits = limits(self.law(), &all, &self.settings.bounds, scale);
         let limits = transformed(limits, self.law_parameters.len())?;
-        let held = |(value, [low, high]): (&f64, &[f64; 2])| {
-            let near = |limit: f64| (value - limit).abs() <= 1e-6 * value.abs().max(1e-9);
-            near(*low) || near(*high)
-        };
-        let bounded: Vec<bool> = values.iter().zip(&limits).map(held).collect();
-        let jacobian = least_squares::jacobian(self.misfit, values, &bounded);
-        let free: Vec<usize> = (0..values.len()).filter(|index| !bounded[*index]).collect();
-        let mut residual = DVector::zeros(self.misfit.count());
-        self.misfit.evaluate(values, residual.as_mut_slice());
+        let at_bound = at_bound(values, &limits, AT_BOUND);
         let law = self.misfit.law(values);
-        let left_over = LeftOver {
-            curves: self.misfit.curves(),
-            design: &jacobian.select_columns(&free),
-            residual: &residual,
-            rounded: rounded(self.tests, &*law, self.settings.weighting) * residual.len() as f64,
-        };
-        Ok((bounded, left_over.judge()))
+        let rounded = rounded(self.tests, &*law, self.settings.weighting);
+        let left = (self.misfit as &dyn Residuals, self.misfit.curves());
+        Ok(Judged::of(left, values, at_bound, rounded))
     }
 
     fn law(&self) -> &'static Law {

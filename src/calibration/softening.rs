@@ -5,19 +5,16 @@
 
 use std::sync::Arc;
 
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::fit::{Fit, check_measures, fit};
-use super::least_squares::{self, Precision, Residuals, minimise, sum_of_squares};
-use super::quality::{
-    Deviations, Quality, aicc, estimates, rounded, stable_ranges, stretch_range, untested,
-};
+use super::judged::{AT_BOUND, Judged, at_bound};
+use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
+use super::quality::{Deviations, Quality, aicc, estimates, rounded};
 use super::settings::{FitSettings, limits};
 use super::softened::{Softened, cycles};
 use super::softening_misfit::{Base, SOFTENING, SofteningMisfit, softening_parameters};
 use super::test_data::{Observation, TestData};
-use super::verdict::LeftOver;
 use super::warnings::warnings;
 use crate::error::Error;
 use crate::material::parameters::Parameter;
@@ -230,49 +227,15 @@ impl Whole<'_> {
         values: &[f64],
         predicted: &[Vec<f64>],
     ) -> Quality {
-        let held = |(value, [low, high]): (&f64, &[f64; 2])| {
-            let near = |limit: f64| (value - limit).abs() <= 1e-6 * value.abs().max(1e-9);
-            near(*low) || near(*high)
-        };
-        let at_bound: Vec<bool> = values.iter().zip(self.bounds).map(held).collect();
-        let jacobian = least_squares::jacobian(self.misfit, values, &at_bound);
-        let free: Vec<usize> = (0..values.len())
-            .filter(|index| !at_bound[*index])
-            .collect();
-        let mut residual = DVector::zeros(self.misfit.count());
-        self.misfit.evaluate(values, residual.as_mut_slice());
         let weighting = self.settings.weighting;
-        let left_over = LeftOver {
-            curves: self.misfit.curves(),
-            design: &jacobian.select_columns(&free),
-            residual: &residual,
-            rounded: rounded(self.tests, law, weighting) * residual.len() as f64,
-        };
-        let (verdict, noise) = left_over.judge().unzip();
-        let (estimated, correlation) = estimates(values, &at_bound, noise.as_ref());
+        let at_bound = at_bound(values, self.bounds, AT_BOUND);
+        let left = (self.misfit as &dyn Residuals, self.misfit.curves());
+        let judged = Judged::of(left, values, at_bound, rounded(self.tests, law, weighting));
+        let estimates = estimates(values, &judged.at_bound, judged.noise.as_ref());
         let deviations = Deviations::of(self.tests, weighting, &|test, row| predicted[test][row]);
-        let points = self.misfit.count();
-        let n = points as f64;
-        let effective = verdict.map_or(n, |verdict| verdict.effective_points);
-        let count = (values.len() + 1) as f64;
-        Quality {
-            points,
-            sum_of_squares: deviations.squares,
-            rmse: (deviations.squares / n).sqrt(),
-            nmad_percent: deviations.nmad_percent(),
-            r_squared: 1.0 - deviations.squares / deviations.spread,
-            aicc: aicc(deviations.weighted, [n, effective], count),
-            weighted_sum: deviations.weighted,
-            largest_relative_error_percent: 100.0 * deviations.largest_relative,
-            verdict,
-            estimates: estimated,
-            at_bound,
-            correlation,
-            noise,
-            stable: stable_ranges(law, self.tests),
-            stretch_range: stretch_range(self.tests.iter()),
-            untested: untested(self.tests),
-            warnings: Vec::new(),
-        }
+        let n = self.misfit.count() as f64;
+        let counted = [n, judged.effective(n)];
+        let aicc = aicc(deviations.weighted, counted, (values.len() + 1) as f64);
+        judged.quality((law, self.tests), &deviations, estimates, aicc)
     }
 }

@@ -7,7 +7,7 @@ use miette::{
 use super::fit_message;
 use crate::error::{Diagnostic, Severity};
 use crate::material::Card;
-use crate::material::curve::Mode;
+use crate::material::curve::{Mode, far_end};
 use crate::material::stability::{SEARCHED, stable_range};
 use crate::results::{Results, Wanted, limit, number};
 
@@ -151,8 +151,7 @@ fn softening(card: &Card) -> String {
     let Some(softening) = card.law.softening() else {
         return String::new();
     };
-    let [low, high] = card.stretch_range;
-    let far = if high > 1.0 { high } else { low } - 1.0;
+    let far = far_end(card.stretch_range) - 1.0;
     let from = |share: f64| {
         let state = card.law.tension([1.0, 0.0], share * far);
         let most = state.energy;

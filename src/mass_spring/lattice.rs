@@ -102,23 +102,6 @@ impl Lattice {
         }
     }
 
-    /// An element of the lattice whose springs have a history.
-    fn evaluate(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-        history: &[f64],
-    ) -> Result<f64, Inadmissible> {
-        let energy = match element.checked_sub(self.springs.len()) {
-            None => Some(self.evaluate_spring(element, u, local, history)),
-            Some(cell) => self.evaluate_cell(cell, u, local),
-        };
-        energy
-            .filter(|energy| energy.is_finite())
-            .ok_or(Inadmissible { element })
-    }
-
     /// Energy a x₀ Ψ(λ), force a P and stiffness of one spring.
     fn evaluate_spring(&self, index: usize, u: &[f64], local: Local<'_>, history: &[f64]) -> f64 {
         let Spring {
@@ -188,31 +171,6 @@ impl Lattice {
     }
 }
 
-/// The energy of a lattice whose springs have a history.
-struct Remembering<'a> {
-    lattice: &'a Lattice,
-    history: &'a [f64],
-}
-
-impl Potential for Remembering<'_> {
-    fn connectivity(&self) -> &Connectivity {
-        self.lattice.connectivity()
-    }
-
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
-        self.lattice.evaluate(element, u, local, self.history)
-    }
-
-    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        self.lattice.instability(element, u)
-    }
-}
-
 /// Area of a cell with the displacements `u` of its corners, relative to the first of them.
 fn deformed_area(corners: &[[f64; 2]], u: &[f64]) -> f64 {
     let side = |i: usize| {
@@ -237,13 +195,23 @@ impl Potential for Lattice {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        self.evaluate(element, u, local, &[])
+        self.evaluate_after(element, u, local, &[])
     }
 
-    fn after<'a>(&'a self, history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
-        self.law.softening()?;
-        let lattice = self;
-        (!history.is_empty()).then(|| Box::new(Remembering { lattice, history }) as _)
+    fn evaluate_after(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+        history: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        let energy = match element.checked_sub(self.springs.len()) {
+            None => Some(self.evaluate_spring(element, u, local, history)),
+            Some(cell) => self.evaluate_cell(cell, u, local),
+        };
+        energy
+            .filter(|energy| energy.is_finite())
+            .ok_or(Inadmissible { element })
     }
 
     /// The largest energy of each spring; areas do not soften.

@@ -74,9 +74,14 @@ impl Sample {
     }
 }
 
+/// The end of a range of stretches to which a material is loaded: the upper one where it reaches into tension.
+pub fn far_end([low, high]: [f64; 2]) -> f64 {
+    if high > 1.0 { high } else { low }
+}
+
 /// The curves of a law from rest to the far end of a range of stretches.
-pub fn samples(law: &dyn HyperelasticLaw, [low, high]: [f64; 2]) -> Vec<Sample> {
-    let far = if high > 1.0 { high } else { low };
+pub fn samples(law: &dyn HyperelasticLaw, range: [f64; 2]) -> Vec<Sample> {
+    let far = far_end(range);
     let strain = |i: usize| (far - 1.0) * (i + 1) as f64 / 5.0;
     let modes = Mode::ALL.map(|(_, mode)| Some(mode)).into_iter();
     let sample = |mode: Option<Mode>| {

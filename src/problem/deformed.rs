@@ -16,6 +16,9 @@ pub struct DeformedSheet {
     past: Vec<Vec<f64>>,
 }
 
+/// A cell and natural coordinates in it.
+type Place = (usize, [f64; 2]);
+
 /// Stress at a point of a sheet, in MPa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stress {
@@ -103,7 +106,7 @@ impl DeformedSheet {
     /// # Errors
     /// [`PointFault`].
     pub fn principal_stretches_at(&self, point: [f64; 2]) -> Result<[f64; 3], PointFault> {
-        let kinematics = self.kinematics_at(point)?;
+        let kinematics = self.kinematics_in(self.locate(point)?, point)?;
         let [larger, smaller] = kinematics.principal_stretches();
         Ok([larger, smaller, self.law.thickness_stretch(&kinematics)])
     }
@@ -113,10 +116,9 @@ impl DeformedSheet {
     /// # Errors
     /// [`PointFault`].
     pub fn stress_at(&self, point: [f64; 2]) -> Result<Stress, PointFault> {
-        let kinematics = self.kinematics_at(point)?;
-        let (cell, local) = self.locate(point)?;
-        let gradient = |field: &Vec<f64>| Gradient::from(self.mesh.gradient_at(field, cell, local));
-        let past = self.past.iter().map(gradient);
+        let place = self.locate(point)?;
+        let kinematics = self.kinematics_in(place, point)?;
+        let past = self.past.iter().map(|field| self.gradient_in(place, field));
         let StressAfter { stress, .. } = StressAfter::new(&*self.law, &kinematics, past);
         Ok(Stress {
             first_piola_kirchhoff: stress.into(),
@@ -124,13 +126,16 @@ impl DeformedSheet {
         })
     }
 
-    fn kinematics_at(&self, point @ [x, y]: [f64; 2]) -> Result<Kinematics, PointFault> {
-        let (cell, local) = self.locate(point)?;
-        let gradient = Gradient::from(self.mesh.gradient_at(&self.displacement, cell, local));
+    fn kinematics_in(&self, place: Place, [x, y]: [f64; 2]) -> Result<Kinematics, PointFault> {
+        let gradient = self.gradient_in(place, &self.displacement);
         Kinematics::new(&gradient).map_err(|_| PointFault::Inverted { x, y })
     }
 
-    fn locate(&self, point @ [x, y]: [f64; 2]) -> Result<(usize, [f64; 2]), PointFault> {
+    fn gradient_in(&self, (cell, local): Place, field: &[f64]) -> Gradient {
+        Gradient::from(self.mesh.gradient_at(field, cell, local))
+    }
+
+    fn locate(&self, point @ [x, y]: [f64; 2]) -> Result<Place, PointFault> {
         match self.mesh.outside(point) <= ON_THE_EDGE {
             true => Ok(self.mesh.locate(point)),
             false => Err(PointFault::Outside { x, y }),

@@ -100,13 +100,9 @@ impl Loads {
     }
 
     /// The potential of an energy with these loads at a load factor.
-    pub fn on<'a>(
-        &'a self,
-        energy: Box<dyn Potential + 'a>,
-        factor: f64,
-    ) -> Box<dyn Potential + 'a> {
+    pub fn on<'a>(&'a self, energy: impl Potential + 'a, factor: f64) -> Box<dyn Potential + 'a> {
         if self.is_empty() {
-            return energy;
+            return Box::new(energy);
         }
         let unknowns = energy.unknowns();
         let force = |unknown: &usize| (*unknown, factor * self.force(*unknown));

@@ -10,7 +10,7 @@ use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::solve::vector::add_scaled;
 use crate::solve::{
-    Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State,
+    After, Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State,
     Tangent, compliance, follow, influence,
 };
 
@@ -151,9 +151,8 @@ impl<'a> Model<'a> {
     }
 
     /// The strain energy of the body with a history.
-    pub(super) fn energy_after<'b>(&'b self, history: &'b [f64]) -> Box<dyn Potential + 'b> {
-        let after = self.energy.after(history);
-        after.unwrap_or_else(|| Box::new(self.energy))
+    pub(super) fn energy_after<'b>(&'b self, history: &'b [f64]) -> After<'b> {
+        After::new(self.energy, history)
     }
 
     /// What was done on the material up to a state; `None` where it has no memory.
@@ -164,7 +163,7 @@ impl<'a> Model<'a> {
         }
         let energy = self.energy_after(&history);
         let mut residual = vec![0.0; state.displacement.len()];
-        let all = Assembly::residual(&*energy, &state.displacement, &mut residual);
+        let all = Assembly::residual(&energy, &state.displacement, &mut residual);
         let dissipated = self.energy.dissipated(&history);
         Some(Work {
             stored: all.unwrap_or(f64::NAN) - dissipated,

@@ -100,71 +100,9 @@ impl SheetEnergy {
         &self.points[self.point_starts[cell]..self.point_starts[cell + 1]]
     }
 
-    /// An element of the body with a history.
-    fn evaluate(
-        &self,
-        element: usize,
-        u: &[f64],
-        mut local: Local<'_>,
-        history: &[f64],
-    ) -> Result<f64, Inadmissible> {
-        let softening = self.law.softening().filter(|_| !history.is_empty());
-        let softening = softening.map(|own| (own, &history[self.point_starts[element]..]));
-        let mut energy = 0.0;
-        for (index, point) in self.cell_points(element).iter().enumerate() {
-            let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
-            let (density, stress) = match &mut local.stiffness {
-                None => {
-                    let virgin = self.law.stress(&kinematics);
-                    softening.map_or(virgin, |(own, most)| own.stress(virgin, most[index]))
-                }
-                Some(stiffness) => {
-                    let virgin = self.law.response(&kinematics);
-                    let response =
-                        softening.map_or(virgin, |(own, most)| own.response(virgin, most[index]));
-                    let tangent = response.tangent * point.volume;
-                    add_stiffness(stiffness, &point.gradients, tangent.as_slice());
-                    (response.energy, response.first_piola_kirchhoff_stress)
-                }
-            };
-            energy += point.volume * density;
-            point.add_force(&stress, local.residual);
-        }
-        if energy.is_finite() {
-            Ok(energy)
-        } else {
-            Err(Inadmissible { element })
-        }
-    }
-
     /// The material.
     pub fn law(&self) -> &dyn HyperelasticLaw {
         &*self.law
-    }
-}
-
-/// The energy of a sheet with a history.
-struct Remembering<'a> {
-    energy: &'a SheetEnergy,
-    history: &'a [f64],
-}
-
-impl Potential for Remembering<'_> {
-    fn connectivity(&self) -> &Connectivity {
-        self.energy.connectivity()
-    }
-
-    fn evaluate_element(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-    ) -> Result<f64, Inadmissible> {
-        self.energy.evaluate(element, u, local, self.history)
-    }
-
-    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        self.energy.instability(element, u)
     }
 }
 
@@ -207,13 +145,43 @@ impl Potential for SheetEnergy {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        self.evaluate(element, u, local, &self.history)
+        self.evaluate_after(element, u, local, &self.history)
     }
 
-    fn after<'a>(&'a self, history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
-        self.law.softening()?;
-        let energy = self;
-        (!history.is_empty()).then(|| Box::new(Remembering { energy, history }) as _)
+    fn evaluate_after(
+        &self,
+        element: usize,
+        u: &[f64],
+        mut local: Local<'_>,
+        history: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        let softening = self.law.softening().filter(|_| !history.is_empty());
+        let softening = softening.map(|own| (own, &history[self.point_starts[element]..]));
+        let mut energy = 0.0;
+        for (index, point) in self.cell_points(element).iter().enumerate() {
+            let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
+            let (density, stress) = match &mut local.stiffness {
+                None => {
+                    let virgin = self.law.stress(&kinematics);
+                    softening.map_or(virgin, |(own, most)| own.stress(virgin, most[index]))
+                }
+                Some(stiffness) => {
+                    let virgin = self.law.response(&kinematics);
+                    let response =
+                        softening.map_or(virgin, |(own, most)| own.response(virgin, most[index]));
+                    let tangent = response.tangent * point.volume;
+                    add_stiffness(stiffness, &point.gradients, tangent.as_slice());
+                    (response.energy, response.first_piola_kirchhoff_stress)
+                }
+            };
+            energy += point.volume * density;
+            point.add_force(&stress, local.residual);
+        }
+        if energy.is_finite() {
+            Ok(energy)
+        } else {
+            Err(Inadmissible { element })
+        }
     }
 
     fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {

@@ -9,6 +9,7 @@ use super::{Axis, Line, LineChart, PALETTE, Stroke};
 use super::{Drawing, Scale};
 use crate::calibration::{Fit, Softened, TestData};
 use crate::material::Card;
+use crate::material::curve::far_end;
 
 const INK: [u8; 3] = [60, 60, 60];
 /// More markers than this are a blot.
@@ -90,8 +91,7 @@ pub(super) fn softening_json(softened: &Softened) -> Value {
 /// soften.
 pub(super) fn loops(card: &Card) -> Option<LineChart> {
     let softening = card.law.softening()?;
-    let [low, high] = card.stretch_range;
-    let far = if high > 1.0 { high } else { low } - 1.0;
+    let far = far_end(card.stretch_range) - 1.0;
     let along =
         |share: f64| (0..POINTS).map(move |point| share * far * point as f64 / (POINTS - 1) as f64);
     let virgin = |x: f64| card.law.tension([1.0, 0.0], x);

@@ -62,9 +62,18 @@ pub trait Potential: Sync {
         None
     }
 
-    /// The same energy of a body with a history, which is empty where the body was never loaded; `None` for a body without memory.
-    fn after<'a>(&'a self, _history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
-        None
+    /// [`evaluate_element`](Self::evaluate_element) of a body with a history; a body without memory has none.
+    ///
+    /// # Errors
+    /// As [`evaluate_element`](Self::evaluate_element).
+    fn evaluate_after(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+        _history: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        self.evaluate_element(element, u, local)
     }
 
     /// Takes the state `u` into a history; a body without memory leaves it empty.
@@ -113,8 +122,14 @@ impl<P: Potential + ?Sized> Potential for &P {
         (**self).instability(element, u)
     }
 
-    fn after<'a>(&'a self, history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
-        (**self).after(history)
+    fn evaluate_after(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+        history: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        (**self).evaluate_after(element, u, local, history)
     }
 
     fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
@@ -126,9 +141,22 @@ impl<P: Potential + ?Sized> Potential for &P {
     }
 }
 
-impl Potential for Box<dyn Potential + '_> {
+/// An energy of a body with a history, which is empty where the body was never loaded or has no memory.
+pub struct After<'a> {
+    energy: &'a dyn Potential,
+    history: &'a [f64],
+}
+
+impl<'a> After<'a> {
+    /// Π of a body that remembers what [`Potential::remember`] has taken into its history.
+    pub fn new(energy: &'a dyn Potential, history: &'a [f64]) -> Self {
+        Self { energy, history }
+    }
+}
+
+impl Potential for After<'_> {
     fn connectivity(&self) -> &Connectivity {
-        (**self).connectivity()
+        self.energy.connectivity()
     }
 
     fn evaluate_element(
@@ -137,27 +165,21 @@ impl Potential for Box<dyn Potential + '_> {
         u: &[f64],
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
-        (**self).evaluate_element(element, u, local)
+        match self.history.is_empty() {
+            true => self.energy.evaluate_element(element, u, local),
+            false => {
+                let history = self.history;
+                self.energy.evaluate_after(element, u, local, history)
+            }
+        }
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
-        (**self).skew_couplings()
+        self.energy.skew_couplings()
     }
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        (**self).instability(element, u)
-    }
-
-    fn after<'a>(&'a self, history: &'a [f64]) -> Option<Box<dyn Potential + 'a>> {
-        (**self).after(history)
-    }
-
-    fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
-        (**self).remember(history, u);
-    }
-
-    fn dissipated(&self, history: &[f64]) -> f64 {
-        (**self).dissipated(history)
+        self.energy.instability(element, u)
     }
 }
 

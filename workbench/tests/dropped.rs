@@ -48,18 +48,8 @@ fn corpora() -> Vec<(PathBuf, Vec<u8>)> {
 }
 
 fn field(name: &str, content: &[u8]) -> FieldQuestion {
-    FieldQuestion {
-        files: vec![(name.to_owned(), content.to_vec())],
-        card: CardFile::shipped("pva-10").unwrap(),
-        thickness: "2 mm".into(),
-        unit: String::new(),
-        columns: String::new(),
-        downwards: None,
-        edge_gap: String::new(),
-        cell_size: String::new(),
-        edges: Default::default(),
-        correct: false,
-    }
+    let card = CardFile::shipped("pva-10").unwrap();
+    FieldQuestion::of(vec![(name.to_owned(), content.to_vec())], card)
 }
 
 /// What is done with a file before anything is asked of it; whether it could be understood.

@@ -24,13 +24,7 @@ fn same(a: f64, b: f64) -> bool {
 /// The force of a model with the study that the page tells, computed here.
 fn native(study: &str, model: Model) -> [f64; 2] {
     let scene = Scene::open("page.toml".as_ref(), study, &[]).unwrap();
-    let task = Task {
-        number: 1,
-        scene,
-        model,
-        settled: true,
-        springs: None,
-    };
+    let task = Task::settled(&scene, model);
     Engine::default().answer(&task).result.unwrap().force
 }
 
@@ -110,19 +104,13 @@ fn fields_are_corrected(page: &mut Browser) {
     page.until(|told| told["tab"] == json!("Field"));
     page.press_with_control("Enter");
     let told = page.until(|told| told["verdicts"].is_array());
+    let files = vec![("measured_plate.csv".into(), text.into())];
     let question = FieldQuestion {
-        files: vec![("measured_plate.csv".into(), text.into())],
-        card: CardFile::shipped("pva-10").unwrap(),
-        thickness: "2 mm".into(),
-        unit: String::new(),
-        columns: String::new(),
-        downwards: None,
-        edge_gap: String::new(),
-        cell_size: String::new(),
         edges: ["bottom", "left", "right", "top"]
             .map(|name| (name.to_owned(), Edge::Unnamed))
             .into(),
         correct: true,
+        ..FieldQuestion::of(files, CardFile::shipped("pva-10").unwrap())
     };
     let here = FieldCorrector.answer(&question).unwrap();
     let (frames, _) = here.corrected.unwrap();

@@ -2,7 +2,7 @@
 
 use crate::compare::{Deviation, StepComparison};
 use crate::problem::ClampedPlate;
-use crate::results::{Block, Outcome, pictures};
+use crate::results::{Block, Outcome, pictures, work_blocks};
 use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
@@ -164,29 +164,18 @@ fn work(results: &Results) -> Vec<Block> {
         return Vec::new();
     }
     let row = |(index, step): (usize, &StepComparison)| {
-        let works = results.works(index);
-        let mut cells = vec![ClampedPlate::percent(step.stretch)];
-        cells.extend(works.map(|work| figure(work.map(|work| work.stored), 4)));
-        cells.extend(works.map(|work| figure(work.map(|work| work.dissipated), 4)));
-        cells
+        let works = results.works(index).to_vec();
+        (ClampedPlate::percent(step.stretch), works)
     };
-    let head = [
-        "stretch [%]",
-        "stored, mass-spring [mJ]",
-        "stored, corrected [mJ]",
-        "stored, finite elements [mJ]",
-        "dissipated, mass-spring [mJ]",
-        "dissipated, corrected [mJ]",
-        "dissipated, finite elements [mJ]",
-    ];
-    vec![
-        Block::heading("Stored and dissipated energy"),
-        Block::table(&head, results.comparison.iter().enumerate().map(row)),
+    let rows = results.comparison.iter().enumerate().map(row);
+    let mut blocks = work_blocks("stretch [%]", &MODELS, rows).to_vec();
+    blocks.push(
         Block::Paragraph(
             "The material softens by its largest load, at every point for itself: the stretches follow one another as the study lists \
              them, and what a point remembers changes at these stretches alone. The work of the grips is stored or dissipated; \
              what is dissipated grows with the largest load and does not come back. The strain energies above are both together."
                 .to_owned(),
         ),
-    ]
+    );
+    blocks
 }

@@ -21,8 +21,8 @@ mod path;
 mod plate;
 
 pub use bodies::Bodies;
-use bodies::Body;
 pub use bodies::meshes;
+use bodies::{Body, LastBodies};
 
 /// What is to be solved.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -37,6 +37,19 @@ pub struct Task {
     pub settled: bool,
     /// The springs' displacements at the same place of the grip, where the multipliers of their correction are wanted.
     pub springs: Option<Vec<f64>>,
+}
+
+impl Task {
+    /// A model of a sheet whose grip rests, by itself.
+    pub fn settled(scene: &Scene, model: Model) -> Self {
+        Self {
+            number: 1,
+            scene: scene.clone(),
+            model,
+            settled: true,
+            springs: None,
+        }
+    }
 }
 
 /// A solved model.
@@ -96,8 +109,7 @@ impl From<Error> for Fault {
 /// The models of the last scene, each in its last state.
 #[derive(Default)]
 pub struct Engine {
-    scene: Option<Scene>,
-    bodies: Option<Bodies>,
+    bodies: LastBodies,
 }
 
 impl Worker for Engine {
@@ -121,13 +133,7 @@ impl Worker for Engine {
 
 impl Engine {
     fn solve(&mut self, task: &Task) -> Result<Solved, Error> {
-        let known = self.scene.as_ref();
-        if !known.is_some_and(|known| known.same_sheet(&task.scene)) {
-            (self.scene, self.bodies) = (None, None);
-            self.bodies = Some(Bodies::of(&task.scene)?);
-            self.scene = Some(task.scene.clone());
-        }
-        let bodies = self.bodies.as_mut().expect("bodies were made");
+        let bodies = self.bodies.of(&task.scene)?;
         let (grip, colour) = (task.scene.grip, task.scene.look.colour);
         let sheet = bodies.sheet.clone();
         let known = task.scene.look.known;

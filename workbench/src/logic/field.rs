@@ -52,6 +52,24 @@ pub struct FieldQuestion {
     pub correct: bool,
 }
 
+impl FieldQuestion {
+    /// Files of which nothing is said yet, to be looked at.
+    pub fn of(files: Vec<NamedFile>, card: CardFile) -> Self {
+        Self {
+            files,
+            card,
+            thickness: "2 mm".to_owned(),
+            unit: String::new(),
+            columns: String::new(),
+            downwards: None,
+            edge_gap: String::new(),
+            cell_size: String::new(),
+            edges: BTreeMap::new(),
+            correct: false,
+        }
+    }
+}
+
 /// What is seen of the files before they are corrected.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Preview {

@@ -1,7 +1,5 @@
 //! Measured fields: files are dropped, looked at, edges are said, the field is corrected and judged.
 
-use std::collections::BTreeMap;
-
 use eframe::egui::{Button, Grid, ScrollArea, TextEdit, Ui};
 
 use super::surface::View;
@@ -46,18 +44,7 @@ impl Fields {
     /// Without a field.
     pub fn new(wake: Wake, card: CardFile) -> Self {
         Self {
-            question: FieldQuestion {
-                files: Vec::new(),
-                card,
-                thickness: "2 mm".to_owned(),
-                unit: String::new(),
-                columns: String::new(),
-                downwards: None,
-                edge_gap: String::new(),
-                cell_size: String::new(),
-                edges: BTreeMap::new(),
-                correct: false,
-            },
+            question: FieldQuestion::of(Vec::new(), card),
             corrector: Background::new(wake),
             found: None,
             frame: 0,

@@ -89,6 +89,29 @@ pub fn meshes(scene: &Scene) -> Result<[Mesh; 2], Error> {
     Ok([read.outline.lattice(), read.outline.reference_mesh(1)])
 }
 
+/// The bodies of the last scene, made anew where its sheet is another one.
+#[derive(Default)]
+pub struct LastBodies {
+    scene: Option<Scene>,
+    bodies: Option<Bodies>,
+}
+
+impl LastBodies {
+    /// Those of a scene.
+    ///
+    /// # Errors
+    /// As [`Bodies::of`].
+    pub fn of(&mut self, scene: &Scene) -> Result<&mut Bodies, Error> {
+        let known = self.scene.as_ref();
+        if !known.is_some_and(|known| known.same_sheet(scene)) {
+            (self.scene, self.bodies) = (None, None);
+            self.bodies = Some(Bodies::of(scene)?);
+            self.scene = Some(scene.clone());
+        }
+        Ok(self.bodies.as_mut().expect("bodies were made"))
+    }
+}
+
 impl Bodies {
     /// Prepares a scene.
     ///

@@ -56,16 +56,7 @@ mod tests {
 
     fn departure(scene: &Scene, model: Model) -> f64 {
         let mut engine = Engine::default();
-        let mut solved = |model| {
-            let task = Task {
-                number: 1,
-                scene: scene.clone(),
-                model,
-                settled: true,
-                springs: None,
-            };
-            engine.answer(&task).result.unwrap()
-        };
+        let mut solved = |model| engine.answer(&Task::settled(scene, model)).result.unwrap();
         let (found, elements) = (solved(model), solved(Model::Elements));
         let lattice = crate::logic::engine::meshes(scene).unwrap()[0].clone();
         let deviation = Deviation::of(scene, &lattice, &found, &elements);
@@ -95,13 +86,7 @@ mod tests {
             free_edges: false,
         });
         scene.grip.displacement[1] = 2.0;
-        let task = Task {
-            number: 1,
-            scene,
-            model: Model::Corrected,
-            settled: true,
-            springs: None,
-        };
+        let task = Task::settled(&scene, Model::Corrected);
         let fault = Engine::default().answer(&task).result.unwrap_err();
         assert!(fault.message.contains("only stretched"), "{fault:?}");
     }

@@ -13,7 +13,7 @@ use gelbench::material::viscosity::ViscousMaterial;
 use gelbench::mesh::Side;
 use gelbench::solve::Potential;
 
-use super::bodies::{Bodies, Body, Energy};
+use super::bodies::{Body, Energy, LastBodies};
 use super::{Fault, values};
 use crate::logic::background::Worker;
 use crate::logic::scene::{Colour, Model, Scene};
@@ -85,8 +85,7 @@ pub struct MotionAnswer {
 /// Moves the models of the last scene.
 #[derive(Default)]
 pub struct Mover {
-    scene: Option<Scene>,
-    bodies: Option<Bodies>,
+    bodies: LastBodies,
 }
 
 impl Worker for Mover {
@@ -110,13 +109,7 @@ impl Worker for Mover {
 impl Mover {
     fn moved(&mut self, question: &MotionQuestion) -> Result<MotionAnswer, Error> {
         let scene = &question.scene;
-        let known = self.scene.as_ref();
-        if !known.is_some_and(|known| known.same_sheet(scene)) {
-            (self.scene, self.bodies) = (None, None);
-            self.bodies = Some(Bodies::of(scene)?);
-            self.scene = Some(scene.clone());
-        }
-        let bodies = self.bodies.as_mut().expect("bodies were made");
+        let bodies = self.bodies.of(scene)?;
         let card = scene.card.read()?;
         let thickness = bodies.sheet.thickness;
         let sheet = bodies.sheet.clone();
@@ -247,6 +240,7 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::logic::engine::bodies::Bodies;
     use crate::logic::engine::{Engine, Task};
     use crate::logic::scene::{CardFile, Grip, Outline};
 
@@ -263,13 +257,7 @@ mod tests {
     }
 
     fn pulled(scene: &Scene, model: Model) -> MotionState {
-        let task = Task {
-            number: 1,
-            scene: scene.clone(),
-            model,
-            settled: true,
-            springs: None,
-        };
+        let task = Task::settled(scene, model);
         let displacement = Engine::default().answer(&task).result.unwrap().displacement;
         MotionState {
             time: 0.0,

@@ -3,11 +3,8 @@ use crate::logic::scene::Outline;
 
 fn task(scene: &Scene, model: Model, settled: bool) -> Task {
     Task {
-        number: 1,
-        scene: scene.clone(),
-        model,
         settled,
-        springs: None,
+        ..Task::settled(scene, model)
     }
 }
 

@@ -5,14 +5,7 @@ use crate::logic::scene::{CardFile, Grip, Outline};
 fn fields(scene: &Scene) -> Vec<ShownField> {
     let mut engine = Engine::default();
     let solved = |model: Model| {
-        let task = Task {
-            number: 1,
-            scene: scene.clone(),
-            model,
-            settled: true,
-            springs: None,
-        };
-        let found = engine.answer(&task).result.unwrap();
+        let found = engine.answer(&Task::settled(scene, model)).result.unwrap();
         (model, found.displacement, found.values)
     };
     Model::ALL.map(solved).into()
@@ -113,13 +106,8 @@ fn a_chart_goes_out_as_a_table() {
 
 fn field() -> FieldQuestion {
     let text = include_bytes!("../../../../examples/measured_plate.csv");
+    let files = vec![("measured_plate.csv".into(), text.to_vec())];
     FieldQuestion {
-        files: vec![("measured_plate.csv".into(), text.to_vec())],
-        card: CardFile::shipped("pva-10").unwrap(),
-        thickness: "2 mm".into(),
-        unit: String::new(),
-        columns: String::new(),
-        downwards: None,
         edge_gap: "0 mm".into(),
         cell_size: "10 mm".into(),
         edges: [
@@ -131,6 +119,7 @@ fn field() -> FieldQuestion {
         .map(|(name, edge)| (name.to_owned(), edge))
         .into(),
         correct: true,
+        ..FieldQuestion::of(files, CardFile::shipped("pva-10").unwrap())
     }
 }
 

@@ -1,0 +1,58 @@
+//! How far a law that was fitted can be trusted.
+
+use super::judged::{Judged, at_bound};
+use super::least_squares::Residuals;
+use super::misfit::Misfit;
+use super::quality::{Deviations, Quality, aicc, estimates, rounded};
+use super::settings::Weighting;
+use super::test_data::TestData;
+use crate::material::HyperelasticLaw;
+
+/// What is assessed: a law with its values and the tests that it was fitted to.
+pub struct Assessment<'a> {
+    pub misfit: &'a Misfit<'a>,
+    pub weighting: Weighting,
+    pub tests: &'a [TestData],
+    pub law: &'a dyn HyperelasticLaw,
+    pub values: &'a [f64],
+    /// Lower and upper limit of each value.
+    pub bounds: &'a [[f64; 2]],
+}
+
+impl Assessment<'_> {
+    /// The figures of the fit, without warnings.
+    pub fn quality(&self) -> Quality {
+        let values = self.values;
+        let points: usize = self.tests.iter().map(|test| test.observations.len()).sum();
+        let deviations = Deviations::of(self.tests, self.weighting, &|test, row| {
+            let data = &self.tests[test];
+            data.stress_of(self.law, &data.observations[row])
+        });
+        let judged = self.judge(points, deviations.weighted);
+        let estimates = estimates(values, &judged.at_bound, judged.noise.as_ref());
+        let n = points as f64;
+        let counted = [n, judged.effective(n)];
+        let aicc = aicc(deviations.weighted, counted, (values.len() + 1) as f64);
+        judged.quality((self.law, self.tests), &deviations, estimates, aicc)
+    }
+
+    /// What the residuals are, and what the values are worth that no bound holds.
+    fn judge(&self, points: usize, weighted: f64) -> Judged {
+        let at_bound = at_bound(self.values, self.bounds, [1e-9, 1e-300]);
+        let rounded = rounded(self.tests, self.law, self.weighting);
+        let left = (self.misfit as &dyn Residuals, self.misfit.curves());
+        let mut judged = Judged::of(left, self.values, at_bound, rounded);
+        let Some(verdict) = &mut judged.verdict else {
+            return judged;
+        };
+        // Points that were gathered count as many as their means are the less scattered.
+        let (rows, estimates) = (self.misfit.count(), self.values.len());
+        let [own, of_means] = [(weighted, points), (judged.sum_of_squares, rows)]
+            .map(|(sum, count)| sum / (count - estimates.min(count - 1)) as f64);
+        if rows < points && verdict.answer.has_intervals() {
+            let gathered = points as f64 / rows as f64;
+            verdict.effective_points *= gathered * (own / of_means).min(1.0);
+        }
+        judged
+    }
+}

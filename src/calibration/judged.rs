@@ -1,0 +1,101 @@
+//! What a fit has left, judged alike for laws, Prony series and softening.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::least_squares::{self, Residuals};
+use super::misfit::Rows;
+use super::quality::{Deviations, Quality, stable_ranges, stretch_range, untested};
+use super::test_data::TestData;
+use super::verdict::{LeftOver, Verdict};
+use crate::material::HyperelasticLaw;
+use crate::statistics::{CurveNoise, Estimate};
+
+/// How near to its bound a value is held by it where the search ends a little inside: a share, and the least size that counts.
+pub const AT_BOUND: [f64; 2] = [1e-6, 1e-9];
+
+/// Which values lie at their bounds, within a share of their size and of the least size that counts.
+pub fn at_bound(values: &[f64], bounds: &[[f64; 2]], [share, least]: [f64; 2]) -> Vec<bool> {
+    let held = |(value, [low, high]): (&f64, &[f64; 2])| {
+        let near = |limit: f64| (value - limit).abs() <= share * value.abs().max(least);
+        near(*low) || near(*high)
+    };
+    values.iter().zip(bounds).map(held).collect()
+}
+
+/// What the residuals of a fit are.
+pub struct Judged {
+    /// Which values a bound holds.
+    pub at_bound: Vec<bool>,
+    /// `None` where nothing is estimated, or no freedom is left.
+    pub verdict: Option<Verdict>,
+    /// What the values are worth that no bound holds; `None` likewise.
+    pub noise: Option<CurveNoise>,
+    /// The sum of squares of the residuals.
+    pub sum_of_squares: f64,
+}
+
+impl Judged {
+    /// Of the residuals at some values, in the order of their curves; `rounded` is the mean square that rounding alone leaves.
+    pub fn of(
+        (misfit, curves): (&dyn Residuals, Vec<Rows>),
+        values: &[f64],
+        at_bound: Vec<bool>,
+        rounded: f64,
+    ) -> Self {
+        let jacobian = least_squares::jacobian(misfit, values, &at_bound);
+        let free: Vec<usize> = (0..values.len())
+            .filter(|index| !at_bound[*index])
+            .collect();
+        let mut residual = DVector::zeros(misfit.count());
+        misfit.evaluate(values, residual.as_mut_slice());
+        let left_over = LeftOver {
+            curves,
+            design: &jacobian.select_columns(&free),
+            residual: &residual,
+            rounded: rounded * residual.len() as f64,
+        };
+        let (verdict, noise) = left_over.judge().unzip();
+        Self {
+            at_bound,
+            verdict,
+            noise,
+            sum_of_squares: residual.norm_squared(),
+        }
+    }
+
+    /// The number of independent points that tell as much of the noise as so many do.
+    pub fn effective(&self, points: f64) -> f64 {
+        self.verdict
+            .map_or(points, |verdict| verdict.effective_points)
+    }
+
+    /// The figures of a fit of a law to tests, without warnings.
+    pub fn quality(
+        self,
+        (law, tests): (&dyn HyperelasticLaw, &[TestData]),
+        deviations: &Deviations,
+        (estimates, correlation): (Vec<Estimate>, DMatrix<f64>),
+        aicc: f64,
+    ) -> Quality {
+        let points: usize = tests.iter().map(|test| test.observations.len()).sum();
+        Quality {
+            points,
+            sum_of_squares: deviations.squares,
+            rmse: (deviations.squares / points as f64).sqrt(),
+            nmad_percent: deviations.nmad_percent(),
+            r_squared: 1.0 - deviations.squares / deviations.spread,
+            aicc,
+            weighted_sum: deviations.weighted,
+            largest_relative_error_percent: 100.0 * deviations.largest_relative,
+            verdict: self.verdict,
+            estimates,
+            correlation,
+            at_bound: self.at_bound,
+            noise: self.noise,
+            stable: stable_ranges(law, tests),
+            stretch_range: stretch_range(tests.iter()),
+            untested: untested(tests),
+            warnings: Vec::new(),
+        }
+    }
+}
