@@ -225,12 +225,17 @@ impl Browser {
 
     /// Presses a button that the page tells the place of.
     pub fn press_button(&mut self, name: &str) {
-        let told = self.until(|told| told["places"][name].is_array());
-        // It may still be on its way to its place.
-        std::thread::sleep(Duration::from_millis(200));
-        let now = self.evaluate("window.gelbench.told()");
-        let told = if now.is_object() { now } else { told };
-        self.click([0, 1].map(|axis| told["places"][name][axis].as_f64().expect("a place")));
+        let mut place = Value::Null;
+        // It may still be on its way to its place, for as long as a busy machine takes to draw.
+        loop {
+            let told = self.until(|told| told["places"][name].is_array());
+            if told["places"][name] == place {
+                break;
+            }
+            place = told["places"][name].clone();
+            std::thread::sleep(Duration::from_millis(500));
+        }
+        self.click([0, 1].map(|axis| place[axis].as_f64().expect("a place")));
     }
 
     /// Presses a key.
