@@ -70,8 +70,8 @@ pub fn link(study: &str) -> Option<String> {
     location.href().ok()
 }
 
-/// Notes what is on the table.
-pub fn tell(bench: &Workbench) {
+/// Notes what is on the table, and how often it was drawn.
+pub fn tell(bench: &Workbench, drawn: u64) {
     let table = &bench.table;
     let model = |model: Model| {
         let shown = table.shown(model)?;
@@ -96,6 +96,7 @@ pub fn tell(bench: &Workbench) {
         .found()
         .and_then(|found| found.as_ref().ok());
     let told = json!({
+        "drawn": drawn,
         "tab": format!("{:?}", bench.tab()),
         "places": bench.places().iter().map(|(name, at)| (name, [at.x, at.y])).collect::<BTreeMap<_, _>>(),
         "moving": table.moving().map(|moving| [moving.clock(), moving.computed(), moving.duration()]),

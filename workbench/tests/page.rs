@@ -219,17 +219,24 @@ fn pictures_tables_and_fields_go_out_of_the_browser() {
         ("force over stretch as PNG", "force.png", b"\x89PNG"),
     ] {
         page.press_button("export");
+        page.until(|told| told["places"][offer].is_array());
         page.picture("export");
         page.press_button(offer);
-        let begun = Instant::now();
+        page.until(|told| {
+            told["told"]
+                .as_str()
+                .is_some_and(|told| told.starts_with(file))
+        });
         let path = folder.join(file);
+        let begun = Instant::now();
         while std::fs::metadata(&path).map_or(0, |about| about.len()) == 0 {
-            if begun.elapsed() > Duration::from_secs(60) {
-                let told = page.until(|_| true);
-                panic!("{offer} did not go out: {}", told["told"]);
-            }
+            assert!(
+                begun.elapsed() < Duration::from_secs(60),
+                "{offer} was told to be written, and is not there"
+            );
             std::thread::sleep(Duration::from_millis(50));
         }
+        page.until(|told| told["places"][offer].is_null());
         assert!(std::fs::read(&path).unwrap().starts_with(begin), "{offer}");
     }
 }

@@ -79,7 +79,7 @@ pub struct Workbench {
     shows_controls: Option<bool>,
     told: String,
     grip_at: Option<egui::Pos2>,
-    /// Where some of the buttons were drawn last, by their words.
+    /// Where some of the buttons stand in the last frame, by their words.
     places: BTreeMap<String, egui::Pos2>,
     measure: Option<Measure>,
 }
@@ -88,6 +88,8 @@ impl Workbench {
     /// With a scene on the table; `context` is told when something was solved.
     pub fn new(context: &egui::Context, scene: Scene) -> Self {
         fonts::install(context);
+        // A press stays a click where frames are slow; there is no menu that a long touch would open.
+        context.options_mut(|options| options.input_options.max_click_duration = 10.0);
         let context = context.clone();
         let wake: Wake = Arc::new(move || context.request_repaint());
         let background = || Background::new(Arc::clone(&wake));
@@ -189,7 +191,7 @@ impl Workbench {
         &self.told
     }
 
-    /// Where the buttons were drawn last that a program may press: by their words, in points.
+    /// Where the buttons stand in the last frame that a program may press: by their words, in points.
     pub fn places(&self) -> &BTreeMap<String, egui::Pos2> {
         &self.places
     }
@@ -221,6 +223,7 @@ impl Workbench {
 
     /// Draws a frame.
     pub fn show(&mut self, ui: &mut Ui) {
+        self.places.clear();
         self.receive(ui.ctx());
         self.keys(ui);
         Panel::top("bar").show(ui, |ui| self.bar(ui));
@@ -352,7 +355,7 @@ impl eframe::App for Workbench {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         self.show(ui);
         #[cfg(target_arch = "wasm32")]
-        crate::page::tell(self);
+        crate::page::tell(self, ui.ctx().cumulative_pass_nr());
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(report) = self.measured() {
             println!("{report}");

@@ -166,11 +166,13 @@ impl Browser {
     }
 
     /// What the page tells, as soon as something holds of it.
+    #[track_caller]
     pub fn until(&mut self, holds: impl Fn(&Value) -> bool) -> Value {
         self.until_within(PATIENCE, holds)
     }
 
     /// The same with another patience.
+    #[track_caller]
     pub fn until_within(&mut self, patience: Duration, holds: impl Fn(&Value) -> bool) -> Value {
         let begun = Instant::now();
         loop {
@@ -213,29 +215,51 @@ impl Browser {
     }
 
     /// Clicks with the mouse.
-    pub fn click(&mut self, [x, y]: [f64; 2]) {
-        for (kind, buttons) in [("mouseMoved", 0), ("mousePressed", 1), ("mouseReleased", 0)] {
-            let button = if kind == "mouseMoved" { "none" } else { "left" };
-            self.call("Input.dispatchMouseEvent", &json!({
-                "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1
-            }));
-            std::thread::sleep(Duration::from_millis(60));
-        }
+    pub fn click(&mut self, at: [f64; 2]) {
+        self.mouse("mouseMoved", at);
+        self.mouse("mousePressed", at);
+        self.mouse("mouseReleased", at);
     }
 
-    /// Presses a button that the page tells the place of.
+    fn mouse(&mut self, kind: &str, [x, y]: [f64; 2]) {
+        let (button, buttons) = match kind {
+            "mousePressed" => ("left", 1),
+            "mouseReleased" => ("left", 0),
+            _ => ("none", 0),
+        };
+        self.call(
+            "Input.dispatchMouseEvent",
+            &json!({
+                "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1
+            }),
+        );
+        std::thread::sleep(Duration::from_millis(60));
+    }
+
+    /// Presses a button that the page tells the place of, as somebody does: points at it, sees it drawn where it stays,
+    /// and clicks.
+    #[track_caller]
     pub fn press_button(&mut self, name: &str) {
-        let mut place = Value::Null;
-        // It may still be on its way to its place, for as long as a busy machine takes to draw.
+        let mut at = self.place(name);
         loop {
-            let told = self.until(|told| told["places"][name].is_array());
-            if told["places"][name] == place {
+            for aside in [1.0, 0.0] {
+                let drawn = self.until(|_| true)["drawn"].as_u64();
+                self.mouse("mouseMoved", [at[0] + aside, at[1]]);
+                self.until(|told| told["drawn"].as_u64() > drawn);
+            }
+            let still = self.place(name);
+            if still == at {
                 break;
             }
-            place = told["places"][name].clone();
-            std::thread::sleep(Duration::from_millis(500));
+            at = still;
         }
-        self.click([0, 1].map(|axis| place[axis].as_f64().expect("a place")));
+        self.click(at);
+    }
+
+    #[track_caller]
+    fn place(&mut self, name: &str) -> [f64; 2] {
+        let told = self.until(|told| told["places"][name].is_array());
+        [0, 1].map(|axis| told["places"][name][axis].as_f64().expect("a place"))
     }
 
     /// Presses a key.
