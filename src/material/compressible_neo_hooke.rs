@@ -1,7 +1,7 @@
 //! Neo-Hooke laws of bodies that change their volume.
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
-use super::exponential::second_quotient;
+use super::exponential::exponential_beyond_first_order;
 use super::law::HyperelasticLaw;
 use super::parameters::Parameters;
 use super::sheet::PlaneState;
@@ -79,8 +79,8 @@ impl BodyLaw for CompressibleNeoHooke {
 #[inline(always)]
 pub(super) fn chains(mu: f64, at: BodyStretches, [u, du, ddu]: [f64; 3]) -> BodyDerivatives {
     let (a, z, b) = (at.area, at.shape, at.thickness);
-    let area = a * a * second_quotient(a);
-    let across = 2.0 * b * b * second_quotient(2.0 * b);
+    let area = exponential_beyond_first_order(a);
+    let across = 0.5 * exponential_beyond_first_order(2.0 * b);
     // J − 1 and λ₃² − 1
     let (change, square_change) = (a + area, 2.0 * (b + across));
     let ratio = 1.0 + change;

@@ -55,14 +55,13 @@ pub fn exponential(z: f64) -> f64 {
     if z.is_nan() { z } else { value }
 }
 
-/// φ₂ = (eᶻ − 1 − z)/z², without cancellation where z is small.
+/// eᶻ − 1 − z, without cancellation where z is small.
 #[inline(always)]
-pub fn second_quotient(z: f64) -> f64 {
+pub fn exponential_beyond_first_order(z: f64) -> f64 {
     let (k, power, r, q) = reduce(z.clamp(-708.0, 709.0));
-    let less = power - 1.0;
-    let whole = (less - k * std::f64::consts::LN_2) + less * r + power * (r * r * q);
-    let square = if k == 0.0 { 1.0 } else { z * z };
-    let value = if k == 0.0 { q } else { whole } / square;
+    // Where k = 0, power = 1 and r = z: both sums are the square's alone.
+    let value =
+        ((power - 1.0) - k * std::f64::consts::LN_2) + ((power - 1.0) * r + power * (r * r * q));
     let value = if z > 709.0 { f64::INFINITY } else { value };
     if z.is_nan() { z } else { value }
 }
@@ -70,7 +69,18 @@ pub fn second_quotient(z: f64) -> f64 {
 /// eᶻ − 1, without cancellation where z is small.
 #[inline(always)]
 pub fn exponential_less_one(z: f64) -> f64 {
-    z + z * z * second_quotient(z)
+    let (_, power, r, q) = reduce(z.clamp(-708.0, 709.0));
+    let value = (power - 1.0) + power * (r + r * r * q);
+    let value = if z > 709.0 { f64::INFINITY } else { value };
+    if z.is_nan() { z } else { value }
+}
+
+/// φ₂ = (eᶻ − 1 − z)/z², without cancellation where z is small.
+#[inline(always)]
+pub fn second_quotient(z: f64) -> f64 {
+    let (k, _, _, q) = reduce(z.clamp(-708.0, 709.0));
+    let far = exponential_beyond_first_order(z) / (z * z);
+    if k == 0.0 { q } else { far }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 use super::compressible_neo_hooke::chains;
-use super::exponential::second_quotient;
+use super::exponential::exponential_beyond_first_order;
 use super::law::HyperelasticLaw;
 use super::logarithm::logarithm_beyond_first_order;
 use super::parameters::Parameters;
@@ -183,7 +183,7 @@ impl SwollenNetwork {
     fn volume(&self, c: f64) -> [f64; 3] {
         let (phi, k) = (self.fraction, self.network.osmotic_modulus);
         let (chi, dry) = (self.network.chi, 1.0 - self.fraction);
-        let [swelling, shrinking] = [c, -c].map(|c| c * c * second_quotient(c));
+        let [swelling, shrinking] = [c, -c].map(exponential_beyond_first_order);
         let v = c + swelling;
         // ϕ − φ, and ln((1 − ϕ)/(1 − φ)) with what it has beyond first order
         let thinner = phi * (shrinking - c);

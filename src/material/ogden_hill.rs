@@ -1,7 +1,7 @@
 //! The law of Ogden and Hill for foams, and Blatz and Ko's.
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
-use super::exponential::{exponential_less_one, second_quotient};
+use super::exponential::{exponential_beyond_first_order, exponential_less_one, second_quotient};
 use super::law::HyperelasticLaw;
 use super::ogden::{chebyshev, half_difference};
 use super::parameters::Parameters;
@@ -110,13 +110,13 @@ impl BodyLaw for OgdenHill {
             let factor = 2.0 * term.modulus / (alpha * alpha);
             let (t_minus_1, t, dt, ddt) = chebyshev(0.5 * alpha, z, delta);
             let [grown, across, all] = [0.5 * alpha * a, alpha * b, alpha * (a + b)];
-            let beyond = |x: f64| x * x * second_quotient(x);
+            let [grown_beyond, across_beyond] = [grown, across].map(exponential_beyond_first_order);
             let volume = exponential_less_one(-beta * all);
-            let (growth_less_1, across_less_1) = (grown + beyond(grown), across + beyond(across));
+            let (growth_less_1, across_less_1) = (grown + grown_beyond, across + across_beyond);
             let growth = 1.0 + growth_less_1;
             sum.energy += factor
-                * (2.0 * (growth * t_minus_1 + beyond(grown))
-                    + beyond(across)
+                * (2.0 * (growth * t_minus_1 + grown_beyond)
+                    + across_beyond
                     + beta * all * all * second_quotient(-beta * all));
             sum.a += factor * alpha * (growth * t_minus_1 + growth_less_1 - volume);
             sum.b += factor * alpha * (across_less_1 - volume);

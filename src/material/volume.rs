@@ -16,7 +16,7 @@
 //! S. Doll, K. Schweizerhof, J. Appl. Mech. 67, 17 (2000), doi:10.1115/1.321146;
 //! J. C. Simo, R. L. Taylor, Comput. Methods Appl. Mech. Eng. 85, 273 (1991), doi:10.1016/0045-7825(91)90100-K
 
-use super::exponential::second_quotient;
+use super::exponential::exponential_beyond_first_order;
 use super::sheet::PlaneState;
 use crate::document::{Bound, name_of};
 
@@ -70,14 +70,15 @@ impl VolumeEnergy {
         let weight = |energy: Self| if self as u8 == energy as u8 { 1.0 } else { 0.0 };
         let [quadratic, plain, simo_taylor] =
             [Self::Quadratic, Self::Logarithmic, Self::SimoTaylor].map(weight);
-        let square = logarithm * logarithm;
         // J₃ − 1 − ln J₃, and ½ (J₃ − 1)²
-        let beyond = square * second_quotient(logarithm);
+        let beyond = exponential_beyond_first_order(logarithm);
         let change = logarithm + beyond;
         let ratio = 1.0 + change;
         let half = 0.5 * change * change;
         [
-            quadratic * half + plain * 0.5 * square + simo_taylor * 0.5 * (beyond + half),
+            quadratic * half
+                + plain * 0.5 * logarithm * logarithm
+                + simo_taylor * 0.5 * (beyond + half),
             quadratic * change * ratio + plain * logarithm + simo_taylor * (change + half),
             quadratic * ratio * (ratio + change) + plain + simo_taylor * ratio * ratio,
         ]
