@@ -28,6 +28,7 @@ use std::sync::Arc;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::curve;
+use super::exponential::exponential_less_one;
 use super::law::{HyperelasticLaw, TensionResponse, lower_triangle};
 use super::logarithm::logarithm_of_one_plus;
 use super::measures::{Derivatives, Measures};
@@ -35,15 +36,54 @@ use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
 
 mod thickness;
 
-/// How a body is stretched: a, z and b.
+/// How a body is stretched. Of a, z and b only z is kept as it is: a law that is rational in J and λ₃ needs no logarithm.
+///
+/// ```text
+/// J₃ = (1 + q)³,   λ₃ = J₃/J,   a = ln J,   b = 3 ln(1 + q) − a                                     [–]
+/// ```
+///
+/// `S` is what a law makes of z once for all thicknesses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BodyStretches {
+pub struct BodyStretches<S = f64> {
+    /// J − 1.
+    pub area_change: f64,
+    /// What [`BodyLaw::shape`] makes of z = (tr C − 2J)/(2J).
+    pub shape: S,
+    /// q = J₃^⅓ − 1.
+    pub volume_root_change: f64,
+}
+
+impl<S> BodyStretches<S> {
+    /// J₃ − 1.
+    #[inline(always)]
+    pub fn volume_change(&self) -> f64 {
+        let q = self.volume_root_change;
+        q * (3.0 + q * (3.0 + q))
+    }
+
+    /// ln J₃ = a + b.
+    #[inline(always)]
+    pub fn volume(&self) -> f64 {
+        3.0 * logarithm_of_one_plus(self.volume_root_change)
+    }
+
     /// a = ln J.
-    pub area: f64,
-    /// z = (tr C − 2J)/(2J).
-    pub shape: f64,
+    #[inline(always)]
+    pub fn area(&self) -> f64 {
+        logarithm_of_one_plus(self.area_change)
+    }
+
+    /// λ₃ − 1.
+    #[inline(always)]
+    pub fn thickness_change(&self) -> f64 {
+        (self.volume_change() - self.area_change) / (1.0 + self.area_change)
+    }
+
     /// b = ln λ₃.
-    pub thickness: f64,
+    #[inline(always)]
+    pub fn thickness(&self) -> f64 {
+        self.volume() - self.area()
+    }
 }
 
 /// The energy per reference volume of a body and its derivatives by a, z and b, in MPa.
@@ -73,8 +113,14 @@ pub struct BodyDerivatives {
 
 /// An isotropic law of a body that changes its volume. [`BodySheet`] is the sheet made of it.
 pub trait BodyLaw: Clone + Send + Sync + Debug {
+    /// What is made of z once, while the thickness is looked for: z itself, unless it is dear.
+    type Shape: Copy + Send + Sync + Debug;
+
+    /// The same of a z.
+    fn shape(&self, z: f64) -> Self::Shape;
+
     /// W and its derivatives.
-    fn evaluate(&self, at: BodyStretches) -> BodyDerivatives;
+    fn evaluate(&self, at: BodyStretches<Self::Shape>) -> BodyDerivatives;
 
     /// As [`HyperelasticLaw::statements`].
     fn statements(&self) -> Vec<(&'static str, String)> {
@@ -87,7 +133,7 @@ pub trait BodyLaw: Clone + Send + Sync + Debug {
 pub struct BodySheet<L> {
     law: L,
     plane: PlaneState,
-    /// b = c₁ a + c₂ a² + c₃ z where W_b = 0, to the second order of the strain: where the search for b begins.
+    /// ln J₃ = 3 (c₁ a + c₂ a² + c₃ z) where W_b = 0, to the second order of the strain: where the search for q begins.
     series: [f64; 3],
 }
 
@@ -95,48 +141,66 @@ impl<L: BodyLaw> BodySheet<L> {
     /// A sheet of a law.
     pub fn new(law: L, plane: PlaneState) -> Self {
         const SMALL: f64 = 1e-3;
-        let rest = law.evaluate(BodyStretches::default());
+        let rest = law.evaluate(BodyStretches {
+            area_change: 0.0,
+            shape: law.shape(0.0),
+            volume_root_change: 0.0,
+        });
+        let first = (1.0 - rest.ab / rest.bb) / 3.0;
         let mut sheet = Self {
             law,
             plane,
-            series: [-rest.ab / rest.bb, 0.0, 0.0],
+            series: [first, 0.0, 0.0],
         };
-        if plane == PlaneState::Stress && sheet.series[0].is_finite() {
-            let [wider, narrower, sheared] =
-                sheet.free_surface(&[SMALL, -SMALL, 0.0], &[0.0, 0.0, SMALL]);
+        if plane == PlaneState::Stress && first.is_finite() {
+            let changes = [SMALL.exp_m1(), (-SMALL).exp_m1(), 0.0];
+            let z = [0.0, 0.0, SMALL];
+            let found = sheet.free_surface(&changes, &z, &sheet.shapes(&z));
+            let [wider, narrower, sheared] = found.map(f64::ln_1p);
             let second = 0.5 * (wider + narrower) / (SMALL * SMALL);
-            sheet.series = [sheet.series[0], second, sheared / SMALL];
+            sheet.series = [first, second, sheared / SMALL];
         }
         sheet
     }
 
-    /// W and its derivatives where the sheet's surfaces are as its plane state wants them, with b.
+    /// q where the sheet's surfaces are as its plane state wants them.
     #[inline(always)]
-    fn at<const N: usize>(&self, area: &[f64; N], shape: &[f64; N]) -> [f64; N] {
+    fn at<const N: usize>(
+        &self,
+        area_change: &[f64; N],
+        z: &[f64; N],
+        shapes: &[L::Shape; N],
+    ) -> [f64; N] {
         match self.plane {
-            PlaneState::Stress => self.free_surface(area, shape),
-            PlaneState::Strain => [0.0; N],
+            PlaneState::Stress => self.free_surface(area_change, z, shapes),
+            PlaneState::Strain => {
+                area_change.map(|change| exponential_less_one(logarithm_of_one_plus(change) / 3.0))
+            }
         }
     }
 
-    #[inline(always)]
-    fn evaluated(&self, area: f64, shape: f64, thickness: f64) -> BodyDerivatives {
-        self.law.evaluate(BodyStretches {
-            area,
+    fn state(
+        &self,
+        kinematics: &Kinematics,
+    ) -> (Measures, BodyStretches<L::Shape>, BodyDerivatives) {
+        let measures = Measures::new(kinematics);
+        let (area_change, shape) = (kinematics.area_change, self.law.shape(measures.z));
+        let [volume_root_change] = self.at(&[area_change], &[measures.z], &[shape]);
+        let stretches = BodyStretches {
+            area_change,
             shape,
-            thickness,
-        })
+            volume_root_change,
+        };
+        (measures, stretches, self.law.evaluate(stretches))
     }
 
-    fn state(&self, kinematics: &Kinematics) -> (Measures, f64, BodyDerivatives) {
-        let measures = Measures::new(kinematics);
-        let area = logarithm_of_one_plus(kinematics.area_change);
-        let [thickness] = self.at(&[area], &[measures.z]);
-        (
-            measures,
-            thickness,
-            self.evaluated(area, measures.z, thickness),
-        )
+    #[inline(always)]
+    fn shapes<const N: usize>(&self, z: &[f64; N]) -> [L::Shape; N] {
+        std::array::from_fn(|lane| self.law.shape(z[lane]))
+    }
+
+    fn rest(&self) -> BodyDerivatives {
+        self.state(&Kinematics::rest()).2
     }
 
     /// The law of a and z that is left.
@@ -197,14 +261,15 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
     }
 
     fn thickness_stretch(&self, kinematics: &Kinematics) -> f64 {
-        self.state(kinematics).1.exp()
+        1.0 + self.state(kinematics).1.thickness_change()
     }
 
     fn thickness_gradient(&self, kinematics: &Kinematics) -> Gradient {
         match self.plane {
             PlaneState::Stress => {
-                let (measures, thickness, w) = self.state(kinematics);
-                -thickness.exp() / w.bb * (w.ab * measures.dm + w.zb * measures.dz)
+                let (measures, stretches, w) = self.state(kinematics);
+                let thickness = 1.0 + stretches.thickness_change();
+                -thickness / w.bb * (w.ab * measures.dm + w.zb * measures.dz)
             }
             PlaneState::Strain => Gradient::zeros(),
         }
@@ -234,13 +299,13 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
 
     /// κ = W_bb − 4/3 μ at rest.
     fn bulk_modulus(&self) -> Option<f64> {
-        let rest = self.evaluated(0.0, 0.0, 0.0);
+        let rest = self.rest();
         Some(rest.bb - 4.0 / 3.0 * rest.z)
     }
 
     /// μ₀ = W_z at rest.
     fn shear_modulus(&self) -> f64 {
-        self.evaluated(0.0, 0.0, 0.0).z
+        self.rest().z
     }
 }
 
@@ -248,16 +313,16 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
 const LANES: usize = 16;
 
 /// Some points of a loop; behind the last one rest.
-struct Lanes {
+struct Lanes<S> {
     gradients: [[f64; LANES]; 4],
-    area: [f64; LANES],
-    thickness: [f64; LANES],
+    shapes: [S; LANES],
+    volume_root_change: [f64; LANES],
     admissible: bool,
 }
 
-impl Lanes {
+impl<S: Copy> Lanes<S> {
     #[inline(always)]
-    fn new<L: BodyLaw>(
+    fn new<L: BodyLaw<Shape = S>>(
         sheet: &BodySheet<L>,
         all: &[&[f64]; 4],
         first: usize,
@@ -267,35 +332,45 @@ impl Lanes {
         for (own, component) in gradients.iter_mut().zip(all) {
             own[..count].copy_from_slice(&component[first..first + count]);
         }
-        let [mut area, mut shape] = [[0.0; LANES]; 2];
+        let [mut area_change, mut z] = [[0.0; LANES]; 2];
         let mut inverted = 0_u64;
         let [h11, h12, h21, h22] = &gradients;
         for lane in 0..LANES {
             let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
             let kinematics = Kinematics::unchecked(&h);
             inverted |= u64::from(!kinematics.is_admissible());
-            area[lane] = logarithm_of_one_plus(kinematics.area_change);
-            shape[lane] = Measures::new(&kinematics).z;
+            area_change[lane] = kinematics.area_change;
+            z[lane] = Measures::new(&kinematics).z;
         }
         let admissible = inverted == 0;
-        let thickness = match admissible {
-            true => sheet.at(&area, &shape),
+        let shapes = sheet.shapes(&z);
+        let volume_root_change = match admissible {
+            true => sheet.at(&area_change, &z, &shapes),
             false => [f64::NAN; LANES],
         };
         Self {
             gradients,
-            area,
-            thickness,
+            shapes,
+            volume_root_change,
             admissible,
         }
     }
 
     #[inline(always)]
-    fn point<L: BodyLaw>(&self, sheet: &BodySheet<L>, lane: usize) -> (Measures, Derivatives) {
+    fn point<L: BodyLaw<Shape = S>>(
+        &self,
+        sheet: &BodySheet<L>,
+        lane: usize,
+    ) -> (Measures, Derivatives) {
         let [h11, h12, h21, h22] = &self.gradients;
         let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
-        let measures = Measures::new(&Kinematics::unchecked(&h));
-        let w = sheet.evaluated(self.area[lane], measures.z, self.thickness[lane]);
+        let kinematics = Kinematics::unchecked(&h);
+        let measures = Measures::new(&kinematics);
+        let w = sheet.law.evaluate(BodyStretches {
+            area_change: kinematics.area_change,
+            shape: self.shapes[lane],
+            volume_root_change: self.volume_root_change[lane],
+        });
         (measures, sheet.condensed(&w))
     }
 }

@@ -1,8 +1,8 @@
 //! Neo-Hooke laws of bodies that change their volume.
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
-use super::exponential::exponential_beyond_first_order;
 use super::law::HyperelasticLaw;
+use super::logarithm::logarithm_beyond_first_order;
 use super::parameters::Parameters;
 use super::sheet::PlaneState;
 use super::volume::{VolumeEnergy, lame_modulus};
@@ -20,6 +20,8 @@ use super::volume::{VolumeEnergy, lame_modulus};
 /// | μ | `mu` | MPa | > 0 | initial shear modulus |
 /// | ν | `poisson_ratio` | – | −0.9 … 0.4999 | initial Poisson's ratio; Λ = 2 μ ν/(1 − 2 ν) |
 ///
+/// `LOGARITHM` is true for the energy of Simo and Pister.
+///
 /// The third variant in use, ½ μ (Ī₁ − 3) + ½ κ ln² J₃ with the invariant of the shape alone, is the law `neo-hooke` with the volume
 /// energy `logarithmic`.
 ///
@@ -31,42 +33,41 @@ use super::volume::{VolumeEnergy, lame_modulus};
 /// J. C. Simo, K. S. Pister, Comput. Methods Appl. Mech. Eng. 46, 201 (1984), doi:10.1016/0045-7825(84)90062-8;
 /// P. G. Ciarlet, Mathematical Elasticity I, North-Holland (1988), section 4.10
 #[derive(Clone, Copy, Debug)]
-pub struct CompressibleNeoHooke {
+pub struct CompressibleNeoHooke<const LOGARITHM: bool> {
     /// μ in MPa.
     pub shear_modulus: f64,
     /// Lamé's first modulus Λ in MPa.
     pub lame_modulus: f64,
-    /// U, with Λ for κ.
-    pub energy: VolumeEnergy,
 }
 
-impl CompressibleNeoHooke {
-    /// Reads the parameters of a card of the law with the energy of Simo and Pister.
-    pub fn simo_pister_from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
-        Self::from_card(parameters, VolumeEnergy::Logarithmic)
-    }
-
-    /// Reads the parameters of a card of the law with the energy of Ciarlet.
-    pub fn ciarlet_from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
-        Self::from_card(parameters, VolumeEnergy::SimoTaylor)
-    }
-
-    fn from_card(parameters: &Parameters, energy: VolumeEnergy) -> Box<dyn HyperelasticLaw> {
+impl<const LOGARITHM: bool> CompressibleNeoHooke<LOGARITHM> {
+    /// Reads the parameters of a card.
+    pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
         let [shear_modulus, poisson_ratio] = parameters.shear_modulus_and_ratio();
         let law = Self {
             shear_modulus,
             lame_modulus: lame_modulus(shear_modulus, poisson_ratio),
-            energy,
         };
         Box::new(BodySheet::new(law, PlaneState::Stress))
     }
 }
 
-impl BodyLaw for CompressibleNeoHooke {
+impl<const LOGARITHM: bool> BodyLaw for CompressibleNeoHooke<LOGARITHM> {
+    type Shape = f64;
+
+    #[inline(always)]
+    fn shape(&self, z: f64) -> f64 {
+        z
+    }
+
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
         let lame = self.lame_modulus;
-        let volume = self.energy.derivatives(at.area + at.thickness);
+        let energy = match LOGARITHM {
+            true => VolumeEnergy::Logarithmic,
+            false => VolumeEnergy::SimoTaylor,
+        };
+        let volume = energy.derivatives::<LOGARITHM, _>(&at);
         chains(self.shear_modulus, at, volume.map(|u| lame * u))
     }
 }
@@ -78,11 +79,11 @@ impl BodyLaw for CompressibleNeoHooke {
 /// ```
 #[inline(always)]
 pub(super) fn chains(mu: f64, at: BodyStretches, [u, du, ddu]: [f64; 3]) -> BodyDerivatives {
-    let (a, z, b) = (at.area, at.shape, at.thickness);
-    let area = exponential_beyond_first_order(a);
-    let across = 0.5 * exponential_beyond_first_order(2.0 * b);
-    // J − 1 and λ₃² − 1
-    let (change, square_change) = (a + area, 2.0 * (b + across));
+    let (change, z, thickness) = (at.area_change, at.shape, at.thickness_change());
+    let area = -logarithm_beyond_first_order(change);
+    let across = 0.5 * thickness * thickness - logarithm_beyond_first_order(thickness);
+    // λ₃² − 1
+    let square_change = thickness * (2.0 + thickness);
     let ratio = 1.0 + change;
     BodyDerivatives {
         energy: mu * (ratio * z + area + across) + u,

@@ -16,27 +16,42 @@ use std::sync::Arc;
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 use super::law::HyperelasticLaw;
 use super::measures::Derivatives;
-use super::volume::Volume;
+use super::volume::{Volume, VolumeEnergy};
 
 /// The sheet of a law with a resistance to a change of volume.
 pub fn sheet<L: IsochoricLaw + 'static>(law: Arc<L>, volume: Volume) -> Arc<dyn HyperelasticLaw> {
-    Arc::new(BodySheet::new(FlorySplit { law, volume }, volume.plane))
+    match volume.energy {
+        VolumeEnergy::Logarithmic => Arc::new(BodySheet::new(
+            FlorySplit::<_, true> { law, volume },
+            volume.plane,
+        )),
+        VolumeEnergy::Quadratic | VolumeEnergy::SimoTaylor => Arc::new(BodySheet::new(
+            FlorySplit::<_, false> { law, volume },
+            volume.plane,
+        )),
+    }
 }
 
 /// An isotropic law of a sheet that keeps its volume, by s = ln J and z.
 pub trait IsochoricLaw: Send + Sync + Debug {
-    /// Ψ and its derivatives by s and z.
-    fn at(&self, s: f64, z: f64) -> Derivatives;
+    /// As [`BodyLaw::Shape`].
+    type Shape: Copy + Send + Sync + Debug;
+
+    /// As [`BodyLaw::shape`].
+    fn shape(&self, z: f64) -> Self::Shape;
+
+    /// Ψ and its derivatives by s and z, where e^s − 1 is `area_change`.
+    fn at(&self, area_change: f64, shape: Self::Shape) -> Derivatives;
 }
 
-/// W = Ψ(s, z) + U(J₃).
+/// W = Ψ(s, z) + U(J₃); whether U' has a logarithm is known in advance, for the sake of the others' time.
 #[derive(Debug)]
-struct FlorySplit<L> {
+struct FlorySplit<L, const LOGARITHM: bool> {
     law: Arc<L>,
     volume: Volume,
 }
 
-impl<L> Clone for FlorySplit<L> {
+impl<L, const LOGARITHM: bool> Clone for FlorySplit<L, LOGARITHM> {
     fn clone(&self) -> Self {
         Self {
             law: Arc::clone(&self.law),
@@ -45,14 +60,24 @@ impl<L> Clone for FlorySplit<L> {
     }
 }
 
-impl<L: IsochoricLaw> BodyLaw for FlorySplit<L> {
+impl<L: IsochoricLaw, const LOGARITHM: bool> BodyLaw for FlorySplit<L, LOGARITHM> {
+    type Shape = L::Shape;
+
     #[inline(always)]
-    fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
-        let (a, z, b) = (at.area, at.shape, at.thickness);
+    fn shape(&self, z: f64) -> L::Shape {
+        self.law.shape(z)
+    }
+
+    /// e^s = J/J₃^⅔.
+    #[inline(always)]
+    fn evaluate(&self, at: BodyStretches<L::Shape>) -> BodyDerivatives {
         const THIRD: f64 = 1.0 / 3.0;
-        let w = self.law.at(THIRD * (a - 2.0 * b), z);
+        let q = at.volume_root_change;
+        let area_change = (at.area_change - q * (2.0 + q)) / ((1.0 + q) * (1.0 + q));
+        let w = self.law.at(area_change, at.shape);
         let kappa = self.volume.bulk_modulus;
-        let [u, du, ddu] = self.volume.energy.derivatives(a + b).map(|u| kappa * u);
+        let derivatives = self.volume.energy.derivatives::<LOGARITHM, _>(&at);
+        let [u, du, ddu] = derivatives.map(|u| kappa * u);
         let (m, mz, mm) = (THIRD * w.m, THIRD * w.mz, THIRD * THIRD * w.mm);
         BodyDerivatives {
             energy: w.energy + u,

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::code::{Code, CodeLaw};
-use super::exponential::exponential_less_one;
 use super::flory::{self, IsochoricLaw};
 use super::invariants::{EnergyDerivatives, Invariants};
 use super::law::{HyperelasticLaw, TensionResponse, lower_triangle};
@@ -109,9 +108,15 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
 /// Ī₁ − 3 = 2 x z + (x − 1)² (2 x + 1)/x²,   Ī₂ − 3 = 2 z/x + (x − 1)² (x + 2)/x
 /// ```
 impl<L: InvariantLaw> IsochoricLaw for L {
+    type Shape = f64;
+
     #[inline(always)]
-    fn at(&self, s: f64, z: f64) -> Derivatives {
-        let d = exponential_less_one(s);
+    fn shape(&self, z: f64) -> f64 {
+        z
+    }
+
+    #[inline(always)]
+    fn at(&self, d: f64, z: f64) -> Derivatives {
         let x = 1.0 + d;
         let (square, inverse) = (x * x, 1.0 / x);
         let inverse_square = inverse * inverse;

@@ -202,9 +202,16 @@ impl SwollenNetwork {
 }
 
 impl BodyLaw for SwollenNetwork {
+    type Shape = f64;
+
+    #[inline(always)]
+    fn shape(&self, z: f64) -> f64 {
+        z
+    }
+
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
-        chains(self.modulus, at, self.volume(at.area + at.thickness))
+        chains(self.modulus, at, self.volume(at.volume()))
     }
 
     fn statements(&self) -> Vec<(&'static str, String)> {

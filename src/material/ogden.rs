@@ -88,14 +88,18 @@ impl Ogden {
 }
 
 impl Ogden {
+    /// T of every term.
+    fn powers(&self, z: f64) -> Powers {
+        Powers::new(self.terms.iter().map(|[_, alpha]| 0.5 * alpha), z)
+    }
+
     /// Ψ and its derivatives by m and z.
-    pub fn derivatives(&self, m: f64, z: f64) -> Derivatives {
+    fn derivatives(&self, m: f64, powers: &Powers) -> Derivatives {
         let mut sum = Derivatives::default();
-        let delta = half_difference(z);
-        for [mu, alpha] in &self.terms {
+        for (term, [mu, alpha]) in self.terms.iter().enumerate() {
             let half = 0.5 * alpha;
             let grown = half * m;
-            let (t_minus_1, t, dt, ddt) = chebyshev(half, z, delta);
+            let [t_minus_1, t, dt, ddt] = powers.of(term, half);
             let a = grown.exp_m1();
             let (growth, shrink) = (1.0 + a, (-2.0 * grown).exp());
             let factor = 2.0 * mu / (alpha * alpha);
@@ -111,13 +115,37 @@ impl Ogden {
     }
 }
 
-/// δ, half the difference of the logarithmic stretches.
-pub fn half_difference(z: f64) -> f64 {
-    (0.5 * z).sqrt().asinh()
+/// T − 1, T, T′ and T″ of the terms of a law at one z; for laws with more terms than cards have they are found when asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Powers {
+    z: f64,
+    delta: f64,
+    terms: [[f64; 4]; KEYS.len()],
+}
+
+impl Powers {
+    /// Of the terms' orders.
+    pub fn new(orders: impl Iterator<Item = f64>, z: f64) -> Self {
+        // Half the difference of the logarithmic stretches.
+        let delta = (0.5 * z).sqrt().asinh();
+        let mut terms = [[0.0; 4]; KEYS.len()];
+        for (term, order) in terms.iter_mut().zip(orders) {
+            *term = chebyshev(order, z, delta);
+        }
+        Self { z, delta, terms }
+    }
+
+    /// Of a term, whose order is given once more.
+    pub fn of(&self, term: usize, order: f64) -> [f64; 4] {
+        match self.terms.get(term) {
+            Some(found) => *found,
+            None => chebyshev(order, self.z, self.delta),
+        }
+    }
 }
 
 /// T − 1, T, T′ and T″ of the order `n` at z = 2 sinh²δ.
-pub fn chebyshev(n: f64, z: f64, delta: f64) -> (f64, f64, f64, f64) {
+fn chebyshev(n: f64, z: f64, delta: f64) -> [f64; 4] {
     let t_minus_1 = 2.0 * (n * delta).sinh().powi(2);
     let t = 1.0 + t_minus_1;
     let square = n * n;
@@ -126,29 +154,36 @@ pub fn chebyshev(n: f64, z: f64, delta: f64) -> (f64, f64, f64, f64) {
         let second = square * (square - 1.0) / 3.0;
         let ddt = second * (1.0 + (square - 4.0) * z / 5.0);
         let dt = square + second * z * (1.0 + (square - 4.0) * z / 10.0);
-        return (t_minus_1, t, dt, ddt);
+        return [t_minus_1, t, dt, ddt];
     }
     let dt = n * (2.0 * n * delta).sinh() / (2.0 * delta).sinh();
     let ddt = (square * t - (1.0 + z) * dt) / (z * (2.0 + z));
-    (t_minus_1, t, dt, ddt)
+    [t_minus_1, t, dt, ddt]
 }
 
 impl IsochoricLaw for Ogden {
-    fn at(&self, s: f64, z: f64) -> Derivatives {
-        self.derivatives(s, z)
+    type Shape = Powers;
+
+    fn shape(&self, z: f64) -> Powers {
+        self.powers(z)
+    }
+
+    fn at(&self, area_change: f64, powers: Powers) -> Derivatives {
+        self.derivatives(area_change.ln_1p(), &powers)
     }
 }
 
 impl HyperelasticLaw for Ogden {
     fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
         let measures = Measures::new(kinematics);
-        let w = self.derivatives(kinematics.area_change.ln_1p(), measures.z);
+        let w = IsochoricLaw::at(self, kinematics.area_change, self.powers(measures.z));
         (w.energy, measures.stress(&w))
     }
 
     fn response(&self, kinematics: &Kinematics) -> SheetResponse {
         let measures = Measures::new(kinematics);
-        measures.response(&self.derivatives(kinematics.area_change.ln_1p(), measures.z))
+        let w = IsochoricLaw::at(self, kinematics.area_change, self.powers(measures.z));
+        measures.response(&w)
     }
 
     fn with_volume(self: Arc<Self>, volume: Volume) -> Option<Arc<dyn HyperelasticLaw>> {

@@ -3,7 +3,7 @@
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 use super::exponential::{exponential_beyond_first_order, exponential_less_one, second_quotient};
 use super::law::HyperelasticLaw;
-use super::ogden::{chebyshev, half_difference};
+use super::ogden::Powers;
 use super::parameters::Parameters;
 use super::sheet::PlaneState;
 use super::volume::POISSON_RATIO;
@@ -100,16 +100,21 @@ impl OgdenHill {
 }
 
 impl BodyLaw for OgdenHill {
+    type Shape = Powers;
+
+    fn shape(&self, z: f64) -> Powers {
+        Powers::new(self.terms.iter().map(|term| 0.5 * term.exponent), z)
+    }
+
     /// With T of [`Ogden`](super::Ogden): λ₁^α + λ₂^α = 2 e^(αa/2) T(z).
-    fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
-        let (a, z, b) = (at.area, at.shape, at.thickness);
+    fn evaluate(&self, at: BodyStretches<Powers>) -> BodyDerivatives {
+        let (a, b) = (at.area(), at.thickness());
         let mut sum = BodyDerivatives::default();
-        let delta = half_difference(z);
-        for term in &self.terms {
+        for (number, term) in self.terms.iter().enumerate() {
             let (alpha, beta) = (term.exponent, term.volume_exponent);
             let factor = 2.0 * term.modulus / (alpha * alpha);
-            let (t_minus_1, t, dt, ddt) = chebyshev(0.5 * alpha, z, delta);
-            let [grown, across, all] = [0.5 * alpha * a, alpha * b, alpha * (a + b)];
+            let [t_minus_1, t, dt, ddt] = at.shape.of(number, 0.5 * alpha);
+            let [grown, across, all] = [0.5 * alpha * a, alpha * b, alpha * at.volume()];
             let [grown_beyond, across_beyond] = [grown, across].map(exponential_beyond_first_order);
             let volume = exponential_less_one(-beta * all);
             let (growth_less_1, across_less_1) = (grown + grown_beyond, across + across_beyond);

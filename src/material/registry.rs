@@ -144,12 +144,12 @@ pub const LAWS: &[Law] = &[
     Law {
         name: "neo-hooke-simo-pister",
         formula: "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/2 ln² J, Λ = 2μν/(1 − 2ν)",
-        read: CompressibleNeoHooke::simo_pister_from_card,
+        read: CompressibleNeoHooke::<true>::from_card,
     },
     Law {
         name: "neo-hooke-ciarlet",
         formula: "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/4 (J² − 1 − 2 ln J), Λ = 2μν/(1 − 2ν)",
-        read: CompressibleNeoHooke::ciarlet_from_card,
+        read: CompressibleNeoHooke::<false>::from_card,
     },
     Law {
         name: "blatz-ko",

@@ -1,7 +1,6 @@
 //! The law of Saint Venant and Kirchhoff.
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
-use super::exponential::exponential_less_one;
 use super::law::HyperelasticLaw;
 use super::parameters::Parameters;
 use super::sheet::PlaneState;
@@ -47,6 +46,13 @@ impl SaintVenantKirchhoff {
 }
 
 impl BodyLaw for SaintVenantKirchhoff {
+    type Shape = f64;
+
+    #[inline(always)]
+    fn shape(&self, z: f64) -> f64 {
+        z
+    }
+
     /// With g = tr C − 2 in the plane and h = λ₃² − 1:
     ///
     /// ```text
@@ -55,8 +61,8 @@ impl BodyLaw for SaintVenantKirchhoff {
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
         let (z, mu, lame) = (at.shape, self.shear_modulus, self.lame_modulus);
-        let change = exponential_less_one(at.area);
-        let h = exponential_less_one(2.0 * at.thickness);
+        let (change, thickness) = (at.area_change, at.thickness_change());
+        let h = thickness * (2.0 + thickness);
         let ratio = 1.0 + change;
         let g = 2.0 * (ratio * z + change);
         let (trace, square) = (2.0 + g, 1.0 + h);

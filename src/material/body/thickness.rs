@@ -1,11 +1,11 @@
 //! The thickness of a sheet with free surfaces: W_b = 0.
 
-use super::{BodyLaw, BodySheet};
+use super::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 
 /// Steps of Newton's method before the root is looked for between bounds.
 const MOST_STEPS: usize = 40;
 
-/// A step of this size, in parts of |a| + |b|, is the last one: its square is not larger than rounding.
+/// A step of ln λ₃ of this size, in parts of the strains, is the last one: its square is not larger than rounding.
 const LAST_STEP: f64 = 3e-8;
 
 /// Where roots are looked for: ln λ₃ within ± this.
@@ -15,49 +15,61 @@ const FARTHEST: f64 = 12.0;
 const PIECES: i32 = 480;
 
 impl<L: BodyLaw> BodySheet<L> {
-    /// ln λ₃ where W_b = 0, at several points at once, each by itself: Newton's method from a series at small strain.
+    /// q = J₃^⅓ − 1 where W_b = 0, at several points at once, each by itself: Newton's method from a series at small strain.
     /// Not a number where there is no such thickness.
+    ///
+    /// A step Δb of ln λ₃ is one of ln J₃, and (1 + q) (1 + Δb/3) is its root to the first order, as far as Newton's method goes.
     #[inline(always)]
     pub(super) fn free_surface<const N: usize>(
         &self,
-        area: &[f64; N],
-        shape: &[f64; N],
+        area_change: &[f64; N],
+        z: &[f64; N],
+        shapes: &[L::Shape; N],
     ) -> [f64; N] {
-        let mut thickness = [0.0; N];
+        let mut root = [0.0; N];
         for lane in 0..N {
-            thickness[lane] = self.expected(area[lane], shape[lane]);
+            root[lane] = self.expected(area_change[lane], z[lane]);
         }
         let mut open = [1_u64; N];
         for _ in 0..MOST_STEPS {
             let mut left = 0;
             for lane in 0..N {
-                let w = self.evaluated(area[lane], shape[lane], thickness[lane]);
+                let w = self.evaluated(area_change[lane], shapes[lane], root[lane]);
                 let step = w.b / w.bb.abs();
-                let small = LAST_STEP * (area[lane].abs() + thickness[lane].abs());
-                let last = (w.bb > 0.0) & (step.abs() <= small);
+                let strains = area_change[lane].abs().min(1.0) + root[lane].abs();
+                let last = (w.bb > 0.0) & (step.abs() <= LAST_STEP * strains);
                 // A step beyond 1 is none of Newton's method any more.
-                let next = thickness[lane] - step.clamp(-1.0, 1.0);
-                thickness[lane] = if open[lane] == 1 {
-                    next
-                } else {
-                    thickness[lane]
-                };
+                let next = root[lane] - (1.0 + root[lane]) * (step.clamp(-1.0, 1.0) / 3.0);
+                root[lane] = if open[lane] == 1 { next } else { root[lane] };
                 open[lane] &= u64::from(!last);
                 left |= open[lane];
             }
             if left == 0 {
-                return thickness;
+                return root;
             }
         }
-        self.searched(area, shape, thickness, open)
+        self.searched(area_change, z, shapes, root, open)
     }
 
-    /// b by its series at small strain; the second order counts as far as it is no more than a correction.
     #[inline(always)]
-    fn expected(&self, area: f64, shape: f64) -> f64 {
-        const MOST: f64 = 0.3;
+    fn evaluated(&self, area_change: f64, shape: L::Shape, root: f64) -> BodyDerivatives {
+        self.law.evaluate(BodyStretches {
+            area_change,
+            shape,
+            volume_root_change: root,
+        })
+    }
+
+    /// q by the series at small strain; the second order counts as far as it is no more than a correction, and a is 2 (J − 1)/(J + 1),
+    /// which is ln J to the second order.
+    #[inline(always)]
+    fn expected(&self, area_change: f64, z: f64) -> f64 {
+        const MOST: f64 = 0.1;
         let [first, second, third] = self.series;
-        first * area + (second * area * area + third * shape).clamp(-MOST, MOST)
+        let area = 2.0 * area_change / (2.0 + area_change);
+        let third_of_volume = first * area + (second * area * area + third * z).clamp(-MOST, MOST);
+        // e^x − 1 as far as a beginning needs it; above −1.
+        third_of_volume * (1.0 + third_of_volume * (0.5 + third_of_volume / 6.0))
     }
 
     /// The points that are still open, by bisection.
@@ -65,25 +77,30 @@ impl<L: BodyLaw> BodySheet<L> {
     #[inline(never)]
     fn searched<const N: usize>(
         &self,
-        area: &[f64; N],
-        shape: &[f64; N],
-        mut thickness: [f64; N],
+        area_change: &[f64; N],
+        z: &[f64; N],
+        shapes: &[L::Shape; N],
+        mut root: [f64; N],
         open: [u64; N],
     ) -> [f64; N] {
         for lane in (0..N).filter(|lane| open[*lane] == 1) {
-            thickness[lane] = self.bisected(area[lane], shape[lane]);
+            root[lane] = self.bisected(area_change[lane], z[lane], shapes[lane]);
         }
-        thickness
+        root
     }
 
     /// The root at which W_b rises that is nearest to the series of small strain.
-    fn bisected(&self, area: f64, shape: f64) -> f64 {
-        let slope = |thickness: f64| {
-            let w = self.evaluated(area, shape, thickness);
+    fn bisected(&self, area_change: f64, z: f64, shape: L::Shape) -> f64 {
+        let slope = |root: f64| {
+            let w = self.evaluated(area_change, shape, root);
             if w.energy.is_finite() { w.b } else { f64::NAN }
         };
-        let expected = self.expected(area, shape);
-        let place = |piece: i32| FARTHEST * f64::from(piece) / f64::from(PIECES);
+        let area = area_change.ln_1p();
+        let expected = self.expected(area_change, z);
+        let place = |piece: i32| {
+            let thickness = FARTHEST * f64::from(piece) / f64::from(PIECES);
+            ((area + thickness) / 3.0).exp_m1()
+        };
         let pieces = (-PIECES..PIECES).map(|piece| [place(piece), place(piece + 1)]);
         let rising = pieces.filter(|[low, high]| slope(*low) < 0.0 && slope(*high) >= 0.0);
         let off = |[low, high]: &[f64; 2]| (0.5 * (low + high) - expected).abs();
