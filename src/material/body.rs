@@ -42,12 +42,12 @@ mod thickness;
 /// J₃ = (1 + q)³,   λ₃ = J₃/J,   a = ln J,   b = 3 ln(1 + q) − a                                     [–]
 /// ```
 ///
-/// `S` is what a law makes of z once for all thicknesses.
+/// `S` is what a law makes of J and z once for all thicknesses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyStretches<S = f64> {
     /// J − 1.
     pub area_change: f64,
-    /// What [`BodyLaw::shape`] makes of z = (tr C − 2J)/(2J).
+    /// What [`BodyLaw::shape`] makes of J and z = (tr C − 2J)/(2J).
     pub shape: S,
     /// q = J₃^⅓ − 1.
     pub volume_root_change: f64,
@@ -113,11 +113,11 @@ pub struct BodyDerivatives {
 
 /// An isotropic law of a body that changes its volume. [`BodySheet`] is the sheet made of it.
 pub trait BodyLaw: Clone + Send + Sync + Debug {
-    /// What is made of z once, while the thickness is looked for: z itself, unless it is dear.
+    /// What is made of J and z once, while the thickness is looked for: z itself, unless there is more that is dear.
     type Shape: Copy + Send + Sync + Debug;
 
-    /// The same of a z.
-    fn shape(&self, z: f64) -> Self::Shape;
+    /// The same of J − 1 and z.
+    fn shape(&self, area_change: f64, z: f64) -> Self::Shape;
 
     /// W and its derivatives.
     fn evaluate(&self, at: BodyStretches<Self::Shape>) -> BodyDerivatives;
@@ -143,7 +143,7 @@ impl<L: BodyLaw> BodySheet<L> {
         const SMALL: f64 = 1e-3;
         let rest = law.evaluate(BodyStretches {
             area_change: 0.0,
-            shape: law.shape(0.0),
+            shape: law.shape(0.0, 0.0),
             volume_root_change: 0.0,
         });
         let first = (1.0 - rest.ab / rest.bb) / 3.0;
@@ -155,7 +155,7 @@ impl<L: BodyLaw> BodySheet<L> {
         if plane == PlaneState::Stress && first.is_finite() {
             let changes = [SMALL.exp_m1(), (-SMALL).exp_m1(), 0.0];
             let z = [0.0, 0.0, SMALL];
-            let found = sheet.free_surface(&changes, &z, &sheet.shapes(&z));
+            let found = sheet.free_surface(&changes, &z, &sheet.shapes(&changes, &z));
             let [wider, narrower, sheared] = found.map(f64::ln_1p);
             let second = 0.5 * (wider + narrower) / (SMALL * SMALL);
             sheet.series = [first, second, sheared / SMALL];
@@ -184,7 +184,10 @@ impl<L: BodyLaw> BodySheet<L> {
         kinematics: &Kinematics,
     ) -> (Measures, BodyStretches<L::Shape>, BodyDerivatives) {
         let measures = Measures::new(kinematics);
-        let (area_change, shape) = (kinematics.area_change, self.law.shape(measures.z));
+        let (area_change, shape) = (
+            kinematics.area_change,
+            self.law.shape(kinematics.area_change, measures.z),
+        );
         let [volume_root_change] = self.at(&[area_change], &[measures.z], &[shape]);
         let stretches = BodyStretches {
             area_change,
@@ -195,8 +198,8 @@ impl<L: BodyLaw> BodySheet<L> {
     }
 
     #[inline(always)]
-    fn shapes<const N: usize>(&self, z: &[f64; N]) -> [L::Shape; N] {
-        std::array::from_fn(|lane| self.law.shape(z[lane]))
+    fn shapes<const N: usize>(&self, area_change: &[f64; N], z: &[f64; N]) -> [L::Shape; N] {
+        std::array::from_fn(|lane| self.law.shape(area_change[lane], z[lane]))
     }
 
     fn rest(&self) -> BodyDerivatives {
@@ -343,7 +346,7 @@ impl<S: Copy> Lanes<S> {
             z[lane] = Measures::new(&kinematics).z;
         }
         let admissible = inverted == 0;
-        let shapes = sheet.shapes(&z);
+        let shapes = sheet.shapes(&area_change, &z);
         let volume_root_change = match admissible {
             true => sheet.at(&area_change, &z, &shapes),
             false => [f64::NAN; LANES],

@@ -56,7 +56,7 @@ impl<const LOGARITHM: bool> BodyLaw for CompressibleNeoHooke<LOGARITHM> {
     type Shape = f64;
 
     #[inline(always)]
-    fn shape(&self, z: f64) -> f64 {
+    fn shape(&self, _: f64, z: f64) -> f64 {
         z
     }
 

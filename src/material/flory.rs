@@ -37,7 +37,7 @@ pub trait IsochoricLaw: Send + Sync + Debug {
     /// As [`BodyLaw::Shape`].
     type Shape: Copy + Send + Sync + Debug;
 
-    /// As [`BodyLaw::shape`].
+    /// As [`BodyLaw::shape`], of z alone.
     fn shape(&self, z: f64) -> Self::Shape;
 
     /// Ψ and its derivatives by s and z, where e^s − 1 is `area_change`.
@@ -64,7 +64,7 @@ impl<L: IsochoricLaw, const LOGARITHM: bool> BodyLaw for FlorySplit<L, LOGARITHM
     type Shape = L::Shape;
 
     #[inline(always)]
-    fn shape(&self, z: f64) -> L::Shape {
+    fn shape(&self, _: f64, z: f64) -> L::Shape {
         self.law.shape(z)
     }
 

@@ -4,6 +4,7 @@ use super::code::{Code, CodeLaw};
 use super::invariant_law::InvariantLaw;
 use super::invariants::{EnergyDerivatives, Invariants};
 use super::law::HyperelasticLaw;
+use super::logarithm::logarithm_of_one_plus;
 use super::parameters::Parameters;
 use crate::document::Bound;
 
@@ -47,7 +48,7 @@ impl InvariantLaw for Gent {
         let share = invariants.i1_minus_3 / self.jm;
         let left = 1.0 - share;
         EnergyDerivatives {
-            energy: -0.5 * self.mu * self.jm * (-share).ln_1p(),
+            energy: -0.5 * self.mu * self.jm * logarithm_of_one_plus(-share),
             d1: 0.5 * self.mu / left,
             d11: 0.5 * self.mu / (self.jm * left * left),
             ..EnergyDerivatives::default()

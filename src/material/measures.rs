@@ -3,7 +3,7 @@
 //! ```text
 //! m = ln J,   z = (tr C − 2J)/(2J) = cosh(ln λ₁/λ₂) − 1                                      [–]
 //! P = Ψ_m ∂m + Ψ_z ∂z,   ∂m = cof F/J,   ∂z = (F − cof F − z cof F)/J                      [MPa]
-//! ∂²m = 𝔼/J − ∂m ⊗ ∂m,   ∂²z = (𝟙 − 𝔼 − z 𝔼 − ∂z ⊗ cof F − cof F ⊗ ∂z)/J,   𝔼 = ∂ cof F/∂F
+//! ∂²m = 𝔼/J − ∂m ⊗ ∂m,   ∂²z = (𝟙 − 𝔼 − z 𝔼)/J − ∂z ⊗ ∂m − ∂m ⊗ ∂z,   𝔼 = ∂ cof F/∂F
 //! ```
 //!
 //! Every isotropic law of a sheet is a function of m and z. Both are smooth where the two stretches are equal, so no eigenvectors
@@ -39,25 +39,25 @@ pub struct Measures {
     pub dm: Gradient,
     /// ∂z/∂F.
     pub dz: Gradient,
-    area_ratio: f64,
-    cofactor: Gradient,
+    /// 1/J.
+    inverse: f64,
 }
 
 impl Measures {
     /// The measures of a state.
     #[inline(always)]
     pub fn new(kinematics: &Kinematics) -> Self {
-        let area_ratio = kinematics.area_ratio();
+        let inverse = 1.0 / kinematics.area_ratio();
         let cofactor = cofactor(&kinematics.deformation_gradient);
         // Half the squared norm of F − cof F is tr C − 2J.
         let distortion = &kinematics.distortion;
-        let z = distortion.norm_squared() / (4.0 * area_ratio);
+        let z = 0.25 * inverse * distortion.norm_squared();
+        let dm = inverse * cofactor;
         Self {
             z,
-            dm: cofactor / area_ratio,
-            dz: (distortion - z * cofactor) / area_ratio,
-            area_ratio,
-            cofactor,
+            dm,
+            dz: inverse * distortion - z * dm,
+            inverse,
         }
     }
 
@@ -70,20 +70,16 @@ impl Measures {
     /// Energy, stress and tangent.
     #[inline(always)]
     pub fn response(&self, w: &Derivatives) -> SheetResponse {
-        let mixed = self.dm * self.dz.transpose();
-        let turned = self.dz * self.cofactor.transpose();
-        let e = cofactor_derivative();
-        let d2m = e / self.area_ratio - self.dm * self.dm.transpose();
-        let d2z = (Matrix4::identity() - e * (1.0 + self.z) - turned - turned.transpose())
-            / self.area_ratio;
+        let (dm, dz) = (&self.dm, &self.dz);
+        let mixed = w.mz - w.z;
+        let [by_m, by_z] = [(w.mm - w.m) * dm + mixed * dz, mixed * dm + w.zz * dz];
         SheetResponse {
             energy: w.energy,
             first_piola_kirchhoff_stress: self.stress(w),
-            tangent: w.mm * self.dm * self.dm.transpose()
-                + w.mz * (mixed + mixed.transpose())
-                + w.zz * self.dz * self.dz.transpose()
-                + w.m * d2m
-                + w.z * d2z,
+            tangent: by_m * dm.transpose()
+                + by_z * dz.transpose()
+                + Matrix4::identity() * (w.z * self.inverse)
+                + cofactor_derivative() * ((w.m - w.z * (1.0 + self.z)) * self.inverse),
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use super::body::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 use super::compressible_neo_hooke::chains;
-use super::exponential::exponential_beyond_first_order;
 use super::law::HyperelasticLaw;
 use super::logarithm::logarithm_beyond_first_order;
 use super::parameters::Parameters;
@@ -174,19 +173,20 @@ impl SwollenNetwork {
     }
 
     /// The energy of all but the squares of the stretches, its slope and curvature by c = ln J₃, less what they have at first
-    /// order: U(c) − U(0) − c U′(0), U′(c) − U′(0) and U″(c). With ϕ = φ e^(−c):
+    /// order, at v = J₃ − 1: U(c) − U(0) − c U′(0), U′(c) − U′(0) and U″(c). With ϕ = φ/J₃:
     ///
     /// ```text
     /// U = −½ B G₀ φ/φ₀ c + R T/V₁ ((J₃ − φ) ln(1 − ϕ) + χ (φ − φ ϕ) − J₃ ln a)
     /// ```
     #[inline(always)]
-    fn volume(&self, c: f64) -> [f64; 3] {
+    fn volume(&self, v: f64) -> [f64; 3] {
         let (phi, k) = (self.fraction, self.network.osmotic_modulus);
         let (chi, dry) = (self.network.chi, 1.0 - self.fraction);
-        let [swelling, shrinking] = [c, -c].map(exponential_beyond_first_order);
-        let v = c + swelling;
+        // J₃ − 1 − c, and 1/J₃ − 1 + c
+        let swelling = -logarithm_beyond_first_order(v);
+        let shrinking = v * v / (1.0 + v) - swelling;
         // ϕ − φ, and ln((1 − ϕ)/(1 − φ)) with what it has beyond first order
-        let thinner = phi * (shrinking - c);
+        let thinner = -phi * v / (1.0 + v);
         let beyond = logarithm_beyond_first_order(-thinner / dry);
         let logarithm = beyond - thinner / dry;
         let now = phi + thinner;
@@ -205,13 +205,13 @@ impl BodyLaw for SwollenNetwork {
     type Shape = f64;
 
     #[inline(always)]
-    fn shape(&self, z: f64) -> f64 {
+    fn shape(&self, _: f64, z: f64) -> f64 {
         z
     }
 
     #[inline(always)]
     fn evaluate(&self, at: BodyStretches) -> BodyDerivatives {
-        chains(self.modulus, at, self.volume(at.volume()))
+        chains(self.modulus, at, self.volume(at.volume_change()))
     }
 
     fn statements(&self) -> Vec<(&'static str, String)> {

@@ -100,21 +100,24 @@ impl OgdenHill {
 }
 
 impl BodyLaw for OgdenHill {
-    type Shape = Powers;
+    type Shape = (f64, Powers);
 
-    fn shape(&self, z: f64) -> Powers {
-        Powers::new(self.terms.iter().map(|term| 0.5 * term.exponent), z)
+    /// a, and T of every term.
+    fn shape(&self, area_change: f64, z: f64) -> (f64, Powers) {
+        let orders = self.terms.iter().map(|term| 0.5 * term.exponent);
+        (area_change.ln_1p(), Powers::new(orders, z))
     }
 
     /// With T of [`Ogden`](super::Ogden): λ₁^α + λ₂^α = 2 e^(αa/2) T(z).
-    fn evaluate(&self, at: BodyStretches<Powers>) -> BodyDerivatives {
-        let (a, b) = (at.area(), at.thickness());
+    fn evaluate(&self, at: BodyStretches<(f64, Powers)>) -> BodyDerivatives {
+        let ((a, powers), whole) = (at.shape, at.volume());
+        let b = whole - a;
         let mut sum = BodyDerivatives::default();
         for (number, term) in self.terms.iter().enumerate() {
             let (alpha, beta) = (term.exponent, term.volume_exponent);
             let factor = 2.0 * term.modulus / (alpha * alpha);
-            let [t_minus_1, t, dt, ddt] = at.shape.of(number, 0.5 * alpha);
-            let [grown, across, all] = [0.5 * alpha * a, alpha * b, alpha * at.volume()];
+            let [t_minus_1, t, dt, ddt] = powers.of(number, 0.5 * alpha);
+            let [grown, across, all] = [0.5 * alpha * a, alpha * b, alpha * whole];
             let [grown_beyond, across_beyond] = [grown, across].map(exponential_beyond_first_order);
             let volume = exponential_less_one(-beta * all);
             let (growth_less_1, across_less_1) = (grown + grown_beyond, across + across_beyond);

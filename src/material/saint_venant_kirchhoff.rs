@@ -49,7 +49,7 @@ impl BodyLaw for SaintVenantKirchhoff {
     type Shape = f64;
 
     #[inline(always)]
-    fn shape(&self, z: f64) -> f64 {
+    fn shape(&self, _: f64, z: f64) -> f64 {
         z
     }
 
