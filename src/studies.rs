@@ -90,7 +90,10 @@ pub struct PreparedStudy {
 /// The computation of a study.
 pub type Computation = Box<dyn FnOnce(Progress) -> Result<Outcome, Error>>;
 
-/// A kind of study.
+/// What reads the studies of a kind.
+pub type Prepare = fn(&Section, &Path) -> Computation;
+
+/// A kind of study: what there is to know of it without what computes it.
 pub struct Kind {
     /// The `kind` of its studies.
     pub kind: &'static str,
@@ -100,17 +103,21 @@ pub struct Kind {
     pub file: &'static str,
     /// Whether `--quick` leaves it out.
     pub slow: bool,
-    /// Reads one.
-    pub prepare: fn(&Section, &Path) -> Computation,
 }
 
 impl Kind {
-    /// Reads a study of this case, which may ask for so much.
+    /// Reads a study of this case by `prepare`, which may ask for so much.
     ///
     /// # Errors
     /// [`Error::Input`] with every fault.
-    pub fn read(&self, file: &Path, text: &str, budget: Budget) -> Result<PreparedStudy, Error> {
-        let read = self.read_with(file, text, budget, self.prepare)?;
+    pub(crate) fn read(
+        &self,
+        prepare: Prepare,
+        file: &Path,
+        text: &str,
+        budget: Budget,
+    ) -> Result<PreparedStudy, Error> {
+        let read = self.read_with(file, text, budget, prepare)?;
         Ok(PreparedStudy {
             name: name(file),
             title: read.title,
@@ -140,14 +147,14 @@ impl Kind {
     }
 
     /// The keys that are asked for when a text is read.
-    pub fn keys(&self, text: &str) -> Vec<Key> {
+    pub(crate) fn keys(&self, prepare: Prepare, text: &str) -> Vec<Key> {
         let faults = Faults::default();
         let defaults = Document::parse(self.file, self.study, &faults);
         let document = Document::parse("", text, &faults);
         let root = document.root(Some(&defaults), &faults);
         root.text("kind");
         root.heading("title");
-        drop((self.prepare)(&root, Path::new(".")));
+        drop(prepare(&root, Path::new(".")));
         faults.keys()
     }
 

@@ -5,12 +5,12 @@
 use std::path::Path;
 
 use crate::budget::Budget;
-use crate::document::{Document, Faults};
+use crate::document::{Document, Faults, Key};
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::results::{Check, Outcome, Results};
 use crate::studies::plate as plate_study;
 use crate::studies::sections::read_text;
-use crate::studies::{Kind, PreparedStudy, Progress, motion, other_files, specimen};
+use crate::studies::{Kind, Prepare, PreparedStudy, Progress, motion, other_files, specimen};
 
 mod case;
 mod correction_matrix;
@@ -40,18 +40,20 @@ macro_rules! cases {
     (@slow quick) => { false };
     (@slow slow) => { true };
     ($($kind:expr, $file:literal, $speed:ident, $prepare:path;)*) => {
-        &[$(Kind {
+        /// All cases, in the order of the report.
+        pub const CASES: &[Kind] = &[$(Kind {
             kind: $kind,
             study: include_str!(concat!("../", $file)),
             file: $file,
             slow: cases!(@slow $speed),
-            prepare: $prepare,
-        }),*]
+        }),*];
+
+        /// What reads them: apart from them, so that a program that computes none has no solver in it.
+        const READERS: &[(&str, Prepare)] = &[$(($kind, $prepare)),*];
     };
 }
 
-/// All cases, in the order of the report.
-pub const CASES: &[Kind] = cases! {
+cases! {
     "nonlinear-spring", "examples/nonlinear_spring.toml", quick, nonlinear_spring::prepare;
     "plate-ablation", "examples/plate_ablation.toml", quick, plate_ablation::prepare;
     "flagship", "validation/cases/flagship.toml", slow, flagship::prepare;
@@ -78,7 +80,7 @@ pub const CASES: &[Kind] = cases! {
     "motion-correction", "validation/cases/motion_correction.toml", slow, motion_correction::prepare;
     "vibrating-plate", "validation/cases/vibrating_plate.toml", quick, vibrating_plate::prepare;
     "own-error", "validation/cases/own_error.toml", slow, finite_elements::own_error::prepare;
-};
+}
 
 /// The cases of some kinds, or all; without the slow ones where `quick` is wanted and none is named.
 ///
@@ -105,6 +107,30 @@ pub fn choose(names: &[String], quick: bool) -> Result<Vec<&'static Kind>, Error
         .iter()
         .filter(|case| names.iter().any(|name| name == case.kind));
     Ok(chosen.collect())
+}
+
+/// What reads the studies of a case.
+fn reader(case: &Kind) -> Prepare {
+    let found = READERS.iter().find(|(kind, _)| *kind == case.kind);
+    found.expect("a case of the table").1
+}
+
+/// Reads a study of a case, which may ask for so much.
+///
+/// # Errors
+/// [`Error::Input`] with every fault.
+pub fn read_as(
+    case: &Kind,
+    file: &Path,
+    text: &str,
+    budget: Budget,
+) -> Result<PreparedStudy, Error> {
+    case.read(reader(case), file, text, budget)
+}
+
+/// The keys that are asked for when a text is read as a study of a case.
+pub fn keys(case: &Kind, text: &str) -> Vec<Key> {
+    case.keys(reader(case), text)
 }
 
 /// The case that a study's text is of; nothing for a plate study.
@@ -148,7 +174,7 @@ pub fn read(path: &Path, budget: Budget) -> Result<PreparedStudy, Error> {
 /// [`Error::Input`] with every fault.
 pub fn read_given(path: &Path, text: String, budget: Budget) -> Result<PreparedStudy, Error> {
     match case_of(&path.display().to_string(), &text)? {
-        Some(case) => case.read(path, &text, budget),
+        Some(case) => read_as(case, path, &text, budget),
         None => plate_study::prepare(path, text, budget),
     }
 }
@@ -158,7 +184,7 @@ pub fn read_given(path: &Path, text: String, budget: Budget) -> Result<PreparedS
 /// # Errors
 /// [`Error::Input`] or [`Error::Write`].
 pub fn compute_or_fail(case: &Kind, progress: Progress) -> Result<Results, Error> {
-    let ready = case.read(Path::new(case.file), case.study, Budget::USUAL)?;
+    let ready = read_as(case, Path::new(case.file), case.study, Budget::USUAL)?;
     match ready.compute(progress) {
         Err(fault @ Error::Solve { .. }) => {
             let check = Check::fault(fault.to_string(), "no fault");
@@ -214,17 +240,14 @@ mod tests {
     #[test]
     fn every_case_reads_its_own_study_and_tells_faults() {
         for case in CASES {
-            assert!(
-                case.read(Path::new(case.file), case.study, Budget::USUAL)
-                    .is_ok()
-            );
+            let own = read_as(case, Path::new(case.file), case.study, Budget::USUAL);
+            assert!(own.is_ok());
             let found = case_of(case.file, case.study).unwrap().unwrap();
             assert_eq!(found.kind, case.kind);
             let text = "kind = \"x\"
 misspelt = 1
 ";
-            let told = case
-                .read(Path::new("x.toml"), text, Budget::USUAL)
+            let told = read_as(case, Path::new("x.toml"), text, Budget::USUAL)
                 .map(|_| ())
                 .unwrap_err();
             assert!(told.to_string().contains("misspelt: unknown key"), "{told}");

@@ -9,7 +9,7 @@ use gelbench::mesh::{CellShape, Mesh, MeshReading, Shape, import};
 use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
 use gelbench::studies::Progress;
-use gelbench::validation::case_of;
+use gelbench::validation::{case_of, read_as};
 
 mod common;
 
@@ -367,7 +367,7 @@ fn within(cells: f64) -> (String, Vec<String>) {
         cells,
         ..Budget::USUAL
     };
-    let ready = case.read(&folder.path().join("small.toml"), &text, budget);
+    let ready = read_as(case, &folder.path().join("small.toml"), &text, budget);
     let results = ready.unwrap().compute(Progress::silent()).unwrap();
     (format!("{:?}", results.report()), results.read_warnings)
 }

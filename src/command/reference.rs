@@ -13,7 +13,7 @@ use crate::output;
 use crate::results::limit;
 use crate::studies::{Kind, markers, plate};
 use crate::units::Dimension;
-use crate::validation::CASES;
+use crate::validation::{self, CASES};
 
 /// Kinds of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -84,7 +84,7 @@ impl FileKind {
     pub fn keys(self) -> Vec<FoundKey> {
         let read = |text: &str| -> Vec<Key> {
             match (self, self.case()) {
-                (_, Some(case)) => case.keys(text),
+                (_, Some(case)) => validation::keys(case, text),
                 (Self::Markers, _) => markers::keys(text),
                 (Self::Card, _) => Card::keys(text),
                 _ => plate::keys(text),

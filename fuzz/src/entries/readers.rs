@@ -12,7 +12,7 @@ use gelbench::material::Card;
 use gelbench::mesh::{CellShape, MeshReading, Outline, import, import_series};
 use gelbench::solve::SparseRows;
 use gelbench::studies::plate::Study;
-use gelbench::validation::case_of;
+use gelbench::validation::{case_of, read_as};
 
 use super::{Became, with_file};
 
@@ -28,7 +28,7 @@ pub fn study(bytes: &[u8]) -> Became {
     };
     let file = Path::new("study.toml");
     let read = match case_of("study.toml", text) {
-        Ok(Some(case)) => case.read(file, text, Budget::USUAL).is_ok(),
+        Ok(Some(case)) => read_as(case, file, text, Budget::USUAL).is_ok(),
         Ok(None) => Study::of_file(file, text.to_owned(), Budget::USUAL).is_ok(),
         Err(_) => false,
     };

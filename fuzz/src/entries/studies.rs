@@ -7,7 +7,7 @@ use gelbench::budget::Budget;
 use gelbench::error::Error;
 use gelbench::material::registry::CARDS;
 use gelbench::studies::{Progress, plate};
-use gelbench::validation::case_of;
+use gelbench::validation::{case_of, read_as};
 
 use super::Became;
 use super::choices::Choices;
@@ -36,7 +36,7 @@ fn compute(text: &str) -> Became {
         eprintln!("{text}");
     }
     let read = match case_of("study.toml", text) {
-        Ok(Some(case)) => case.read(file, text, SMALL),
+        Ok(Some(case)) => read_as(case, file, text, SMALL),
         Ok(None) => plate::prepare(file, text.to_owned(), SMALL),
         Err(fault) => Err(fault),
     };
