@@ -3,6 +3,7 @@
 use eframe::egui::{Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
 use gelbench::results::Drawing;
+use gelbench_workbench::logic::field::settings::TEXTS;
 use gelbench_workbench::logic::field::{Edge, middle};
 use gelbench_workbench::views::app::{Tab, Workbench};
 
@@ -125,4 +126,19 @@ fn a_known_edge_takes_its_displacement_and_a_wrong_one_is_told() {
 fn the_mesh_can_be_found_by_those_who_do_not_see_it() {
     let bench = opened();
     assert!(bench.query_by_label_contains(MESH).is_some());
+}
+
+#[test]
+fn warnings_name_what_the_view_offers() {
+    let bench = opened();
+    for setting in &TEXTS {
+        assert!(bench.query_by_label(setting.label).is_some(), "{setting:?}");
+    }
+    let found = state(&bench).fields().found().unwrap().as_ref().unwrap();
+    let gap = &TEXTS[3];
+    let said = format!("say where the edge is with “{}”", gap.label);
+    let warnings = found.preview.warnings.join("\n");
+    assert!(warnings.contains(&said), "{warnings}");
+    assert!(!warnings.contains(gap.option), "{warnings}");
+    assert!(bench.query_by_label_contains(&said).is_some());
 }

@@ -7,7 +7,7 @@ use web_time::Instant;
 
 use gelbench::corrector::estimation::{Answer, FieldEstimate};
 use gelbench::document::with_files;
-use gelbench::error::{Diagnostic, Error};
+use gelbench::error::Error;
 use gelbench::markers::Frame;
 use gelbench::mesh::Mesh;
 use gelbench::output::{self, vtk};
@@ -23,6 +23,7 @@ use super::studies::{NamedFile, paths};
 
 mod edges;
 mod request;
+pub mod settings;
 
 pub use edges::{Edge, middle, nearest};
 use request::{length, request};
@@ -123,7 +124,8 @@ impl Worker for FieldCorrector {
     const NAME: &'static str = "corrector";
 
     fn answer(&mut self, question: &FieldQuestion) -> Result<FieldAnswer, Fault> {
-        with_own_files(question, || answer(question)).map_err(Fault::from)
+        let answered = with_own_files(question, || answer(question));
+        answered.map_err(|error| settings::fault(error.into()))
     }
 }
 
@@ -148,6 +150,9 @@ fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
     let estimates = estimates(&study)?;
     let results = results(question, &study, &estimates, begun);
     let mut report = Report::from(results);
+    for said in &mut report.told {
+        *said = settings::worded(said);
+    }
     let frames = || study.series.frames.iter().zip(&estimates);
     for (frame, estimate) in frames() {
         let files = FrameFiles::new(&study, frame, estimate);
@@ -229,14 +234,14 @@ impl FieldQuestion {
             .chain(names)
             .collect();
         let card = self.card.reference();
-        let options = [
-            ("--material", card.as_str()),
-            ("--thickness", &self.thickness),
-            ("--unit", &self.unit),
-            ("--columns", &self.columns),
-            ("--cell-size", &self.cell_size),
-            ("--study", KNOWN),
-        ];
+        let mut said = self.clone();
+        // The gap is in the file of what is known.
+        said.edge_gap.clear();
+        let texts = settings::TEXTS.iter().zip(said.texts());
+        let options = [(settings::MATERIAL.option, card.as_str())]
+            .into_iter()
+            .chain(texts.map(|(setting, text)| (setting.option, text.as_str())))
+            .chain([("--study", KNOWN)]);
         for (option, value) in options {
             if !value.trim().is_empty() {
                 words.extend([option.to_owned(), quoted(value.trim())]);
@@ -244,7 +249,7 @@ impl FieldQuestion {
         }
         if let Some(down) = self.downwards {
             let axis = if down { "down" } else { "up" };
-            words.extend(["--y-axis".to_owned(), axis.to_owned()]);
+            words.extend([settings::Y_AXIS.option, axis].map(str::to_owned));
         }
         words.join(" ")
     }
@@ -263,10 +268,6 @@ fn outlines(mesh: &Mesh) -> Drawing {
 fn edges(mesh: &Mesh) -> Vec<String> {
     let names = mesh.groups().keys().filter(|name| *name != "boundary");
     names.cloned().collect()
-}
-
-fn words(found: &[Diagnostic]) -> Vec<String> {
-    found.iter().map(ToString::to_string).collect()
 }
 
 fn preview(study: &MarkerStudy) -> Preview {
@@ -302,7 +303,7 @@ fn preview(study: &MarkerStudy) -> Preview {
                 [marker.place, found]
             })
             .collect(),
-        warnings: words(&study.warnings),
+        warnings: study.warnings.iter().map(settings::told).collect(),
     }
 }
 
