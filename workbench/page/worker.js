@@ -1,5 +1,5 @@
-// The same program as a worker of the page: it answers messages with what it has computed.
-import init, { work } from "./gelbench_workbench.js";
+// A worker of the page: it answers messages with what it has computed.
+import init, { work } from "./gelbench_workbench_worker.js";
 
 // The library that lays pictures out asks a page how large words are. Workers have none: a canvas of their own answers.
 const canvas = new OffscreenCanvas(1, 1).getContext("2d");

@@ -14,5 +14,5 @@
 pub mod logic;
 pub mod measure;
 #[cfg(target_arch = "wasm32")]
-mod page;
+pub mod page;
 pub mod views;

@@ -1,7 +1,47 @@
-//! The workbench on the desktop: `gelbench-workbench [FILE …] [--frames NUMBER] [--dark | --light]`.
+//! The workbench on the desktop: `gelbench-workbench [FILE …] [--frames NUMBER] [--dark | --light]`; and on the page, which starts it itself.
 
 #[cfg(target_arch = "wasm32")]
 fn main() {}
+
+#[cfg(target_arch = "wasm32")]
+mod browser {
+    use eframe::{WebOptions, WebRunner};
+    use gelbench_workbench::logic::scene::Scene;
+    use gelbench_workbench::measure::Measure;
+    use gelbench_workbench::page;
+    use gelbench_workbench::views::app::Workbench;
+    use wasm_bindgen::prelude::*;
+    use web_sys::HtmlCanvasElement;
+
+    /// Starts the workbench on a canvas: with a study, or without one where it is empty; with `frames` above zero it pulls
+    /// by itself and times so many frames.
+    #[wasm_bindgen]
+    pub async fn start(
+        canvas: HtmlCanvasElement,
+        study: String,
+        frames: usize,
+    ) -> Result<(), JsValue> {
+        let create = move |context: &eframe::CreationContext| {
+            let mut bench = Workbench::new(&context.egui_ctx, Scene::default());
+            if !study.is_empty() {
+                bench.open("link.toml", study.as_bytes());
+            }
+            if frames > 0 {
+                bench = bench.measuring(Measure::of(frames));
+            }
+            Ok(Box::new(bench) as Box<dyn eframe::App>)
+        };
+        WebRunner::new()
+            .start(canvas, WebOptions::default(), Box::new(create))
+            .await
+    }
+
+    /// What is on the table, as JSON.
+    #[wasm_bindgen]
+    pub fn told() -> String {
+        page::told()
+    }
+}
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> std::process::ExitCode {

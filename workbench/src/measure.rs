@@ -1,6 +1,6 @@
 //! Frame times: the grip is pulled to and fro by itself, and every frame is timed.
 
-use web_time::Instant;
+use web_time::{Duration, Instant};
 
 use crate::logic::scene::{Grip, Model, Scene};
 use crate::logic::table::{Action, Table};
@@ -14,6 +14,8 @@ pub struct Measure {
     begun: Vec<Instant>,
     /// Corrected fields that came, and the time that they took to compute in s.
     solved: Vec<f64>,
+    /// What the program itself took for every frame in s, before anything was drawn.
+    own: Vec<f64>,
     last: Option<Grip>,
 }
 
@@ -24,6 +26,7 @@ impl Measure {
             frames,
             begun: Vec::new(),
             solved: Vec::new(),
+            own: Vec::new(),
             last: None,
         }
     }
@@ -62,7 +65,14 @@ impl Measure {
         });
     }
 
-    /// Median and worst time from frame to frame, and of a corrected field, once all were drawn.
+    /// Notes what the program itself took for the frame that was noted last.
+    pub fn worked(&mut self, own: Duration) {
+        if self.own.len() < self.begun.len() {
+            self.own.push(own.as_secs_f64());
+        }
+    }
+
+    /// Median and worst time from frame to frame, of the program's own work in it, and of a corrected field, once all were drawn.
     pub fn report(&self) -> Option<String> {
         if self.begun.len() <= WARMING + self.frames {
             return None;
@@ -71,11 +81,13 @@ impl Measure {
         let frames = pairs
             .map(|pair| 1e3 * (pair[1] - pair[0]).as_secs_f64())
             .collect();
+        let own = self.own.iter().skip(WARMING).map(|own| 1e3 * own).collect();
         let solved = self.solved.iter().map(|seconds| 1e3 * seconds).collect();
-        let ([frame, worst], [field, slowest]) =
-            (median_and_worst(frames), median_and_worst(solved));
+        let [[frame, worst], [own, most], [field, slowest]] =
+            [frames, own, solved].map(median_and_worst);
         Some(format!(
-            "{} frames: median {frame:.1} ms, worst {worst:.1} ms; {} corrected fields: median {field:.1} ms, worst {slowest:.1} ms",
+            "{} frames: median {frame:.1} ms, worst {worst:.1} ms; the program's own work: median {own:.1} ms, worst {most:.1} ms; \
+             {} corrected fields: median {field:.1} ms, worst {slowest:.1} ms",
             self.frames,
             self.solved.len()
         ))

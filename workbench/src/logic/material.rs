@@ -129,12 +129,12 @@ fn fitted(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Fitted {
     let quality = &fit.quality;
     let parameter = |index: usize| {
         let (parameter, estimate) = (&fit.parameters[index], &quality.estimates[index]);
-        let value = format!("{:.6} {}", parameter.value, parameter.unit());
+        let value = format!("{} {}", figures(parameter.value, 6), parameter.unit());
         let [low, high] = estimate.interval;
         let uncertainty = match (quality.at_bound[index], quality.has_intervals()) {
             (true, _) => "held by a bound".to_owned(),
             (_, false) => "no interval".to_owned(),
-            _ => format!("95 % {low:.5} … {high:.5}"),
+            _ => format!("95 % {} … {}", figures(low, 5), figures(high, 5)),
         };
         [parameter.key.to_owned(), value, uncertainty]
     };
@@ -159,6 +159,16 @@ fn fitted(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Fitted {
         warnings: quality.warnings.clone(),
         charts,
         card: calibration::card_text(fit, tests, provenance),
+    }
+}
+
+/// So many figures of a value, however small it is.
+fn figures(value: f64, count: usize) -> String {
+    let size = value.abs().log10().floor();
+    match (-4.0..count as f64).contains(&size) {
+        true => format!("{value:.*}", (count as f64 - 1.0 - size) as usize),
+        false if value == 0.0 => "0".to_owned(),
+        false => format!("{value:.*e}", count - 1),
     }
 }
 
@@ -207,6 +217,20 @@ mod tests {
     }
 
     #[test]
+    fn values_are_seen_however_small_they_are() {
+        for (value, seen) in [
+            (23.4027684, "23.4028"),
+            (-0.000512345678, "-0.000512346"),
+            (4.81e-12, "4.81000e-12"),
+            (1234567.0, "1.23457e6"),
+            (999999.4, "999999"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(figures(value, 6), seen);
+        }
+    }
+
+    #[test]
     fn a_fit_is_what_the_command_finds_and_its_card_can_be_read() {
         let question = FitQuestion {
             tests: vec![treloar()],
@@ -218,7 +242,7 @@ mod tests {
         // The guide: `gelbench materials fit materials/data/treloar_1944_uniaxial.csv --law yeoh`.
         assert_eq!(
             fit.parameters[0],
-            ["c10", "0.176284 MPa", "95 % 0.02774 … 0.32483"]
+            ["c10", "0.176284 MPa", "95 % 0.027736 … 0.32483"]
         );
         assert_eq!(fit.charts.len(), 2);
         let card = CardFile {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use eframe::egui::{self, CentralPanel, Key, KeyboardShortcut, Modifiers, Panel, Ui};
+use web_time::Instant;
 
 use super::exports::Exports;
 use super::field::Fields;
@@ -353,9 +354,13 @@ impl Workbench {
 
 impl eframe::App for Workbench {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        let begun = Instant::now();
         self.show(ui);
+        if let Some(measure) = &mut self.measure {
+            measure.worked(begun.elapsed());
+        }
         #[cfg(target_arch = "wasm32")]
-        crate::page::tell(self, ui.ctx().cumulative_pass_nr());
+        crate::page::tell(self, ui.ctx());
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(report) = self.measured() {
             println!("{report}");

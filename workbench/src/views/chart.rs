@@ -1,7 +1,7 @@
 //! A chart as the library describes it, drawn to be zoomed and asked.
 
 use eframe::egui::{Color32, Ui};
-use egui_plot::{Corner, Legend, Line, LineStyle, Plot, PlotPoints, Points, Polygon};
+use egui_plot::{Corner, FilledArea, Legend, Line, LineStyle, Plot, PlotPoints, Points, Polygon};
 
 use gelbench::results::{LineChart, Scale, Stroke};
 
@@ -49,7 +49,6 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
             }
         }
         for line in &chart.lines {
-            let [r, g, b] = line.colour;
             let ink = ink(line.colour);
             let places = || -> PlotPoints<'_> {
                 let places = line.points.iter().map(|[x, y]| [of_x(*x), of_y(*y)]);
@@ -68,14 +67,7 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
                         .color(ink)
                         .radius(2.5),
                 ),
-                Stroke::Filled => {
-                    let pale = Color32::from_rgba_unmultiplied(r, g, b, 50);
-                    plot.polygon(
-                        Polygon::new(line.label.clone(), places())
-                            .fill_color(pale)
-                            .stroke((0.0, pale)),
-                    );
-                }
+                Stroke::Filled => plot.add(between(line, of_x, of_y)),
                 Stroke::Dashed => plot.line(through(1.5).style(LineStyle::dashed_dense())),
                 Stroke::Thin => plot.line(through(0.8)),
                 Stroke::Solid => plot.line(through(2.0)),
@@ -90,6 +82,24 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
             }
         }
     });
+}
+
+/// What lies between a line there and a line back over the same places.
+fn between(
+    line: &gelbench::results::Line,
+    of_x: fn(f64) -> f64,
+    of_y: fn(f64) -> f64,
+) -> FilledArea {
+    let (there, back) = line.points.split_at(line.points.len() / 2);
+    let pairs = there.iter().zip(back.iter().rev());
+    let places = pairs.map(|([x, one], [_, other])| [of_x(*x), of_y(*one), of_y(*other)]);
+    let places: Vec<[f64; 3]> = places
+        .filter(|place| place.iter().all(|part| part.is_finite()))
+        .collect();
+    let along = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<_>>();
+    let [r, g, b] = line.colour;
+    let pale = Color32::from_rgba_unmultiplied(r, g, b, 50);
+    FilledArea::new(line.label.clone(), &along(0), &along(1), &along(2)).fill_color(pale)
 }
 
 fn scaled(scale: Scale) -> fn(f64) -> f64 {

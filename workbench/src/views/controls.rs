@@ -1,6 +1,6 @@
 //! The panel beside the sheet: what it is, what it is made of, where its grip is, what is shown.
 
-use eframe::egui::{ComboBox, DragValue, RichText, Slider, Ui};
+use eframe::egui::{ComboBox, DragValue, Margin, RichText, Slider, Ui};
 
 use gelbench::material::registry::CARDS;
 
@@ -9,6 +9,14 @@ use crate::logic::table::Table;
 
 /// Cells across a sheet that are offered.
 const CELLS: [usize; 2] = [4, 120];
+
+/// The room to the left of what stands beside something.
+pub const BESIDE: Margin = Margin {
+    left: 12,
+    right: 0,
+    top: 0,
+    bottom: 0,
+};
 
 /// Shows all controls; the scene as it shall be, and whether something is held.
 pub fn show(ui: &mut Ui, table: &Table) -> (Scene, bool) {

@@ -1,12 +1,12 @@
 //! Measured fields: files are dropped, looked at, edges are said, the field is corrected and judged.
 
-use eframe::egui::{Button, Grid, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Button, Frame, Grid, ScrollArea, TextEdit, Ui};
 
 use super::surface::View;
 use super::{controls, exports, figures, report, study};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Fault;
-use crate::logic::field::{Edge, FieldAnswer, FieldCorrector, FieldQuestion, Preview};
+use crate::logic::field::{Edge, FieldAnswer, FieldCorrector, FieldQuestion, Preview, settings};
 use crate::logic::outputs::Wanted;
 use crate::logic::scene::CardFile;
 use crate::logic::studies::NamedFile;
@@ -201,7 +201,8 @@ impl Fields {
             if corrected && ui.available_width() > WIDE {
                 ui.columns(2, |columns| {
                     self.question(&mut columns[0], table, found.as_ref());
-                    self.results(&mut columns[1], answer);
+                    let beside = Frame::new().inner_margin(controls::BESIDE);
+                    beside.show(&mut columns[1], |ui| self.results(ui, answer));
                 });
             } else {
                 self.question(ui, table, found.as_ref());
@@ -278,33 +279,18 @@ impl Fields {
 
     fn said(&mut self, ui: &mut Ui, table: &mut Table) {
         let mut chosen = table.scene().card.clone();
-        controls::card(ui, "material", &mut chosen, table.cards());
+        controls::card(ui, settings::MATERIAL.label, &mut chosen, table.cards());
         if chosen != table.scene().card {
             table.take_card(chosen, false);
             self.question.card = table.scene().card.clone();
         }
-        let FieldQuestion {
-            thickness,
-            unit,
-            columns,
-            edge_gap,
-            cell_size,
-            downwards,
-            ..
-        } = &mut self.question;
         Grid::new("said of the field")
             .num_columns(4)
             .show(ui, |ui| {
-                let texts = [
-                    ("thickness at rest", thickness, "2 mm"),
-                    ("unit or pixel", unit, "mm, or 0.05 mm"),
-                    ("columns", columns, "x=x_px,y=y_px,ux=u,uy=v"),
-                    ("gap to the edge", edge_gap, "1 mm"),
-                    ("size of cells", cell_size, "as the markers"),
-                ];
-                for (number, (name, text, hint)) in texts.into_iter().enumerate() {
-                    let label = ui.label(name);
-                    let edit = TextEdit::singleline(text).hint_text(hint);
+                let texts = settings::TEXTS.iter().zip(self.question.texts());
+                for (number, (setting, text)) in texts.enumerate() {
+                    let label = ui.label(setting.label);
+                    let edit = TextEdit::singleline(text).hint_text(setting.example);
                     ui.add_sized([150.0, 20.0], edit).labelled_by(label.id);
                     if number % 2 == 1 {
                         ui.end_row();
@@ -312,13 +298,13 @@ impl Fields {
                 }
             });
         ui.horizontal_wrapped(|ui| {
-            ui.label("y axis of the file:");
+            ui.label(format!("{}:", settings::Y_AXIS.label));
             for (name, value) in [
                 ("as known", None),
                 ("up", Some(false)),
                 ("down", Some(true)),
             ] {
-                ui.selectable_value(downwards, value, name);
+                ui.selectable_value(&mut self.question.downwards, value, name);
             }
         });
         ui.horizontal_wrapped(|ui| {
@@ -345,7 +331,7 @@ impl Fields {
         }
         ui.add_space(4.0);
         ui.label(format!(
-            "{}. Click an edge and say what is known of it:",
+            "The mesh: {}. Click an edge and say what is known of it:",
             preview.mesh
         ));
         self.mesh(ui, preview);

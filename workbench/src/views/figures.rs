@@ -33,6 +33,9 @@ pub fn curve(table: &Table) -> LineChart {
     LineChart::new("", x, Axis::linear("force along X [N]"), lines)
 }
 
+/// The width that the table takes without the moment.
+pub const WIDTH: f32 = 520.0;
+
 /// The width below which a table leaves the moment out.
 const NARROW: f32 = 560.0;
 

@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{Context, FontData, FontDefinitions};
+use eframe::egui::{Context, FontData, FontDefinitions, FontId, TextStyle};
 
 const NAME: &str = "symbols";
 const SYMBOLS: &[u8] = include_bytes!("../../fonts/dejavu-sans-symbols.ttf");
+
+/// The size of small letters in points: what egui takes is too small for notes that are to be read.
+const SMALL: f32 = 10.5;
 
 /// Lets all texts take from DejaVu Sans what egui's own letters lack.
 pub fn install(context: &Context) {
@@ -16,4 +19,9 @@ pub fn install(context: &Context) {
         family.push(NAME.to_owned());
     }
     context.set_fonts(fonts);
+    context.all_styles_mut(|style| {
+        style
+            .text_styles
+            .insert(TextStyle::Small, FontId::proportional(SMALL));
+    });
 }

@@ -1,6 +1,8 @@
 //! Materials: a card with its curves, parameters that are moved, and laws fitted to dropped tests.
 
-use eframe::egui::{Button, ComboBox, DragValue, Grid, RichText, ScrollArea, TextEdit, Ui, vec2};
+use eframe::egui::{
+    Button, ComboBox, DragValue, Frame, Grid, RichText, ScrollArea, TextEdit, Ui, vec2,
+};
 
 use gelbench::calibration::KEYS;
 use gelbench::material::Card;
@@ -101,7 +103,8 @@ impl Materials {
             if wide {
                 ui.columns(2, |columns| {
                     self.card(&mut columns[0], table);
-                    self.tests(&mut columns[1], table);
+                    let beside = Frame::new().inner_margin(controls::BESIDE);
+                    beside.show(&mut columns[1], |ui| self.tests(ui, table));
                 });
             } else {
                 self.card(ui, table);

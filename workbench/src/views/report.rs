@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    Color32, Grid, Mesh as Triangles, Rect, RichText, Sense, Shape, Stroke, Ui, vec2,
+    Color32, Grid, Label, Mesh as Triangles, Rect, RichText, ScrollArea, Sense, Shape, Stroke, Ui,
+    vec2,
 };
 
 use gelbench::results::{Drawing, FieldFigure, MeshFigure, PALETTE, Panel, Scale, Values};
@@ -53,20 +54,23 @@ fn show_part(ui: &mut Ui, name: &str, part: &Part) {
 }
 
 fn table(ui: &mut Ui, name: &str, head: &[String], rows: &[Vec<String>]) {
-    let shown = Grid::new(name.to_owned())
+    let cells = Grid::new(name.to_owned())
         .striped(true)
         .num_columns(head.len());
-    shown.show(ui, |ui| {
-        for cell in head {
-            ui.label(RichText::new(cell).small().strong());
-        }
-        ui.end_row();
-        for row in rows.iter().take(ROWS) {
-            for cell in row {
-                ui.label(cell);
+    let room = ScrollArea::horizontal().id_salt((name, "room"));
+    room.show(ui, |ui| {
+        cells.show(ui, |ui| {
+            for cell in head {
+                ui.label(RichText::new(cell).small().strong());
             }
             ui.end_row();
-        }
+            for row in rows.iter().take(ROWS) {
+                for cell in row {
+                    ui.add(Label::new(cell).extend());
+                }
+                ui.end_row();
+            }
+        });
     });
     if rows.len() > ROWS {
         ui.label(format!("… and {} rows more", rows.len() - ROWS));

@@ -44,6 +44,10 @@ pub struct Browser {
     loaded_at: Instant,
 }
 
+fn escaped(text: &str) -> String {
+    text.bytes().map(|byte| format!("%{byte:02x}")).collect()
+}
+
 fn page_folder() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     root.join("target/page")
@@ -60,21 +64,20 @@ fn chromium() -> Option<PathBuf> {
 impl Browser {
     /// The page in a window of a size in points, in the dark; nothing where it cannot be had, which is said.
     pub fn open(size: [u32; 2]) -> Option<Self> {
-        Self::start(size, "", false)
+        Self::start(size, 1.0, "")
     }
 
-    /// The same in the light or in the dark.
-    pub fn open_in(size: [u32; 2], light: bool) -> Option<Self> {
-        Self::start(size, "", light)
+    /// The page with a study on its table, on a screen that has so many pixels for a point.
+    pub fn open_fine(size: [u32; 2], scale: f64, study: &str) -> Option<Self> {
+        Self::start(size, scale, &format!("#{}", escaped(study)))
     }
 
     /// The page with a study on its table, pulling by itself for so many frames.
     pub fn open_with(size: [u32; 2], study: &str, frames: usize) -> Option<Self> {
-        let escaped: String = study.bytes().map(|byte| format!("%{byte:02x}")).collect();
-        Self::start(size, &format!("?frames={frames}#{escaped}"), false)
+        Self::start(size, 1.0, &format!("?frames={frames}#{}", escaped(study)))
     }
 
-    fn start(size: [u32; 2], rest: &str, light: bool) -> Option<Self> {
+    fn start(size: [u32; 2], scale: f64, rest: &str) -> Option<Self> {
         let (Some(program), true) = (chromium(), page_folder().join("index.html").is_file()) else {
             eprintln!(
                 "skipped: there is no Chromium, or no page; `workbench/page/build` makes the page"
@@ -88,6 +91,7 @@ impl Browser {
             .args(FLAGS)
             .arg(format!("--user-data-dir={}", folder.display()))
             .arg(format!("--window-size={},{}", size[0], size[1]))
+            .arg(format!("--force-device-scale-factor={scale}"))
             .arg("about:blank")
             .stderr(Stdio::null())
             .stdout(Stdio::null())
@@ -102,18 +106,7 @@ impl Browser {
             loaded: Duration::ZERO,
             loaded_at: Instant::now(),
         };
-        browser.call(
-            "Emulation.setDeviceMetricsOverride",
-            &json!({
-                "width": size[0], "height": size[1], "deviceScaleFactor": 1, "mobile": false
-            }),
-        );
-        let scheme = if light { "light" } else { "dark" };
-        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
-        browser.call(
-            "Emulation.setEmulatedMedia",
-            &json!({ "features": features }),
-        );
+        browser.set(size, false);
         let begun = Instant::now();
         browser.call(
             "Page.navigate",
@@ -122,6 +115,31 @@ impl Browser {
         browser.until(|told| told.is_object());
         (browser.loaded, browser.loaded_at) = (begun.elapsed(), Instant::now());
         Some(browser)
+    }
+
+    fn set(&mut self, size: [u32; 2], light: bool) {
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            &json!({
+                "width": size[0], "height": size[1], "deviceScaleFactor": 0, "mobile": false
+            }),
+        );
+        let scheme = if light { "light" } else { "dark" };
+        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
+        self.call(
+            "Emulation.setEmulatedMedia",
+            &json!({ "features": features }),
+        );
+    }
+
+    /// Shows the page in another size in points, in the light or in the dark, and waits until it is drawn so.
+    #[track_caller]
+    pub fn show(&mut self, size: [u32; 2], light: bool) {
+        self.set(size, light);
+        self.until(|told| {
+            let drawn = [0, 1].map(|axis| told["size"][axis].as_f64().map(|side| side as u32));
+            drawn == size.map(Some) && told["dark"] == json!(!light)
+        });
     }
 
     /// How long it took until the first frame was drawn.
@@ -212,6 +230,24 @@ impl Browser {
             );
         }
         mouse("mouseReleased", to, 0);
+    }
+
+    /// Drags with a finger in ten steps.
+    pub fn drag_with_a_finger(&mut self, from: [f64; 2], to: [f64; 2]) {
+        let mut finger = |kind: &str, at: Option<[f64; 2]>| {
+            let points: Vec<Value> = at.iter().map(|[x, y]| json!({ "x": x, "y": y })).collect();
+            self.call(
+                "Input.dispatchTouchEvent",
+                &json!({ "type": kind, "touchPoints": points }),
+            );
+        };
+        finger("touchStart", Some(from));
+        for step in 1..=10 {
+            let share = f64::from(step) / 10.0;
+            let at = [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+            finger("touchMove", Some(at));
+        }
+        finger("touchEnd", None);
     }
 
     /// Clicks with the mouse.

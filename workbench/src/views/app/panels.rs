@@ -19,6 +19,9 @@ const TEXT_SIZES: [(&str, f32); 4] = [
 /// The width below which the panel of the controls is folded at first.
 const NARROW: f32 = 640.0;
 
+/// The width that a chart beside the figures has at least.
+const CHART: f32 = 260.0;
+
 impl Workbench {
     pub(super) fn sheet_tab(&mut self, ui: &mut Ui) {
         let wide = ui.available_width() > NARROW;
@@ -45,14 +48,18 @@ impl Workbench {
                 self.places.insert(name.to_owned(), response.rect.center());
             }
             ui.separator();
-            let open = self.shows_controls.unwrap_or(true);
-            if ui.selectable_label(open, "controls").clicked() {
-                self.shows_controls = Some(!open);
+            if self.tab == Tab::Sheet {
+                let open = self.shows_controls.unwrap_or(true);
+                if ui.selectable_label(open, "controls").clicked() {
+                    self.shows_controls = Some(!open);
+                }
             }
-            if ui.selectable_label(self.shows_guide, "guide").clicked() {
-                self.shows_guide = !self.shows_guide;
+            if matches!(self.tab, Tab::Sheet | Tab::Field) {
+                if ui.selectable_label(self.shows_guide, "guide").clicked() {
+                    self.shows_guide = !self.shows_guide;
+                }
+                ui.separator();
             }
-            ui.separator();
             let [undo, redo] = self.table.steps();
             if ui
                 .add_enabled(undo, egui::Button::new("undo"))
@@ -208,13 +215,14 @@ impl Workbench {
         }
         let height = ui.available_height().clamp(130.0, 230.0);
         let curve = figures::curve(&self.table);
-        if ui.available_width() < 640.0 {
+        let room = ui.available_width() - figures::WIDTH;
+        if room < CHART {
             figures::table(ui, &self.table);
             chart::show(ui, "force over stretch", &curve, height);
             return;
         }
         ui.horizontal_top(|ui| {
-            let width = (0.45 * ui.available_width()).clamp(220.0, 520.0);
+            let width = room.min(520.0);
             ui.allocate_ui(egui::vec2(width, height), |ui| {
                 chart::show(ui, "force over stretch", &curve, height);
             });

@@ -9,6 +9,7 @@ use gelbench::results::{Drawing, MeshFigure};
 
 use super::Fields;
 use crate::logic::field::{Edge, Preview, middle, nearest};
+use crate::views::colours::range;
 use crate::views::report;
 use crate::views::surface::View;
 
@@ -141,14 +142,34 @@ fn displacements(ui: &mut Ui, name: &str, edge: &mut Edge) {
     });
 }
 
-fn markers(ui: &Ui, (view, area): (View, Rect), preview: &Preview) {
-    let painter = ui.painter().with_clip_rect(area.expand(8.0));
+/// The markers at rest, and how they moved: half of the arrows are no longer than markers are apart.
+fn markers(ui: &mut Ui, (view, area): (View, Rect), preview: &Preview) {
+    let way = |[rest, found]: &[[f64; 2]; 2]| [found[0] - rest[0], found[1] - rest[1]];
+    let ways = preview.markers.iter().map(way);
+    let mut lengths: Vec<f64> = ways.map(|[x, y]| x.hypot(y)).collect();
+    lengths.sort_by(f64::total_cmp);
+    let usual = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
+    let along = |axis: usize| range(preview.markers.iter().map(|marker| marker[0][axis]));
+    let (Some([left, right]), Some([bottom, top])) = (along(0), along(1)) else {
+        return;
+    };
+    let apart = ((right - left) * (top - bottom) / preview.markers.len() as f64).sqrt();
+    let shown = (apart / usual.max(1e-12)).min(1.0);
+    let painter = ui.painter().with_clip_rect(area);
     let ink = ui.visuals().strong_text_color();
-    for [rest, found] in &preview.markers {
-        let (from, to) = (view.at(*rest), view.at(*found));
+    for marker in &preview.markers {
+        let (rest, way) = (marker[0], way(marker));
+        let to = [0, 1].map(|axis| rest[axis] + shown * way[axis]);
+        let (from, to) = (view.at(rest), view.at(to));
         painter.circle_filled(from, 1.5, ink);
-        painter.line_segment([from, to], Stroke::new(0.7, ink.gamma_multiply(0.25)));
+        painter.line_segment([from, to], Stroke::new(1.0, ink.gamma_multiply(0.6)));
     }
+    let words = match shown < 1.0 {
+        true => format!("their displacements, {shown:.2} times as long"),
+        false => "their displacements".to_owned(),
+    };
+    let words = format!("points: the markers of the last frame at rest; lines: {words}");
+    ui.label(RichText::new(words).small());
 }
 
 /// An edge with what is said of it; thicker where it is pointed at.
