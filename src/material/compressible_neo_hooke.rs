@@ -67,7 +67,7 @@ impl<const LOGARITHM: bool> BodyLaw for CompressibleNeoHooke<LOGARITHM> {
             true => VolumeEnergy::Logarithmic,
             false => VolumeEnergy::SimoTaylor,
         };
-        let volume = energy.derivatives::<LOGARITHM, _>(&at);
+        let volume = energy.derivatives::<LOGARITHM>(at.volume_change(), at.volume());
         chains(self.shear_modulus, at, volume.map(|u| lame * u))
     }
 }

@@ -76,7 +76,10 @@ impl<L: IsochoricLaw, const LOGARITHM: bool> BodyLaw for FlorySplit<L, LOGARITHM
         let area_change = (at.area_change - q * (2.0 + q)) / ((1.0 + q) * (1.0 + q));
         let w = self.law.at(area_change, at.shape);
         let kappa = self.volume.bulk_modulus;
-        let derivatives = self.volume.energy.derivatives::<LOGARITHM, _>(&at);
+        let derivatives = self
+            .volume
+            .energy
+            .derivatives::<LOGARITHM>(at.volume_change(), at.volume());
         let [u, du, ddu] = derivatives.map(|u| kappa * u);
         let (m, mz, mm) = (THIRD * w.m, THIRD * w.mz, THIRD * THIRD * w.mm);
         BodyDerivatives {

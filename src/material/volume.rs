@@ -16,7 +16,6 @@
 //! S. Doll, K. Schweizerhof, J. Appl. Mech. 67, 17 (2000), doi:10.1115/1.321146;
 //! J. C. Simo, R. L. Taylor, Comput. Methods Appl. Mech. Eng. 85, 273 (1991), doi:10.1016/0045-7825(91)90100-K
 
-use super::body::BodyStretches;
 use super::logarithm::logarithm_beyond_first_order;
 use super::sheet::PlaneState;
 use crate::document::{Bound, name_of};
@@ -64,15 +63,18 @@ impl VolumeEnergy {
         name_of(&Self::NAMES, self)
     }
 
-    /// U/κ and its first two derivatives by ln J₃: all of them, weighted, because a branch would keep loops over many points from
+    /// U/κ and its first two derivatives by ln J₃, of J₃ − 1 and ln J₃: all of them, weighted, because a branch would keep loops over many points from
     /// being vectorised. `LOGARITHM` is known in advance, because a logarithm is dear: whether the energy is that of it.
     #[inline(always)]
-    pub(super) fn derivatives<const LOGARITHM: bool, S>(self, at: &BodyStretches<S>) -> [f64; 3] {
+    pub(super) fn derivatives<const LOGARITHM: bool>(
+        self,
+        change: f64,
+        logarithm: f64,
+    ) -> [f64; 3] {
         debug_assert_eq!(LOGARITHM, self == Self::Logarithmic);
         let weight = |energy: Self| if self as u8 == energy as u8 { 1.0 } else { 0.0 };
         let [quadratic, plain, simo_taylor] =
             [Self::Quadratic, Self::Logarithmic, Self::SimoTaylor].map(weight);
-        let (change, logarithm) = (at.volume_change(), at.volume());
         let slope_of_logarithm = if LOGARITHM { logarithm } else { 0.0 };
         // J₃ − 1 − ln J₃, and ½ (J₃ − 1)²
         let beyond = -logarithm_beyond_first_order(change);

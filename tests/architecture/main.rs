@@ -56,7 +56,7 @@ const DOORS: &[(&str, &[&str])] = &[
     (
         "pulp::",
         &[
-            "src/material/body.rs",
+            "src/material/body/points.rs",
             "src/material/invariant_law.rs",
             "src/multigrid/line.rs",
             "src/multigrid/stencil.rs",

@@ -1,0 +1,173 @@
+//! Stresses and tangents of a sheet at many points at once.
+
+use std::marker::PhantomData;
+
+use pulp::{Arch, NullaryFnOnce};
+
+use super::{BodyLaw, BodySheet, BodyStretches};
+use crate::material::law::lower_triangle;
+use crate::material::measures::{Derivatives, Measures};
+use crate::material::sheet::{Gradient, Kinematics};
+
+impl<L: BodyLaw> BodySheet<L> {
+    /// As [`HyperelasticLaw::stresses`](crate::material::HyperelasticLaw::stresses).
+    pub(super) fn stresses_at(&self, gradients: [&[f64]; 4], made: [&mut [f64]; 4]) -> bool {
+        Arch::new().dispatch(PointLoop {
+            sheet: self,
+            gradients,
+            made,
+            kind: PhantomData::<Stress>,
+        })
+    }
+
+    /// As [`HyperelasticLaw::tangents`](crate::material::HyperelasticLaw::tangents).
+    pub(super) fn tangents_at(&self, gradients: [&[f64]; 4], made: [&mut [f64]; 10]) -> bool {
+        Arch::new().dispatch(PointLoop {
+            sheet: self,
+            gradients,
+            made,
+            kind: PhantomData::<Tangent>,
+        })
+    }
+}
+
+/// Points that find their thickness together.
+const LANES: usize = 16;
+
+/// Some points of a loop; behind the last one rest.
+struct Lanes<S> {
+    gradients: [[f64; LANES]; 4],
+    shapes: [S; LANES],
+    volume_root_change: [f64; LANES],
+    admissible: bool,
+}
+
+impl<S: Copy> Lanes<S> {
+    #[inline(always)]
+    fn new<L: BodyLaw<Shape = S>>(
+        sheet: &BodySheet<L>,
+        all: &[&[f64]; 4],
+        first: usize,
+        count: usize,
+    ) -> Self {
+        let mut gradients = [[0.0; LANES]; 4];
+        for (own, component) in gradients.iter_mut().zip(all) {
+            own[..count].copy_from_slice(&component[first..first + count]);
+        }
+        let [mut area_change, mut z] = [[0.0; LANES]; 2];
+        let mut inverted = 0_u64;
+        let [h11, h12, h21, h22] = &gradients;
+        for lane in 0..LANES {
+            let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
+            let kinematics = Kinematics::unchecked(&h);
+            inverted |= u64::from(!kinematics.is_admissible());
+            area_change[lane] = kinematics.area_change;
+            z[lane] = Measures::new(&kinematics).z;
+        }
+        let admissible = inverted == 0;
+        let shapes = sheet.shapes(&area_change, &z);
+        let volume_root_change = match admissible {
+            true => sheet.at(&area_change, &z, &shapes),
+            false => [f64::NAN; LANES],
+        };
+        Self {
+            gradients,
+            shapes,
+            volume_root_change,
+            admissible,
+        }
+    }
+
+    #[inline(always)]
+    fn point<L: BodyLaw<Shape = S>>(
+        &self,
+        sheet: &BodySheet<L>,
+        lane: usize,
+    ) -> (Measures, Derivatives) {
+        let [h11, h12, h21, h22] = &self.gradients;
+        let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
+        let kinematics = Kinematics::unchecked(&h);
+        let measures = Measures::new(&kinematics);
+        let w = sheet.law.evaluate(BodyStretches {
+            area_change: kinematics.area_change,
+            shape: self.shapes[lane],
+            volume_root_change: self.volume_root_change[lane],
+        });
+        (measures, sheet.condensed(&w))
+    }
+}
+
+/// What is made of the measures and derivatives at a point.
+trait Made<const N: usize> {
+    /// Component by component.
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; N];
+}
+
+struct Stress;
+
+impl Made<4> for Stress {
+    #[inline(always)]
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; 4] {
+        measures.stress(w).into()
+    }
+}
+
+struct Tangent;
+
+impl Made<10> for Tangent {
+    #[inline(always)]
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; 10] {
+        lower_triangle(&measures.response(w).tangent)
+    }
+}
+
+/// What is made of every point of a list; `false` where one is turned inside out.
+///
+/// Straight-line code for each point, as for laws that keep their volume: no operation is fused with another, so that all
+/// machines give the same bits.
+struct PointLoop<'a, L, M, const N: usize> {
+    sheet: &'a BodySheet<L>,
+    gradients: [&'a [f64]; 4],
+    made: [&'a mut [f64]; N],
+    kind: PhantomData<M>,
+}
+
+impl<L: BodyLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(mut self) -> bool {
+        // A copy that no store in the loop can reach.
+        let sheet = &self.sheet.clone();
+        let points = self.gradients[0].len();
+        for first in (0..points).step_by(LANES) {
+            let count = LANES.min(points - first);
+            let lanes = Lanes::new(sheet, &self.gradients, first, count);
+            if !lanes.admissible {
+                return false;
+            }
+            let mut found = [[0.0; LANES]; N];
+            for lane in 0..LANES {
+                let (measures, w) = lanes.point(sheet, lane);
+                for (component, value) in found.iter_mut().zip(M::of(&measures, &w)) {
+                    component[lane] = value;
+                }
+            }
+            store(&mut self.made, &found, first, count);
+        }
+        true
+    }
+}
+
+/// Copies what was found at `count` points to the places from `first` on.
+#[inline(always)]
+fn store<const N: usize>(
+    all: &mut [&mut [f64]; N],
+    found: &[[f64; LANES]; N],
+    first: usize,
+    count: usize,
+) {
+    for (all, found) in all.iter_mut().zip(found) {
+        all[first..first + count].copy_from_slice(&found[..count]);
+    }
+}
