@@ -10,7 +10,7 @@
 //! condensed; what is left is a law of a and z:
 //!
 //! ```text
-//! λ₃ P₃₃ = W_b = 0,   W̄_ij = W_ij − W_ib W_jb/W_bb                                          [MPa]
+//! λ₃ P₃₃ = W_b = 0,   W̄_i = W_i − W_ib W_b/W_bb,   W̄_ij = W_ij − W_ib W_jb/W_bb              [MPa]
 //! ```
 //!
 //! In plane strain b = 0. `measures` has stress and tangent of a law of a and z.
@@ -131,34 +131,29 @@ pub trait BodyLaw: Clone + Send + Sync + Debug {
 pub struct BodySheet<L> {
     law: L,
     plane: PlaneState,
-    /// ln J₃ = 3 (c₁ a + c₂ a² + c₃ z) where W_b = 0, to the second order of the strain: where the search for q begins.
-    series: [f64; 3],
+    /// ln J₃ = 3 (c₁ a + c₂ a² + c₃ a³ + c₄ z + c₅ a z) where W_b = 0, to the third order of the strain, with 2 (J − 1)/(J + 1) for a: where
+    /// the search for q begins.
+    series: [f64; 5],
 }
 
 impl<L: BodyLaw> BodySheet<L> {
     /// A sheet of a law.
     pub fn new(law: L, plane: PlaneState) -> Self {
-        const SMALL: f64 = 1e-3;
         let rest = law.evaluate(BodyStretches {
             area_change: 0.0,
             shape: law.shape(0.0, 0.0),
             volume_root_change: 0.0,
         });
         let first = (1.0 - rest.ab / rest.bb) / 3.0;
-        let mut sheet = Self {
+        let sheet = Self {
             law,
             plane,
-            series: [first, 0.0, 0.0],
+            series: [first, 0.0, 0.0, 0.0, 0.0],
         };
-        if plane == PlaneState::Stress && first.is_finite() {
-            let changes = [SMALL.exp_m1(), (-SMALL).exp_m1(), 0.0];
-            let z = [0.0, 0.0, SMALL];
-            let found = sheet.free_surface(&changes, &z, &sheet.shapes(&changes, &z));
-            let [wider, narrower, sheared] = found.map(f64::ln_1p);
-            let second = 0.5 * (wider + narrower) / (SMALL * SMALL);
-            sheet.series = [first, second, sheared / SMALL];
+        match plane == PlaneState::Stress && first.is_finite() {
+            true => sheet.with_series(first),
+            false => sheet,
         }
-        sheet
     }
 
     /// q where the sheet's surfaces are as its plane state wants them.
@@ -187,12 +182,17 @@ impl<L: BodyLaw> BodySheet<L> {
             self.law.shape(kinematics.area_change, measures.z),
         );
         let [volume_root_change] = self.at(&[area_change], &[measures.z], &[shape]);
-        let stretches = BodyStretches {
+        let mut stretches = BodyStretches {
             area_change,
             shape,
             volume_root_change,
         };
-        (measures, stretches, self.law.evaluate(stretches))
+        let w = self.law.evaluate(stretches);
+        if self.plane == PlaneState::Stress {
+            // What the search for b has left.
+            stretches.volume_root_change -= (1.0 + volume_root_change) * w.b / (3.0 * w.bb);
+        }
+        (measures, stretches, w)
     }
 
     #[inline(always)]
@@ -213,10 +213,12 @@ impl<L: BodyLaw> BodySheet<L> {
         } else {
             0.0
         };
+        // What the search for b has left.
+        let left = w.b * free;
         Derivatives {
-            energy: w.energy,
-            m: w.a,
-            z: w.z,
+            energy: w.energy - 0.5 * w.b * left,
+            m: w.a - w.ab * left,
+            z: w.z - w.zb * left,
             mm: w.aa - w.ab * w.ab * free,
             mz: w.az - w.ab * w.zb * free,
             zz: w.zz - w.zb * w.zb * free,

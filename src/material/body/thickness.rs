@@ -5,14 +5,21 @@ use super::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 /// Steps of Newton's method before the root is looked for between bounds.
 const MOST_STEPS: usize = 40;
 
-/// A step of ln λ₃ of this size, in parts of the strains, is the last one: its square is not larger than rounding.
-const LAST_STEP: f64 = 3e-8;
+/// A step of ln λ₃ of this size, in parts of the strains, is the last one: what is then left, about its square, is condensed with W_b,
+/// which leaves of it nothing in the stress, and 1e-11 in the tangent.
+const LAST_STEP: f64 = 3e-6;
 
 /// Where roots are looked for: ln λ₃ within ± this.
 const FARTHEST: f64 = 12.0;
 
 /// How finely.
 const PIECES: i32 = 480;
+
+/// 2 (J − 1)/(J + 1), which is ln J to the second order.
+#[inline(always)]
+fn midpoint_logarithm(area_change: f64) -> f64 {
+    2.0 * area_change / (2.0 + area_change)
+}
 
 impl<L: BodyLaw> BodySheet<L> {
     /// q = J₃^⅓ − 1 where W_b = 0, at several points at once, each by itself: Newton's method from a series at small strain.
@@ -51,6 +58,24 @@ impl<L: BodyLaw> BodySheet<L> {
         self.searched(area_change, z, shapes, root, open)
     }
 
+    /// The series of a law whose slope at rest is known.
+    pub(super) fn with_series(mut self, first: f64) -> Self {
+        const SMALL: f64 = 1e-2;
+        self.series = [first, 0.0, 0.0, 0.0, 0.0];
+        let wide = 2.0 * SMALL / (2.0 - SMALL);
+        let narrow = -2.0 * SMALL / (2.0 + SMALL);
+        let changes = [wide, narrow, 0.0, wide, narrow];
+        let z = [0.0, 0.0, SMALL * SMALL, SMALL * SMALL, SMALL * SMALL];
+        let [up, down, aside, up_aside, down_aside] = self
+            .free_surface(&changes, &z, &self.shapes(&changes, &z))
+            .map(|root| root.ln_1p());
+        let cube = (0.5 * (up - down) / SMALL - first) / (SMALL * SMALL);
+        let mixed = 0.5 * ((up_aside - down_aside) - (up - down)) / (SMALL * SMALL * SMALL);
+        let second = 0.5 * (up + down) / (SMALL * SMALL);
+        self.series = [first, second, cube, aside / (SMALL * SMALL), mixed];
+        self
+    }
+
     #[inline(always)]
     fn evaluated(&self, area_change: f64, shape: L::Shape, root: f64) -> BodyDerivatives {
         self.law.evaluate(BodyStretches {
@@ -60,14 +85,14 @@ impl<L: BodyLaw> BodySheet<L> {
         })
     }
 
-    /// q by the series at small strain; the second order counts as far as it is no more than a correction, and a is 2 (J − 1)/(J + 1),
-    /// which is ln J to the second order.
+    /// q by the series at small strain; higher orders count as far as they are no more than a correction.
     #[inline(always)]
     fn expected(&self, area_change: f64, z: f64) -> f64 {
         const MOST: f64 = 0.1;
-        let [first, second, third] = self.series;
-        let area = 2.0 * area_change / (2.0 + area_change);
-        let third_of_volume = first * area + (second * area * area + third * z).clamp(-MOST, MOST);
+        let [c1, c2, c3, c4, c5] = self.series;
+        let area = midpoint_logarithm(area_change);
+        let higher = area * area * (c2 + area * c3) + z * (c4 + area * c5);
+        let third_of_volume = c1 * area + higher.clamp(-MOST, MOST);
         // e^x − 1 as far as a beginning needs it; above −1.
         third_of_volume * (1.0 + third_of_volume * (0.5 + third_of_volume / 6.0))
     }
