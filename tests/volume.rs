@@ -283,6 +283,7 @@ fn what_cannot_change_its_volume_is_told() {
         water.contains("times its shear modulus") && water.contains("`poisson_ratio = 0.4999`"),
         "{water}"
     );
+    assert!(!half.contains("unknown key"), "{half}");
     let unknown = told("thick", "poisson_ratio = 0.3", ["", ""]);
     assert!(unknown.contains("plane-strain"), "{unknown}");
 }

@@ -20,6 +20,9 @@ use crate::units::Dimension;
 /// Cells of a plate in one direction at most; how many fit into the budget is asked besides.
 pub const MOST_CELLS: usize = 100_000;
 
+/// The key of the plane state.
+const SHEET: &str = "sheet";
+
 /// Stretches that a plate may be given.
 const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
 
@@ -38,6 +41,8 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
 /// with, which is recorded as a fault.
 pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
     const KEY: &str = "card";
+    // Before the card, so that a card in fault leaves no other key unread.
+    let plane = plane_state(section);
     let name = section.text(KEY);
     if name.is_empty() && !section.has(KEY) {
         return None; // told already
@@ -62,7 +67,7 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
             );
             None
         }
-        Ok(card) => in_plane(section, card),
+        Ok(card) => in_plane(section, plane?, card),
         Err(Error::Input(found)) => {
             for fault in found {
                 match fault.place {
@@ -79,13 +84,16 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
     }
 }
 
-/// The card in the plane state that the section chooses with `sheet`; plane stress where it says nothing.
-fn in_plane(section: &Section<'_>, card: Card) -> Option<Card> {
-    const KEY: &str = "sheet";
-    let plane = match section.has(KEY) {
-        true => section.choice(KEY, &PlaneState::NAMES)?,
-        false => PlaneState::Stress,
-    };
+/// What the section chooses with `sheet`; plane stress where it says nothing.
+fn plane_state(section: &Section<'_>) -> Option<PlaneState> {
+    match section.has(SHEET) {
+        true => section.choice(SHEET, &PlaneState::NAMES),
+        false => Some(PlaneState::Stress),
+    }
+}
+
+/// The card in a plane state.
+fn in_plane(section: &Section<'_>, plane: PlaneState, card: Card) -> Option<Card> {
     if plane == PlaneState::Stress {
         return Some(card);
     }
@@ -96,7 +104,7 @@ fn in_plane(section: &Section<'_>, card: Card) -> Option<Card> {
             "the card `{name}` keeps its volume: in plane strain its stress does not follow from the strain"
         );
         let hint = "give the card a `[volume]` with `poisson_ratio` or `bulk_modulus`";
-        section.fault(KEY, &message, hint);
+        section.fault(SHEET, &message, hint);
     }
     found.filter(|card| changes_volume_enough(section, card))
 }
@@ -118,7 +126,7 @@ fn changes_volume_enough(section: &Section<'_>, card: &Card) -> bool {
             "write `poisson_ratio = {LARGEST_POISSON_RATIO}` under `[volume]` of the card: stresses are then about 0.02 % from those of a body that keeps \
              its volume"
         );
-        section.fault("sheet", &message, &hint);
+        section.fault(SHEET, &message, &hint);
     }
     enough
 }
