@@ -41,9 +41,9 @@ pub fn read_text(path: &Path) -> Result<String, Error> {
 /// with, which is recorded as a fault.
 pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
     const KEY: &str = "card";
-    // Before the card, so that a card in fault leaves no other key unread.
-    let plane = plane_state(section);
     let name = section.text(KEY);
+    // Before the card is loaded, so that a card in fault leaves no other key unread.
+    let plane = plane_state(section);
     if name.is_empty() && !section.has(KEY) {
         return None; // told already
     }
