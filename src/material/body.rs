@@ -151,7 +151,7 @@ impl<L: BodyLaw> BodySheet<L> {
             series: [first, 0.0, 0.0, 0.0, 0.0],
         };
         match plane == PlaneState::Stress && first.is_finite() {
-            true => sheet.with_series(first),
+            true => sheet.with_series(),
             false => sheet,
         }
     }
@@ -229,7 +229,8 @@ impl<L: BodyLaw> BodySheet<L> {
 impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
     fn stress(&self, kinematics: &Kinematics) -> (f64, Gradient) {
         let (measures, _, w) = self.state(kinematics);
-        (w.energy, measures.stress(&self.condensed(&w)))
+        let w = self.condensed(&w);
+        (w.energy, measures.stress(&w))
     }
 
     fn response(&self, kinematics: &Kinematics) -> SheetResponse {

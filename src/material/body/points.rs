@@ -12,21 +12,24 @@ use crate::material::sheet::{Gradient, Kinematics};
 impl<L: BodyLaw> BodySheet<L> {
     /// As [`HyperelasticLaw::stresses`](crate::material::HyperelasticLaw::stresses).
     pub(super) fn stresses_at(&self, gradients: [&[f64]; 4], made: [&mut [f64]; 4]) -> bool {
-        Arch::new().dispatch(PointLoop {
-            sheet: self,
-            gradients,
-            made,
-            kind: PhantomData::<Stress>,
-        })
+        self.each::<Stress, 4>(gradients, made)
     }
 
     /// As [`HyperelasticLaw::tangents`](crate::material::HyperelasticLaw::tangents).
     pub(super) fn tangents_at(&self, gradients: [&[f64]; 4], made: [&mut [f64]; 10]) -> bool {
+        self.each::<Tangent, 10>(gradients, made)
+    }
+
+    fn each<M: Made<N>, const N: usize>(
+        &self,
+        gradients: [&[f64]; 4],
+        made: [&mut [f64]; N],
+    ) -> bool {
         Arch::new().dispatch(PointLoop {
             sheet: self,
             gradients,
             made,
-            kind: PhantomData::<Tangent>,
+            kind: PhantomData::<M>,
         })
     }
 }

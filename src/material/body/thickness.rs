@@ -58,10 +58,10 @@ impl<L: BodyLaw> BodySheet<L> {
         self.searched(area_change, z, shapes, root, open)
     }
 
-    /// The series of a law whose slope at rest is known.
-    pub(super) fn with_series(mut self, first: f64) -> Self {
+    /// The whole series, where its first term alone is known.
+    pub(super) fn with_series(mut self) -> Self {
         const SMALL: f64 = 1e-2;
-        self.series = [first, 0.0, 0.0, 0.0, 0.0];
+        let first = self.series[0];
         let wide = 2.0 * SMALL / (2.0 - SMALL);
         let narrow = -2.0 * SMALL / (2.0 + SMALL);
         let changes = [wide, narrow, 0.0, wide, narrow];
