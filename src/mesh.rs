@@ -29,6 +29,7 @@ pub use import::{
     ImportFault, ImportedField, ImportedSeries, ImportedStep, MeshData, MeshReading, import,
     import_field, import_series,
 };
+pub use interpolation::Interpolation;
 pub use nodal_field::NodalField;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints};
 pub use rounding::Polygon;

@@ -3,6 +3,7 @@
 //! Nothing here knows any mechanics: an unknown is a number in a vector, an element is a term of a sum.
 
 mod aggregation;
+mod approach;
 pub mod assembly;
 mod connectivity;
 pub mod dissection;
@@ -12,23 +13,27 @@ mod iterative;
 mod journal;
 pub mod krylov;
 mod loading;
+mod nested;
 pub mod newton;
 mod nodal;
 pub mod path;
 mod pattern;
 pub mod potential;
 pub mod rows;
+mod scatter;
 pub mod sparse;
 pub mod tangent;
 pub mod vector;
 
+pub use approach::Approach;
 pub use assembly::Assembly;
 pub use connectivity::Connectivity;
 pub use equilibrium::equilibrium;
 pub use iterative::{LinearSolver, WORTH_MULTIGRID};
 pub use journal::{Attendance, Journal, Milestone};
 pub use loading::{Loading, State};
-pub use newton::{Approach, Convergence, Newton, NewtonSettings};
+pub use nested::{Carry, Ladder};
+pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
 pub use potential::{After, DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum};

@@ -14,10 +14,15 @@ pub struct Interpolation {
 }
 
 impl Interpolation {
+    /// Nodes of the other mesh with their shares in a node.
+    pub fn of(&self, node: usize) -> &[(usize, f64)] {
+        &self.terms[self.starts[node]..self.starts[node + 1]]
+    }
+
     /// ux, uy of node after node, from those of the other mesh.
     pub fn apply(&self, displacement: &[f64]) -> Vec<f64> {
-        let at = |ends: &[usize]| {
-            let terms = self.terms[ends[0]..ends[1]].iter();
+        let at = |node: usize| {
+            let terms = self.of(node).iter();
             terms.fold([0.0; 2], |[x, y], (node, share)| {
                 [
                     x + share * displacement[2 * node],
@@ -25,7 +30,7 @@ impl Interpolation {
                 ]
             })
         };
-        self.starts.windows(2).flat_map(at).collect()
+        (0..self.starts.len() - 1).flat_map(at).collect()
     }
 }
 

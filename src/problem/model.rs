@@ -1,5 +1,7 @@
 //! A boundary value problem on a mesh: its solution, and what follows from its states.
 
+use std::collections::BTreeMap;
+
 use super::constraints::{Constraints, Motion};
 use super::groups::shares;
 use super::loads::Loads;
@@ -148,6 +150,11 @@ impl<'a> Model<'a> {
     /// Adds forces in N at load factor 1, one for each unknown: a body force, for instance.
     pub fn add_forces(&mut self, forces: &[f64]) {
         self.loads.add_forces(forces);
+    }
+
+    /// The unknowns that are tied, each to its master.
+    pub fn ties(&self) -> &BTreeMap<usize, usize> {
+        &self.constraints.ties
     }
 
     /// The strain energy of the body with a history.

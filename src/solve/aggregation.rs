@@ -19,7 +19,7 @@
 
 mod aggregates;
 pub mod blocks;
-mod level;
+pub mod level;
 mod prolongation;
 #[cfg(test)]
 mod tests;
@@ -38,8 +38,8 @@ const SLOW: f64 = 0.7;
 
 /// Levels from fine to coarse.
 pub struct Hierarchy {
-    fine: Level<2>,
-    coarse: Vec<Level<3>>,
+    fine: Level<2, 3>,
+    coarse: Vec<Level<3, 3>>,
     coarsest: Cholesky,
     /// Right-hand side and solution of the coarsest level.
     last: Vec<[f32; 3]>,
@@ -52,8 +52,8 @@ impl Hierarchy {
     /// [`FactorFault`] when a level shows that it is not positive definite, or is too large.
     pub fn new(matrix: &Blocks<2, 2>, motions: &[Motions<2>]) -> Result<Self, FactorFault> {
         const INDEFINITE: FactorFault = FactorFault::NotPositiveDefinite;
-        let (fine, mut below) = Level::new(matrix, motions).ok_or(INDEFINITE)?;
-        let mut coarse: Vec<Level<3>> = Vec::new();
+        let (fine, mut below) = Level::aggregated(matrix, motions).ok_or(INDEFINITE)?;
+        let mut coarse: Vec<Level<3, 3>> = Vec::new();
         let mut nodes = fine.nodes();
         loop {
             let rows = below.matrix.rows();
@@ -61,7 +61,8 @@ impl Hierarchy {
                 break;
             }
             nodes = rows;
-            let (level, next) = Level::new(&below.matrix, &below.motions).ok_or(INDEFINITE)?;
+            let (level, next) =
+                Level::aggregated(&below.matrix, &below.motions).ok_or(INDEFINITE)?;
             coarse.push(level);
             below = next;
         }
@@ -83,17 +84,10 @@ impl Hierarchy {
 
     /// z = M r by one V-cycle.
     pub fn apply(&mut self, r: &[[f64; 2]], z: &mut [[f64; 2]]) {
-        let most = r
-            .iter()
-            .flatten()
-            .fold(0.0_f64, |most, r| most.max(r.abs()));
+        let most = single_precision(r, &mut self.fine.b);
         if most == 0.0 || !most.is_finite() {
             z.fill([most; 2]);
             return;
-        }
-        // Single precision has few exponents.
-        for (b, r) in self.fine.b.iter_mut().zip(r) {
-            *b = r.map(|r| (r / most) as f32);
         }
         let Self {
             fine,
@@ -128,6 +122,19 @@ impl Hierarchy {
             *z = x.map(|x| most * f64::from(x));
         }
     }
+}
+
+/// Writes a vector in single precision, which has few exponents: over its largest number, which is returned; nothing where that
+/// is zero or not finite.
+pub fn single_precision<const N: usize>(r: &[[f64; N]], rounded: &mut [[f32; N]]) -> f64 {
+    let sizes = r.iter().flatten().map(|r| r.abs());
+    let most = sizes.fold(0.0, f64::max);
+    if most > 0.0 && most.is_finite() {
+        for (b, r) in rounded.iter_mut().zip(r) {
+            *b = r.map(|r| (r / most) as f32);
+        }
+    }
+    most
 }
 
 /// The factor of the coarsest level.

@@ -3,6 +3,7 @@
 use super::dissection::dissection;
 use super::pattern::SymmetricPattern;
 use super::potential::{Inadmissible, Local, Potential};
+use super::scatter::{NOWHERE, Scatter};
 use super::sparse::{Cholesky, FactorFault};
 use super::vector::{dot, moved, norm};
 
@@ -14,14 +15,10 @@ pub struct Assembly {
     /// The free unknowns, ascending.
     free: Vec<usize>,
     pattern: SymmetricPattern,
-    /// For each element, for each entry of its lower triangle, where it is added; `usize::MAX` for none.
-    scatter: Vec<usize>,
-    scatter_starts: Vec<usize>,
+    scatter: Scatter,
     /// Where each free unknown is, if that is known of all.
     places: Option<Vec<[f64; 2]>>,
 }
-
-const NOWHERE: usize = usize::MAX;
 
 /// Unknowns from which on nested dissection pays: its analysis takes half the time of one by least degree, and from
 /// half a million unknowns on the factorisation takes one to three times less.
@@ -35,31 +32,10 @@ impl Assembly {
         free.iter()
             .enumerate()
             .for_each(|(index, unknown)| free_index[*unknown] = Some(index));
-        let mut neighbours = vec![Vec::new(); free.len()];
-        for element in 0..potential.elements() {
-            let indices = || {
-                potential
-                    .element_unknowns(element)
-                    .iter()
-                    .filter_map(|i| free_index[*i])
-            };
-            for column in indices() {
-                neighbours[column].extend(indices().filter(|row| *row > column));
-            }
-        }
-        let pattern = SymmetricPattern::new(neighbours.into_iter());
-        let (mut scatter, mut scatter_starts) = (Vec::new(), vec![0]);
-        for element in 0..potential.elements() {
-            let unknowns = potential.element_unknowns(element);
-            for (local, row) in unknowns.iter().enumerate() {
-                for column in &unknowns[..=local] {
-                    let place = free_index[*row].zip(free_index[*column]);
-                    let place = place.and_then(|(row, column)| pattern.position(row, column));
-                    scatter.push(place.unwrap_or(NOWHERE));
-                }
-            }
-            scatter_starts.push(scatter.len());
-        }
+        let index = |unknown: &usize| free_index[*unknown].unwrap_or(NOWHERE);
+        let own = |element| potential.element_unknowns(element).iter().map(index);
+        let elements = (0..potential.elements()).map(own);
+        let (pattern, scatter) = Scatter::new(free.len(), elements);
         let connectivity = potential.connectivity();
         let places = free.iter().map(|unknown| connectivity.place(*unknown));
         Self {
@@ -68,8 +44,12 @@ impl Assembly {
             free,
             pattern,
             scatter,
-            scatter_starts,
         }
+    }
+
+    /// Number of all unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.free_index.len()
     }
 
     /// The free unknowns, ascending.
@@ -191,7 +171,7 @@ impl Assembly {
                 .iter()
                 .zip(&own.residual)
                 .for_each(|(unknown, r)| residual[*unknown] += r);
-            let mut places = self.scatter[self.scatter_starts[element]..].iter();
+            let mut places = self.scatter.of(element).iter();
             for row in 0..size {
                 for (value, place) in own.stiffness[row * size..=row * size + row]
                     .iter()

@@ -2,7 +2,8 @@
 
 use super::aggregation::{Hierarchy, Motions};
 use super::assembly::Assembly;
-use super::nodal::{NodalMatrix, Nodes, conjugate_gradients, product};
+use super::nested::{Carry, Ladder, Nested};
+use super::nodal::{NodalMatrix, Nodes, conjugate_gradients};
 use super::potential::Potential;
 use super::sparse::FactorFault;
 
@@ -35,13 +36,47 @@ pub struct Iterative {
     matrix: NodalMatrix,
     /// The values taken last.
     values: Vec<f64>,
-    cycle: Option<Hierarchy>,
-    /// Whether the cycle was made for the values taken last.
-    fresh: bool,
+    cycle: Cycle,
+    /// Whether the cycle was made for the values taken last, or for others, or is to be made.
+    made: Made,
     /// Iterations a digit with a cycle of its own.
     pace: f64,
     /// Iterations of all systems so far.
     pub iterations: usize,
+}
+
+/// What stands for the inverse of the matrix.
+enum Cycle {
+    /// Made from the matrix alone.
+    Aggregation(Option<Box<Hierarchy>>),
+    /// On systems that were solved before.
+    Nested(Box<Nested>),
+}
+
+/// For which values a cycle was made.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Made {
+    ForThese,
+    ForOthers,
+    Not,
+}
+
+/// What a system came to.
+pub struct Solved {
+    /// The free unknowns.
+    pub x: Vec<f64>,
+    /// √(b · M b), which is about √(b · K⁻¹ b): the imbalance b as the energy that it stands for.
+    pub weight: f64,
+}
+
+impl Cycle {
+    /// z = M r.
+    fn apply(&mut self, r: &[[f64; 2]], z: &mut [[f64; 2]]) {
+        match self {
+            Self::Aggregation(cycle) => cycle.as_mut().expect("made").apply(r, z),
+            Self::Nested(cycle) => cycle.apply(r, z),
+        }
+    }
 }
 
 impl LinearSolver {
@@ -77,11 +112,26 @@ impl Iterative {
             matrix: NodalMatrix::new(&nodes, assembly.pattern()),
             nodes,
             values: Vec::new(),
-            cycle: None,
-            fresh: false,
+            cycle: Cycle::Aggregation(None),
+            made: Made::Not,
             pace: f64::INFINITY,
             iterations: 0,
         })
+    }
+
+    /// Puts it on systems that were solved before, with what carries their fields to this one.
+    pub fn put_on(&mut self, ladder: Ladder, assembly: &Assembly, carry: Carry) {
+        let cycle = ladder.above(assembly.free(), &self.nodes, carry);
+        self.cycle = Cycle::Nested(Box::new(cycle));
+        self.made = Made::Not;
+    }
+
+    /// The systems with this one on top; `None` where it was not put on others.
+    pub fn into_ladder(self, assembly: &Assembly) -> Option<Ladder> {
+        match self.cycle {
+            Cycle::Nested(cycle) => Some(Ladder::new(*cycle, self.nodes, assembly)),
+            Cycle::Aggregation(_) => None,
+        }
     }
 
     /// Takes the tangent at another state.
@@ -89,7 +139,11 @@ impl Iterative {
         self.matrix.take(&self.nodes, assembly.pattern(), values);
         self.values.clear();
         self.values.extend_from_slice(values);
-        self.fresh = false;
+        // Aggregates are dear, and good for tangents beside their own.
+        self.made = match (&self.cycle, self.made) {
+            (Cycle::Aggregation(_), Made::ForThese | Made::ForOthers) => Made::ForOthers,
+            _ => Made::Not,
+        };
     }
 
     /// The values taken last.
@@ -102,58 +156,88 @@ impl Iterative {
     /// # Errors
     /// [`FactorFault`] where K is not positive definite, or the iteration does not get there.
     pub fn solve(&mut self, b: &[f64], reduction: f64) -> Result<Vec<f64>, FactorFault> {
+        Ok(self.solve_as_far_as(b, |_| reduction)?.x)
+    }
+
+    /// The same with a reduction that depends on the weight of b; from 1 on nothing is done but weighing.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_as_far_as(
+        &mut self,
+        b: &[f64],
+        reduction: impl Fn(f64) -> f64,
+    ) -> Result<Solved, FactorFault> {
         let b = self.nodes.spread(b);
         loop {
             self.prepare()?;
-            let cycle = self.cycle.as_mut().expect("made above");
-            let found = conjugate_gradients(&self.matrix.blocks, cycle, &b, reduction, MOST);
+            let cycle = |r: &[[f64; 2]], z: &mut [[f64; 2]]| self.cycle.apply(r, z);
+            let found = conjugate_gradients(&self.matrix.blocks, cycle, &b, &reduction, MOST);
             self.iterations += found.as_ref().map_or(MOST, |found| found.iterations);
             if let Ok(found) = &found
-                && found.reduction <= reduction
+                && found.reduction <= reduction(found.first)
             {
-                let digits = -found.reduction.max(1e-16).log10();
-                let pace = (found.iterations as f64 - 1.0) / digits.max(1.0);
-                if self.fresh {
-                    self.pace = pace;
-                } else if pace > STALE * self.pace {
-                    self.cycle = None;
+                self.judge(found.iterations, found.reduction);
+                return Ok(Solved {
+                    x: self.nodes.gather(&found.x),
+                    weight: found.first,
+                });
+            }
+            match (&self.cycle, self.made) {
+                // These cells do not suit the smoother.
+                (Cycle::Nested(_), _) => self.cycle = Cycle::Aggregation(None),
+                (_, Made::ForThese) => {
+                    return Err(found.err().unwrap_or(FactorFault::NotPositiveDefinite));
                 }
-                return Ok(self.nodes.gather(&found.x));
+                _ => {}
             }
-            self.cycle = None;
-            if self.fresh {
-                return Err(found.err().unwrap_or(FactorFault::NotPositiveDefinite));
-            }
+            self.made = Made::Not;
         }
     }
 
-    /// √(r · M r), which is about √(r · K⁻¹ r): the imbalance r as the energy that it stands for; nothing where there is no cycle.
-    pub fn weight(&mut self, r: &[f64]) -> Option<f64> {
-        self.prepare().ok()?;
-        let r = self.nodes.spread(r);
-        let mut z = vec![[0.0; 2]; r.len()];
-        self.cycle.as_mut()?.apply(&r, &mut z);
-        let product = product(&r, &z);
-        (product >= 0.0).then(|| product.sqrt())
+    /// Gives a cycle up that was made for other values and takes many more iterations than one made for its own.
+    fn judge(&mut self, iterations: usize, reduction: f64) {
+        if iterations == 0 {
+            return;
+        }
+        let digits = -reduction.max(1e-16).log10();
+        let pace = (iterations as f64 - 1.0) / digits.max(1.0);
+        if self.made == Made::ForThese {
+            self.pace = pace;
+        } else if pace > STALE * self.pace {
+            self.made = Made::Not;
+        }
     }
 
-    /// Makes a cycle where there is none.
+    /// Makes the cycle where it is not made.
     fn prepare(&mut self) -> Result<(), FactorFault> {
-        if self.cycle.is_none() {
-            self.cycle = Some(Hierarchy::new(&self.matrix.blocks, &self.motions)?);
-            self.fresh = true;
+        if self.made == Made::Not {
+            match &mut self.cycle {
+                Cycle::Aggregation(cycle) => {
+                    *cycle = Some(Box::new(Hierarchy::new(
+                        &self.matrix.blocks,
+                        &self.motions,
+                    )?));
+                }
+                Cycle::Nested(cycle) => cycle.take(&self.matrix.blocks)?,
+            }
+            self.made = Made::ForThese;
         }
         Ok(())
     }
 
-    /// Whether the tangent is positive definite, as far as a dozen iterations from a start that has a part of every mode show: with a
+    /// Whether the tangent is positive definite, as far as some iterations from a start that has a part of every mode show: with a
     /// good preconditioner a negative stiffness stands alone, and is found first.
     pub fn is_definite(&mut self) -> bool {
-        const ITERATIONS: usize = 12;
-        let (Ok(()), Some(cycle)) = (self.prepare(), &mut self.cycle) else {
-            return false;
+        let iterations = match self.cycle {
+            Cycle::Aggregation(_) => 12,
+            Cycle::Nested(_) => 6,
         };
+        if self.prepare().is_err() {
+            return false;
+        }
         let start = self.nodes.uneven();
-        conjugate_gradients(&self.matrix.blocks, cycle, &start, 0.0, ITERATIONS).is_ok()
+        let cycle = |r: &[[f64; 2]], z: &mut [[f64; 2]]| self.cycle.apply(r, z);
+        conjugate_gradients(&self.matrix.blocks, cycle, &start, |_| 0.0, iterations).is_ok()
     }
 }

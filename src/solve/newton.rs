@@ -47,19 +47,6 @@ impl Convergence {
     }
 }
 
-/// How near an approach has come, and what it took.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approach {
-    /// Tangents.
-    pub linearisations: usize,
-    /// Iterations, each with one cycle of multigrid.
-    pub iterations: usize,
-    /// The share of the first imbalance that is left.
-    pub left: f64,
-    /// The potential.
-    pub energy: f64,
-}
-
 /// A minimisation prepared for one potential and one set of held unknowns.
 pub struct Newton {
     /// The tangent factorised last.
@@ -257,47 +244,6 @@ impl Newton {
         }
     }
 
-    /// Moves the free entries of `u` towards a minimum of the potential by multigrid, until the imbalance stands for a share of the
-    /// first one, both measured as the iteration weighs them. `None` where there is no multigrid, or anything is not as it
-    /// should be.
-    pub fn approach(
-        &mut self,
-        potential: &dyn Potential,
-        u: &mut [f64],
-        residual: &mut [f64],
-        share: f64,
-    ) -> Option<Approach> {
-        const MOST: usize = 8;
-        let (mut stiffness, mut first) = (Vec::new(), None);
-        let before = self.tangent.iterative.as_ref()?.iterations;
-        for linearisations in 1..=MOST {
-            let assembly = &self.tangent.assembly;
-            let energy = assembly.linearise(potential, u, residual, &mut stiffness);
-            let mut right = gather(assembly.free(), residual);
-            scale(&mut right, -1.0);
-            let iterative = self.tangent.iterative.as_mut()?;
-            iterative.take(&self.tangent.assembly, &stiffness);
-            let weight = iterative.weight(&right)?;
-            let whole = *first.get_or_insert(weight);
-            let reduction = 0.5 * share * whole / weight;
-            let step = iterative.solve(&right, reduction.clamp(1e-10, 0.1)).ok()?;
-            let searched = self.search(potential, u, residual, energy.ok()?, &step);
-            let (_, energy) = searched.ok()?;
-            let left = gather(self.free(), residual);
-            let iterative = self.tangent.iterative.as_mut()?;
-            let left = iterative.weight(&left)? / whole.max(f64::MIN_POSITIVE);
-            if left <= share {
-                return iterative.is_definite().then(|| Approach {
-                    linearisations,
-                    iterations: iterative.iterations - before,
-                    left,
-                    energy,
-                });
-            }
-        }
-        None
-    }
-
     /// Logs a linearised state.
     fn measure(
         &self,
@@ -346,7 +292,7 @@ impl Newton {
     ///
     /// Where the energy no longer resolves the step, a falling residual is taken instead. Returns the length and the
     /// energy there; `residual` is that of the new place.
-    fn search(
+    pub(super) fn search(
         &self,
         potential: &dyn Potential,
         u: &mut [f64],

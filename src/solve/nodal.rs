@@ -1,7 +1,7 @@
 //! A stiffness by nodes with two unknowns each, and conjugate gradients for it.
 
+use super::aggregation::Motions;
 use super::aggregation::blocks::Blocks;
-use super::aggregation::{Hierarchy, Motions};
 use super::krylov::irregular;
 use super::pattern::SymmetricPattern;
 use super::sparse::FactorFault;
@@ -9,6 +9,7 @@ use crate::statistics::extremes;
 
 /// Which node and component each unknown of a stiffness is. A component without an unknown, because it is held, is
 /// one that nothing moves: its row is that of the identity.
+#[derive(Clone)]
 pub struct Nodes {
     /// Of each unknown: its node, and 0 or 1.
     of: Vec<(u32, u8)>,
@@ -51,6 +52,17 @@ impl Nodes {
             }
         }
         Self { of, places, free }
+    }
+
+    /// Their number.
+    pub fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The node of an unknown, and 0 or 1.
+    pub fn of_unknown(&self, unknown: usize) -> (usize, usize) {
+        let (node, component) = self.of[unknown];
+        (node as usize, usize::from(component))
     }
 
     /// Translations and rotation of the components that are unknowns.
@@ -143,9 +155,13 @@ impl NodalMatrix {
         let mut slots = Vec::with_capacity(pattern.entries());
         for column in 0..pattern.size() {
             let to = nodes.of[column].0;
+            let mut found = (u32::MAX, [0; 2]);
             for row in pattern.column(column) {
                 let from = nodes.of[*row].0;
-                slots.push([find(from, to), find(to, from)]);
+                if from != found.0 {
+                    found = (from, [find(from, to), find(to, from)]);
+                }
+                slots.push(found.1);
             }
         }
         Self { blocks, slots }
@@ -181,33 +197,37 @@ pub struct Found {
     pub x: Vec<[f64; 2]>,
     /// Iterations, each one product and one cycle.
     pub iterations: usize,
-    /// ‖b − A x‖_M over ‖b‖_M, with the preconditioner's norm.
+    /// ‖b‖_M, with the preconditioner's norm.
+    pub first: f64,
+    /// ‖b − A x‖_M over ‖b‖_M.
     pub reduction: f64,
 }
 
-/// x of A x = b by conjugate gradients with a preconditioner, until the residual has fallen by `reduction` or for so many
-/// iterations.
+/// x of A x = b by conjugate gradients with a preconditioner z = M r, for so many iterations, or until the residual has fallen by what is
+/// wanted at its first size.
 ///
 /// # Errors
 /// [`FactorFault::NotPositiveDefinite`] where a direction has no positive stiffness.
 pub fn conjugate_gradients(
     matrix: &Blocks<2, 2>,
-    preconditioner: &mut Hierarchy,
+    mut precondition: impl FnMut(&[[f64; 2]], &mut [[f64; 2]]),
     b: &[[f64; 2]],
-    reduction: f64,
+    reduction: impl FnOnce(f64) -> f64,
     most: usize,
 ) -> Result<Found, FactorFault> {
     let size = b.len();
     let mut r = b.to_vec();
     let mut z = vec![[0.0; 2]; size];
+    precondition(&r, &mut z);
+    let mut square = product(&r, &z);
+    let first = square;
     let mut found = Found {
         x: vec![[0.0; 2]; size],
         iterations: 0,
+        first: first.max(0.0).sqrt(),
         reduction: 1.0,
     };
-    preconditioner.apply(&r, &mut z);
-    let mut square = product(&r, &z);
-    let first = square;
+    let reduction = reduction(found.first);
     if first == 0.0 {
         found.reduction = 0.0;
         return Ok(found);
@@ -221,7 +241,7 @@ pub fn conjugate_gradients(
             return Err(FactorFault::NotPositiveDefinite);
         }
         let length = square / stiffness;
-        let before = product(&r, &z);
+        let before = square;
         for i in 0..size {
             for axis in 0..2 {
                 found.x[i][axis] += length * direction[i][axis];
@@ -230,7 +250,7 @@ pub fn conjugate_gradients(
         }
         // z of before: rounding makes the preconditioner slightly unsymmetric (Polak and Ribière).
         let last = product(&r, &z);
-        preconditioner.apply(&r, &mut z);
+        precondition(&r, &mut z);
         let next = product(&r, &z);
         let beta = (next - last) / before;
         for (direction, z) in direction.iter_mut().zip(&z) {

@@ -26,6 +26,14 @@ impl SymmetricPattern {
         }
     }
 
+    /// Pattern of columns that begin at some places, each with its diagonal and rows below, ascending.
+    pub(super) fn of_columns(column_starts: Vec<usize>, rows: Vec<usize>) -> Self {
+        Self {
+            column_starts,
+            rows,
+        }
+    }
+
     /// Number of rows, which is the number of columns.
     pub fn size(&self) -> usize {
         self.column_starts.len() - 1

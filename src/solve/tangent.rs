@@ -62,6 +62,12 @@ impl Tangent {
         self.assembly.free()
     }
 
+    /// Takes the values of a tangent for multigrid; `None` where there is none.
+    pub(super) fn take(&mut self, stiffness: &[f64]) -> Option<()> {
+        self.iterative.as_mut()?.take(&self.assembly, stiffness);
+        Some(())
+    }
+
     /// Factorises the tangent at `u` for [`Self::changes`]; the residual there, at held unknowns too.
     ///
     /// # Errors

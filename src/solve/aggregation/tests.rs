@@ -113,7 +113,13 @@ impl Sheet {
 
     fn iterations(&self) -> usize {
         let (nodes, matrix, mut cycle) = self.prepare();
-        let found = conjugate_gradients(&matrix.blocks, &mut cycle, &nodes.uneven(), 1e-8, 200);
+        let found = conjugate_gradients(
+            &matrix.blocks,
+            |r, z| cycle.apply(r, z),
+            &nodes.uneven(),
+            |_| 1e-8,
+            200,
+        );
         let found = found.unwrap();
         assert!(found.reduction <= 1e-8);
         // The true residual has fallen too.
@@ -198,9 +204,14 @@ fn an_indefinite_matrix_is_seen() {
     matrix.take(&nodes, &sheet.pattern, &sheet.values);
     let seen = match Hierarchy::new(&matrix.blocks, &nodes.motions()) {
         Err(_) => true,
-        Ok(mut cycle) => {
-            conjugate_gradients(&matrix.blocks, &mut cycle, &nodes.uneven(), 0.0, 12).is_err()
-        }
+        Ok(mut cycle) => conjugate_gradients(
+            &matrix.blocks,
+            |r, z| cycle.apply(r, z),
+            &nodes.uneven(),
+            |_| 0.0,
+            12,
+        )
+        .is_err(),
     };
     assert!(seen);
 }

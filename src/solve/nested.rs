@@ -1,0 +1,183 @@
+//! Multigrid over systems of one body, coarse to fine: each with its own tangent, taken where its own equilibrium was found.
+//!
+//! Nothing is asked of the systems but that fields of each can be carried to the next finer one: meshes need not be nested, nor
+//! end at the same curved outline. A climb from mesh to mesh has all tangents but the finest already.
+//!
+//! | step | how |
+//! |---|---|
+//! | smoother | block Gauss–Seidel, forward before and backward after the coarser levels: symmetric |
+//! | to a finer level | the interpolation by the elements, P; held unknowns have no part in it, tied ones that of their master |
+//! | from a finer level | Pᵀ |
+//! | coarsest level | sparse Cholesky factor |
+//!
+//! # References
+//! A. Brandt, Math. Comp. 31, 333 (1977), doi:10.1090/S0025-5718-1977-0431719-X
+
+use std::collections::BTreeMap;
+
+use super::aggregation::blocks::Blocks;
+use super::aggregation::level::{Level, Operator, Transfer};
+use super::assembly::Assembly;
+use super::nodal::Nodes;
+use super::potential::Potential;
+use super::sparse::{Cholesky, FactorFault};
+
+/// Writes the unknowns of the coarser system, with their shares, that an unknown of the finer one is made of.
+pub type Carry<'a> = &'a dyn Fn(usize, &mut Vec<(usize, f64)>);
+
+/// The systems from coarse to fine.
+pub struct Nested {
+    /// Above the coarsest one.
+    levels: Vec<Level<2, 2>>,
+    coarsest: Cholesky,
+    /// The nodes of the coarsest system, and right-hand side and solution there.
+    coarsest_nodes: Nodes,
+    last: Vec<[f32; 2]>,
+}
+
+/// Systems from coarse to fine, on which a finer one can be put.
+pub struct Ladder {
+    cycle: Nested,
+    nodes: Nodes,
+    /// Position of each unknown of the finest one among the free ones.
+    free_index: Vec<Option<usize>>,
+}
+
+impl Ladder {
+    /// Begins with the tangent of a potential at `u`; `None` where it is not positive definite, or where the places of its nodes
+    /// are not known.
+    pub fn begin(potential: &dyn Potential, fixed: &[bool], u: &[f64]) -> Option<Self> {
+        let assembly = Assembly::new(potential, fixed);
+        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+        let linearised = assembly.linearise(potential, u, &mut residual, &mut stiffness);
+        linearised.ok()?;
+        let mut coarsest = assembly.analyse().ok()?;
+        coarsest.factorise(&stiffness).ok()?;
+        let nodes = Nodes::new(assembly.free(), assembly.places()?);
+        let cycle = Nested {
+            levels: Vec::new(),
+            coarsest,
+            last: vec![[0.0; 2]; nodes.count()],
+            coarsest_nodes: nodes.clone(),
+        };
+        Some(Self::new(cycle, nodes, &assembly))
+    }
+
+    /// The systems of a cycle, of which the finest one has these nodes.
+    pub fn new(cycle: Nested, nodes: Nodes, assembly: &Assembly) -> Self {
+        let unknowns = 0..assembly.unknowns();
+        Self {
+            cycle,
+            nodes,
+            free_index: unknowns
+                .map(|unknown| assembly.free_index(unknown))
+                .collect(),
+        }
+    }
+
+    /// With unknowns that follow others, their masters.
+    #[must_use]
+    pub fn tied(mut self, ties: &BTreeMap<usize, usize>) -> Self {
+        for (unknown, master) in ties {
+            self.free_index[*unknown] = self.free_index[*master];
+        }
+        self
+    }
+
+    /// Puts a finer system on top, whose matrix is to be taken.
+    pub fn above(self, unknowns: &[usize], nodes: &Nodes, carry: Carry) -> Nested {
+        let prolongation = self.prolongation(unknowns, nodes, carry);
+        let transfer = Transfer::new(&prolongation, self.nodes.count());
+        let mut cycle = self.cycle;
+        let operator = Operator::none(nodes.count());
+        cycle.levels.push(Level::new(operator, transfer));
+        cycle
+    }
+
+    /// P, from the free unknowns of the finest system to those of a finer one.
+    fn prolongation(&self, unknowns: &[usize], nodes: &Nodes, carry: Carry) -> Blocks<2, 2> {
+        let mut prolongation = Blocks {
+            starts: vec![0; nodes.count() + 1],
+            ..Blocks::default()
+        };
+        let (mut row, mut terms) = (Vec::<(u32, [[f64; 2]; 2])>::new(), Vec::new());
+        for (own, unknown) in unknowns.iter().enumerate() {
+            let (node, axis) = nodes.of_unknown(own);
+            terms.clear();
+            carry(*unknown, &mut terms);
+            for (coarse, share) in &terms {
+                let Some(index) = self.free_index[*coarse] else {
+                    continue;
+                };
+                let (column, k) = self.nodes.of_unknown(index);
+                let known = row.iter().position(|(known, _)| *known as usize == column);
+                let place = known.unwrap_or_else(|| {
+                    row.push((column as u32, [[0.0; 2]; 2]));
+                    row.len() - 1
+                });
+                row[place].1[axis][k] += share;
+            }
+            let ends = own + 1 == unknowns.len() || nodes.of_unknown(own + 1).0 != node;
+            if ends {
+                row.sort_unstable_by_key(|(column, _)| *column);
+                for (column, block) in row.drain(..) {
+                    prolongation.columns.push(column);
+                    prolongation.values.push(block);
+                }
+                prolongation.starts[node + 1] = prolongation.columns.len();
+            }
+        }
+        prolongation
+    }
+}
+
+impl Nested {
+    /// Takes another matrix of the finest system.
+    ///
+    /// # Errors
+    /// [`FactorFault::NotPositiveDefinite`] where a block on its diagonal is not.
+    pub fn take(&mut self, matrix: &Blocks<2, 2>) -> Result<(), FactorFault> {
+        let operator = Operator::of(matrix).ok_or(FactorFault::NotPositiveDefinite)?;
+        if let Some(finest) = self.levels.last_mut() {
+            finest.take(operator.0);
+        }
+        Ok(())
+    }
+
+    /// z = M r by one V-cycle.
+    pub fn apply(&mut self, r: &[[f64; 2]], z: &mut [[f64; 2]]) {
+        let Some(finest) = self.levels.last_mut() else {
+            z.copy_from_slice(&self.solve_coarsest(r));
+            return;
+        };
+        let most = super::aggregation::single_precision(r, &mut finest.b);
+        if most == 0.0 || !most.is_finite() {
+            z.fill([most; 2]);
+            return;
+        }
+        for index in (0..self.levels.len()).rev() {
+            let (lower, upper) = self.levels.split_at_mut(index);
+            let below = lower.last_mut().map(|level| &mut level.b[..]);
+            upper[0].descend(below.unwrap_or(&mut self.last));
+        }
+        let right: Vec<[f64; 2]> = self.last.iter().map(|b| b.map(f64::from)).collect();
+        let solution = self.solve_coarsest(&right);
+        for (last, own) in self.last.iter_mut().zip(solution) {
+            *last = own.map(|x| x as f32);
+        }
+        for index in 0..self.levels.len() {
+            let (lower, upper) = self.levels.split_at_mut(index);
+            upper[0].ascend(lower.last().map_or(&self.last[..], |level| &level.x));
+        }
+        let finest = self.levels.last().expect("seen above");
+        for (z, x) in z.iter_mut().zip(&finest.x) {
+            *z = x.map(|x| most * f64::from(x));
+        }
+    }
+
+    fn solve_coarsest(&mut self, b: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut entries = self.coarsest_nodes.gather(b);
+        self.coarsest.substitute(&mut entries);
+        self.coarsest_nodes.spread(&entries)
+    }
+}

@@ -1,0 +1,141 @@
+//! The pattern of a sum of element matrices, and where each of their entries is added.
+
+use super::pattern::SymmetricPattern;
+
+/// No free unknown, or no place.
+pub const NOWHERE: usize = usize::MAX;
+
+/// Where the entries of element matrices are added.
+#[derive(Debug, Default)]
+pub struct Scatter {
+    /// For each element, for each entry of its lower triangle, row by row: its place, or [`NOWHERE`].
+    places: Vec<usize>,
+    starts: Vec<usize>,
+}
+
+impl Scatter {
+    /// The pattern over so many free unknowns, and where the entries of each element are added; `elements` tells the position of
+    /// each unknown of every element among the free ones, or [`NOWHERE`].
+    pub fn new<E: Iterator<Item = usize>>(
+        free: usize,
+        elements: impl Iterator<Item = E>,
+    ) -> (SymmetricPattern, Self) {
+        let elements = Elements::new(elements);
+        let around = Around::of(free, &elements);
+        let mut own = Self {
+            places: Vec::new(),
+            starts: vec![0],
+        };
+        let mut size = 0;
+        for element in elements.all() {
+            size += element.len() * (element.len() + 1) / 2;
+            own.starts.push(size);
+        }
+        own.places = vec![NOWHERE; size];
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        // The column in which a row was seen last, and where it is stored there.
+        let mut seen = vec![(NOWHERE, NOWHERE); free];
+        for column in 0..free {
+            let first = rows.len();
+            rows.push(column);
+            seen[column].0 = column;
+            for (element, _) in around.of_unknown(column) {
+                for row in elements.of(*element) {
+                    if *row != NOWHERE && *row > column && seen[*row].0 != column {
+                        seen[*row].0 = column;
+                        rows.push(*row);
+                    }
+                }
+            }
+            rows[first..].sort_unstable();
+            for (place, row) in (first..).zip(&rows[first..]) {
+                seen[*row].1 = place;
+            }
+            for (element, local) in around.of_unknown(column) {
+                own.put(elements.of(*element), *element, (column, *local), &seen);
+            }
+            starts.push(rows.len());
+        }
+        (SymmetricPattern::of_columns(starts, rows), own)
+    }
+
+    /// Notes the places of one local column of an element, below the diagonal of the whole.
+    fn put(
+        &mut self,
+        unknowns: &[usize],
+        element: usize,
+        (column, local): (usize, usize),
+        seen: &[(usize, usize)],
+    ) {
+        let start = self.starts[element];
+        for (other, row) in unknowns.iter().enumerate() {
+            if *row != NOWHERE && *row >= column {
+                let (high, low) = (local.max(other), local.min(other));
+                self.places[start + high * (high + 1) / 2 + low] = seen[*row].1;
+            }
+        }
+    }
+
+    /// The places of the lower triangle of an element, row by row.
+    pub fn of(&self, element: usize) -> &[usize] {
+        &self.places[self.starts[element]..self.starts[element + 1]]
+    }
+}
+
+/// The unknowns of all elements.
+struct Elements {
+    unknowns: Vec<usize>,
+    starts: Vec<usize>,
+}
+
+impl Elements {
+    fn new<E: Iterator<Item = usize>>(elements: impl Iterator<Item = E>) -> Self {
+        let (mut unknowns, mut starts) = (Vec::new(), vec![0]);
+        for element in elements {
+            unknowns.extend(element);
+            starts.push(unknowns.len());
+        }
+        Self { unknowns, starts }
+    }
+
+    fn of(&self, element: usize) -> &[usize] {
+        &self.unknowns[self.starts[element]..self.starts[element + 1]]
+    }
+
+    fn all(&self) -> impl Iterator<Item = &[usize]> {
+        (0..self.starts.len() - 1).map(|element| self.of(element))
+    }
+}
+
+/// The elements around each free unknown, with its position in them.
+struct Around {
+    starts: Vec<usize>,
+    elements: Vec<(usize, usize)>,
+}
+
+impl Around {
+    fn of(free: usize, elements: &Elements) -> Self {
+        let unknowns = elements.unknowns.iter().filter(|own| **own != NOWHERE);
+        let mut starts = vec![0; free + 1];
+        unknowns.for_each(|unknown| starts[unknown + 1] += 1);
+        for unknown in 0..free {
+            starts[unknown + 1] += starts[unknown];
+        }
+        let mut next = starts.clone();
+        let mut around = vec![(0, 0); starts[free]];
+        for (element, own) in elements.all().enumerate() {
+            for (local, unknown) in own.iter().enumerate().filter(|(_, own)| **own != NOWHERE) {
+                around[next[*unknown]] = (element, local);
+                next[*unknown] += 1;
+            }
+        }
+        Self {
+            starts,
+            elements: around,
+        }
+    }
+
+    fn of_unknown(&self, unknown: usize) -> &[(usize, usize)] {
+        &self.elements[self.starts[unknown]..self.starts[unknown + 1]]
+    }
+}
