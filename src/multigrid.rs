@@ -7,6 +7,7 @@
 //! | step | how |
 //! |---|---|
 //! | smoother | block Gauss–Seidel in four colours, once down and once, in the reverse order, up: symmetric |
+//! | where cells are long | lines along their short sides too, every second one at a time (zebra) |
 //! | restriction | the transpose of the prolongation |
 //! | prolongation | linear between the coarser grid's nodes, whatever their number |
 //! | coarser operators | discretised anew on the coarser grid, not by products of matrices |
@@ -18,9 +19,11 @@ mod coarsest;
 mod cycle;
 mod line;
 pub mod stencil;
+mod strip;
 #[cfg(test)]
 mod tests;
 pub mod transfer;
+mod tridiagonal;
 mod vector;
 
 pub use cycle::{Multigrid, NotPositiveDefinite};

@@ -2,6 +2,7 @@
 
 use super::coarsest::Inverse;
 use super::stencil::Stencil;
+use super::strip::LineSmoother;
 use super::transfer::Transfer;
 use super::vector::{Lines, Vector};
 
@@ -16,6 +17,7 @@ struct Level {
     /// To the next coarser grid; none on the coarsest.
     transfer: Option<Transfer>,
     stencil: Stencil,
+    lines: LineSmoother,
     x: Vector,
     b: Vector,
     r: Vector,
@@ -41,6 +43,7 @@ impl Multigrid {
             Level {
                 transfer: coarser.map(|coarser| Transfer::new(&grids[coarser], grid)),
                 stencil: Stencil::zeros(lines),
+                lines: LineSmoother::new(grid),
                 x: Vector::zeros(lines),
                 b: Vector::zeros(lines),
                 r: Vector::zeros(lines),
@@ -54,7 +57,9 @@ impl Multigrid {
 
     /// The operator of a grid, to be written.
     pub fn stencil(&mut self, level: usize) -> &mut Stencil {
-        &mut self.levels[level].stencil
+        let level = &mut self.levels[level];
+        level.lines.forget();
+        &mut level.stencil
     }
 
     /// Inverts the operator of the coarsest grid, which has been written.
@@ -93,6 +98,7 @@ impl Multigrid {
         let Level {
             transfer,
             stencil,
+            lines,
             x,
             b,
             r,
@@ -107,6 +113,8 @@ impl Multigrid {
         };
         x.clear();
         stencil.smooth(x, b, false);
+        lines.factorise(stencil);
+        lines.smooth(stencil, x, b, false);
         stencil.residual(x, b, r);
         transfer.restrict(r, &mut coarser[index - 1].b);
         self.descend(index - 1);
@@ -114,12 +122,14 @@ impl Multigrid {
         let Level {
             transfer,
             stencil,
+            lines,
             x,
             b,
             ..
         } = &mut finer[0];
         let transfer = transfer.as_ref().expect("not the coarsest grid");
         transfer.prolong(&coarser[index - 1].x, x);
+        lines.smooth(stencil, x, b, true);
         stencil.smooth(x, b, true);
     }
 }

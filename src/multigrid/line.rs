@@ -199,8 +199,9 @@ fn load<S: Simd>(numbers: &[f32], place: usize) -> S::f32s {
     S::as_simd_f32s(&numbers[place..place + S::F32_LANES]).0[0]
 }
 
+/// Writes a vector of numbers at a place.
 #[inline(always)]
-fn store<S: Simd>(numbers: &mut [f32], place: usize, vector: S::f32s) {
+pub fn store<S: Simd>(numbers: &mut [f32], place: usize, vector: S::f32s) {
     S::as_mut_simd_f32s(&mut numbers[place..place + S::F32_LANES]).0[0] = vector;
 }
 
@@ -301,6 +302,22 @@ fn subtract_along<S: Simd>(
     )
 }
 
+/// b − K x at the vector of nodes that begins at a place; `x` are the lines before, at and after.
+#[inline(always)]
+pub fn residual<S: Simd>(
+    simd: S,
+    [before, own]: [LineStencil; 2],
+    [left, middle, right]: [Pair; 3],
+    b: Pair,
+    place: usize,
+) -> [S::f32s; 2] {
+    let b = load_pair::<S>(b, place + 1);
+    let r = subtract_beside(simd, b, [before, own], [left, right], place);
+    let r = subtract_along(simd, r, own, middle, place);
+    let block = own.block::<S>([0, 1, 1, 2], place + 1);
+    subtract(simd, r, block, load_pair::<S>(middle, place + 1))
+}
+
 /// r = b − K x on a line.
 pub struct LineResidual<'a> {
     pub before: LineStencil<'a>,
@@ -316,14 +333,10 @@ impl WithSimd for LineResidual<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let [left, own, right] = self.x;
         for place in (0..self.r_x.len() - 2).step_by(S::F32_LANES) {
             let middle = place + 1;
-            let b = load_pair::<S>(self.b, middle);
-            let r = subtract_beside(simd, b, [self.before, self.own], [left, right], place);
-            let r = subtract_along(simd, r, self.own, own, place);
-            let block = self.own.block::<S>([0, 1, 1, 2], middle);
-            let [r_x, r_y] = subtract(simd, r, block, load_pair::<S>(own, middle));
+            let stencils = [self.before, self.own];
+            let [r_x, r_y] = residual(simd, stencils, self.x, self.b, place);
             store::<S>(self.r_x, middle, r_x);
             store::<S>(self.r_y, middle, r_y);
         }

@@ -82,7 +82,8 @@ impl Stencil {
         }
     }
 
-    fn line(&self, line: usize) -> LineStencil<'_> {
+    /// The coefficients of a line.
+    pub fn line(&self, line: usize) -> LineStencil<'_> {
         let stride = self.lines.stride();
         LineStencil {
             coefficients: &self.coefficients[line * COEFFICIENTS * stride..]

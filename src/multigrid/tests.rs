@@ -1,41 +1,49 @@
+use super::strip::LineSmoother;
 use super::*;
 
-fn even(length: f64, cells: usize) -> Vec<f64> {
-    let at = |node: usize| length * node as f64 / cells as f64;
-    (0..=cells).map(at).collect()
+/// Lines that are closer to each other towards both ends; with a grading of 1 they are as far everywhere.
+fn graded(length: f64, cells: usize, grading: f64) -> Vec<f64> {
+    let near = |line: usize| 0.5 * (2.0 * line as f64 / cells as f64).powf(grading);
+    let share = |line: usize| match 2 * line <= cells {
+        true => near(line),
+        false => 1.0 - near(cells - line),
+    };
+    (0..=cells).map(|line| length * share(line)).collect()
 }
 
 /// Plane stress of a soft sheet at rest, E = 1, ν = ½, on a grid of rectangles.
 fn write(stencil: &mut Stencil, grid: &[Vec<f64>; 2]) {
-    let cells = grid[1].len() - 1;
-    let (hx, hy) = (grid[0][1] - grid[0][0], grid[1][1] - grid[1][0]);
     let [c11, c12, c33] = [4.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0];
-    let (ratio, inverse) = ((hy / hx) as f32, (hx / hy) as f32);
-    let values = [
-        ratio * c11,
-        0.0,
-        ratio * c33,
-        inverse * c33,
-        0.0,
-        inverse * c11,
-        0.0,
-        0.25 * c12,
-        0.25 * c33,
-        0.0,
-    ];
-    let written = stencil.assemble(|_, target| {
-        for (array, value) in target.0.iter_mut().zip(values) {
-            array[1..=cells].fill(value);
+    let spacing = |axis: usize, cell: usize| grid[axis][cell + 1] - grid[axis][cell];
+    let written = stencil.assemble(|column, target| {
+        for cell in 0..grid[1].len() - 1 {
+            let ratio = (spacing(1, cell) / spacing(0, column)) as f32;
+            let inverse = 1.0 / ratio;
+            let values = [
+                ratio * c11,
+                0.0,
+                ratio * c33,
+                inverse * c33,
+                0.0,
+                inverse * c11,
+                0.0,
+                0.25 * c12,
+                0.25 * c33,
+                0.0,
+            ];
+            for (array, value) in target.0.iter_mut().zip(values) {
+                array[cell + 1] = value;
+            }
         }
         true
     });
     assert!(written);
 }
 
-fn multigrid(sizes: &[[usize; 2]]) -> (Multigrid, Vec<[Vec<f64>; 2]>) {
+fn multigrid(sizes: &[[usize; 2]], grading: f64) -> (Multigrid, Vec<[Vec<f64>; 2]>) {
     let grids: Vec<_> = sizes
         .iter()
-        .map(|[nx, ny]| [even(3.0, *nx), even(1.0, *ny)])
+        .map(|[nx, ny]| [graded(3.0, *nx, grading), graded(1.0, *ny, grading)])
         .collect();
     let mut multigrid = Multigrid::new(&grids);
     for (level, grid) in grids.iter().enumerate() {
@@ -75,7 +83,7 @@ fn noise(lines: Lines, seed: u32) -> Vector {
 
 #[test]
 fn a_uniform_strain_is_in_equilibrium_inside() {
-    let (mut multigrid, grids) = multigrid(&[[12, 4], [24, 8]]);
+    let (mut multigrid, grids) = multigrid(&[[12, 4], [24, 8]], 1.0);
     let lines = multigrid.stencil(1).lines();
     let mut field = Vector::zeros(lines);
     field.for_each_free_line(|line, x, y| {
@@ -101,12 +109,18 @@ fn a_uniform_strain_is_in_equilibrium_inside() {
 
 #[test]
 fn a_cycle_is_symmetric_and_takes_more_than_half_of_an_error_away() {
-    for sizes in [
-        vec![[12, 4], [24, 8], [48, 16], [96, 32]],
-        vec![[9, 3], [17, 6], [34, 11], [67, 21]],
-        vec![[15, 3], [15, 5], [30, 10]],
+    for (sizes, grading) in [
+        (vec![[12, 4], [24, 8], [48, 16], [96, 32]], 1.0),
+        (vec![[9, 3], [17, 6], [34, 11], [67, 21]], 1.0),
+        (vec![[15, 3], [15, 5], [30, 10]], 1.0),
+        (vec![[12, 4], [24, 8], [48, 16], [96, 32]], 1.5),
+        (vec![[12, 4], [24, 8], [48, 16], [96, 32]], 2.0),
+        (vec![[12, 4], [24, 8], [48, 16], [96, 32]], 3.0),
+        (vec![[9, 3], [17, 6], [34, 11], [67, 21]], 2.5),
+        (vec![[4, 12], [8, 24], [16, 48], [32, 96]], 2.0),
+        (vec![[3, 15], [5, 15], [10, 30]], 2.0),
     ] {
-        let (mut multigrid, _) = multigrid(&sizes);
+        let (mut multigrid, _) = multigrid(&sizes, grading);
         let level = sizes.len() - 1;
         let lines = multigrid.stencil(level).lines();
         let mut apply = |b: &Vector| {
@@ -117,7 +131,10 @@ fn a_cycle_is_symmetric_and_takes_more_than_half_of_an_error_away() {
         let (to_a, to_b) = (apply(&a), apply(&b));
         let (ab, ba) = (product(&a, &to_b), product(&b, &to_a));
         let size = (product(&a, &to_a) * product(&b, &to_b)).sqrt();
-        assert!((ab - ba).abs() < 1e-4 * size, "{sizes:?}: {ab} {ba}");
+        assert!(
+            (ab - ba).abs() < 1e-4 * size,
+            "{sizes:?} graded by {grading}: {ab} {ba}"
+        );
 
         // x ← x + M (b − K x): the energy of the error falls by a factor each time.
         let mut x = Vector::zeros(lines);
@@ -135,6 +152,24 @@ fn a_cycle_is_symmetric_and_takes_more_than_half_of_an_error_away() {
             });
         }
         let factor = (energies[5] / energies[1]).powf(1.0 / 8.0);
-        assert!(factor < 0.5, "{sizes:?}: {factor}");
+        assert!(factor < 0.5, "{sizes:?} graded by {grading}: {factor}");
     }
+}
+
+#[test]
+fn long_cells_are_relaxed_along_lines_and_equal_ones_never() {
+    let strips = |grid: [Vec<f64>; 2]| LineSmoother::new(&grid).ranges();
+    let equal = [graded(30.0, 24, 1.0), graded(1.0, 24, 1.0)];
+    assert!(strips(equal).is_empty());
+    let nearly_square = [graded(3.0, 12, 1.2), graded(1.0, 4, 1.2)];
+    assert!(strips(nearly_square).is_empty());
+    // Beside all four sides, and the same on opposite ones.
+    let along_all = strips([graded(3.0, 96, 2.0), graded(1.0, 32, 2.0)]);
+    let [left, right, bottom, top] = &along_all[..] else {
+        panic!("{along_all:?}")
+    };
+    assert_eq!((left.start, right.end), (1, 96));
+    assert_eq!((bottom.start, top.end), (0, 33));
+    assert_eq!((left.len(), bottom.len()), (right.len(), top.len()));
+    assert!(left.len() > 5 && bottom.len() > 2);
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::NODES_WORTH_A_THREAD;
 
 /// Numbers of single precision in the widest vector of today's machines.
-const VECTOR: usize = 16;
+pub const VECTOR: usize = 16;
 
 /// The lines of a grid: how many there are, and how many nodes each has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

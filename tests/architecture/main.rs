@@ -58,8 +58,7 @@ const DOORS: &[(&str, &[&str])] = &[
         &[
             "src/material/body/points.rs",
             "src/material/invariant_law.rs",
-            "src/multigrid/line.rs",
-            "src/multigrid/stencil.rs",
+            "src/multigrid/",
             "src/corrector/climb/forces.rs",
         ],
     ),
