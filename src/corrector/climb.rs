@@ -27,6 +27,7 @@ mod mesh;
 mod multipliers;
 mod newton;
 mod path;
+mod ratios;
 mod start;
 mod tangents;
 #[cfg(test)]
@@ -37,6 +38,7 @@ pub use grid::{Field, Grid};
 pub use level::Work;
 use level::{Ending, Inverted, Iteration, Level, Sheet};
 pub use path::{Grips, Interactive, RigidMotion};
+use ratios::Ratios;
 pub use way::{Start, Way};
 
 /// How exactly the climb solves.
@@ -77,6 +79,9 @@ pub struct ClimbSolution {
     /// The estimated discretisation error of the field, root mean square over the nodes in mm; not a number where
     /// there is one grid alone.
     pub discretisation_error: f64,
+    /// Whether that is known within a factor of about two: where the finest grid has twice as many cells along both axes as the one
+    /// before, and that one four elements at least. Else it is of the right order, and mostly too large.
+    pub error_is_sure: bool,
     /// What the iteration left, estimated, root mean square over the nodes in mm.
     pub iteration_error: f64,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
@@ -111,6 +116,7 @@ pub struct Climb<'a> {
     levels: Vec<Level>,
     multigrid: Multigrid,
     start: usize,
+    ratios: Ratios,
     /// The smallest eigenvalue of the preconditioned operators that the grids have told at this stretch.
     weakest: f64,
 }
@@ -137,12 +143,31 @@ impl<'a> Climb<'a> {
         scheme: DifferenceScheme,
         settings: ClimbSettings,
     ) -> Self {
-        let elements = [0, 1].map(|axis| {
-            assert!(cells[axis].is_multiple_of(scheme.side()), "pairs of cells");
-            cells[axis] / scheme.side()
-        });
-        let boundaries = Grid::even(problem.size, elements).coordinates;
+        let boundaries = Grid::even(problem.size, elements(cells, scheme)).coordinates;
         Self::new(problem, boundaries, scheme, settings)
+    }
+
+    /// Prepares the grids of a plate with so many cells that become smaller towards the corners, where the field is
+    /// singular; see [`mesh::Grid`](crate::mesh::Grid) and [`DifferenceScheme::grading`].
+    ///
+    /// # Panics
+    /// When the scheme takes cells two by two and their number is odd, or the grading is below 1.
+    pub fn graded(
+        problem: &'a ClampedPlate,
+        cells: [usize; 2],
+        scheme: DifferenceScheme,
+        grading: f64,
+        settings: ClimbSettings,
+    ) -> Self {
+        assert!(grading >= 1.0, "a grading of {grading}");
+        if grading == 1.0 {
+            return Self::even(problem, cells, scheme, settings);
+        }
+        let boundaries = Grid::graded(problem.size, elements(cells, scheme), grading).coordinates;
+        Self {
+            ratios: Ratios::of_graded(scheme, grading),
+            ..Self::new(problem, boundaries, scheme, settings)
+        }
     }
 
     /// Prepares the grids of a plate between the given coordinates of element boundaries along X and Y, which
@@ -164,9 +189,8 @@ impl<'a> Climb<'a> {
             .collect();
         let start = grids.iter().position(|grid| grid.nodes() >= SPRINGS);
         let coordinates: Vec<_> = grids.iter().map(|grid| grid.coordinates.clone()).collect();
-        let levels = grids.into_iter().enumerate();
-        let levels: Vec<Level> = levels
-            .map(|(index, grid)| Level::new(grid, index))
+        let levels: Vec<Level> = (0..grids.len())
+            .map(|index| Level::new(&grids[..=index]))
             .collect();
         Self {
             problem,
@@ -174,6 +198,7 @@ impl<'a> Climb<'a> {
             settings,
             multigrid: Multigrid::new(&coordinates),
             start: start.unwrap_or(levels.len() - 1),
+            ratios: Ratios::MEASURED,
             weakest: 1.0,
             levels,
         }
@@ -291,7 +316,8 @@ impl<'a> Climb<'a> {
     pub fn extrapolated(&self, climbed: &ClimbSolution) -> Option<Field> {
         let change = climbed.change.as_ref()?;
         let mut field = climbed.field.clone();
-        field.add(climbed.discretisation_error / change.size(), change);
+        let size = self.levels[self.levels.len() - 1].size_of(change);
+        field.add(climbed.discretisation_error / size, change);
         Some(field)
     }
 }
@@ -303,6 +329,14 @@ fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error + Copy {
         step: ClampedPlate::describe_step(stretch),
         fault,
     }
+}
+
+/// Elements of so many cells along both axes.
+fn elements(cells: [usize; 2], scheme: DifferenceScheme) -> [usize; 2] {
+    cells.map(|cells| {
+        assert!(cells.is_multiple_of(scheme.side()), "pairs of cells");
+        cells / scheme.side()
+    })
 }
 
 fn inverted() -> SolveFault {

@@ -69,6 +69,14 @@ impl Grid {
         }
     }
 
+    /// The places of all lines of cells along an axis in mm, from one side to the other.
+    pub fn lines(self, axis: usize) -> Vec<f64> {
+        let cells = self.cells[axis];
+        (0..=cells)
+            .map(|step| self.line(axis, step, cells))
+            .collect()
+    }
+
     /// The place of a line of nodes, `degree` of them a cell.
     pub(super) fn node_line(self, axis: usize, node: usize, degree: usize) -> f64 {
         let cells = self.cells[axis];

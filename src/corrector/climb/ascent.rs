@@ -1,13 +1,11 @@
 //! From grid to grid: the field on its way up.
 
+use super::ratios::Ratios;
 use super::{
     Climb, ClimbSolution, Field, Inverted, Iteration, Level, Way, Work, at_stretch, inverted,
 };
 use crate::error::{Error, SolveFault};
 
-/// The ratio of the changes of two grids where it is not known yet, and the ratios that are believed.
-const RATIO: f64 = 1.0 / 3.0;
-const RATIOS: [f64; 2] = [0.15, 0.7];
 /// What the iteration may leave on all grids but the finest, relative to what it may leave there.
 const ON_THE_WAY: f64 = 3.0;
 /// What the iteration may leave relative to the change that came, as a share of the tolerance: what it leaves is an estimate,
@@ -26,6 +24,7 @@ pub(super) struct Ascent {
     size: f64,
     /// How changes shrink from grid to grid.
     ratio: f64,
+    ratios: Ratios,
     iteration_error: f64,
     corrections: Vec<f64>,
     work: Vec<(usize, Work)>,
@@ -34,14 +33,21 @@ pub(super) struct Ascent {
 
 impl Ascent {
     /// A corrected field on the first grid, what its correction left in mm, and what it took.
-    pub fn new(index: usize, way: Way, field: Field, left: f64, work: Vec<(usize, Work)>) -> Self {
+    pub fn new(
+        (index, ratios): (usize, Ratios),
+        way: Way,
+        field: Field,
+        left: f64,
+        work: Vec<(usize, Work)>,
+    ) -> Self {
         Self {
             index,
             corrections: vec![field.size(), left],
             field,
             change: None,
             size: f64::NAN,
-            ratio: RATIO,
+            ratio: ratios.first,
+            ratios,
             iteration_error: left,
             work,
             way,
@@ -67,23 +73,29 @@ impl Ascent {
 
     /// The size of the change from the field before, interpolated, to one on a finer grid, and the ratio of changes
     /// that it tells.
-    fn change_to(&self, field: &Field, interpolated: &Field) -> [f64; 2] {
+    fn change_to(&self, level: &Level, field: &Field, interpolated: &Field) -> [f64; 2] {
         let mut change = field.clone();
         change.add(-1.0, interpolated);
-        let size = change.size();
+        let size = level.size_of(&change);
+        let [least, most] = self.ratios.believed;
         let ratio = match self.size.is_nan() {
             true => self.ratio,
-            false => (size / self.size).clamp(RATIOS[0], RATIOS[1]),
+            false => (size / self.size).clamp(least, most),
         };
         [size, ratio]
     }
 
     /// Takes the field of a finer grid over; `interpolated` is the one before on it.
-    fn take(&mut self, index: usize, field: Field, mut interpolated: Field) {
-        [self.size, self.ratio] = self.change_to(&field, &interpolated);
+    fn take(&mut self, level: &Level, field: Field, mut interpolated: Field) {
+        [self.size, self.ratio] = self.change_to(level, &field, &interpolated);
         interpolated.scale(-1.0);
         interpolated.add(1.0, &field);
-        (self.index, self.field, self.change) = (index, field, Some(interpolated));
+        (self.index, self.field, self.change) = (level.index, field, Some(interpolated));
+    }
+
+    /// Whether it has a change, and all changes are those of one grid.
+    fn follows_all_grids(&self) -> bool {
+        self.change.is_some() && self.way.by_load_path.is_empty()
     }
 
     /// The sum of d q + d q² + … that all finer grids would add.
@@ -123,6 +135,7 @@ impl Climb<'_> {
         Ok(ClimbSolution {
             force,
             discretisation_error: ascent.discretisation_error(),
+            error_is_sure: ascent.follows_all_grids() && self.tells_error(),
             field: ascent.field,
             change: ascent.change,
             iteration_error: ascent.iteration_error,
@@ -130,6 +143,15 @@ impl Climb<'_> {
             work: ascent.work,
             way: ascent.way,
         })
+    }
+
+    /// Whether the finest grids tell the discretisation error: see [`ClimbSolution::error_is_sure`].
+    fn tells_error(&self) -> bool {
+        let [.., coarse, fine] = &self.levels[..] else {
+            return false;
+        };
+        let [coarse, fine] = [coarse, fine].map(|level| level.grid.cells());
+        (0..2).all(|axis| fine[axis] == 2 * coarse[axis] && coarse[axis] >= 4 * self.scheme.side())
     }
 
     /// One grid up, by the iteration: from the change that is expected, else from none.
@@ -147,7 +169,7 @@ impl Climb<'_> {
         }
         let reached = found?;
         self.weakest = reached.fall.weakest;
-        ascent.take(index, field, interpolated);
+        ascent.take(&self.levels[index], field, interpolated);
         ascent.iteration_error = reached.fall.left();
         ascent.corrections = reached.fall.corrections;
         ascent
@@ -177,7 +199,7 @@ impl Climb<'_> {
         };
         let mut reached = self.solve(index, field, &enough)?;
         for _ in 0..if finest { AGAIN } else { 0 } {
-            let [change, ratio] = ascent.change_to(field, interpolated);
+            let [change, ratio] = ascent.change_to(&self.levels[index], field, interpolated);
             let limit = SURE * tolerance * geometric_tail(change, ratio);
             if reached.fall.left() <= limit {
                 break;
@@ -195,7 +217,7 @@ impl Climb<'_> {
         self.write_operators(&found);
         let [coarse, fine] = [ascent.index, found.index].map(|index| &self.levels[index].grid);
         let interpolated = ascent.field.onto(coarse, fine);
-        ascent.take(found.index, found.field, interpolated);
+        ascent.take(&self.levels[found.index], found.field, interpolated);
         ascent.work.push((fine.nodes(), Work::default()));
         ascent.note_load_path(found.left, fine.cells());
         Ok(())

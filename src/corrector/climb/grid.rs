@@ -1,5 +1,6 @@
 //! A plate's grid: where its nodes are, and fields on them.
 
+use crate::mesh;
 use crate::multigrid::{Interpolation, Lines};
 
 /// Where the energy of an element is sampled along one axis, and the functions there.
@@ -59,6 +60,9 @@ impl Rule<3> {
     }
 }
 
+/// Places and lengths that differ by less are the same.
+const SAME: f64 = 1e-9;
+
 /// The nodes of a plate along both axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
@@ -93,6 +97,18 @@ impl Grid {
         Self::new(boundaries.each_ref().map(|places| &places[..]), 1)
     }
 
+    /// A grid of cells that become smaller towards the corners; see [`mesh::Grid`].
+    pub fn graded(size: [f64; 2], cells: [usize; 2], grading: f64) -> Self {
+        let grid = mesh::Grid {
+            size,
+            cells,
+            grading,
+        };
+        Self {
+            coordinates: [0, 1].map(|axis| grid.lines(axis)),
+        }
+    }
+
     /// The grid's lines.
     pub fn lines(&self) -> Lines {
         Lines {
@@ -104,6 +120,33 @@ impl Grid {
     /// Cells along X and Y.
     pub fn cells(&self) -> [usize; 2] {
         self.coordinates.each_ref().map(|places| places.len() - 1)
+    }
+
+    /// Whether the cells are equal along both axes.
+    pub fn is_even(&self) -> bool {
+        self.coordinates.iter().all(|places| {
+            let last = places.len() - 1;
+            let step = (places[last] - places[0]) / last as f64;
+            let off = |pair: &[f64]| (pair[1] - pair[0] - step).abs();
+            places.windows(2).all(|pair| off(pair) <= SAME * step)
+        })
+    }
+
+    /// The nodes along both axes that a coarser grid has too, where these are a third of its nodes at least.
+    pub fn shared_with(&self, coarser: &Self) -> Option<[Vec<usize>; 2]> {
+        let shared = [0, 1].map(|axis| -> Vec<usize> {
+            let (own, others) = (&self.coordinates[axis], &coarser.coordinates[axis]);
+            let near = SAME * own[own.len() - 1];
+            let has = |node: &usize| {
+                let after = others.partition_point(|other| *other < own[*node] - near);
+                others
+                    .get(after)
+                    .is_some_and(|other| *other <= own[*node] + near)
+            };
+            (0..own.len()).filter(has).collect()
+        });
+        let enough = |axis: usize| 3 * shared[axis].len() >= coarser.coordinates[axis].len();
+        (enough(0) && enough(1)).then_some(shared)
     }
 
     /// Number of nodes.
@@ -180,6 +223,22 @@ impl Field {
     /// The root mean square over the nodes.
     pub fn size(&self) -> f64 {
         (self.product(self) / self.components[0].len() as f64).sqrt()
+    }
+
+    /// The root mean square over the nodes of some lines and some places on them.
+    pub fn size_at(&self, [lines, nodes]: &[Vec<usize>; 2]) -> f64 {
+        let line = |component: &[f64], line: usize| -> f64 {
+            let line = &component[line * self.width..][..self.width];
+            nodes.iter().map(|node| line[*node].powi(2)).sum()
+        };
+        let component = |component: &Vec<f64>| {
+            lines
+                .iter()
+                .map(|place| line(component, *place))
+                .sum::<f64>()
+        };
+        let sum: f64 = self.components.iter().map(component).sum();
+        (sum / (lines.len() * nodes.len()) as f64).sqrt()
     }
 
     /// The nodes between the two grips.

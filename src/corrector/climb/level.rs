@@ -51,6 +51,8 @@ pub struct Level {
     pub grid: Grid,
     /// Which of the multigrid's grids it is.
     pub index: usize,
+    /// The nodes at which what the grid adds is measured; all where there are none.
+    pub shared: Option<[Vec<usize>; 2]>,
     /// F at the field that was evaluated last, or before the last correction of an iteration.
     pub residual: Field,
     trial: Field,
@@ -110,10 +112,14 @@ pub struct Ending<'a> {
 }
 
 impl Level {
-    /// Vectors for a grid.
-    pub fn new(grid: Grid, index: usize) -> Self {
+    /// Vectors for the last one of some grids, coarse to fine.
+    pub fn new(grids: &[Grid]) -> Self {
+        let index = grids.len() - 1;
+        let grid = grids[index].clone();
         let field = Field::zeros(&grid);
+        let coarser = index.checked_sub(1).filter(|_| !grid.is_even());
         Self {
+            shared: coarser.and_then(|coarser| grid.shared_with(&grids[coarser])),
             grid,
             index,
             residual: field.clone(),
@@ -122,6 +128,13 @@ impl Level {
             direction: field.clone(),
             correction: field,
         }
+    }
+
+    /// The size of what the grid adds to the one before: the root mean square over the nodes that both have, where grids are graded:
+    /// elsewhere interpolation adds its own error, which can be many times as large.
+    pub fn size_of(&self, change: &Field) -> f64 {
+        let shared = self.shared.as_ref();
+        shared.map_or_else(|| change.size(), |shared| change.size_at(shared))
     }
 
     /// F(u) in N at all nodes into [`Self::residual`]: the reactions at the grips.

@@ -60,6 +60,7 @@ impl Climb<'_> {
                     force,
                     change: None,
                     discretisation_error: f64::NAN,
+                    error_is_sure: false,
                     iteration_error: last,
                     corrections,
                     work: vec![(self.grid().nodes(), work)],

@@ -195,6 +195,7 @@ impl ClimbSolution {
             force,
             change: None,
             discretisation_error,
+            error_is_sure: false,
             iteration_error: reached.fall.left(),
             work: vec![(nodes, reached.work)],
             corrections: reached.fall.corrections,

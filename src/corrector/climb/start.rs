@@ -59,7 +59,8 @@ impl Climb<'_> {
         let (grid, left) = (&self.levels[found.index].grid, found.left);
         let work = vec![(grid.nodes(), Work::default())];
         let way = Way::from_start(Start::LoadPath, grid.cells());
-        Ok(Ascent::new(found.index, way, found.field, left, work))
+        let begin = (found.index, self.ratios);
+        Ok(Ascent::new(begin, way, found.field, left, work))
     }
 
     fn begin(&self, start: Start, first: First) -> Ascent {
@@ -69,7 +70,8 @@ impl Climb<'_> {
             ..Way::from_start(start, grid.cells())
         };
         let work = vec![(grid.nodes(), first.work)];
-        Ascent::new(self.start, way, first.field, first.left, work)
+        let begin = (self.start, self.ratios);
+        Ascent::new(begin, way, first.field, first.left, work)
     }
 
     /// The corrected field from one start on the first grid; nothing where it cannot be corrected.

@@ -12,6 +12,8 @@ use crate::material::{Card, PlaneState, Volume, VolumeEnergy};
 use crate::mesh::{CellShape, Mesh};
 use crate::solve::NewtonSettings;
 
+mod graded;
+
 const TIGHT: ClimbSettings = ClimbSettings {
     tolerance: 1e-6,
     max_iterations: 60,

@@ -1,0 +1,33 @@
+//! How much smaller what a grid adds is than what the one before added.
+
+use crate::corrector::DifferenceScheme;
+
+/// How changes shrink from grid to grid.
+#[derive(Clone, Copy, Debug)]
+pub struct Ratios {
+    /// Where two changes are not known yet.
+    pub first: f64,
+    /// Those that are believed.
+    pub believed: [f64; 2],
+}
+
+impl Ratios {
+    /// Where nothing is known of them.
+    pub const MEASURED: Self = Self {
+        first: 1.0 / 3.0,
+        believed: [0.15, 0.7],
+    };
+
+    /// On cells that are graded by g errors fall with h^(p + 1), but beside a clamped corner, where the field goes like r^α, with
+    /// h^(2 α g) at most. Coarse grids tell that worse than theory does: what they tell is believed near it only. With 2 α = 1.6, errors of
+    /// 1,395 plates of three laws, four proportions, both schemes and gradings of 1.3 to 3 were told within a factor of two but for four to
+    /// twelve, and never by a factor of more than 2.4.
+    pub fn of_graded(scheme: DifferenceScheme, grading: f64) -> Self {
+        let order = (scheme.side() + 1) as f64;
+        let ratio = 0.5_f64.powf(order.min(1.6 * grading));
+        Self {
+            first: ratio,
+            believed: [0.8 * ratio, 1.1 * ratio],
+        }
+    }
+}

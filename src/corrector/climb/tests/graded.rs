@@ -1,0 +1,91 @@
+//! Grids that are graded towards the corners.
+
+use super::*;
+
+/// So many cells along Y, and in proportion along X.
+fn cells(size: [f64; 2], across: usize) -> [usize; 2] {
+    [(size[0] / size[1]) as usize * across, across]
+}
+
+/// The stated discretisation error holds within a factor of two and the iteration leaves less than a tenth of it, whatever the grading,
+/// scheme, law, proportions and stretch: against a field whose own error is some twenty times smaller.
+#[test]
+fn the_stated_errors_are_true_on_graded_grids() {
+    for (card, size, stretch) in [
+        ("pva-10", [150.0, 50.0], 1.0),
+        ("pva-10", [50.0, 50.0], 0.1),
+        ("neo-hooke", [150.0, 50.0], 0.1),
+        ("neo-hooke", [50.0, 50.0], 0.5),
+        ("treloar-ogden-3", [150.0, 50.0], 0.5),
+    ] {
+        let problem = problem(card, size, stretch);
+        let solve = |across, scheme, grading, settings| {
+            let mut climb = Climb::graded(&problem, cells(size, across), scheme, grading, settings);
+            let climbed = climb.correct(stretch).unwrap();
+            (climb.grid().clone(), climbed)
+        };
+        let (fine, truth) = solve(128, DifferenceScheme::Biquadratic, 2.0, TIGHT);
+        for scheme in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic] {
+            for grading in [1.5, 2.0, 3.0] {
+                let (grid, climbed) = solve(32, scheme, grading, ClimbSettings::FAST);
+                let (_, solved) = solve(32, scheme, grading, TIGHT);
+                let mut iteration = climbed.field.clone();
+                iteration.add(-1.0, &solved.field);
+                let mut error = truth.field.onto(&fine, &grid);
+                error.add(-1.0, &solved.field);
+                let ratio = climbed.discretisation_error / error.size();
+                let told = format!("{card} {size:?} {stretch} {scheme:?} graded by {grading}");
+                assert!(climbed.error_is_sure, "{told}");
+                assert!((0.5..2.0).contains(&ratio), "{told}: {ratio}");
+                let left = iteration.size() / error.size();
+                assert!(left < 0.1, "{told}: {left} of the error");
+                let cycles = climbed.work.last().unwrap().1.cycles;
+                assert!(cycles <= 12, "{told}: {cycles} cycles");
+                assert!(climbed.way.by_load_path.is_empty(), "{told}");
+            }
+        }
+    }
+}
+
+#[test]
+fn errors_that_the_grids_do_not_tell_are_not_called_sure() {
+    let problem = problem("pva-10", [150.0, 50.0], 0.5);
+    let scheme = DifferenceScheme::Biquadratic;
+    let is_sure = |cells| {
+        let mut climb = Climb::graded(&problem, cells, scheme, 2.0, ClimbSettings::FAST);
+        climb.correct(0.5).unwrap().error_is_sure
+    };
+    assert!(is_sure([72, 24]));
+    // An odd number of elements across, and three in the grid before.
+    assert!(!is_sure([84, 28].map(|n| n + 2)));
+    assert!(!is_sure([36, 12]));
+}
+
+#[test]
+fn a_grading_of_one_is_an_even_grid() {
+    let problem = problem("pva-10", [150.0, 50.0], 0.5);
+    let (cells, scheme, settings) = ([60, 20], DifferenceScheme::Gauss, ClimbSettings::FAST);
+    let [even, graded] = [
+        Climb::even(&problem, cells, scheme, settings),
+        Climb::graded(&problem, cells, scheme, 1.0, settings),
+    ]
+    .map(|mut climb| climb.correct(0.5).unwrap().field);
+    assert_eq!(even, graded);
+}
+
+#[test]
+fn threads_do_not_change_a_bit_where_lines_are_relaxed() {
+    let problem = problem("neo-hooke", [150.0, 50.0], 0.5);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let scheme = DifferenceScheme::Biquadratic;
+            let mut climb = Climb::graded(&problem, [210, 70], scheme, 2.0, ClimbSettings::FAST);
+            climb.correct(0.5).unwrap().field
+        })
+    };
+    assert!(run(1) == run(3));
+}
