@@ -3,7 +3,11 @@
 //! ```text
 //! cargo bench --bench corrected_plate              all of it, some minutes and 6 GB
 //! cargo bench --bench corrected_plate -- --quick   grids up to a quarter of a million nodes
+//! cargo bench --bench corrected_plate -- --equal-accuracy   what is best at equal accuracy alone
 //! ```
+//!
+//! Equal accuracy means any grid: cells of both kinds, equal or graded towards the corners, where the field is singular, as coarse
+//! as the accuracy allows.
 //!
 //! A plate of 150 × 50 × 2 mm of 10 % PVA hydrogel (`pva-10`), stretched by 100 %. Every time runs from the problem to
 //! field and force, with grids, meshes and analysis, on one thread where nothing else is said; it is the shortest of
@@ -24,7 +28,6 @@ mod way;
 use std::path::Path;
 use std::process::ExitCode;
 
-use gelbench::corrector::DifferenceScheme;
 use gelbench::error::Error;
 use gelbench::material::Card;
 use gelbench::output;
@@ -32,10 +35,11 @@ use gelbench::problem::ClampedPlate;
 use peak_alloc::PeakAlloc;
 use rayon::ThreadPoolBuilder;
 
-use measure::Bench;
+use measure::{Bench, SCHEMES};
 use reference::{PUBLISHED_FORCE, Reference};
 use table::Row;
 use verdict::Verdicts;
+use way::Layout;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -65,12 +69,32 @@ const FURTHER: [[usize; 2]; 10] = [
     [768, 256],
     [1200, 400],
 ];
+/// Gradings, and the cells of graded grids, which the climb and finite elements are measured on.
+const GRADINGS: [f64; 3] = [1.5, 2.0, 3.0];
+const GRADED: [[usize; 2]; 14] = [
+    [24, 8],
+    [36, 12],
+    [48, 16],
+    [60, 20],
+    [72, 24],
+    [96, 32],
+    [120, 40],
+    [144, 48],
+    [192, 64],
+    [240, 80],
+    [288, 96],
+    [360, 120],
+    [480, 160],
+    [600, 200],
+];
+/// Cells of equal grids above which nothing is best at equal accuracy.
+const BEST: usize = 30_000;
 /// Nodes above which grids are left out by `--quick`.
 const QUICK: usize = 250_000;
 
 fn main() -> ExitCode {
-    let quick = std::env::args().any(|argument| argument == "--quick");
-    match bench(quick) {
+    let asked = |name: &str| std::env::args().any(|argument| argument == name);
+    match bench(asked("--quick"), asked("--equal-accuracy")) {
         Ok(0) => ExitCode::SUCCESS,
         Ok(missed) => {
             eprintln!("{missed} aims are not met: see the lines that say FAIL");
@@ -83,8 +107,22 @@ fn main() -> ExitCode {
     }
 }
 
+/// All grids up to so many equal cells, and whether the climb is measured on them.
+fn layouts(most: usize) -> Vec<(Layout, bool)> {
+    let mut equal: Vec<([usize; 2], bool)> = CORRECTED.map(|cells| (cells, true)).to_vec();
+    equal.extend(FURTHER.map(|cells| (cells, false)));
+    equal.sort_unstable();
+    equal.retain(|(cells, _)| cells[0] * cells[1] <= most);
+    let equal = equal.into_iter();
+    let equal = equal.map(|(cells, corrected)| (Layout::equal(cells), corrected));
+    let graded = GRADINGS
+        .into_iter()
+        .flat_map(|grading| GRADED.map(|cells| (Layout { cells, grading }, true)));
+    equal.chain(graded).collect()
+}
+
 /// Measures everything; the number of aims that are not met.
-fn bench(quick: bool) -> Result<usize, Error> {
+fn bench(quick: bool, equal_accuracy: bool) -> Result<usize, Error> {
     let problem = ClampedPlate {
         size: [150.0, 50.0],
         thickness: 2.0,
@@ -106,29 +144,32 @@ fn bench(quick: bool) -> Result<usize, Error> {
         stretch: STRETCH,
         pools: &pools,
     };
-    let mut grids: Vec<([usize; 2], bool)> = CORRECTED.map(|cells| (cells, true)).to_vec();
-    grids.extend(FURTHER.map(|cells| (cells, false)));
-    grids.sort_unstable();
     let mut runs = Vec::new();
-    for (cells, corrected) in grids {
-        if quick && cells[0] * cells[1] > QUICK {
-            continue;
-        }
-        let own = bench.grid(cells, corrected)?;
+    for (layout, corrected) in layouts(if equal_accuracy {
+        BEST
+    } else if quick {
+        QUICK
+    } else {
+        usize::MAX
+    }) {
+        let own = bench.grid(layout, corrected)?;
         own.iter().for_each(table::print_run);
         runs.extend(own);
     }
     let rows = Row::all(&runs);
     table::print(&rows);
     let mut verdicts = Verdicts::new(&reference);
-    verdicts.rows(&rows);
-    let stretches: Vec<f64> = (1..=100).map(|percent| 0.01 * f64::from(percent)).collect();
-    for scheme in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic] {
-        let error = table::own_error(&runs, [60, 20], scheme);
-        let path = || states::path(&problem, [60, 20], scheme, &stretches, error);
-        verdicts.path(&pools[0].install(path)?);
+    verdicts.equal_accuracy(&runs);
+    if !equal_accuracy {
+        verdicts.rows(&rows);
+        let stretches: Vec<f64> = (1..=100).map(|percent| 0.01 * f64::from(percent)).collect();
+        for scheme in SCHEMES {
+            let error = table::own_error(&runs, [60, 20], scheme);
+            let path = || states::path(&problem, [60, 20], scheme, &stretches, error);
+            verdicts.path(&pools[0].install(path)?);
+        }
+        verdicts.frames(&pools[0].install(|| states::frames(&problem, [180, 60], 100))?);
     }
-    verdicts.frames(&pools[0].install(|| states::frames(&problem, [180, 60], 100))?);
     let missed = verdicts.print();
     let folder = Path::new(FOLDER);
     let picture = table::picture(&runs);

@@ -3,21 +3,20 @@
 use std::time::{Duration, Instant};
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::corrector::climb::Field;
+use gelbench::corrector::climb::{Field, Grid};
 use gelbench::error::Error;
-use gelbench::finite_element::Element;
 use gelbench::problem::ClampedPlate;
 use rayon::ThreadPool;
 
 use super::MEMORY;
 use super::opponent::{Guess, Opponent};
 use super::reference::{Reference, relative_percent};
-use super::way::{Found, Way, element, go};
+use super::way::{Found, Layout, Way, element, go};
 
 /// A way measured on one grid.
 pub struct Run {
     pub way: Way,
-    pub cells: [usize; 2],
+    pub layout: Layout,
     pub nodes: usize,
     pub threads: usize,
     /// Shortest time in s.
@@ -39,6 +38,11 @@ pub struct Run {
 }
 
 impl Run {
+    /// Whether it went a way, on one thread.
+    pub fn is(&self, way: Way) -> bool {
+        self.way == way && self.threads == 1
+    }
+
     /// Keeps the shorter times.
     fn improve(&mut self, found: &Found) {
         let evaluation = (self.seconds / self.work_units).min(found.evaluation);
@@ -56,6 +60,12 @@ pub struct Bench<'a> {
     pub pools: &'a [ThreadPool; 2],
 }
 
+/// The climb's schemes; their finite elements are linear and quadratic.
+pub const SCHEMES: [DifferenceScheme; 2] = [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic];
+
+/// What is left of the solution of a grid's equations at most, relative to the departure from affine, ten times over.
+const EXACT: f64 = 1e-8;
+
 /// Turns at least and at most, the time after which no more are begun, and the time of every contestant in a turn.
 const TURNS: std::ops::Range<usize> = 2..8;
 const ENOUGH: Duration = Duration::from_secs(4);
@@ -63,43 +73,46 @@ const TURN: Duration = Duration::from_millis(250);
 
 impl Bench<'_> {
     /// Measures all ways on one grid, turn by turn; `corrected` tells whether the climb is one of them.
-    pub fn grid(&self, cells: [usize; 2], corrected: bool) -> Result<Vec<Run>, Error> {
-        let errors = [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic]
-            .map(|scheme| self.own_error(cells, scheme));
-        let [linear, quadratic] = errors;
-        let errors = [linear?, quadratic?];
-        let contestants = contestants(corrected, &errors);
+    pub fn grid(&self, layout: Layout, corrected: bool) -> Result<Vec<Run>, Error> {
+        let exact = SCHEMES.map(|scheme| self.exact(layout, scheme));
+        let errors = exact.each_ref().map(|(error, _)| *error);
+        let contestants = contestants(layout, corrected, &errors);
         let mut runs = Vec::new();
         let mut fields: Vec<Field> = Vec::new();
         for (way, threads, error) in &contestants {
             let before = MEMORY.current_usage();
             MEMORY.reset_peak_usage();
-            let found = self.go(*way, cells, *threads, *error)?;
+            let found = self.go(*way, layout, *threads, *error)?;
             let bytes = (MEMORY.peak_usage() - before) as f64;
-            runs.push(self.run(*way, cells, *threads, &found, bytes));
+            runs.push(self.run(*way, layout, *threads, &found, bytes));
             fields.push(found.field);
         }
-        self.compare(&mut runs, &fields, &errors);
-        drop(fields);
+        compare(&mut runs, &fields, &exact, self.stretch);
+        drop((fields, exact));
         self.repeat(&mut runs, &contestants)?;
         Ok(runs)
     }
 
-    fn go(&self, way: Way, cells: [usize; 2], threads: usize, error: f64) -> Result<Found, Error> {
-        self.pools[threads - 1].install(|| go(way, self.problem, cells, self.stretch, error))
+    fn go(&self, way: Way, layout: Layout, threads: usize, error: f64) -> Result<Found, Error> {
+        self.pools[threads - 1].install(|| go(way, self.problem, layout, self.stretch, error))
     }
 
-    /// The error of a grid's equations relative to the departure from affine, by a climb.
-    fn own_error(&self, cells: [usize; 2], scheme: DifferenceScheme) -> Result<f64, Error> {
-        let found = self.go(Way::Climb(scheme), cells, 1, f64::NAN)?;
-        Ok(0.01 * self.reference.departure_percent(&found.grid, &found.field))
+    /// The error of a grid's equations relative to the departure from affine, and their solution: finite elements that are
+    /// iterated further.
+    fn exact(&self, layout: Layout, scheme: DifferenceScheme) -> (f64, (Grid, Field)) {
+        let mut direct = Opponent::new(self.problem, layout, element(scheme));
+        let mut u = direct.start(Guess::Nested, self.stretch, EXACT);
+        direct.solve(&mut u, self.stretch, EXACT);
+        let field = Field::of_nodes(&direct.grid, &u);
+        let error = 0.01 * self.reference.departure_percent(&direct.grid, &field);
+        (error, (direct.grid, field))
     }
 
-    fn run(&self, way: Way, cells: [usize; 2], threads: usize, found: &Found, bytes: f64) -> Run {
+    fn run(&self, way: Way, layout: Layout, threads: usize, found: &Found, bytes: f64) -> Run {
         let nodes = found.grid.nodes();
         Run {
             way,
-            cells,
+            layout,
             nodes,
             threads,
             seconds: found.seconds,
@@ -114,33 +127,6 @@ impl Bench<'_> {
         }
     }
 
-    /// Compares the fields of the climb with the finite elements at the same nodes, iterated once more, and with
-    /// those of one thread.
-    fn compare(&self, runs: &mut [Run], fields: &[Field], errors: &[f64; 2]) {
-        let found = |way: Way, runs: &[Run]| runs.iter().position(|run| run.way == way);
-        for (scheme, error) in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic]
-            .into_iter()
-            .zip(errors)
-        {
-            let Some(first) = found(Way::Climb(scheme), runs) else {
-                continue;
-            };
-            let mut direct = Opponent::new(self.problem, runs[first].cells, element(scheme));
-            let mut u = direct.start(Guess::Nested, self.stretch, *error);
-            // A thousandth of the error: one or two iterations more than the opponent's.
-            direct.solve(&mut u, self.stretch, 1e-3 * error);
-            direct.iterate(&mut u);
-            let exact = Field::of_nodes(&direct.grid, &u);
-            for (run, field) in runs.iter_mut().zip(fields) {
-                if [Way::Climb(scheme), Way::Newton(scheme)].contains(&run.way) {
-                    run.difference_percent =
-                        relative_percent(&direct.grid, field, &exact, self.stretch);
-                    run.same_bits = run.way == Way::Newton(scheme) || *field == fields[first];
-                }
-            }
-        }
-    }
-
     /// Goes all ways again, in turns, and keeps the shortest times.
     fn repeat(&self, runs: &mut [Run], contestants: &[(Way, usize, f64)]) -> Result<(), Error> {
         let start = Instant::now();
@@ -151,7 +137,7 @@ impl Bench<'_> {
             for (run, (way, threads, error)) in runs.iter_mut().zip(contestants) {
                 let begin = Instant::now();
                 while begin.elapsed() < TURN {
-                    run.improve(&self.go(*way, run.cells, *threads, *error)?);
+                    run.improve(&self.go(*way, run.layout, *threads, *error)?);
                 }
             }
         }
@@ -159,21 +145,37 @@ impl Bench<'_> {
     }
 }
 
-fn contestants(corrected: bool, [linear, quadratic]: &[f64; 2]) -> Vec<(Way, usize, f64)> {
-    let mut all = Vec::new();
-    for (scheme, error) in [
-        (DifferenceScheme::Gauss, *linear),
-        (DifferenceScheme::Biquadratic, *quadratic),
-    ] {
-        if corrected {
-            all.push((Way::Climb(scheme), 1, error));
-            all.push((Way::Climb(scheme), 2, error));
-            all.push((Way::Newton(scheme), 1, error));
+/// Compares the fields of the climb with the solutions of the same equations, and with those of one thread.
+fn compare(runs: &mut [Run], fields: &[Field], exact: &[(f64, (Grid, Field))], stretch: f64) {
+    for (scheme, (_, (grid, exact))) in SCHEMES.into_iter().zip(exact) {
+        let climb = Way::Climb(scheme);
+        let Some(first) = runs.iter().position(|run| run.way == climb) else {
+            continue;
+        };
+        for (run, field) in runs.iter_mut().zip(fields) {
+            if [climb, Way::Newton(scheme)].contains(&run.way) {
+                run.difference_percent = relative_percent(grid, field, exact, stretch);
+                run.same_bits = run.way != climb || *field == fields[first];
+            }
         }
     }
-    for (element, error) in [(Element::Q1, *linear), (Element::Q2, *quadratic)] {
+}
+
+/// The ways on a grid, with threads and the grid's error: on equal cells the climb by one and two threads and plain Newton too.
+fn contestants(layout: Layout, corrected: bool, errors: &[f64; 2]) -> Vec<(Way, usize, f64)> {
+    let mut all = Vec::new();
+    for (scheme, error) in SCHEMES.into_iter().zip(errors) {
+        if corrected {
+            all.push((Way::Climb(scheme), 1, *error));
+        }
+        if corrected && layout.grading == 1.0 {
+            all.push((Way::Climb(scheme), 2, *error));
+            all.push((Way::Newton(scheme), 1, *error));
+        }
+    }
+    for (scheme, error) in SCHEMES.into_iter().zip(errors) {
         for guess in [Guess::Affine, Guess::Nested] {
-            all.push((Way::FiniteElements(element, guess), 1, error));
+            all.push((Way::FiniteElements(element(scheme), guess), 1, *error));
         }
     }
     all

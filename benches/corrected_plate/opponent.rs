@@ -19,13 +19,15 @@ use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::problem::ClampedPlate;
 use gelbench::solve::{Assembly, Cholesky};
 
+use super::way::Layout;
+
 /// Where the iteration begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guess {
     /// At the affine stretch, as the built-in finite elements do.
     Affine,
-    /// At the field of half as many cells along both axes, found in the same way: the climb's own idea, with
-    /// factorisations.
+    /// At the field of half as many cells along both axes, graded in the same way and found in the same way: the climb's own
+    /// idea, with factorisations.
     Nested,
 }
 
@@ -41,6 +43,7 @@ impl Guess {
 /// Finite elements prepared on one grid of nodes.
 pub struct Opponent<'a> {
     problem: &'a ClampedPlate,
+    layout: Layout,
     pub grid: Grid,
     element: Element,
     model: FiniteElements,
@@ -50,6 +53,8 @@ pub struct Opponent<'a> {
 
 /// Cells along Y below which a nested guess goes no coarser.
 const COARSEST: usize = 10;
+/// How many times as large the error of a mesh with half as many elements is, at least about.
+const COARSER: f64 = 3.0;
 /// Newton iterations at most.
 const ITERATIONS: usize = 12;
 
@@ -62,15 +67,16 @@ fn degree(element: Element) -> usize {
 }
 
 impl<'a> Opponent<'a> {
-    /// Meshes the plate so that the nodes are those of a grid with `cells` cells.
-    pub fn new(problem: &'a ClampedPlate, cells: [usize; 2], element: Element) -> Self {
-        let elements = cells.map(|cells| cells / degree(element));
-        let model = FiniteElements::new(problem, elements, element);
+    /// Meshes the plate so that the nodes are those of a grid.
+    pub fn new(problem: &'a ClampedPlate, layout: Layout, element: Element) -> Self {
+        let elements = layout.cells.map(|n| n / degree(element));
+        let model = FiniteElements::graded(problem, elements, element, layout.grading);
         let assembly = Assembly::new(model.energy(), &problem.held(&model.mesh));
         let cholesky = assembly.analyse();
         Self {
             problem,
-            grid: Grid::even(problem.size, cells),
+            layout,
+            grid: layout.grid(problem.size, degree(element)),
             element,
             cholesky: cholesky.expect("enough memory"),
             assembly,
@@ -80,17 +86,14 @@ impl<'a> Opponent<'a> {
 
     /// The displacements that the iteration begins at.
     pub fn start(&self, guess: Guess, stretch: f64, error: f64) -> Vec<f64> {
-        let cells = self
-            .grid
-            .coordinates
-            .each_ref()
-            .map(|nodes| nodes.len() - 1);
-        let step = 2 * degree(self.element);
-        let halves = cells.iter().all(|cells| cells.is_multiple_of(step));
-        if guess == Guess::Affine || !halves || cells[1] / 2 < COARSEST {
+        let coarser = self.layout.halved(degree(self.element));
+        let coarser =
+            coarser.filter(|layout| guess == Guess::Nested && layout.cells[1] >= COARSEST);
+        let Some(layout) = coarser else {
             return self.problem.affine(&self.model.mesh, stretch);
-        }
-        let mut coarser = Self::new(self.problem, cells.map(|n| n / 2), self.element);
+        };
+        let mut coarser = Self::new(self.problem, layout, self.element);
+        let error = COARSER * error;
         let mut u = coarser.start(guess, stretch, error);
         coarser.solve(&mut u, stretch, error);
         let field = Field::of_nodes(&coarser.grid, &u);

@@ -7,7 +7,7 @@ use gelbench::results::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
 
 use super::measure::Run;
 use super::opponent::Guess;
-use super::way::{Way, element, scheme_name};
+use super::way::{Layout, Way, element, scheme_name};
 
 /// The climb on one grid beside its opponents; times in s.
 pub struct Row<'a> {
@@ -15,9 +15,10 @@ pub struct Row<'a> {
     pub scheme: DifferenceScheme,
     /// Finite elements with the same nodes and equations: from the affine and from the nested guess.
     pub same_nodes: [&'a Run; 2],
-    /// The cheapest finite elements that are as accurate, of all meshes and both elements.
+    /// The cheapest finite elements that are as accurate, of all meshes, equal and graded, and both elements.
     pub equal_accuracy: [Option<&'a Run>; 2],
-    pub newton: &'a Run,
+    /// Plain Newton with the same multigrid, on grids of equal cells.
+    pub newton: Option<&'a Run>,
 }
 
 /// How much larger an error still counts as equal: as much as the iterations of the climb leave.
@@ -38,10 +39,12 @@ impl<'a> Row<'a> {
 
     fn new(runs: &'a [Run], climb: &'a Run, scheme: DifferenceScheme) -> Self {
         let here = |way: Way| {
-            let found = runs
-                .iter()
-                .find(|run| run.way == way && run.cells == climb.cells);
-            found.expect("every way is measured on this grid")
+            runs.iter()
+                .find(|run| run.way == way && run.layout == climb.layout)
+        };
+        let elements = |guess: Guess| {
+            let found = here(Way::FiniteElements(element(scheme), guess));
+            found.expect("finite elements are measured on every grid")
         };
         let cheapest = |guess: Guess| {
             let as_accurate = runs.iter().filter(|run| {
@@ -53,7 +56,7 @@ impl<'a> Row<'a> {
         Self {
             climb,
             scheme,
-            same_nodes: GUESSES.map(|guess| here(Way::FiniteElements(element(scheme), guess))),
+            same_nodes: GUESSES.map(elements),
             equal_accuracy: GUESSES.map(cheapest),
             newton: here(Way::Newton(scheme)),
         }
@@ -76,7 +79,7 @@ impl<'a> Row<'a> {
         let equal = self.equal_accuracy[0];
         let mesh = equal.map_or("-".to_owned(), |run| match run.way {
             Way::FiniteElements(element, _) => {
-                format!("{} {}x{}", element.name(), run.cells[0], run.cells[1])
+                format!("{} {}", element.name(), run.layout)
             }
             _ => unreachable!("finite elements"),
         });
@@ -84,6 +87,7 @@ impl<'a> Row<'a> {
         let ratio = |value: f64| format!("{value:.2}");
         vec![
             ("nodes", climb.nodes.to_string()),
+            ("grid", climb.layout.to_string()),
             ("scheme", scheme_name(self.scheme).to_owned()),
             ("threads", climb.threads.to_string()),
             ("departure_percent", number(climb.departure_percent)),
@@ -114,7 +118,10 @@ impl<'a> Row<'a> {
                 "ratio_equal_accuracy_nested",
                 ratio(self.ratio_equal_accuracy(Guess::Nested)),
             ),
-            ("ratio_newton", ratio(self.newton.seconds / climb.seconds)),
+            (
+                "ratio_newton",
+                ratio(self.newton.map_or(f64::NAN, |run| run.seconds) / climb.seconds),
+            ),
             (
                 "difference_to_direct_percent",
                 number(climb.difference_percent),
@@ -133,15 +140,19 @@ impl<'a> Row<'a> {
 /// The finite elements' own error on a grid of nodes, relative to the departure from affine.
 pub fn own_error(runs: &[Run], cells: [usize; 2], scheme: DifferenceScheme) -> f64 {
     let way = Way::FiniteElements(element(scheme), Guess::Affine);
-    let found = runs.iter().find(|run| run.way == way && run.cells == cells);
+    let layout = Layout::equal(cells);
+    let found = runs
+        .iter()
+        .find(|run| run.way == way && run.layout == layout);
     0.01 * found.expect("measured").departure_percent
 }
 
 /// One run as soon as it is measured.
 pub fn print_run(run: &Run) {
     println!(
-        "{:>8} nodes  {:<38} {} thread{}  {:>10.5} s  {:>2} iterations  departure {:.2e} %  force {:.6} N ({:.1e} %)",
+        "{:>8} nodes  {:<12} {:<38} {} thread{}  {:>10.5} s  {:>2} iterations  departure {:.2e} %  force {:.6} N ({:.1e} %)",
         run.nodes,
+        run.layout.to_string(),
         run.way.name(),
         run.threads,
         if run.threads == 1 { " " } else { "s" },
@@ -204,8 +215,32 @@ pub fn csv(rows: &[Row]) -> Vec<u8> {
         .expect("writing to memory does not fail")
 }
 
-/// Time against nodes and against error.
+/// Time against nodes, on equal cells, and against error, on the best of all grids.
 pub fn picture(runs: &[Run]) -> Result<Vec<u8>, output::PictureFault> {
+    let equal = |run: &Run| run.layout.grading == 1.0;
+    output::png(&Drawing::Charts(vec![
+        chart(
+            "Plate at 100 %, equal cells: time against nodes",
+            "nodes",
+            |way| {
+                let own = runs.iter().filter(|run| run.is(way) && equal(run));
+                own.map(|run| [run.nodes as f64, run.seconds]).collect()
+            },
+        ),
+        chart(
+            "Best of equal and graded grids: time against error",
+            "departure from affine: error [%]",
+            |way| {
+                let own = best(runs, |run| run.is(way));
+                own.iter()
+                    .map(|run| [run.departure_percent, run.seconds])
+                    .collect()
+            },
+        ),
+    ]))
+}
+
+fn chart(title: &str, x: &str, points: impl Fn(Way) -> Vec<[f64; 2]>) -> (LineChart, u32) {
     let ways = [
         Way::Climb(DifferenceScheme::Gauss),
         Way::Climb(DifferenceScheme::Biquadratic),
@@ -214,31 +249,24 @@ pub fn picture(runs: &[Run]) -> Result<Vec<u8>, output::PictureFault> {
         Way::FiniteElements(Element::Q2, Guess::Affine),
         Way::FiniteElements(Element::Q2, Guess::Nested),
     ];
-    let chart = |title: &str, x: &str, value: fn(&Run) -> f64| {
-        let line = |(way, colour): (&Way, &[u8; 3])| {
-            let own = runs
-                .iter()
-                .filter(|run| run.way == *way && run.threads == 1);
-            let points = own.map(|run| [value(run), run.seconds]);
-            Line::new(way.name(), points, *colour, Stroke::Marked)
-        };
-        let lines = ways.iter().zip(&PALETTE).map(line).collect();
-        let chart = LineChart::new(
-            title,
-            Axis::logarithmic(x),
-            Axis::logarithmic("time [s]"),
-            lines,
-        );
-        (chart, 480)
+    let line = |(way, colour): (&Way, &[u8; 3])| {
+        Line::new(way.name(), points(*way), *colour, Stroke::Marked)
     };
-    output::png(&Drawing::Charts(vec![
-        chart("Plate at 100 %: time against nodes", "nodes", |run| {
-            run.nodes as f64
-        }),
-        chart(
-            "Time against error",
-            "departure from affine: error [%]",
-            |run| run.departure_percent,
-        ),
-    ]))
+    let lines = ways.iter().zip(&PALETTE).map(line).collect();
+    let axes = [x, "time [s]"].map(Axis::logarithmic);
+    let [x, y] = axes;
+    (LineChart::new(title, x, y, lines), 480)
+}
+
+/// The runs that no other is both quicker and more accurate than, from the most accurate on.
+pub fn best(runs: &[Run], of: impl Fn(&Run) -> bool) -> Vec<&Run> {
+    let mut own: Vec<&Run> = runs.iter().filter(|run| of(run)).collect();
+    own.sort_by(|a, b| a.departure_percent.total_cmp(&b.departure_percent));
+    let mut quickest = f64::INFINITY;
+    own.retain(|run| {
+        let quicker = run.seconds < quickest;
+        quickest = quickest.min(run.seconds);
+        quicker
+    });
+    own
 }

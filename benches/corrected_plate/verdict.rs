@@ -1,11 +1,20 @@
 //! What the bench must show, each with what was measured.
 
+use super::measure::{Run, SCHEMES};
 use super::opponent::Guess;
 use super::reference::{PUBLISHED_FORCE, Reference};
 use super::states::{Frames, PathTimes};
-use super::table::Row;
-use super::way::scheme_name;
+use super::table::{Row, best};
+use super::way::{Way, scheme_name};
 use gelbench::corrector::DifferenceScheme;
+
+/// Departures from affine in percent at which times are compared, and how many times faster the climb has to be.
+const ACCURACIES: [f64; 10] = [0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4];
+const TIMES_FASTER: f64 = 5.0;
+
+fn is_equal(row: &Row) -> bool {
+    row.climb.layout.grading == 1.0
+}
 
 /// Lines with pass or fail.
 pub struct Verdicts {
@@ -58,8 +67,8 @@ impl Verdicts {
         };
         let bound = if least { "at least" } else { "at most" };
         let text = format!(
-            "{what}: {measured:.4} ({bound} {limit}), worst at {} nodes, {}",
-            worst.climb.nodes,
+            "{what}: {measured:.4} ({bound} {limit}), worst at {} cells, {}",
+            worst.climb.layout,
             scheme_name(worst.scheme)
         );
         self.put(pass, text);
@@ -69,7 +78,8 @@ impl Verdicts {
     pub fn rows(&mut self, rows: &[Row]) {
         let one: Vec<&Row> = rows.iter().filter(|row| row.climb.threads == 1).collect();
         let at = |cells: usize| -> Vec<&Row> {
-            let own = one.iter().filter(|row| row.climb.cells[0] == cells);
+            let layout = |row: &&&Row| row.climb.layout.cells[0] == cells && is_equal(row);
+            let own = one.iter().filter(layout);
             own.copied().collect()
         };
         for (cells, limit, name) in [
@@ -87,24 +97,12 @@ impl Verdicts {
             }
         }
         let of = |scheme: DifferenceScheme| -> Vec<&Row> {
-            let own = one.iter().filter(|row| row.scheme == scheme);
+            let own = one
+                .iter()
+                .filter(|row| row.scheme == scheme && is_equal(row));
             own.copied().collect()
         };
-        for scheme in [DifferenceScheme::Gauss, DifferenceScheme::Biquadratic] {
-            let accurate: Vec<&Row> = of(scheme)
-                .into_iter()
-                .filter(|row| row.climb.departure_percent <= 0.1 && row.equal_accuracy[0].is_some())
-                .collect();
-            for guess in [Guess::Affine, Guess::Nested] {
-                let what = format!(
-                    "times faster at equal accuracy below 0.1 %, {} climb, {} guess",
-                    scheme_name(scheme),
-                    guess.name()
-                );
-                self.worst(&what, &accurate, 3.0, true, |row| {
-                    row.ratio_equal_accuracy(guess)
-                });
-            }
+        for scheme in SCHEMES {
             self.exponent(scheme, &of(scheme));
         }
         self.worst("bytes a node", &one, 1024.0, false, |row| {
@@ -146,6 +144,46 @@ impl Verdicts {
         );
         let same = rows.iter().all(|row| row.climb.same_bits);
         self.put(same, "the same bits with one and two threads".to_owned());
+    }
+
+    /// The quickest climb of some accuracy beside the quickest finite elements, each on the best of all its grids.
+    pub fn equal_accuracy(&mut self, runs: &[Run]) {
+        let is_climb = |run: &Run| matches!(run.way, Way::Climb(_)) && run.threads == 1;
+        let climbs = best(runs, is_climb);
+        let elements = best(runs, |run| matches!(run.way, Way::FiniteElements(..)));
+        println!();
+        let mut worst: Option<(f64, f64)> = None;
+        for accuracy in ACCURACIES {
+            let [climb, other] = [&climbs, &elements].map(|runs| {
+                let accurate = runs.iter().rev();
+                accurate
+                    .copied()
+                    .find(|run| run.departure_percent <= accuracy)
+            });
+            let (Some(climb), Some(other)) = (climb, other) else {
+                println!("at most {accuracy:.0e} %: not reached");
+                continue;
+            };
+            let ratio = other.seconds / climb.seconds;
+            println!(
+                "at most {accuracy:.0e} %: {} on {}, {:.2} ms; {} on {}, {:.2} ms: {ratio:.2} times faster",
+                climb.way.name(),
+                climb.layout,
+                1e3 * climb.seconds,
+                other.way.name(),
+                other.layout,
+                1e3 * other.seconds,
+            );
+            if worst.is_none_or(|(least, _)| ratio < least) {
+                worst = Some((ratio, accuracy));
+            }
+        }
+        let (ratio, accuracy) = worst.unwrap_or((f64::NAN, f64::NAN));
+        let text = format!(
+            "times faster at equal accuracy from 0.1 to 1e-4 %, against the quickest of all finite elements: {ratio:.2} (at \
+             least {TIMES_FASTER}), worst at {accuracy:.0e} %"
+        );
+        self.put(ratio >= TIMES_FASTER, text);
     }
 
     /// The least-squares slope of ln t over ln n.

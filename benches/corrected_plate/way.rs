@@ -1,5 +1,6 @@
 //! Ways to the field, each from nothing but the problem, with their times.
 
+use std::fmt;
 use std::time::Instant;
 
 use gelbench::corrector::DifferenceScheme;
@@ -9,6 +10,51 @@ use gelbench::finite_element::Element;
 use gelbench::problem::ClampedPlate;
 
 use super::opponent::{Guess, Opponent};
+
+/// A grid of nodes: its cells along X and Y, and how they become smaller towards the corners; 1 where they are equal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
+    pub cells: [usize; 2],
+    pub grading: f64,
+}
+
+impl Layout {
+    /// Equal cells.
+    pub fn equal(cells: [usize; 2]) -> Self {
+        Self {
+            cells,
+            grading: 1.0,
+        }
+    }
+
+    /// Half as many elements of so many cells a side along both axes, graded in the same way; nothing where their number is odd.
+    pub fn halved(self, side: usize) -> Option<Self> {
+        let halves = self.cells.iter().all(|n| n.is_multiple_of(2 * side));
+        halves.then_some(Self {
+            cells: self.cells.map(|n| n / 2),
+            ..self
+        })
+    }
+
+    /// The grid of a plate whose elements have so many cells a side.
+    pub fn grid(self, size: [f64; 2], side: usize) -> Grid {
+        let elements = self.cells.map(|n| n / side);
+        let boundaries = Grid::graded(size, elements, self.grading).coordinates;
+        Grid::new(boundaries.each_ref().map(|places| &places[..]), side)
+    }
+}
+
+impl fmt::Display for Layout {
+    /// `240x80`, and `240x80^1.5` where the cells are graded.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y] = self.cells;
+        write!(f, "{x}x{y}")?;
+        match self.grading == 1.0 {
+            true => Ok(()),
+            false => write!(f, "^{}", self.grading),
+        }
+    }
+}
 
 /// A way to the field at one stretch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,14 +115,14 @@ const EVALUATIONS: usize = 3;
 pub fn go(
     way: Way,
     problem: &ClampedPlate,
-    cells: [usize; 2],
+    layout: Layout,
     stretch: f64,
     error: f64,
 ) -> Result<Found, Error> {
     let start = Instant::now();
     let (scheme, newton) = match way {
         Way::FiniteElements(element, guess) => {
-            let mut opponent = Opponent::new(problem, cells, element);
+            let mut opponent = Opponent::new(problem, layout, element);
             let mut u = opponent.start(guess, stretch, error);
             let iterations = opponent.solve(&mut u, stretch, error);
             let force = opponent.force(&u);
@@ -93,7 +139,11 @@ pub fn go(
         Way::Climb(scheme) => (scheme, false),
         Way::Newton(scheme) => (scheme, true),
     };
-    let mut climb = Climb::even(problem, cells, scheme, ClimbSettings::FAST);
+    let settings = ClimbSettings::FAST;
+    let mut climb = match layout.grading == 1.0 {
+        true => Climb::even(problem, layout.cells, scheme, settings),
+        false => Climb::graded(problem, layout.cells, scheme, layout.grading, settings),
+    };
     let climbed = match newton {
         true => climb.newton_from_affine(stretch, (0.1 * error).sqrt(), 1e-3)?,
         false => climb.correct(stretch)?,
