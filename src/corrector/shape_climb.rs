@@ -16,7 +16,9 @@ use crate::material::softened_law::check_memory;
 use crate::mesh::{Interpolation, Mesh};
 use crate::problem::{BoundaryProblem, Model};
 use crate::solve::vector::{add_scaled, difference, norm};
-use crate::solve::{Convergence, Ladder, LinearSolver, Loading, Newton, NewtonSettings, State};
+use crate::solve::{
+    Approach, Convergence, Ladder, LinearSolver, Loading, Newton, NewtonSettings, State,
+};
 
 /// The ratio of the changes of two meshes where it is not known yet, and the ratios that are believed.
 const RATIO: f64 = 1.0 / 3.0;
@@ -197,20 +199,23 @@ impl<'a> Ascent<'a> {
         }
         let share = SURE * tolerance * self.ratio / (1.0 - self.ratio);
         let newton = self.prepare(&model, factor, &interpolation);
-        let (state, ladder, work) =
-            match newton.and_then(|own| approach(&model, own, &u, factor, share)) {
-                Some(found) => found,
-                None => (model.reach(&[factor], NEWTON)?, None, (0, 0, 0.0)),
-            };
+        let near = newton.and_then(|own| approach(&model, own, &u, factor, share));
+        let (state, ladder, [linearisations, iterations], left) = match near {
+            Some((state, ladder, own)) => {
+                let work = [own.linearisations, own.iterations];
+                (state, ladder, work, own.left)
+            }
+            None => (model.reach(&[factor], NEWTON)?, None, [0; 2], 0.0),
+        };
         self.ladder = ladder;
         let change = difference(&state.displacement, &before);
         let size = norm(&change) / (mesh.nodes.len() as f64).sqrt();
         if !self.size.is_nan() {
             self.ratio = (size / self.size).clamp(RATIOS[0], RATIOS[1]);
         }
-        (self.change, self.size, self.left) = (Some(change), size, work.2);
+        (self.change, self.size, self.left) = (Some(change), size, left);
         (self.state, self.mesh) = (state, mesh);
-        self.note(work.0, work.1);
+        self.note(linearisations, iterations);
         Ok(())
     }
 
@@ -246,15 +251,14 @@ impl<'a> Ascent<'a> {
     }
 }
 
-/// The equilibrium near a field, up to a share of its imbalance, with the tangents for finer meshes, and linearisations, iterations and
-/// what is left; `None` where multigrid does not lead there.
+/// The equilibrium near a field, up to a share of its imbalance, with the tangents for finer meshes, and what it took; `None` where multigrid does not lead there.
 fn approach(
     model: &Model,
     mut newton: Newton,
     start: &[f64],
     factor: f64,
     share: f64,
-) -> Option<(State, Option<Ladder>, (usize, usize, f64))> {
+) -> Option<(State, Option<Ladder>, Approach)> {
     let potential = model.potential(factor, &[]);
     let (mut displacement, mut residual) = (start.to_vec(), vec![0.0; start.len()]);
     let found = newton.approach(&*potential, &mut displacement, &mut residual, share)?;
@@ -271,9 +275,8 @@ fn approach(
             ..Convergence::default()
         },
     };
-    let work = (found.linearisations, found.iterations, found.left);
     let ladder = newton.into_ladder().map(|own| own.tied(model.ties()));
-    Some((state, ladder, work))
+    Some((state, ladder, found))
 }
 
 #[cfg(test)]

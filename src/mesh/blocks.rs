@@ -38,7 +38,7 @@ struct Builder {
     nodes: Vec<[f64; 2]>,
     cells: Vec<(CellShape, Vec<usize>)>,
     groups: BTreeMap<String, BTreeSet<usize>>,
-    /// The nodes by the square of a fine grid that they lie in.
+    /// The nodes on the sides of blocks by the square of a fine grid that they lie in.
     squares: HashMap<[i64; 2], usize>,
     /// Side of such a square in mm: nodes nearer than this are one.
     fine: f64,
@@ -75,19 +75,29 @@ impl Builder {
         node
     }
 
+    /// The node at a place inside of a block, where no other block has one.
+    fn inner_node(&mut self, place: [f64; 2]) -> usize {
+        self.nodes.push(place);
+        self.nodes.len() - 1
+    }
+
     fn add(&mut self, block: &Block, shape: CellShape) {
         let [nx, ny] = block.cells;
         assert!(nx > 0 && ny > 0, "a block of cells");
         // A grid of half cells holds every node of every kind of cell.
-        let mut grid: HashMap<[usize; 2], usize> = HashMap::new();
+        let mut grid = vec![None; (2 * nx + 1) * (2 * ny + 1)];
         let mut at = |builder: &mut Self, i: usize, j: usize| {
-            if let Some(node) = grid.get(&[i, j]) {
+            let known = &mut grid[i * (2 * ny + 1) + j];
+            if let Some(node) = known {
                 return *node;
             }
             let place = (block.map)([i as f64 / (2 * nx) as f64, j as f64 / (2 * ny) as f64]);
-            let node = builder.node(place);
-            grid.insert([i, j], node);
             let sides = [j == 0, i == 2 * nx, j == 2 * ny, i == 0];
+            let node = match sides.contains(&true) {
+                true => builder.node(place),
+                false => builder.inner_node(place),
+            };
+            *known = Some(node);
             for (name, on) in block.sides.iter().zip(sides) {
                 if on && !name.is_empty() {
                     builder

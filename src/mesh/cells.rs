@@ -18,6 +18,17 @@ pub struct Group {
     pub edges: Vec<Vec<usize>>,
 }
 
+/// An edge of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct CellEdge {
+    /// Its ends, ascending.
+    pub ends: [usize; 2],
+    /// The cell.
+    pub cell: usize,
+    /// Which one of the cell's edges it is.
+    pub number: usize,
+}
+
 /// A flat mesh of triangles and quadrilaterals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
@@ -126,17 +137,32 @@ impl Mesh {
     }
 
     fn lonely_edges(&self) -> Vec<Vec<usize>> {
-        let mut edges: BTreeMap<[usize; 2], (usize, Vec<usize>)> = BTreeMap::new();
+        let edges = self.edges();
+        let alone = edges.chunk_by(|one, other| one.ends == other.ends);
+        let alone = alone.filter(|cells| cells.len() == 1);
+        alone.map(|cells| self.edge_nodes(cells[0])).collect()
+    }
+
+    /// The edges of all cells by their ends, those of cells side by side one after the other.
+    pub fn edges(&self) -> Vec<CellEdge> {
+        let mut edges = Vec::with_capacity(4 * self.cell_count());
         for cell in 0..self.cell_count() {
             let nodes = self.cell(cell);
-            for local in self.shape(cell).edges() {
-                let edge: Vec<usize> = local.iter().map(|node| nodes[*node]).collect();
-                let key = [edge[0].min(edge[1]), edge[0].max(edge[1])];
-                edges.entry(key).or_insert((0, edge)).0 += 1;
+            for (number, local) in self.shape(cell).edges().iter().enumerate() {
+                let [a, b] = [nodes[local[0]], nodes[local[1]]];
+                let ends = [a.min(b), a.max(b)];
+                edges.push(CellEdge { ends, cell, number });
             }
         }
-        let lonely = edges.into_values().filter(|(cells, _)| *cells == 1);
-        lonely.map(|(_, edge)| edge).collect()
+        edges.sort_unstable();
+        edges
+    }
+
+    /// Both ends of an edge of a cell, then the middle where there is one, with the cell to the left.
+    fn edge_nodes(&self, edge: CellEdge) -> Vec<usize> {
+        let nodes = self.cell(edge.cell);
+        let local = &self.shape(edge.cell).edges()[edge.number];
+        local.iter().map(|node| nodes[*node]).collect()
     }
 
     /// Centre of a cell in mm: the mean of its corners.

@@ -35,6 +35,18 @@ impl Mesh {
     }
 
     fn search(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
+        let mut near = self.buckets().around(point).iter();
+        let inside = near.find_map(|cell| {
+            let in_box = self.is_in_box(*cell, point);
+            let local = in_box.then(|| self.natural_coordinates(*cell, point))??;
+            let holds = self.shape(*cell).outside(local) < 1e-12;
+            holds.then_some((*cell, local))
+        });
+        inside.unwrap_or_else(|| self.nearest(point))
+    }
+
+    /// The cell nearest to a point that is in none, or on the edge of one up to rounding.
+    fn nearest(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
         let mut best: Option<(f64, usize, [f64; 2])> = None;
         for (reach, cells) in self.buckets().rings(point).enumerate() {
             for cell in cells {

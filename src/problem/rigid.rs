@@ -65,15 +65,13 @@ struct Bodies<'a> {
 impl<'a> Bodies<'a> {
     fn of(mesh: &'a Mesh) -> Self {
         let mut parents: Vec<usize> = (0..mesh.cell_count()).collect();
-        let mut beside: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-        for cell in 0..mesh.cell_count() {
-            let nodes = mesh.cell(cell);
-            for edge in mesh.shape(cell).edges() {
-                let (a, b) = (nodes[edge[0]], nodes[edge[1]]);
-                let other = *beside.entry([a.min(b), a.max(b)]).or_insert(cell);
-                let [one, other] = [cell, other].map(|cell| root(&mut parents, cell));
-                parents[one.max(other)] = one.min(other);
-            }
+        for pair in mesh
+            .edges()
+            .windows(2)
+            .filter(|pair| pair[0].ends == pair[1].ends)
+        {
+            let [one, other] = [pair[0], pair[1]].map(|edge| root(&mut parents, edge.cell));
+            parents[one.max(other)] = one.min(other);
         }
         let (mut numbers, mut cells) = (BTreeMap::new(), Vec::new());
         let mut of_node = vec![Vec::new(); mesh.nodes.len()];

@@ -100,6 +100,21 @@ impl Potential for TiedPotential<'_> {
         Ok(energy)
     }
 
+    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
+        let (mut whole, mut untied) = (u.to_vec(), vec![0.0; u.len()]);
+        for (unknown, master) in self.ties {
+            whole[*unknown] = u[*master];
+        }
+        self.potential.add_forces(&whole, &mut untied)?;
+        for (unknown, master) in self.ties {
+            untied[*master] += std::mem::take(&mut untied[*unknown]);
+        }
+        for (force, own) in forces.iter_mut().zip(untied) {
+            *force += own;
+        }
+        Ok(())
+    }
+
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         match self.places.get(&element) {
             Some(places) => self.potential.instability(element, &gather(places, u)),

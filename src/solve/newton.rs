@@ -292,7 +292,7 @@ impl Newton {
     ///
     /// Where the energy no longer resolves the step, a falling residual is taken instead. Returns the length and the
     /// energy there; `residual` is that of the new place.
-    pub(super) fn search(
+    fn search(
         &self,
         potential: &dyn Potential,
         u: &mut [f64],

@@ -118,29 +118,7 @@ impl Nodes {
 impl NodalMatrix {
     /// The matrix of a pattern over the unknowns of some nodes; its values are taken later.
     pub fn new(nodes: &Nodes, pattern: &SymmetricPattern) -> Self {
-        let count = nodes.places.len();
-        let mut below = vec![Vec::<u32>::new(); count];
-        for column in 0..pattern.size() {
-            let node = nodes.of[column].0;
-            let own = &mut below[node as usize];
-            let rows = pattern.column(column).iter().map(|row| nodes.of[*row].0);
-            own.extend(rows.filter(|row| *row > node));
-        }
-        let mut rows = vec![Vec::<u32>::new(); count];
-        for (column, own) in below.iter_mut().enumerate() {
-            own.sort_unstable();
-            own.dedup();
-            for row in own.iter() {
-                rows[*row as usize].push(column as u32);
-            }
-            rows[column].push(column as u32);
-        }
-        let (mut starts, mut columns) = (vec![0], Vec::new());
-        for (lower, upper) in rows.iter_mut().zip(&below) {
-            columns.extend_from_slice(lower);
-            columns.extend_from_slice(upper);
-            starts.push(columns.len());
-        }
+        let (starts, columns) = adjacency(nodes, pattern);
         let blocks = Blocks {
             values: vec![[[0.0; 2]; 2]; columns.len()],
             starts,
@@ -189,6 +167,68 @@ impl NodalMatrix {
             }
         }
     }
+}
+
+/// The nodes that each node is coupled with, itself among them, ascending: where those of each begin, and all of them.
+fn adjacency(nodes: &Nodes, pattern: &SymmetricPattern) -> (Vec<usize>, Vec<u32>) {
+    let count = nodes.places.len();
+    // Those above each node, and how many there are on both sides.
+    let (mut above, mut ends, mut counts) = (Vec::<u32>::new(), vec![0; count], vec![1; count]);
+    for column in 0..pattern.size() {
+        let (node, begin) = (nodes.of[column].0, above.len());
+        let rows = pattern.column(column).iter().map(|row| nodes.of[*row].0);
+        above.extend(rows.filter(|row| *row > node));
+        let again = column > 0 && nodes.of[column - 1].0 == node;
+        let first = match (again, node) {
+            (false, _) => begin,
+            (true, 0) => 0,
+            (true, _) => ends[node as usize - 1],
+        };
+        above[first..].sort_unstable();
+        let mut kept = first;
+        for place in first..above.len() {
+            if kept == first || above[kept - 1] != above[place] {
+                above[kept] = above[place];
+                kept += 1;
+            }
+        }
+        above.truncate(kept);
+        ends[node as usize] = kept;
+    }
+    let mut begin = 0;
+    for (node, end) in ends.iter().enumerate() {
+        counts[node] += end - begin;
+        above[begin..*end]
+            .iter()
+            .for_each(|other| counts[*other as usize] += 1);
+        begin = *end;
+    }
+    let mut starts = vec![0; count + 1];
+    for node in 0..count {
+        starts[node + 1] = starts[node] + counts[node];
+    }
+    let (mut columns, mut next) = (vec![0; starts[count]], starts.clone());
+    let mut put = |node: usize, other: u32| {
+        columns[next[node]] = other;
+        next[node] += 1;
+    };
+    let mut begin = 0;
+    for (node, end) in ends.iter().enumerate() {
+        // All nodes below have put themselves here before.
+        put(node, node as u32);
+        for other in &above[begin..*end] {
+            put(*other as usize, node as u32);
+        }
+        begin = *end;
+    }
+    let mut begin = 0;
+    for (node, end) in ends.iter().enumerate() {
+        above[begin..*end]
+            .iter()
+            .for_each(|other| put(node, *other));
+        begin = *end;
+    }
+    (starts, columns)
 }
 
 /// What conjugate gradients found.

@@ -50,6 +50,14 @@ pub trait Potential: Sync {
         local: Local<'_>,
     ) -> Result<f64, Inadmissible>;
 
+    /// Adds ∂Π/∂u at all unknowns, without the energy.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with an element that is inverted.
+    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
+        add_element_forces(self, u, forces)
+    }
+
     /// What the derivatives of the residual have in addition to the symmetric stiffness of the elements: forces without a
     /// potential, such as a pressure that follows an edge up to its free end. None for a true potential.
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
@@ -100,6 +108,31 @@ pub trait Potential: Sync {
     }
 }
 
+/// Adds ∂Π/∂u element by element.
+fn add_element_forces<P: Potential + ?Sized>(
+    energy: &P,
+    u: &[f64],
+    forces: &mut [f64],
+) -> Result<(), Inadmissible> {
+    let (mut own, mut residual) = (Vec::new(), Vec::new());
+    for element in 0..energy.elements() {
+        let unknowns = energy.element_unknowns(element);
+        own.clear();
+        own.extend(unknowns.iter().map(|unknown| u[*unknown]));
+        residual.clear();
+        residual.resize(own.len(), 0.0);
+        let local = Local {
+            residual: &mut residual,
+            stiffness: None,
+        };
+        energy.evaluate_element(element, &own, local)?;
+        for (unknown, force) in unknowns.iter().zip(&residual) {
+            forces[*unknown] += force;
+        }
+    }
+    Ok(())
+}
+
 impl<P: Potential + ?Sized> Potential for &P {
     fn connectivity(&self) -> &Connectivity {
         (**self).connectivity()
@@ -112,6 +145,10 @@ impl<P: Potential + ?Sized> Potential for &P {
         local: Local<'_>,
     ) -> Result<f64, Inadmissible> {
         (**self).evaluate_element(element, u, local)
+    }
+
+    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
+        (**self).add_forces(u, forces)
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
@@ -171,6 +208,13 @@ impl Potential for After<'_> {
                 let history = self.history;
                 self.energy.evaluate_after(element, u, local, history)
             }
+        }
+    }
+
+    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
+        match self.history.is_empty() {
+            true => self.energy.add_forces(u, forces),
+            false => add_element_forces(self, u, forces),
         }
     }
 
@@ -234,6 +278,14 @@ impl Potential for Sum<'_> {
         let (part, own) = self.part(element);
         let energy = part.evaluate_element(own, u, local);
         energy.map_err(|_| Inadmissible { element })
+    }
+
+    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
+        self.first.add_forces(u, forces)?;
+        let second = self.second.add_forces(u, forces);
+        second.map_err(|fault| Inadmissible {
+            element: self.first.elements() + fault.element,
+        })
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {

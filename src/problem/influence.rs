@@ -1,0 +1,94 @@
+//! The fields that small motions and forces of a group bring about.
+
+use super::constraints::Constraints;
+use super::groups::shares;
+use super::model::Model;
+use crate::error::SolveFault;
+use crate::solve::{Loading, State, Tangent, compliance, influence};
+
+impl Model<'_> {
+    /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
+    /// state, while everything else that is held rests; the field in mm/N that a force on the group brings about where it
+    /// is a grip with a given force, or where nothing holds it.
+    ///
+    /// # Errors
+    /// A [`SolveFault`] when the tangent cannot be factorised.
+    ///
+    /// # Panics
+    /// When the mesh has no such group.
+    pub fn influence(
+        &self,
+        state: &State,
+        name: &str,
+        axis: usize,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let mut one = self.influences(std::slice::from_ref(state), name, axis);
+        one.swap_remove(0)
+    }
+
+    /// The same at each of some states, whose tangents have one pattern.
+    ///
+    /// # Panics
+    /// As [`Self::influence`].
+    pub fn influences(
+        &self,
+        states: &[State],
+        name: &str,
+        axis: usize,
+    ) -> Vec<Result<Vec<f64>, SolveFault>> {
+        let Some(first) = states.first() else {
+            return Vec::new();
+        };
+        let (potential, held) = (self.potential(first.factor, &[]), self.held());
+        match Tangent::new(&*potential, &held, self.linear_solver()) {
+            Err(fault) => vec![Err(fault); states.len()],
+            Ok(mut tangent) => {
+                let states = states.iter();
+                let influence = |state| self.influence_by(&mut tangent, state, name, axis);
+                states.map(influence).collect()
+            }
+        }
+    }
+
+    fn influence_by(
+        &self,
+        tangent: &mut Tangent,
+        state: &State,
+        name: &str,
+        axis: usize,
+    ) -> Result<Vec<f64>, SolveFault> {
+        let Constraints { held, ties, forces } = &self.constraints;
+        let nodes = self.mesh.groups()[name].nodes.iter();
+        let mut unknowns = nodes.map(|node| 2 * node + axis);
+        let pulled = |unknown: &usize| forces.iter().any(|(master, _)| master == unknown);
+        let (mut motion, mut force) = (vec![0.0; state.displacement.len()], None);
+        for unknown in unknowns
+            .clone()
+            .filter(|unknown| held.contains_key(unknown))
+        {
+            motion[unknown] = 1.0;
+        }
+        if let Some(master) = unknowns.find(pulled) {
+            let mut unit = vec![0.0; motion.len()];
+            unit[master] = 1.0;
+            force = Some(unit);
+        }
+        if force.is_none() && motion.iter().all(|motion| *motion == 0.0) {
+            // Nothing holds or pulls the group: a unit of force on it, shared as its mean displacement is.
+            let mut unit = vec![0.0; motion.len()];
+            for (node, share) in shares(self.mesh, &self.mesh.groups()[name]) {
+                unit[2 * node + axis] += share;
+            }
+            force = Some(unit);
+        }
+        let at = (state.factor, &*state.displacement, &*state.history);
+        let mut field = match force {
+            Some(force) => compliance(tangent, self, at, &force)?,
+            None => influence(tangent, self, at, &motion)?,
+        };
+        for (unknown, master) in ties {
+            field[*unknown] = field[*master];
+        }
+        Ok(field)
+    }
+}
