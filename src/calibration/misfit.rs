@@ -150,8 +150,11 @@ impl Residuals for Misfit<'_> {
         for (residual, point) in residuals.iter_mut().zip(&self.points) {
             let difference = point.observation.stress - self.predict(&*law, point);
             *residual = point.weight * difference;
+            if !residual.is_finite() {
+                return false;
+            }
         }
-        residuals.iter().all(|residual| residual.is_finite())
+        true
     }
 }
 

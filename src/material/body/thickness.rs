@@ -12,8 +12,8 @@ const LAST_STEP: f64 = 3e-6;
 /// Where roots are looked for: ln λ₃ within ± this.
 const FARTHEST: f64 = 12.0;
 
-/// How finely.
-const PIECES: i32 = 480;
+/// In how many pieces.
+const PIECES: usize = 960;
 
 /// 2 (J − 1)/(J + 1), which is ln J to the second order.
 #[inline(always)]
@@ -121,15 +121,11 @@ impl<L: BodyLaw> BodySheet<L> {
             if w.energy.is_finite() { w.b } else { f64::NAN }
         };
         let area = area_change.ln_1p();
-        let expected = self.expected(area_change, z);
-        let place = |piece: i32| {
-            let thickness = FARTHEST * f64::from(piece) / f64::from(PIECES);
+        let place = |step: usize| {
+            let thickness = FARTHEST * (2.0 * step as f64 / PIECES as f64 - 1.0);
             ((area + thickness) / 3.0).exp_m1()
         };
-        let pieces = (-PIECES..PIECES).map(|piece| [place(piece), place(piece + 1)]);
-        let rising = pieces.filter(|[low, high]| slope(*low) < 0.0 && slope(*high) >= 0.0);
-        let off = |[low, high]: &[f64; 2]| (0.5 * (low + high) - expected).abs();
-        let Some([mut low, mut high]) = rising.min_by(|a, b| off(a).total_cmp(&off(b))) else {
+        let Some([mut low, mut high]) = rising(place, slope, self.expected(area_change, z)) else {
             return f64::NAN;
         };
         while high - low > f64::EPSILON * high.abs().max(low.abs()) {
@@ -144,4 +140,33 @@ impl<L: BodyLaw> BodySheet<L> {
         }
         high
     }
+}
+
+/// Of the pieces between ascending places the one whose middle is nearest to a number of those from which to the end a function rises
+/// through zero. Nearer ones are looked at first, and every place once.
+fn rising(
+    place: impl Fn(usize) -> f64,
+    function: impl Fn(f64) -> f64,
+    number: f64,
+) -> Option<[f64; 2]> {
+    let off = |piece: usize| 0.5 * (place(piece) + place(piece + 1)) - number;
+    let mut values = vec![None; PIECES + 1];
+    let mut value = |step: usize| *values[step].get_or_insert_with(|| function(place(step)));
+    let mut above = 0;
+    while above < PIECES && off(above) < 0.0 {
+        above += 1;
+    }
+    let mut below = above;
+    while below > 0 || above < PIECES {
+        let down = below > 0 && (above == PIECES || -off(below - 1) <= off(above));
+        let piece = if down { below - 1 } else { above };
+        if value(piece) < 0.0 && value(piece + 1) >= 0.0 {
+            return Some([place(piece), place(piece + 1)]);
+        }
+        match down {
+            true => below -= 1,
+            false => above += 1,
+        }
+    }
+    None
 }
