@@ -170,3 +170,40 @@ fn rising(
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use super::*;
+
+    /// A function that rises through zero in several pieces, and one that never does.
+    #[test]
+    fn the_nearest_piece_is_found_and_every_place_is_looked_at_once() {
+        let place = |step: usize| (0.01 * step as f64 - 4.8).exp_m1();
+        for number in [-2.0, -0.9, -0.3, 0.0, 0.7, 11.0, 200.0] {
+            for frequency in [0.0, 0.3, 2.0, 9.0] {
+                let function = |x: f64| 0.1 + (frequency * x.ln_1p()).sin();
+                let seen = RefCell::new(Vec::new());
+                let found = rising(
+                    place,
+                    |x| {
+                        seen.borrow_mut().push(x);
+                        function(x)
+                    },
+                    number,
+                );
+                let pieces = (0..PIECES).map(|piece| [place(piece), place(piece + 1)]);
+                let all =
+                    pieces.filter(|[low, high]| function(*low) < 0.0 && function(*high) >= 0.0);
+                let off = |[low, high]: &[f64; 2]| (0.5 * (low + high) - number).abs();
+                assert_eq!(found, all.min_by(|a, b| off(a).total_cmp(&off(b))));
+                let mut seen = seen.into_inner();
+                let looks = seen.len();
+                seen.sort_unstable_by(f64::total_cmp);
+                seen.dedup();
+                assert_eq!(seen.len(), looks, "{number} {frequency}");
+            }
+        }
+    }
+}
