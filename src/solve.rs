@@ -36,7 +36,9 @@ pub use nested::{Carry, Ladder};
 pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
-pub use potential::{After, DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum};
+pub use potential::{
+    After, DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum, add_by_elements,
+};
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, FactorFault, SparseLu};
 pub use tangent::Tangent;

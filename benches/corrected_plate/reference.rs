@@ -32,10 +32,7 @@ impl Reference {
     }
 
     fn on(problem: &ClampedPlate, stretch: f64, elements: usize) -> Result<Self, Error> {
-        let boundaries = [
-            graded(problem.size[0], elements),
-            graded(problem.size[1], elements / 2),
-        ];
+        let boundaries = Grid::graded(problem.size, [elements, elements / 2], 2.0).coordinates;
         let tight = ClimbSettings {
             tolerance: 0.01,
             max_iterations: 100,
@@ -86,16 +83,4 @@ fn lengths(nodes: &[f64]) -> Vec<f64> {
     let last = nodes.len() - 1;
     let half = |node: usize| 0.5 * (nodes[(node + 1).min(last)] - nodes[node.saturating_sub(1)]);
     (0..=last).map(half).collect()
-}
-
-/// Boundaries of elements whose sizes grow in proportion to their distance from the nearer end.
-fn graded(length: f64, elements: usize) -> Vec<f64> {
-    let at = |index: usize| {
-        let share = index as f64 / elements as f64;
-        match share <= 0.5 {
-            true => 2.0 * length * share * share,
-            false => length * (1.0 - 2.0 * (1.0 - share).powi(2)),
-        }
-    };
-    (0..=elements).map(at).collect()
 }

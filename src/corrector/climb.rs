@@ -38,7 +38,7 @@ pub use grid::{Field, Grid};
 pub use level::Work;
 use level::{Ending, Inverted, Iteration, Level, Sheet};
 pub use path::{Grips, Interactive, RigidMotion};
-use ratios::Ratios;
+pub(super) use ratios::{Ratios, geometric_tail};
 pub use way::{Start, Way};
 
 /// How exactly the climb solves.

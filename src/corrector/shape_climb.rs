@@ -8,7 +8,7 @@
 //! All supports, loads, laws and elements; where the iteration does not lead to the end, load steps and factors do.
 
 use super::CorrectorSettings;
-use super::climb::ClimbSettings;
+use super::climb::{ClimbSettings, Ratios, geometric_tail};
 use super::specimen::correct;
 use crate::error::{Diagnostic, Error};
 use crate::mass_spring::MassSpring;
@@ -17,12 +17,8 @@ use crate::mesh::{Interpolation, Mesh};
 use crate::problem::{BoundaryProblem, Model};
 use crate::solve::vector::{add_scaled, difference, norm};
 use crate::solve::{
-    Approach, Convergence, Ladder, LinearSolver, Loading, Newton, NewtonSettings, State,
+    Approach, Convergence, Ladder, LinearSolver, Loading, Newton, NewtonSettings, Potential, State,
 };
-
-/// The ratio of the changes of two meshes where it is not known yet, and the ratios that are believed.
-const RATIO: f64 = 1.0 / 3.0;
-const RATIOS: [f64; 2] = [0.15, 0.7];
 
 /// What the iteration may leave on all meshes but the finest, relative to what it may leave there.
 const ON_THE_WAY: f64 = 3.0;
@@ -98,7 +94,7 @@ fn ascend<'a>(
         ladder,
         change: None,
         size: f64::NAN,
-        ratio: RATIO,
+        ratio: Ratios::MEASURED.first,
         left: 0.0,
         work: Vec::new(),
     };
@@ -127,36 +123,26 @@ fn begin(
     let model = on(problem, mesh, &energy)?.named("corrector");
     let by_springs = on(problem, &springs.mesh, springs.potential())?;
     let by_springs = by_springs.describing(|element| springs.describe_element(element));
-    let ladder = |state: &State| {
-        let potential = model.potential(factor, &[]);
-        Some(Ladder::begin(&*potential, &model.held(), &state.displacement)?.tied(model.ties()))
+    let corrected = |state: State| {
+        let interpolation = springs.mesh.interpolation_on(mesh);
+        let data = interpolation.apply(&state.displacement);
+        let settings = CorrectorSettings::default();
+        correct(&model, &data, &data, (factor, &[]), settings).ok()
     };
-    if let Ok(state) = by_springs.reach(&[factor], NEWTON) {
-        let data = springs
-            .mesh
-            .interpolation_on(mesh)
-            .apply(&state.displacement);
-        let corrected = correct(
-            &model,
-            &data,
-            &data,
-            (factor, &[]),
-            CorrectorSettings::default(),
-        );
-        if let Ok(corrected) = corrected {
-            let ladder = ladder(&corrected.state);
-            return Ok((corrected.state, ladder));
-        }
-    }
-    let state = model.reach(&[factor], NEWTON)?;
-    let ladder = ladder(&state);
-    Ok((state, ladder))
+    let by_springs = by_springs.reach(&[factor], NEWTON).ok();
+    let state = match by_springs.and_then(corrected) {
+        Some(corrected) => corrected.state,
+        None => model.reach(&[factor], NEWTON)?,
+    };
+    let potential = model.potential(factor, &[]);
+    let ladder = Ladder::begin(&*potential, &model.held(), &state.displacement);
+    Ok((state, ladder.map(|own| own.tied(model.ties()))))
 }
 
 fn on<'a>(
     problem: &BoundaryProblem,
     mesh: &'a Mesh,
-    energy: &'a dyn crate::solve::Potential,
+    energy: &'a dyn Potential,
 ) -> Result<Model<'a>, Error> {
     let found = problem.on(mesh, energy);
     found.map_err(|fault: Diagnostic| Error::Input(vec![fault]))
@@ -197,9 +183,10 @@ impl<'a> Ascent<'a> {
             add_scaled(&mut u, self.ratio, &interpolation.apply(change));
             model.impose(factor, &mut u);
         }
-        let share = SURE * tolerance * self.ratio / (1.0 - self.ratio);
-        let newton = self.prepare(&model, factor, &interpolation);
-        let near = newton.and_then(|own| approach(&model, own, &u, factor, share));
+        let share = SURE * tolerance * geometric_tail(1.0, self.ratio);
+        let potential = model.potential(factor, &[]);
+        let newton = self.newton(&*potential, &model.held(), &interpolation);
+        let near = newton.and_then(|own| approach(&model, &*potential, own, (factor, &u), share));
         let (state, ladder, [linearisations, iterations], left) = match near {
             Some((state, ladder, own)) => {
                 let work = [own.linearisations, own.iterations];
@@ -210,9 +197,7 @@ impl<'a> Ascent<'a> {
         self.ladder = ladder;
         let change = difference(&state.displacement, &before);
         let size = norm(&change) / (mesh.nodes.len() as f64).sqrt();
-        if !self.size.is_nan() {
-            self.ratio = (size / self.size).clamp(RATIOS[0], RATIOS[1]);
-        }
+        self.ratio = Ratios::MEASURED.told([self.size, size], self.ratio);
         (self.change, self.size, self.left) = (Some(change), size, left);
         (self.state, self.mesh) = (state, mesh);
         self.note(linearisations, iterations);
@@ -220,21 +205,20 @@ impl<'a> Ascent<'a> {
     }
 
     /// Newton's method on a mesh, by multigrid on the tangents of the coarser ones where they are at hand.
-    fn prepare(
+    fn newton(
         &mut self,
-        model: &Model,
-        factor: f64,
+        potential: &dyn Potential,
+        held: &[bool],
         interpolation: &Interpolation,
     ) -> Option<Newton> {
-        let (potential, held) = (model.potential(factor, &[]), model.held());
         let Some(ladder) = self.ladder.take() else {
-            return Newton::with_solver(&*potential, &held, LinearSolver::Multigrid).ok();
+            return Newton::with_solver(potential, held, LinearSolver::Multigrid).ok();
         };
         let carry = |unknown: usize, terms: &mut Vec<(usize, f64)>| {
             let nodes = interpolation.of(unknown / 2).iter();
             terms.extend(nodes.map(|(node, share)| (2 * node + unknown % 2, *share)));
         };
-        Newton::above(&*potential, &held, ladder, &carry).ok()
+        Newton::above(potential, held, ladder, &carry).ok()
     }
 
     fn note(&mut self, linearisations: usize, iterations: usize) {
@@ -247,21 +231,21 @@ impl<'a> Ascent<'a> {
 
     /// s q + s q² + …, what all finer meshes would add.
     fn discretisation_error(&self) -> f64 {
-        self.size * self.ratio / (1.0 - self.ratio)
+        geometric_tail(self.size, self.ratio)
     }
 }
 
-/// The equilibrium near a field, up to a share of its imbalance, with the tangents for finer meshes, and what it took; `None` where multigrid does not lead there.
+/// The equilibrium near a field at a load factor, up to a share of its imbalance, with the tangents for finer meshes, and what it
+/// took; `None` where multigrid does not lead there.
 fn approach(
     model: &Model,
+    potential: &dyn Potential,
     mut newton: Newton,
-    start: &[f64],
-    factor: f64,
+    (factor, start): (f64, &[f64]),
     share: f64,
 ) -> Option<(State, Option<Ladder>, Approach)> {
-    let potential = model.potential(factor, &[]);
     let (mut displacement, mut residual) = (start.to_vec(), vec![0.0; start.len()]);
-    let found = newton.approach(&*potential, &mut displacement, &mut residual, share)?;
+    let found = newton.approach(potential, &mut displacement, &mut residual, share)?;
     model.impose(factor, &mut displacement);
     let state = State {
         factor,

@@ -69,8 +69,7 @@ impl Builder {
                 return *node;
             }
         }
-        let node = self.nodes.len();
-        self.nodes.push(place);
+        let node = self.inner_node(place);
         self.squares.insert(square, node);
         node
     }

@@ -1,5 +1,7 @@
 //! The forces of a sheet alone, many points at once: laws are quickest so.
 
+use std::ops::Range;
+
 use super::sheet_energy::SheetEnergy;
 use crate::material::HyperelasticLaw;
 use crate::solve::{Inadmissible, Potential};
@@ -12,6 +14,8 @@ const BLOCK: usize = 256;
 struct Points {
     gradients: [Vec<f64>; 4],
     stresses: [Vec<f64>; 4],
+    /// Displacements or forces of one cell.
+    cell: Vec<f64>,
 }
 
 impl SheetEnergy {
@@ -30,83 +34,67 @@ impl SheetEnergy {
             let mut last = first;
             points.gradients.iter_mut().for_each(Vec::clear);
             while last < self.elements() && points.gradients[0].len() < BLOCK {
-                self.push_gradients(last, u, &mut points.gradients);
+                points.push(self, last, u);
                 last += 1;
             }
             if !points.evaluate(self.law()) {
-                let faulty = (first..last).find(|cell| !self.is_admissible(*cell, u));
+                let faulty = (first..last).find(|cell| {
+                    let mut alone = Points::default();
+                    alone.push(self, *cell, u);
+                    !alone.evaluate(self.law())
+                });
                 return Err(Inadmissible {
                     element: faulty.unwrap_or(first),
                 });
             }
-            let mut place = 0;
-            for cell in first..last {
-                place = self.add_cell_forces(cell, &points, place, forces);
-            }
+            points.add_forces(self, first..last, forces);
             first = last;
         }
         Ok(())
     }
-
-    fn push_gradients(&self, cell: usize, u: &[f64], gradients: &mut [Vec<f64>; 4]) {
-        let unknowns = self.element_unknowns(cell);
-        for point in self.cell_points(cell) {
-            let mut h = [0.0; 4];
-            for (g, own) in point.gradients.iter().zip(unknowns.chunks_exact(2)) {
-                let [x, y] = [u[own[0]], u[own[1]]];
-                h[0] += x * g[0];
-                h[1] += x * g[1];
-                h[2] += y * g[0];
-                h[3] += y * g[1];
-            }
-            for (component, value) in gradients.iter_mut().zip(h) {
-                component.push(value);
-            }
-        }
-    }
-
-    /// Adds the forces of a cell, whose points begin at a place; the place after them.
-    fn add_cell_forces(
-        &self,
-        cell: usize,
-        points: &Points,
-        place: usize,
-        forces: &mut [f64],
-    ) -> usize {
-        let unknowns = self.element_unknowns(cell);
-        let mut next = place;
-        for point in self.cell_points(cell) {
-            let p = points
-                .stresses
-                .each_ref()
-                .map(|own| point.volume * own[next]);
-            for (g, own) in point.gradients.iter().zip(unknowns.chunks_exact(2)) {
-                forces[own[0]] += p[0] * g[0] + p[1] * g[1];
-                forces[own[1]] += p[2] * g[0] + p[3] * g[1];
-            }
-            next += 1;
-        }
-        next
-    }
-
-    fn is_admissible(&self, cell: usize, u: &[f64]) -> bool {
-        let mut points = Points::default();
-        self.push_gradients(cell, u, &mut points.gradients);
-        points.evaluate(self.law())
-    }
 }
 
 impl Points {
+    /// Takes the points of another cell.
+    fn push(&mut self, energy: &SheetEnergy, cell: usize, u: &[f64]) {
+        let unknowns = energy.element_unknowns(cell).iter();
+        self.cell.clear();
+        self.cell.extend(unknowns.map(|unknown| u[*unknown]));
+        for point in energy.cell_points(cell) {
+            let h = point.gradient(&self.cell);
+            for (component, value) in self.gradients.iter_mut().zip(h.as_slice()) {
+                component.push(*value);
+            }
+        }
+    }
+
     /// P at all points; whether all of them are admissible.
     fn evaluate(&mut self, law: &dyn HyperelasticLaw) -> bool {
         let count = self.gradients[0].len();
-        self.stresses
-            .iter_mut()
-            .for_each(|own| own.resize(count, 0.0));
+        let sizes = self.stresses.iter_mut();
+        sizes.for_each(|own| own.resize(count, 0.0));
         let gradients = self.gradients.each_ref().map(|own| &own[..]);
         let stresses = self.stresses.each_mut().map(|own| &mut own[..]);
         let positive = law.stresses(gradients, stresses);
         positive && self.stresses.iter().flatten().all(|p| p.is_finite())
+    }
+
+    /// Adds the forces of the cells whose points they are.
+    fn add_forces(&mut self, energy: &SheetEnergy, cells: Range<usize>, forces: &mut [f64]) {
+        let mut place = 0;
+        for cell in cells {
+            let unknowns = energy.element_unknowns(cell);
+            self.cell.clear();
+            self.cell.resize(unknowns.len(), 0.0);
+            for point in energy.cell_points(cell) {
+                let stress = self.stresses.each_ref().map(|own| own[place]);
+                point.add_force(&stress.into(), &mut self.cell);
+                place += 1;
+            }
+            for (unknown, force) in unknowns.iter().zip(&self.cell) {
+                forces[*unknown] += force;
+            }
+        }
     }
 }
 

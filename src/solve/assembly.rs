@@ -1,8 +1,9 @@
 //! The assembly of a potential: its residual, and its stiffness over the free unknowns.
 
+use super::connectivity::Connectivity;
 use super::dissection::dissection;
 use super::pattern::SymmetricPattern;
-use super::potential::{Inadmissible, Local, Potential};
+use super::potential::{Inadmissible, Local, Potential, add_by_elements};
 use super::scatter::{NOWHERE, Scatter};
 use super::sparse::{Cholesky, FactorFault};
 use super::vector::{dot, moved, norm};
@@ -32,10 +33,12 @@ impl Assembly {
         free.iter()
             .enumerate()
             .for_each(|(index, unknown)| free_index[*unknown] = Some(index));
-        let index = |unknown: &usize| free_index[*unknown].unwrap_or(NOWHERE);
-        let own = |element| potential.element_unknowns(element).iter().map(index);
-        let elements = (0..potential.elements()).map(own);
-        let (pattern, scatter) = Scatter::new(free.len(), elements);
+        let mut elements = Connectivity::new(free.len());
+        for element in 0..potential.elements() {
+            let unknowns = potential.element_unknowns(element).iter();
+            elements.push(unknowns.map(|unknown| free_index[*unknown].unwrap_or(NOWHERE)));
+        }
+        let (pattern, scatter) = Scatter::new(&elements);
         let connectivity = potential.connectivity();
         let places = free.iter().map(|unknown| connectivity.place(*unknown));
         Self {
@@ -47,9 +50,9 @@ impl Assembly {
         }
     }
 
-    /// Number of all unknowns.
-    pub fn unknowns(&self) -> usize {
-        self.free_index.len()
+    /// Position of each unknown among the free ones.
+    pub fn free_indices(&self) -> &[Option<usize>] {
+        &self.free_index
     }
 
     /// The free unknowns, ascending.
@@ -96,27 +99,7 @@ impl Assembly {
         residual: &mut [f64],
     ) -> Result<f64, Inadmissible> {
         residual.fill(0.0);
-        let (mut values, mut local) = (Vec::new(), Vec::new());
-        let mut energy = 0.0;
-        for element in 0..potential.elements() {
-            let unknowns = potential.element_unknowns(element);
-            gather(unknowns, u, &mut values);
-            local.clear();
-            local.resize(unknowns.len(), 0.0);
-            energy += potential.evaluate_element(
-                element,
-                &values,
-                Local {
-                    residual: &mut local,
-                    stiffness: None,
-                },
-            )?;
-            unknowns
-                .iter()
-                .zip(&local)
-                .for_each(|(unknown, r)| residual[*unknown] += r);
-        }
-        Ok(energy)
+        add_by_elements(potential, u, residual)
     }
 
     /// Adds the forces K m of a small motion m of some unknowns, at all unknowns.

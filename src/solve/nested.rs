@@ -17,6 +17,7 @@ use std::collections::BTreeMap;
 
 use super::aggregation::blocks::Blocks;
 use super::aggregation::level::{Level, Operator, Transfer};
+use super::aggregation::single_precision;
 use super::assembly::Assembly;
 use super::nodal::Nodes;
 use super::potential::Potential;
@@ -65,13 +66,10 @@ impl Ladder {
 
     /// The systems of a cycle, of which the finest one has these nodes.
     pub fn new(cycle: Nested, nodes: Nodes, assembly: &Assembly) -> Self {
-        let unknowns = 0..assembly.unknowns();
         Self {
             cycle,
             nodes,
-            free_index: unknowns
-                .map(|unknown| assembly.free_index(unknown))
-                .collect(),
+            free_index: assembly.free_indices().to_vec(),
         }
     }
 
@@ -138,19 +136,13 @@ impl Nested {
     /// [`FactorFault::NotPositiveDefinite`] where a block on its diagonal is not.
     pub fn take(&mut self, matrix: &Blocks<2, 2>) -> Result<(), FactorFault> {
         let operator = Operator::of(matrix).ok_or(FactorFault::NotPositiveDefinite)?;
-        if let Some(finest) = self.levels.last_mut() {
-            finest.take(operator.0);
-        }
+        self.finest().take(operator.0);
         Ok(())
     }
 
     /// z = M r by one V-cycle.
     pub fn apply(&mut self, r: &[[f64; 2]], z: &mut [[f64; 2]]) {
-        let Some(finest) = self.levels.last_mut() else {
-            z.copy_from_slice(&self.solve_coarsest(r));
-            return;
-        };
-        let most = super::aggregation::single_precision(r, &mut finest.b);
+        let most = single_precision(r, &mut self.finest().b);
         if most == 0.0 || !most.is_finite() {
             z.fill([most; 2]);
             return;
@@ -160,24 +152,29 @@ impl Nested {
             let below = lower.last_mut().map(|level| &mut level.b[..]);
             upper[0].descend(below.unwrap_or(&mut self.last));
         }
-        let right: Vec<[f64; 2]> = self.last.iter().map(|b| b.map(f64::from)).collect();
-        let solution = self.solve_coarsest(&right);
-        for (last, own) in self.last.iter_mut().zip(solution) {
-            *last = own.map(|x| x as f32);
-        }
+        self.solve_coarsest();
         for index in 0..self.levels.len() {
             let (lower, upper) = self.levels.split_at_mut(index);
             upper[0].ascend(lower.last().map_or(&self.last[..], |level| &level.x));
         }
-        let finest = self.levels.last().expect("seen above");
-        for (z, x) in z.iter_mut().zip(&finest.x) {
+        for (z, x) in z.iter_mut().zip(&self.finest().x) {
             *z = x.map(|x| most * f64::from(x));
         }
     }
 
-    fn solve_coarsest(&mut self, b: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let mut entries = self.coarsest_nodes.gather(b);
+    fn finest(&mut self) -> &mut Level<2, 2> {
+        self.levels
+            .last_mut()
+            .expect("a system on the coarsest one")
+    }
+
+    fn solve_coarsest(&mut self) {
+        let right: Vec<[f64; 2]> = self.last.iter().map(|b| b.map(f64::from)).collect();
+        let mut entries = self.coarsest_nodes.gather(&right);
         self.coarsest.substitute(&mut entries);
-        self.coarsest_nodes.spread(&entries)
+        let solution = self.coarsest_nodes.spread(&entries);
+        for (last, own) in self.last.iter_mut().zip(solution) {
+            *last = own.map(|x| x as f32);
+        }
     }
 }

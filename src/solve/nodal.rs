@@ -172,61 +172,46 @@ impl NodalMatrix {
 /// The nodes that each node is coupled with, itself among them, ascending: where those of each begin, and all of them.
 fn adjacency(nodes: &Nodes, pattern: &SymmetricPattern) -> (Vec<usize>, Vec<u32>) {
     let count = nodes.places.len();
-    // Those above each node, and how many there are on both sides.
-    let (mut above, mut ends, mut counts) = (Vec::<u32>::new(), vec![0; count], vec![1; count]);
-    for column in 0..pattern.size() {
-        let (node, begin) = (nodes.of[column].0, above.len());
-        let rows = pattern.column(column).iter().map(|row| nodes.of[*row].0);
-        above.extend(rows.filter(|row| *row > node));
-        let again = column > 0 && nodes.of[column - 1].0 == node;
-        let first = match (again, node) {
-            (false, _) => begin,
-            (true, 0) => 0,
-            (true, _) => ends[node as usize - 1],
-        };
-        above[first..].sort_unstable();
-        let mut kept = first;
-        for place in first..above.len() {
-            if kept == first || above[kept - 1] != above[place] {
-                above[kept] = above[place];
-                kept += 1;
-            }
+    let (mut above, mut begins) = (Vec::<u32>::new(), vec![0]);
+    let (mut own, mut column) = (Vec::new(), 0);
+    for unknowns in nodes.of.chunk_by(|one, other| one.0 == other.0) {
+        let node = unknowns[0].0;
+        own.clear();
+        for _ in unknowns {
+            let rows = pattern.column(column).iter().map(|row| nodes.of[*row].0);
+            own.extend(rows.filter(|row| *row > node));
+            column += 1;
         }
-        above.truncate(kept);
-        ends[node as usize] = kept;
+        own.sort_unstable();
+        own.dedup();
+        above.extend_from_slice(&own);
+        begins.push(above.len());
     }
-    let mut begin = 0;
-    for (node, end) in ends.iter().enumerate() {
-        counts[node] += end - begin;
-        above[begin..*end]
-            .iter()
-            .for_each(|other| counts[*other as usize] += 1);
-        begin = *end;
-    }
+    let above = |node: usize| &above[begins[node]..begins[node + 1]];
     let mut starts = vec![0; count + 1];
     for node in 0..count {
-        starts[node + 1] = starts[node] + counts[node];
+        starts[node + 1] += 1 + above(node).len();
+        above(node)
+            .iter()
+            .for_each(|other| starts[*other as usize + 1] += 1);
+    }
+    for node in 0..count {
+        starts[node + 1] += starts[node];
     }
     let (mut columns, mut next) = (vec![0; starts[count]], starts.clone());
     let mut put = |node: usize, other: u32| {
         columns[next[node]] = other;
         next[node] += 1;
     };
-    let mut begin = 0;
-    for (node, end) in ends.iter().enumerate() {
+    for node in 0..count {
         // All nodes below have put themselves here before.
         put(node, node as u32);
-        for other in &above[begin..*end] {
-            put(*other as usize, node as u32);
-        }
-        begin = *end;
-    }
-    let mut begin = 0;
-    for (node, end) in ends.iter().enumerate() {
-        above[begin..*end]
+        above(node)
             .iter()
-            .for_each(|other| put(node, *other));
-        begin = *end;
+            .for_each(|other| put(*other as usize, node as u32));
+    }
+    for node in 0..count {
+        above(node).iter().for_each(|other| put(node, *other));
     }
     (starts, columns)
 }
@@ -281,7 +266,6 @@ pub fn conjugate_gradients(
             return Err(FactorFault::NotPositiveDefinite);
         }
         let length = square / stiffness;
-        let before = square;
         for i in 0..size {
             for axis in 0..2 {
                 found.x[i][axis] += length * direction[i][axis];
@@ -292,7 +276,7 @@ pub fn conjugate_gradients(
         let last = product(&r, &z);
         precondition(&r, &mut z);
         let next = product(&r, &z);
-        let beta = (next - last) / before;
+        let beta = (next - last) / square;
         for (direction, z) in direction.iter_mut().zip(&z) {
             for axis in 0..2 {
                 direction[axis] = z[axis] + beta * direction[axis];

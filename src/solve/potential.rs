@@ -55,7 +55,7 @@ pub trait Potential: Sync {
     /// # Errors
     /// [`Inadmissible`] with an element that is inverted.
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        add_element_forces(self, u, forces)
+        add_by_elements(self, u, forces).map(|_| ())
     }
 
     /// What the derivatives of the residual have in addition to the symmetric stiffness of the elements: forces without a
@@ -108,15 +108,19 @@ pub trait Potential: Sync {
     }
 }
 
-/// Adds ∂Π/∂u element by element.
-fn add_element_forces<P: Potential + ?Sized>(
-    energy: &P,
+/// Adds ∂Π/∂u at all unknowns, element by element; Π.
+///
+/// # Errors
+/// [`Inadmissible`] with the first inverted element.
+pub fn add_by_elements<P: Potential + ?Sized>(
+    potential: &P,
     u: &[f64],
     forces: &mut [f64],
-) -> Result<(), Inadmissible> {
+) -> Result<f64, Inadmissible> {
     let (mut own, mut residual) = (Vec::new(), Vec::new());
-    for element in 0..energy.elements() {
-        let unknowns = energy.element_unknowns(element);
+    let mut energy = 0.0;
+    for element in 0..potential.elements() {
+        let unknowns = potential.element_unknowns(element);
         own.clear();
         own.extend(unknowns.iter().map(|unknown| u[*unknown]));
         residual.clear();
@@ -125,12 +129,12 @@ fn add_element_forces<P: Potential + ?Sized>(
             residual: &mut residual,
             stiffness: None,
         };
-        energy.evaluate_element(element, &own, local)?;
+        energy += potential.evaluate_element(element, &own, local)?;
         for (unknown, force) in unknowns.iter().zip(&residual) {
             forces[*unknown] += force;
         }
     }
-    Ok(())
+    Ok(energy)
 }
 
 impl<P: Potential + ?Sized> Potential for &P {
@@ -214,7 +218,7 @@ impl Potential for After<'_> {
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
         match self.history.is_empty() {
             true => self.energy.add_forces(u, forces),
-            false => add_element_forces(self, u, forces),
+            false => add_by_elements(self, u, forces).map(|_| ()),
         }
     }
 

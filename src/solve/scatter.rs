@@ -1,5 +1,6 @@
 //! The pattern of a sum of element matrices, and where each of their entries is added.
 
+use super::connectivity::Connectivity;
 use super::pattern::SymmetricPattern;
 
 /// No free unknown, or no place.
@@ -14,21 +15,19 @@ pub struct Scatter {
 }
 
 impl Scatter {
-    /// The pattern over so many free unknowns, and where the entries of each element are added; `elements` tells the position of
-    /// each unknown of every element among the free ones, or [`NOWHERE`].
-    pub fn new<E: Iterator<Item = usize>>(
-        free: usize,
-        elements: impl Iterator<Item = E>,
-    ) -> (SymmetricPattern, Self) {
-        let elements = Elements::new(elements);
-        let around = Around::of(free, &elements);
+    /// The pattern over the free unknowns, and where the entries of each element are added; `elements` are over the free unknowns,
+    /// with [`NOWHERE`] for those that are not free.
+    pub fn new(elements: &Connectivity) -> (SymmetricPattern, Self) {
+        let free = elements.unknowns();
+        let around = Around::of(elements);
         let mut own = Self {
             places: Vec::new(),
             starts: vec![0],
         };
         let mut size = 0;
-        for element in elements.all() {
-            size += element.len() * (element.len() + 1) / 2;
+        for element in 0..elements.elements() {
+            let unknowns = elements.of(element).len();
+            size += unknowns * (unknowns + 1) / 2;
             own.starts.push(size);
         }
         own.places = vec![NOWHERE; size];
@@ -82,31 +81,6 @@ impl Scatter {
     }
 }
 
-/// The unknowns of all elements.
-struct Elements {
-    unknowns: Vec<usize>,
-    starts: Vec<usize>,
-}
-
-impl Elements {
-    fn new<E: Iterator<Item = usize>>(elements: impl Iterator<Item = E>) -> Self {
-        let (mut unknowns, mut starts) = (Vec::new(), vec![0]);
-        for element in elements {
-            unknowns.extend(element);
-            starts.push(unknowns.len());
-        }
-        Self { unknowns, starts }
-    }
-
-    fn of(&self, element: usize) -> &[usize] {
-        &self.unknowns[self.starts[element]..self.starts[element + 1]]
-    }
-
-    fn all(&self) -> impl Iterator<Item = &[usize]> {
-        (0..self.starts.len() - 1).map(|element| self.of(element))
-    }
-}
-
 /// The elements around each free unknown, with its position in them.
 struct Around {
     starts: Vec<usize>,
@@ -114,17 +88,23 @@ struct Around {
 }
 
 impl Around {
-    fn of(free: usize, elements: &Elements) -> Self {
-        let unknowns = elements.unknowns.iter().filter(|own| **own != NOWHERE);
+    fn of(elements: &Connectivity) -> Self {
+        let free = elements.unknowns();
+        let own = |element: usize| {
+            let unknowns = elements.of(element).iter().enumerate();
+            unknowns.filter(|(_, unknown)| **unknown != NOWHERE)
+        };
         let mut starts = vec![0; free + 1];
-        unknowns.for_each(|unknown| starts[unknown + 1] += 1);
+        for (_, unknown) in (0..elements.elements()).flat_map(own) {
+            starts[unknown + 1] += 1;
+        }
         for unknown in 0..free {
             starts[unknown + 1] += starts[unknown];
         }
         let mut next = starts.clone();
         let mut around = vec![(0, 0); starts[free]];
-        for (element, own) in elements.all().enumerate() {
-            for (local, unknown) in own.iter().enumerate().filter(|(_, own)| **own != NOWHERE) {
+        for element in 0..elements.elements() {
+            for (local, unknown) in own(element) {
                 around[next[*unknown]] = (element, local);
                 next[*unknown] += 1;
             }

@@ -1,6 +1,6 @@
 //! From grid to grid: the field on its way up.
 
-use super::ratios::Ratios;
+use super::ratios::{Ratios, geometric_tail};
 use super::{
     Climb, ClimbSolution, Field, Inverted, Iteration, Level, Way, Work, at_stretch, inverted,
 };
@@ -77,12 +77,7 @@ impl Ascent {
         let mut change = field.clone();
         change.add(-1.0, interpolated);
         let size = level.size_of(&change);
-        let [least, most] = self.ratios.believed;
-        let ratio = match self.size.is_nan() {
-            true => self.ratio,
-            false => (size / self.size).clamp(least, most),
-        };
-        [size, ratio]
+        [size, self.ratios.told([self.size, size], self.ratio)]
     }
 
     /// Takes the field of a finer grid over; `interpolated` is the one before on it.
@@ -102,11 +97,6 @@ impl Ascent {
     fn discretisation_error(&self) -> f64 {
         geometric_tail(self.size, self.ratio)
     }
-}
-
-/// The sum of d q + d q² + …: what all finer grids would add after a change d.
-fn geometric_tail(change: f64, ratio: f64) -> f64 {
-    change * ratio / (1.0 - ratio)
 }
 
 impl Climb<'_> {

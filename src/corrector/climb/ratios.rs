@@ -2,7 +2,7 @@
 
 use crate::corrector::DifferenceScheme;
 
-/// How changes shrink from grid to grid.
+/// How changes shrink from grid to grid, or from mesh to mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratios {
     /// Where two changes are not known yet.
@@ -30,4 +30,19 @@ impl Ratios {
             believed: [0.8 * ratio, 1.1 * ratio],
         }
     }
+
+    /// The ratio that the size of a change tells after that of the one before, which is not a number where there was none; then the
+    /// ratio stays what it was.
+    pub fn told(&self, [before, size]: [f64; 2], ratio: f64) -> f64 {
+        let [least, most] = self.believed;
+        match before.is_nan() {
+            true => ratio,
+            false => (size / before).clamp(least, most),
+        }
+    }
+}
+
+/// The sum of d q + d q² + …: what all finer grids would add after a change d.
+pub fn geometric_tail(change: f64, ratio: f64) -> f64 {
+    change * ratio / (1.0 - ratio)
 }

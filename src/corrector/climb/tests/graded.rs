@@ -72,20 +72,3 @@ fn a_grading_of_one_is_an_even_grid() {
     .map(|mut climb| climb.correct(0.5).unwrap().field);
     assert_eq!(even, graded);
 }
-
-#[test]
-fn threads_do_not_change_a_bit_where_lines_are_relaxed() {
-    let problem = problem("neo-hooke", [150.0, 50.0], 0.5);
-    let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
-            let scheme = DifferenceScheme::Biquadratic;
-            let mut climb = Climb::graded(&problem, [210, 70], scheme, 2.0, ClimbSettings::FAST);
-            climb.correct(0.5).unwrap().field
-        })
-    };
-    assert!(run(1) == run(3));
-}
