@@ -11,7 +11,7 @@
 //! | restriction | the transpose of the prolongation |
 //! | prolongation | linear between the coarser grid's nodes, whatever their number |
 //! | coarser operators | discretised anew on the coarser grid, not by products of matrices |
-//! | coarsest grid | a dense inverse |
+//! | coarsest grid | Cholesky factor within the band |
 //!
 //! All sums run in an order that does not depend on the number of threads.
 

@@ -121,8 +121,8 @@ pub struct Climb<'a> {
     weakest: f64,
 }
 
-/// Unknowns of the coarsest grid at most.
-const COARSEST: usize = 100;
+/// Unknowns of the coarsest grid at most: those of 12 × 4 cells are solved by their factor faster than by coarser grids.
+const COARSEST: usize = 120;
 /// Nodes of the lattice of springs at least, where the finest grid has as many.
 const SPRINGS: usize = 30;
 /// Times that a grid's equation is linearised anew before it is given up.
@@ -280,13 +280,13 @@ impl<'a> Climb<'a> {
                 field = field.onto(&self.levels[index].grid, &self.levels[index - 1].grid);
             }
         }
-        let inverted = self.multigrid.invert_coarsest();
+        let inverted = self.multigrid.factorise_coarsest();
         inverted.map_err(|NotPositiveDefinite| SolveFault::NotPositiveDefinite)
     }
 
     /// Where the coarsest operator that was written last has no inverse, nothing can be iterated.
     fn check_operators(&self) -> Result<(), SolveFault> {
-        match self.multigrid.is_inverted() {
+        match self.multigrid.is_factorised() {
             true => Ok(()),
             false => Err(SolveFault::NotPositiveDefinite),
         }

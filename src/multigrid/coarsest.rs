@@ -1,81 +1,174 @@
-//! The coarsest grid: a dense inverse.
-
-use nalgebra::DMatrix;
+//! The coarsest grid: a Cholesky factor within the band.
 
 use super::stencil::Stencil;
-use super::vector::Vector;
+use super::vector::{Lines, Vector};
 
-/// The inverse of an operator on the free lines of a small grid.
+/// The Cholesky factor of an operator on the free lines of a small grid.
+///
+/// Nodes are numbered along the shorter side, so that an unknown is coupled with few before it: K = L Lᵀ keeps within that band,
+/// and takes n w² operations for n unknowns of w before each.
 #[derive(Clone, Debug)]
-pub struct Inverse {
-    size: usize,
-    entries: Vec<f32>,
-    right: Vec<f32>,
-    solution: Vec<f32>,
+pub struct Factor {
+    numbers: Numbers,
+    /// L, row by row; row i holds the columns from i − w to i.
+    rows: Vec<f64>,
+    solution: Vec<f64>,
 }
 
-impl Inverse {
-    /// Inverts; nothing where the operator is not positive definite.
+/// The numbers of unknowns.
+#[derive(Clone, Copy, Debug)]
+struct Numbers {
+    /// From a node to the next one on its line, and to the same node of the next line.
+    steps: [usize; 2],
+    unknowns: usize,
+    /// How many unknowns before one are coupled with it at most.
+    width: usize,
+}
+
+impl Numbers {
+    fn new(lines: Lines) -> Self {
+        let free = lines.count - 2;
+        let across = lines.nodes.min(free);
+        Self {
+            steps: match across == lines.nodes {
+                true => [2, 2 * across],
+                false => [2 * across, 2],
+            },
+            unknowns: 2 * lines.nodes * free,
+            // The node after next to the one beside: the last of its two unknowns.
+            width: 2 * (across + 1) + 1,
+        }
+    }
+
+    /// The first unknown of a node of a free line.
+    fn of(&self, line: usize, node: usize) -> usize {
+        self.steps[1] * (line - 1) + self.steps[0] * node
+    }
+}
+
+impl Factor {
+    /// Factorises; nothing where the operator is not positive definite.
     pub fn of(stencil: &Stencil) -> Option<Self> {
-        let lines = stencil.lines();
-        let nodes = lines.nodes;
-        let size = 2 * nodes * (lines.count - 2);
-        let mut matrix = DMatrix::<f64>::zeros(size, size);
-        let unknown = |[line, node]: [usize; 2]| 2 * ((line - 1) * nodes + node);
+        let numbers = Numbers::new(stencil.lines());
+        let mut factor = Self {
+            numbers,
+            rows: vec![0.0; numbers.unknowns * (numbers.width + 1)],
+            solution: vec![0.0; numbers.unknowns],
+        };
+        factor.take(stencil);
+        factor.factorise().then_some(factor)
+    }
+
+    /// Row i from column `first` to the diagonal.
+    fn row(&self, i: usize, first: usize) -> &[f64] {
+        let width = self.numbers.width;
+        &self.rows[i * (width + 1) + first + width - i..(i + 1) * (width + 1)]
+    }
+
+    /// The first column of row i.
+    fn first(&self, i: usize) -> usize {
+        i.saturating_sub(self.numbers.width)
+    }
+
+    /// Writes the operator.
+    fn take(&mut self, stencil: &Stencil) {
+        let (lines, width) = (stencil.lines(), self.numbers.width);
         for line in 1..lines.count - 1 {
-            for node in 0..nodes {
-                for [along, across] in [[0, 0], [0, 1], [1, 0], [1, 1], [1, -1]] {
-                    let to = [line as isize + along, node as isize + across];
-                    let inside = (1..lines.count as isize - 1).contains(&to[0])
-                        && (0..nodes as isize).contains(&to[1]);
-                    if !inside {
+            for node in 0..lines.nodes {
+                for (along, across) in [(0, 0), (0, 1), (1, 0), (1, 1), (1, -1)] {
+                    let to = [line + along, node.wrapping_add_signed(across)];
+                    if to[0] + 1 >= lines.count || to[1] >= lines.nodes {
                         continue;
                     }
-                    let to = to.map(|place| place as usize);
                     let block = stencil.block([line, node], to).expect("neighbours");
-                    let (row, column) = (unknown([line, node]), unknown(to));
-                    for i in 0..2 {
-                        for k in 0..2 {
-                            matrix[(row + i, column + k)] = f64::from(block[i][k]);
-                            matrix[(column + k, row + i)] = f64::from(block[i][k]);
+                    let places = [self.numbers.of(line, node), self.numbers.of(to[0], to[1])];
+                    for (i, row) in block.iter().enumerate() {
+                        for (k, entry) in row.iter().enumerate() {
+                            let pair = [places[0] + i, places[1] + k];
+                            let [column, row] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
+                            self.rows[row * (width + 1) + column + width - row] = f64::from(*entry);
                         }
                     }
                 }
             }
         }
-        let inverse = matrix.cholesky()?.inverse();
-        Some(Self {
-            size,
-            entries: inverse.iter().map(|entry| *entry as f32).collect(),
-            right: vec![0.0; size],
-            solution: vec![0.0; size],
-        })
+    }
+
+    /// L in place of K; false where K is not positive definite.
+    fn factorise(&mut self) -> bool {
+        let width = self.numbers.width;
+        for i in 0..self.numbers.unknowns {
+            let first = self.first(i);
+            for j in first..=i {
+                let begin = self.first(j).max(first);
+                let (own, other) = (self.row(i, begin), self.row(j, begin));
+                let known = j - begin;
+                let rest = own[known] - dot(&own[..known], &other[..known]);
+                let entry = match i == j {
+                    true if rest > 0.0 => rest.sqrt(),
+                    true => return false,
+                    false => rest / other[known],
+                };
+                self.rows[i * (width + 1) + j + width - i] = entry;
+            }
+        }
+        true
     }
 
     /// x = K⁻¹ b.
     pub fn solve(&mut self, b: &Vector, x: &mut Vector) {
-        let lines = b.lines();
+        let (lines, numbers) = (b.lines(), self.numbers);
+        let mut solution = std::mem::take(&mut self.solution);
         for line in 1..lines.count - 1 {
             let [b_x, b_y] = b.line(line);
             for node in 0..lines.nodes {
-                let place = 2 * ((line - 1) * lines.nodes + node);
-                self.right[place] = b_x[node + 1];
-                self.right[place + 1] = b_y[node + 1];
+                let place = numbers.of(line, node);
+                solution[place] = f64::from(b_x[node + 1]);
+                solution[place + 1] = f64::from(b_y[node + 1]);
             }
         }
-        self.solution.fill(0.0);
-        for (column, right) in self.entries.chunks_exact(self.size).zip(&self.right) {
-            for (sum, entry) in self.solution.iter_mut().zip(column) {
-                *sum += entry * right;
-            }
-        }
-        let solution = &self.solution;
+        self.substitute(&mut solution);
         x.for_each_free_line(|line, x_x, x_y| {
             for node in 0..lines.nodes {
-                let place = 2 * ((line - 1) * lines.nodes + node);
-                x_x[node + 1] = solution[place];
-                x_y[node + 1] = solution[place + 1];
+                let place = numbers.of(line, node);
+                x_x[node + 1] = solution[place] as f32;
+                x_y[node + 1] = solution[place + 1] as f32;
             }
         });
+        self.solution = solution;
     }
+
+    /// K⁻¹ b in place of b.
+    fn substitute(&self, b: &mut [f64]) {
+        for i in 0..b.len() {
+            let first = self.first(i);
+            let row = self.row(i, first);
+            let known = i - first;
+            b[i] = (b[i] - dot(&row[..known], &b[first..i])) / row[known];
+        }
+        for i in (0..b.len()).rev() {
+            let first = self.first(i);
+            let row = self.row(i, first);
+            let known = i - first;
+            b[i] /= row[known];
+            let own = b[i];
+            for (b, entry) in b[first..i].iter_mut().zip(row) {
+                *b -= entry * own;
+            }
+        }
+    }
+}
+
+/// a · b by four sums side by side, which does not wait for one sum.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest = a.remainder().iter().zip(b.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    let mut sums = [0.0; 4];
+    for (a, b) in a.zip(b) {
+        for k in 0..4 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }

@@ -1,12 +1,12 @@
 //! The V-cycle.
 
-use super::coarsest::Inverse;
+use super::coarsest::Factor;
 use super::stencil::Stencil;
 use super::strip::LineSmoother;
 use super::transfer::Transfer;
 use super::vector::{Lines, Vector};
 
-/// An operator that has no positive definite inverse.
+/// An operator that is not positive definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the operator of the coarsest grid is not positive definite")]
 pub struct NotPositiveDefinite;
@@ -27,7 +27,7 @@ struct Level {
 #[derive(Debug)]
 pub struct Multigrid {
     levels: Vec<Level>,
-    coarsest: Option<Inverse>,
+    coarsest: Option<Factor>,
 }
 
 impl Multigrid {
@@ -62,20 +62,20 @@ impl Multigrid {
         &mut level.stencil
     }
 
-    /// Inverts the operator of the coarsest grid, which has been written.
+    /// Factorises the operator of the coarsest grid, which has been written.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when it has no inverse.
-    pub fn invert_coarsest(&mut self) -> Result<(), NotPositiveDefinite> {
-        self.coarsest = Inverse::of(&self.levels[0].stencil);
+    /// [`NotPositiveDefinite`] when it has none.
+    pub fn factorise_coarsest(&mut self) -> Result<(), NotPositiveDefinite> {
+        self.coarsest = Factor::of(&self.levels[0].stencil);
         self.coarsest
             .as_ref()
             .map(|_| ())
             .ok_or(NotPositiveDefinite)
     }
 
-    /// Whether the coarsest operator has an inverse: without it there is no cycle.
-    pub fn is_inverted(&self) -> bool {
+    /// Whether the coarsest operator has a factor: without it there is no cycle.
+    pub fn is_factorised(&self) -> bool {
         self.coarsest.is_some()
     }
 
@@ -87,7 +87,7 @@ impl Multigrid {
     /// One V-cycle from zero on a grid and all coarser ones; the result.
     ///
     /// # Panics
-    /// Where the coarsest operator has no inverse, see [`Self::is_inverted`].
+    /// Where the coarsest operator has no factor, see [`Self::is_factorised`].
     pub fn cycle(&mut self, level: usize) -> &Vector {
         self.descend(level);
         &self.levels[level].x
@@ -104,11 +104,8 @@ impl Multigrid {
             r,
         } = &mut finer[0];
         let Some(transfer) = transfer else {
-            let inverse = self
-                .coarsest
-                .as_mut()
-                .expect("the coarsest grid is inverted");
-            inverse.solve(b, x);
+            let factor = self.coarsest.as_mut();
+            factor.expect("the coarsest grid has a factor").solve(b, x);
             return;
         };
         x.clear();
