@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use crate::error::{Error, SolveFault};
 use crate::mesh::{CellShape, Grid, Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
@@ -124,7 +126,7 @@ impl FiniteElements {
             };
             Ok(solved.estimate(recovery, &influence?))
         };
-        states.iter().zip(influences).map(estimate).collect()
+        states.par_iter().zip(influences).map(estimate).collect()
     }
 
     /// Solves all stretches of the plate, one after the other.

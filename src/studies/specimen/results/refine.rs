@@ -1,6 +1,8 @@
 //! How the finite elements of a specimen are found: on three meshes, each twice as fine as the one before, or by local
 //! refinement.
 
+use rayon::prelude::*;
+
 use super::end::{End, last_groups};
 use super::lattice::solve;
 use super::measured::Measured;
@@ -269,5 +271,5 @@ fn estimates(
         };
         Some(solved.estimate(&recovery, &influence.ok()?))
     };
-    Ok(states.iter().zip(influences).map(estimate).collect())
+    Ok(states.par_iter().zip(influences).map(estimate).collect())
 }
