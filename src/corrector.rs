@@ -27,6 +27,7 @@ mod dependence;
 mod difference_scheme;
 pub mod estimate;
 pub mod estimation;
+mod extrapolation;
 pub mod factor;
 mod iteration;
 pub mod matrix;

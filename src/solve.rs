@@ -25,7 +25,7 @@ pub mod sparse;
 pub mod tangent;
 pub mod vector;
 
-pub use approach::Approach;
+pub use approach::{Approach, FirstTangent, Nearness};
 pub use assembly::Assembly;
 pub use connectivity::Connectivity;
 pub use equilibrium::equilibrium;

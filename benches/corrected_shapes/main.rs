@@ -3,6 +3,7 @@
 //! ```text
 //! cargo bench --bench corrected_shapes              up to half a million nodes, some minutes
 //! cargo bench --bench corrected_shapes -- --quick   up to 50,000 nodes
+//! cargo bench --bench corrected_shapes -- --path    a hundred load factors, and grips in the hand, on some 10,000 nodes
 //! ```
 //!
 //! Every time runs from the problem to field and reactions, with all meshes and analysis; it is the shortest of several runs in which
@@ -17,6 +18,7 @@
 //! | direct | the same with a sparse factor of every tangent: the best direct opponent |
 //! | direct, one mesh | finite elements on the finest mesh alone, in load steps where it must |
 
+mod path;
 mod shapes;
 
 use std::path::Path;
@@ -48,12 +50,13 @@ const LEAST: usize = 1_000;
 const SHARE: f64 = 0.1;
 
 fn main() -> ExitCode {
-    let quick = std::env::args().any(|argument| argument == "--quick");
+    let has = |option: &str| std::env::args().any(|argument| argument == option);
+    let most = MOST[usize::from(has("--quick"))];
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
-    match pool
-        .expect("a thread")
-        .install(|| bench(MOST[usize::from(quick)]))
-    {
+    match pool.expect("a thread").install(|| match has("--path") {
+        true => paths(),
+        false => bench(most),
+    }) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
@@ -82,6 +85,36 @@ fn bench(most: usize) -> Result<bool, Error> {
     }
     let path = Path::new("output/bench/corrected_shapes.csv");
     println!("{}", output::save(path, csv.as_bytes())?.display());
+    println!(
+        "{} difference to the direct path: at most {SHARE} of the discretisation error",
+        if passes { "pass" } else { "FAIL" }
+    );
+    Ok(passes)
+}
+
+/// Nodes of the meshes on which paths are followed, about.
+const PATH_NODES: [usize; 2] = [10_000, 30_000];
+
+/// Paths on strips with a hole.
+fn paths() -> Result<bool, Error> {
+    let law = Card::load("pva-10", Path::new("."))?.law;
+    let mut passes = true;
+    for case in shapes::all(&law) {
+        if !case.name.starts_with("strip with hole") {
+            continue;
+        }
+        let nodes: Vec<usize> = case.meshes(6).iter().map(|mesh| mesh.nodes.len()).collect();
+        let nearest = PATH_NODES.map(|wanted| {
+            let levels = 2..nodes.len();
+            levels.min_by_key(|level| nodes[*level].abs_diff(wanted))
+        });
+        for level in std::collections::BTreeSet::from(nearest)
+            .into_iter()
+            .flatten()
+        {
+            passes &= path::bench(&case, level + 1)?;
+        }
+    }
     println!(
         "{} difference to the direct path: at most {SHARE} of the discretisation error",
         if passes { "pass" } else { "FAIL" }

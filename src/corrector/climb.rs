@@ -34,10 +34,11 @@ mod tangents;
 mod tests;
 mod way;
 
+pub use crate::problem::RigidMotion;
 pub use grid::{Field, Grid};
 pub use level::Work;
 use level::{Ending, Inverted, Iteration, Level, Sheet};
-pub use path::{Grips, Interactive, RigidMotion};
+pub use path::{Grips, Interactive};
 pub(super) use ratios::{Ratios, geometric_tail};
 pub use way::{Start, Way};
 

@@ -22,7 +22,7 @@ pub struct Loads {
     forces: Vec<f64>,
     /// Forces of grips: unknown, force in N.
     pulls: Vec<(usize, f64)>,
-    /// The unknowns that have dead forces or pulls.
+    /// The unknowns that have dead forces, or pulls, which may be zero.
     pushed: Vec<usize>,
     pressures: Pressures,
 }
@@ -63,7 +63,10 @@ impl Loads {
 
     fn find_pushed(&mut self) {
         let unknowns = 0..self.forces.len();
-        let pushed = unknowns.filter(|unknown| self.force(*unknown) != 0.0);
+        let mut masters: Vec<usize> = self.pulls.iter().map(|(master, _)| *master).collect();
+        masters.sort_unstable();
+        let is_pulled = |unknown: &usize| masters.binary_search(unknown).is_ok();
+        let pushed = unknowns.filter(|unknown| self.forces[*unknown] != 0.0 || is_pulled(unknown));
         self.pushed = pushed.collect();
     }
 
@@ -101,12 +104,37 @@ impl Loads {
 
     /// The potential of an energy with these loads at a load factor.
     pub fn on<'a>(&'a self, energy: impl Potential + 'a, factor: f64) -> Box<dyn Potential + 'a> {
+        self.pushing(energy, factor, |unknown| factor * self.force(unknown))
+    }
+
+    /// The same with other forces in N on the grips, whatever the load factor is.
+    pub fn with_pulls<'a>(
+        &'a self,
+        energy: impl Potential + 'a,
+        factor: f64,
+        pulls: &[(usize, f64)],
+    ) -> Box<dyn Potential + 'a> {
+        self.pushing(energy, factor, |unknown| {
+            let own = pulls.iter().filter(|(pulled, _)| *pulled == unknown);
+            factor * self.forces[unknown] + own.map(|(_, force)| force).sum::<f64>()
+        })
+    }
+
+    fn pushing<'a>(
+        &'a self,
+        energy: impl Potential + 'a,
+        factor: f64,
+        force: impl Fn(usize) -> f64,
+    ) -> Box<dyn Potential + 'a> {
         if self.is_empty() {
             return Box::new(energy);
         }
         let unknowns = energy.unknowns();
-        let force = |unknown: &usize| (*unknown, factor * self.force(*unknown));
-        let forces = DeadForces::new(unknowns, self.pushed.iter().map(force));
+        let forces = self
+            .pushed
+            .iter()
+            .map(|unknown| (*unknown, force(*unknown)));
+        let forces = DeadForces::new(unknowns, forces);
         let pressures = self.pressures.at(factor, unknowns);
         Box::new(Sum::new(Sum::new(energy, pressures), forces))
     }

@@ -156,6 +156,17 @@ impl<'a> Model<'a> {
         &self.constraints.ties
     }
 
+    /// A potential whose tied unknowns follow.
+    pub(super) fn tied<'b>(
+        &'b self,
+        potential: Box<dyn Potential + 'b>,
+    ) -> Box<dyn Potential + 'b> {
+        match self.constraints.ties.is_empty() {
+            true => potential,
+            false => Box::new(TiedPotential::new(potential, &self.constraints.ties)),
+        }
+    }
+
     /// The strain energy of the body with a history.
     pub(super) fn energy_after<'b>(&'b self, history: &'b [f64]) -> After<'b> {
         After::new(self.energy, history)
@@ -269,12 +280,7 @@ impl Loading for Model<'_> {
     }
 
     fn potential<'b>(&'b self, factor: f64, history: &'b [f64]) -> Box<dyn Potential + 'b> {
-        let loads = self.loads.on(self.energy_after(history), factor);
-        if self.constraints.ties.is_empty() {
-            loads
-        } else {
-            Box::new(TiedPotential::new(loads, &self.constraints.ties))
-        }
+        self.tied(self.loads.on(self.energy_after(history), factor))
     }
 
     fn linear_solver(&self) -> LinearSolver {

@@ -1,25 +1,52 @@
 //! Newton's method as far as a coarse answer needs it: by multigrid, with one tangent for several steps.
 
 use super::assembly::Assembly;
-use super::iterative::{LinearSolver, Solved};
+use super::iterative::{Iterative, LinearSolver, Solved};
 use super::nested::{Carry, Ladder};
 use super::newton::Newton;
 use super::potential::Potential;
 use super::tangent::Tangent;
-use super::vector::{gather, scale};
+use super::vector::{gather, scale, spread};
 use crate::error::SolveFault;
 
 /// How near an approach has come, and what it took.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Approach {
     /// Tangents.
     pub linearisations: usize,
     /// Iterations, each with one cycle of multigrid.
     pub iterations: usize,
+    /// Systems that were solved.
+    pub steps: usize,
+    /// The first imbalance b as √(b · M b), with the cycle M, in √mJ: about the energy that it stands for.
+    pub first: f64,
+    /// The imbalance that is left, likewise.
+    pub last: f64,
+}
+
+impl Approach {
     /// The share of the first imbalance that is left.
-    pub left: f64,
-    /// The potential.
-    pub energy: f64,
+    pub fn left(&self) -> f64 {
+        self.last / self.first.max(f64::MIN_POSITIVE)
+    }
+}
+
+/// How near an approach is to come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Nearness {
+    /// To a share of its first imbalance.
+    Share(f64),
+    /// To an imbalance of so many √mJ.
+    Imbalance(f64),
+}
+
+/// Which tangent an approach begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FirstTangent {
+    /// The one that was taken last, elsewhere.
+    Known,
+    /// That of its own place.
+    Own,
 }
 
 /// Steps and tangents at most.
@@ -37,17 +64,25 @@ const FALLS: [f64; 2] = [0.1, 0.05];
 
 /// What the imbalances tell.
 struct Pace {
-    /// The share of the first one that may be left.
-    share: f64,
-    /// Not a number at first.
+    nearness: Nearness,
+    /// Not a number before one is known.
     first: f64,
-    /// The one before the last step, where the tangent is that of the step.
+    /// The one before the last step by the tangent taken last.
     last: Option<f64>,
 }
 
 impl Pace {
+    /// The imbalance that may be left; `weight` is the present one.
+    fn enough(&self, weight: f64) -> f64 {
+        match self.nearness {
+            Nearness::Share(share) if self.first.is_nan() => share * weight,
+            Nearness::Share(share) => share * self.first,
+            Nearness::Imbalance(enough) => enough,
+        }
+    }
+
     fn is_near(&self, weight: f64) -> bool {
-        weight <= self.share * self.first || weight == 0.0
+        weight <= self.enough(weight) || weight == 0.0
     }
 
     /// Whether the tangent serves for another step.
@@ -60,8 +95,8 @@ impl Pace {
         if self.is_near(weight) || !self.serves(weight) {
             return 1.0;
         }
-        let wanted = 0.5 * self.share * self.first / weight;
-        wanted.max(0.5 * self.share).clamp(FALLS[1], FALLS[0])
+        let wanted = 0.5 * self.enough(weight) / weight;
+        wanted.clamp(FALLS[1], FALLS[0])
     }
 }
 
@@ -77,14 +112,7 @@ impl Newton {
         carry: Carry,
     ) -> Result<Self, SolveFault> {
         let mut newton = Self::with_solver(potential, fixed, LinearSolver::Multigrid)?;
-        let Tangent {
-            assembly,
-            iterative,
-            ..
-        } = &mut newton.tangent;
-        if let Some(iterative) = iterative {
-            iterative.put_on(ladder, assembly, carry);
-        }
+        newton.put_on(ladder, carry);
         Ok(newton)
     }
 
@@ -98,56 +126,108 @@ impl Newton {
         iterative?.into_ladder(&assembly)
     }
 
-    /// Moves the free entries of `u` towards a minimum of the potential by multigrid, until the imbalance stands for a share of the
-    /// first one, both measured as the iteration weighs them. The tangent is taken anew only where it no longer serves. `None` where
-    /// there is no multigrid, or anything is not as it should be.
+    /// Puts the system on others, coarser ones, in place of those that it was put on.
+    pub fn put_on(&mut self, ladder: Ladder, carry: Carry) {
+        let Tangent {
+            assembly,
+            iterative,
+            ..
+        } = &mut self.tangent;
+        if let Some(iterative) = iterative {
+            iterative.put_on(ladder, assembly, carry);
+        }
+    }
+
+    /// Whether systems are solved by multigrid on coarser ones.
+    pub fn is_nested(&self) -> bool {
+        let iterative = self.tangent.iterative.as_ref();
+        iterative.is_some_and(Iterative::is_nested)
+    }
+
+    /// Takes the tangent at `u` for multigrid; `None` where there is none, or `u` is not admissible.
+    pub fn take_tangent(&mut self, potential: &dyn Potential, u: &[f64]) -> Option<()> {
+        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
+        let assembly = &self.tangent.assembly;
+        let linearised = assembly.linearise(potential, u, &mut residual, &mut stiffness);
+        linearised.ok()?;
+        self.tangent.take(&stiffness)?;
+        self.tangent.iterative.as_mut()?.prepare().ok()
+    }
+
+    /// About what the free unknowns do when held ones move a little from an equilibrium `u`, by multigrid on the tangent taken
+    /// last; zero at held unknowns. `None` where there is no multigrid.
+    pub fn carried_along(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        motion: &[f64],
+    ) -> Option<Vec<f64>> {
+        let mut forces = vec![0.0; u.len()];
+        Assembly::add_product(potential, u, motion, &mut forces).ok()?;
+        let mut right = gather(self.free(), &forces);
+        scale(&mut right, -1.0);
+        let iterative = self.tangent.iterative.as_mut()?;
+        let step = iterative.solve(&right, FALLS[1]).ok()?;
+        Some(spread(self.free(), &step, u.len()))
+    }
+
+    /// Moves the free entries of `u` towards a minimum of the potential by multigrid until it is near, as the iteration weighs the
+    /// imbalance. The tangent is taken anew only where it no longer serves; where it was taken on the way it is looked at whether
+    /// the equilibrium is stable. `None` where there is no multigrid, or anything is not as it should be.
     pub fn approach(
         &mut self,
         potential: &dyn Potential,
-        u: &mut [f64],
-        residual: &mut [f64],
-        share: f64,
+        (u, residual): (&mut [f64], &mut [f64]),
+        nearness: Nearness,
+        tangent: FirstTangent,
     ) -> Option<Approach> {
         let begun = self.tangent.iterative.as_ref()?.iterations;
         let mut stiffness = Vec::new();
-        let mut linearisations = 0;
+        let mut own = Approach::default();
         let mut pace = Pace {
-            share,
+            nearness,
             first: f64::NAN,
             last: None,
         };
+        let mut anew = tangent == FirstTangent::Own;
+        if !anew {
+            residual.fill(0.0);
+            potential.add_forces(u, residual).ok()?;
+        }
         for _ in 0..MOST {
-            if pace.last.is_none() {
+            if std::mem::take(&mut anew) {
                 let assembly = &self.tangent.assembly;
                 let linearised = assembly.linearise(potential, u, residual, &mut stiffness);
                 linearised.ok()?;
                 self.tangent.take(&stiffness)?;
-                linearisations += 1;
+                own.linearisations += 1;
+                pace.last = None;
             }
             let mut right = gather(self.free(), residual);
             scale(&mut right, -1.0);
             let iterative = self.tangent.iterative.as_mut()?;
             let solved = iterative.solve_as_far_as(&right, |weight| pace.reduction(weight));
             let Solved { x, weight } = solved.ok()?;
-            if pace.is_near(weight) {
-                let iterations = iterative.iterations - begun;
-                return iterative.is_definite().then_some(Approach {
-                    linearisations,
-                    iterations,
-                    left: weight / pace.first.max(f64::MIN_POSITIVE),
-                    energy: Assembly::residual(potential, u, residual).ok()?,
-                });
-            }
             if pace.first.is_nan() {
                 pace.first = weight;
             }
+            if pace.is_near(weight) {
+                let stable = own.linearisations == 0 || iterative.is_definite();
+                return stable.then_some(Approach {
+                    iterations: iterative.iterations - begun,
+                    first: pace.first,
+                    last: weight,
+                    ..own
+                });
+            }
             if pace.serves(weight) {
                 self.step(potential, u, residual, &x)?;
+                own.steps += 1;
                 pace.last = Some(weight);
-            } else if linearisations == LINEARISATIONS || weight > FARTHER * pace.first {
+            } else if own.linearisations == LINEARISATIONS || weight > FARTHER * pace.first {
                 return None;
             } else {
-                pace.last = None;
+                anew = true;
             }
         }
         None

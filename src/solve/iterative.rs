@@ -134,6 +134,11 @@ impl Iterative {
         }
     }
 
+    /// Whether the cycle goes over systems that were solved before.
+    pub fn is_nested(&self) -> bool {
+        matches!(self.cycle, Cycle::Nested(_))
+    }
+
     /// Takes the tangent at another state.
     pub fn take(&mut self, assembly: &Assembly, values: &[f64]) {
         self.matrix.take(&self.nodes, assembly.pattern(), values);
@@ -210,7 +215,10 @@ impl Iterative {
     }
 
     /// Makes the cycle where it is not made.
-    fn prepare(&mut self) -> Result<(), FactorFault> {
+    ///
+    /// # Errors
+    /// [`FactorFault`] where the tangent taken last has none.
+    pub fn prepare(&mut self) -> Result<(), FactorFault> {
         if self.made == Made::Not {
             match &mut self.cycle {
                 Cycle::Aggregation(cycle) => {

@@ -3,32 +3,12 @@
 use std::fmt;
 
 use super::{Climb, ClimbSolution, Ending, Field, Inverted, Iteration, Start, Way, Work, inverted};
+use crate::corrector::extrapolation::{HISTORY, rate_shares, value_shares};
 use crate::error::{Error, SolveFault};
-use crate::problem::DeformedSheet;
-
-/// States that the next one is extrapolated from.
-const HISTORY: usize = 3;
+use crate::problem::{DeformedSheet, RigidMotion};
 
 /// Cycles too many after which the operators are written anew.
 const BEYOND: usize = 2;
-
-/// A rigid motion of a grip in its plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RigidMotion {
-    /// Displacement of the grip's middle in mm.
-    pub displacement: [f64; 2],
-    /// Turn about its middle in rad, from X to Y.
-    pub angle: f64,
-}
-
-impl RigidMotion {
-    /// The displacement of a point at a distance of `offset` along Y from the grip's middle.
-    fn at(self, offset: f64) -> [f64; 2] {
-        let (sine, cosine) = self.angle.sin_cos();
-        let [x, y] = self.displacement;
-        [x - offset * sine, y + offset * (cosine - 1.0)]
-    }
-}
 
 /// Where both grips are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,13 +24,6 @@ impl fmt::Display for Grips {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { left, right } = self;
         write!(f, "{left} and {right}")
-    }
-}
-
-impl fmt::Display for RigidMotion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ([x, y], angle) = (self.displacement, self.angle.to_degrees());
-        write!(f, "({x:.3}, {y:.3}) mm turned by {angle:.2}°")
     }
 }
 
@@ -130,13 +103,14 @@ impl Climb<'_> {
         relative_error: f64,
         anew: bool,
     ) -> Result<ClimbSolution, SolveFault> {
-        let mut field = combine(known, &value_shares(known, stretch));
+        let parameters: Vec<f64> = known.iter().map(|own| own.parameter).collect();
+        let mut field = combine(known, &value_shares(&parameters, stretch));
         if anew {
             self.linearise_below(self.levels.len() - 1, &field)?;
         }
         let error = relative_error * self.departure(&field, stretch);
         let reached = self.near(&mut field, error)?;
-        let force = self.force_along(&combine(known, &rate_shares(known, stretch)));
+        let force = self.force_along(&combine(known, &rate_shares(&parameters, stretch)));
         Ok(ClimbSolution::near(field, force, error, reached))
     }
 
@@ -212,43 +186,6 @@ fn combine(known: &[KnownState], shares: &[f64]) -> Field {
         field.add(*share, &state.field);
     }
     field
-}
-
-/// The shares of the known states in the polynomial through them and the state of rest, at another parameter.
-fn value_shares(known: &[KnownState], parameter: f64) -> Vec<f64> {
-    shares(known, |others| {
-        others.iter().map(|other| parameter - other).product()
-    })
-}
-
-/// The shares of the known states in that polynomial's derivative.
-fn rate_shares(known: &[KnownState], parameter: f64) -> Vec<f64> {
-    shares(known, |others| {
-        let without = |left_out: usize| -> f64 {
-            let kept = others
-                .iter()
-                .enumerate()
-                .filter(|(place, _)| *place != left_out);
-            kept.map(|(_, other)| parameter - other).product()
-        };
-        (0..others.len()).map(without).sum()
-    })
-}
-
-/// For each state what `product` says of the parameters of the others and of the state of rest, over what the
-/// Lagrange polynomial has at the state itself.
-fn shares(known: &[KnownState], product: impl Fn(&[f64]) -> f64) -> Vec<f64> {
-    let at_rest = (known.len() < HISTORY).then_some(0.0);
-    let share = |own: usize| {
-        let others = known.iter().enumerate().filter(|(other, _)| *other != own);
-        let others: Vec<f64> = others
-            .map(|(_, other)| other.parameter)
-            .chain(at_rest)
-            .collect();
-        let own = known[own].parameter;
-        product(&others) / others.iter().map(|other| own - other).product::<f64>()
-    };
-    (0..known.len()).map(share).collect()
 }
 
 /// A plate in the hand: its grips are moved, the corrected field follows.
@@ -352,7 +289,7 @@ impl<'a> Interactive<'a> {
         let [length, width] = self.climb.problem.size;
         let last = grid.lines().count - 1;
         for (node, y) in grid.coordinates[1].iter().enumerate() {
-            let targets = [grips.left, grips.right].map(|grip| grip.at(y - 0.5 * width));
+            let targets = [grips.left, grips.right].map(|grip| grip.at([0.0, y - 0.5 * width]));
             for axis in [0, 1] {
                 let component = &mut field.components[axis];
                 let at = |line: usize| line * grid.lines().nodes + node;

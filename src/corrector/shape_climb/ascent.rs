@@ -1,0 +1,251 @@
+//! From the springs to the finest mesh.
+
+use std::collections::BTreeMap;
+
+use super::field::{NEWTON, ShapeClimb, ShapeWork};
+use super::levels::{Levels, carrying, on};
+use super::systems::{Scale, Systems};
+use crate::corrector::CorrectorSettings;
+use crate::corrector::climb::{ClimbSettings, Ratios, geometric_tail};
+use crate::corrector::specimen::correct;
+use crate::error::Error;
+use crate::mass_spring::MassSpring;
+use crate::problem::Model;
+use crate::solve::vector::{add_scaled, difference, norm};
+use crate::solve::{
+    Approach, Assembly, Convergence, FirstTangent, Ladder, LinearSolver, Loading, Nearness, Newton,
+    Potential, State,
+};
+
+/// What the iteration may leave on all meshes but the finest, relative to what it may leave there.
+const ON_THE_WAY: f64 = 3.0;
+
+/// What of the allowed share is used: the imbalance tells the error of the field in the energy, not in the displacement.
+const SURE: f64 = 0.1;
+
+/// The tangents of a mesh and of the coarser ones.
+enum Tangents {
+    /// Of the coarsest mesh.
+    Coarsest(Box<Ladder>),
+    /// Those of Newton's method by multigrid, with the ties of the mesh.
+    Solved(Box<Newton>, BTreeMap<usize, usize>),
+}
+
+impl Tangents {
+    /// As systems for a finer mesh; `None` where multigrid has not served on all of them.
+    fn into_ladder(self) -> Option<Ladder> {
+        match self {
+            Self::Coarsest(ladder) => Some(*ladder),
+            Self::Solved(newton, ties) => Some(newton.into_ladder()?.tied(&ties)),
+        }
+    }
+}
+
+/// A field on its way up.
+pub struct Ascent {
+    state: State,
+    /// The number of its mesh.
+    level: usize,
+    tangents: Option<Tangents>,
+    /// What this mesh added to the field of the one before, and its size: root mean square over the nodes in mm.
+    change: Option<Vec<f64>>,
+    size: f64,
+    /// How changes shrink from mesh to mesh.
+    ratio: f64,
+    /// The imbalance that a mesh was reached with by multigrid, and the share of it that may be left.
+    reached: Option<(Approach, f64)>,
+    work: Vec<ShapeWork>,
+}
+
+impl Ascent {
+    /// All the way up at a load factor.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a mesh does not suit the problem, [`Error::Solve`] where no field was found.
+    pub fn of(levels: &Levels, factor: f64, settings: ClimbSettings) -> Result<Self, Error> {
+        let mut ascent = Self::begin(levels, factor)?;
+        for level in 1..=levels.finest() {
+            let finest = level == levels.finest();
+            let slack = if finest { 1.0 } else { ON_THE_WAY };
+            ascent.climb(levels, slack * settings.tolerance)?;
+        }
+        Ok(ascent)
+    }
+
+    /// The springs' field, corrected, on the coarsest mesh; where the springs have none, or it does not lead to the corrected one, load
+    /// steps do.
+    fn begin(levels: &Levels, factor: f64) -> Result<Self, Error> {
+        let (problem, mesh) = (levels.problem, &levels.meshes[0]);
+        let lattice = match mesh.degree() {
+            1 => mesh.clone(),
+            _ => mesh.refined().linear(),
+        };
+        let springs = MassSpring::on_mesh(&problem.law, problem.thickness, lattice);
+        let model = levels.model(0)?;
+        let by_springs = on(problem, &springs.mesh, springs.potential())?;
+        let by_springs = by_springs.describing(|element| springs.describe_element(element));
+        let corrected = |state: State| {
+            let interpolation = springs.mesh.interpolation_on(mesh);
+            let data = interpolation.apply(&state.displacement);
+            let settings = CorrectorSettings::default();
+            correct(&model, &data, &data, (factor, &[]), settings).ok()
+        };
+        let by_springs = by_springs.reach(&[factor], NEWTON).ok();
+        let state = match by_springs.and_then(corrected) {
+            Some(corrected) => corrected.state,
+            None => model.reach(&[factor], NEWTON)?,
+        };
+        let potential = model.potential(factor, &[]);
+        let ladder = Ladder::begin(&*potential, &model.held(), &state.displacement);
+        let ladder = ladder.map(|own| own.tied(model.ties()));
+        let mut ascent = Self {
+            state,
+            level: 0,
+            tangents: ladder.map(|own| Tangents::Coarsest(Box::new(own))),
+            change: None,
+            size: f64::NAN,
+            ratio: Ratios::MEASURED.first,
+            reached: None,
+            work: Vec::new(),
+        };
+        ascent.note(mesh.nodes.len(), 0, 0);
+        Ok(ascent)
+    }
+
+    /// Takes the field to the next finer mesh.
+    fn climb(&mut self, levels: &Levels, tolerance: f64) -> Result<(), Error> {
+        let (factor, level) = (self.state.factor, self.level + 1);
+        let model = levels.model(level)?;
+        let interpolation = levels.to(level);
+        let mut before = interpolation.apply(&self.state.displacement);
+        model.impose(factor, &mut before);
+        let mut u = before.clone();
+        if let Some(change) = &self.change {
+            add_scaled(&mut u, self.ratio, &interpolation.apply(change));
+            model.impose(factor, &mut u);
+        }
+        let share = SURE * tolerance * geometric_tail(1.0, self.ratio);
+        let potential = model.potential(factor, &[]);
+        let newton = self.newton(&*potential, &model.held(), levels);
+        let near = newton.and_then(|own| approach(&model, &*potential, own, (factor, &u), share));
+        self.reached = None;
+        self.state = match near {
+            Some((state, newton, own)) => {
+                self.note(model.mesh.nodes.len(), own.linearisations, own.iterations);
+                let newton = Box::new(newton);
+                self.tangents = Some(Tangents::Solved(newton, model.ties().clone()));
+                self.reached = Some((own, share));
+                state
+            }
+            None => {
+                self.note(model.mesh.nodes.len(), 0, 0);
+                model.reach(&[factor], NEWTON)?
+            }
+        };
+        let change = difference(&self.state.displacement, &before);
+        let size = norm(&change) / (model.mesh.nodes.len() as f64).sqrt();
+        if size > 0.0 {
+            self.ratio = Ratios::MEASURED.told([self.size, size], self.ratio);
+        }
+        (self.change, self.size, self.level) = (Some(change), size, level);
+        Ok(())
+    }
+
+    /// Newton's method on the next finer mesh, by multigrid on the tangents of the coarser ones where they are at hand.
+    fn newton(
+        &mut self,
+        potential: &dyn Potential,
+        held: &[bool],
+        levels: &Levels,
+    ) -> Option<Newton> {
+        let Some(ladder) = self.tangents.take().and_then(Tangents::into_ladder) else {
+            return Newton::with_solver(potential, held, LinearSolver::Multigrid).ok();
+        };
+        let carry = carrying(levels.to(self.level + 1));
+        Newton::above(potential, held, ladder, &carry).ok()
+    }
+
+    fn note(&mut self, nodes: usize, linearisations: usize, iterations: usize) {
+        self.work.push(ShapeWork {
+            nodes,
+            linearisations,
+            iterations,
+        });
+    }
+
+    /// The field with its errors, and the systems of the finest mesh.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] where the finest mesh has no tangent.
+    pub fn end(self, levels: &Levels, tolerance: f64) -> Result<(ShapeClimb, Systems), Error> {
+        // s q + s q² + …, what all finer meshes would add.
+        let discretisation_error = geometric_tail(self.size, self.ratio);
+        let left = self.reached.map_or(0.0, |(own, _)| own.left());
+        let scale = Scale::of(levels, &self.state, [discretisation_error, tolerance]);
+        let (scale, newton) = match (self.tangents, self.reached) {
+            (Some(Tangents::Solved(newton, _)), Some((own, share))) => {
+                (scale.told(&own, share), Some(*newton))
+            }
+            _ => (scale.without_multigrid(), None),
+        };
+        let systems = Systems::new(levels, &self.state, newton, scale)?;
+        let climbed = ShapeClimb {
+            discretisation_error,
+            iteration_error: match levels.finest() {
+                0 => f64::NAN,
+                _ => left * self.size,
+            },
+            state: self.state,
+            work: self.work,
+        };
+        Ok((climbed, systems))
+    }
+
+    /// Whether the tangents of all meshes are at hand for a finer one.
+    #[cfg(test)]
+    pub fn is_nested(&self) -> bool {
+        match &self.tangents {
+            Some(Tangents::Solved(newton, _)) => newton.is_nested(),
+            own => own.is_some(),
+        }
+    }
+
+    /// What was done on each mesh.
+    #[cfg(test)]
+    pub fn work(&self) -> &[ShapeWork] {
+        &self.work
+    }
+}
+
+/// The equilibrium near a field at a load factor, up to a share of its imbalance, with the tangents for finer meshes, and what it
+/// took; `None` where multigrid does not lead there.
+fn approach(
+    model: &Model,
+    potential: &dyn Potential,
+    mut newton: Newton,
+    (factor, start): (f64, &[f64]),
+    share: f64,
+) -> Option<(State, Newton, Approach)> {
+    let (mut displacement, mut residual) = (start.to_vec(), vec![0.0; start.len()]);
+    let own = newton.approach(
+        potential,
+        (&mut displacement, &mut residual),
+        Nearness::Share(share),
+        FirstTangent::Own,
+    )?;
+    let energy = Assembly::residual(potential, &displacement, &mut residual).ok()?;
+    model.impose(factor, &mut displacement);
+    let state = State {
+        factor,
+        displacement,
+        residual,
+        history: Vec::new(),
+        load_steps: 1,
+        convergence: Convergence {
+            residuals: vec![1.0, own.left()],
+            energy,
+            ..Convergence::default()
+        },
+    };
+    Some((state, newton, own))
+}

@@ -1,0 +1,86 @@
+//! What the hand does to a group: rigid motions, displacements and forces.
+
+use std::fmt;
+
+use super::boundary_conditions::Drive;
+
+/// A rigid motion of a grip in its plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidMotion {
+    /// Displacement of the grip's middle in mm.
+    pub displacement: [f64; 2],
+    /// Turn about its middle in rad, from X to Y.
+    pub angle: f64,
+}
+
+impl RigidMotion {
+    /// The displacement of a point at rest in mm from the grip's middle.
+    pub fn at(self, [along, across]: [f64; 2]) -> [f64; 2] {
+        let (sine, cosine) = self.angle.sin_cos();
+        let [x, y] = self.displacement;
+        [
+            x + along * (cosine - 1.0) - across * sine,
+            y + along * sine + across * (cosine - 1.0),
+        ]
+    }
+
+    /// The motion a share of the way to another one.
+    pub fn towards(self, other: Self, share: f64) -> Self {
+        let between = |from: f64, to: f64| from + share * (to - from);
+        let [from, to] = [self.displacement, other.displacement];
+        Self {
+            displacement: [0, 1].map(|axis| between(from[axis], to[axis])),
+            angle: between(self.angle, other.angle),
+        }
+    }
+}
+
+impl fmt::Display for RigidMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([x, y], angle) = (self.displacement, self.angle.to_degrees());
+        write!(f, "({x:.3}, {y:.3}) mm turned by {angle:.2}°")
+    }
+}
+
+/// What the hand does to a group that a support holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Grip {
+    /// A rigid motion. Along an axis along which the support lets the group slide it has no displacement, and then no turn either.
+    Motion(RigidMotion),
+    /// A displacement in mm or a force in N along each axis, of a rigid grip that does not turn: each of the kind that its support has.
+    Drives([Drive; 2]),
+}
+
+impl Grip {
+    /// The grip a share of the way to another one of its kind.
+    pub fn towards(self, other: Self, share: f64) -> Self {
+        let between = |from: f64, to: f64| from + share * (to - from);
+        match (self, other) {
+            (Self::Motion(from), Self::Motion(to)) => Self::Motion(from.towards(to, share)),
+            (Self::Drives(from), Self::Drives(to)) => {
+                Self::Drives([0, 1].map(|axis| match (from[axis], to[axis]) {
+                    (Drive::Force(from), Drive::Force(to)) => Drive::Force(between(from, to)),
+                    (Drive::Displacement(from), Drive::Displacement(to)) => {
+                        Drive::Displacement(between(from, to))
+                    }
+                    (_, to) => to,
+                }))
+            }
+            (_, to) => to,
+        }
+    }
+}
+
+impl fmt::Display for Grip {
+    /// `(75.000, 0.000) mm turned by 2.00°`, or `2 N along x and 0 mm along y`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let drive = |drive: &Drive| match drive {
+            Drive::Displacement(displacement) => format!("{displacement:.3} mm"),
+            Drive::Force(force) => format!("{force:.4} N"),
+        };
+        match self {
+            Self::Motion(motion) => motion.fmt(f),
+            Self::Drives([x, y]) => write!(f, "{} along x and {} along y", drive(x), drive(y)),
+        }
+    }
+}
