@@ -58,6 +58,10 @@ struct Bench<'a> {
     progress: Progress<'a>,
 }
 
+/// What the finite elements of this comparison are not.
+const BESIDE: &str = "These finite elements have equal cells and begin at the affine stretch: graded meshes and better guesses make \
+                      them quicker, see the bench `corrected_plate`";
+
 impl<'a> Bench<'a> {
     fn new(plate: &'a Plate, repetitions: usize, progress: Progress<'a>) -> Result<Self, Error> {
         let lattice = plate.lattice();
@@ -189,11 +193,7 @@ fn outcome(springs: Way, paths: [Beside; 2]) -> Outcome {
     };
     let claim = Claim {
         claim: "The accuracy of finite elements at 1/20 of their CPU time",
-        reproduced: format!(
-            "{held} (see Times) beside finite elements of equal cells that begin at the affine stretch; graded meshes and better \
-             guesses make them quicker (see the bench `corrected_plate`). {}",
-            verdicts.join("; ")
-        ),
+        reproduced: format!("{held} (see Times). {}. {BESIDE}", verdicts.join("; ")),
     };
     let of_paths = paths
         .into_iter()
@@ -273,7 +273,7 @@ mod tests {
             ),
         ] {
             let (told, all) = said(corrected, [0.3, 1.0]);
-            let expected = format!("{held} (see Times). corrected: {words}{second_half}");
+            let expected = format!("{held} (see Times). corrected: {words}{second_half}. {BESIDE}");
             assert_eq!((told, all), (expected, passed));
         }
     }
