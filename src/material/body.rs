@@ -120,6 +120,12 @@ pub trait BodyLaw: Clone + Send + Sync + Debug {
     /// W and its derivatives.
     fn evaluate(&self, at: BodyStretches<Self::Shape>) -> BodyDerivatives;
 
+    /// W_b alone, for the search of a thickness; not a number where W is none.
+    fn thickness_slope(&self, at: BodyStretches<Self::Shape>) -> f64 {
+        let w = self.evaluate(at);
+        if w.energy.is_finite() { w.b } else { f64::NAN }
+    }
+
     /// As [`HyperelasticLaw::statements`].
     fn statements(&self) -> Vec<(&'static str, String)> {
         Vec::new()

@@ -139,4 +139,55 @@ impl BodyLaw for OgdenHill {
         }
         sum
     }
+
+    /// Σ 2 μ/α (e^(αb) − J₃^(−αβ))
+    fn thickness_slope(&self, at: BodyStretches<(f64, Powers)>) -> f64 {
+        let whole = at.volume();
+        let b = whole - at.shape.0;
+        let slopes = self.terms.iter().map(|term| {
+            let (alpha, beta) = (term.exponent, term.volume_exponent);
+            let across_less_1 = exponential_less_one(alpha * b);
+            let volume = exponential_less_one(-beta * alpha * whole);
+            2.0 * term.modulus / alpha * (across_less_1 - volume)
+        });
+        let slope: f64 = slopes.sum();
+        if slope.is_finite() { slope } else { f64::NAN }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slope_by_thickness_is_that_of_the_energy() {
+        let term = |modulus, exponent, volume_exponent| FoamTerm {
+            modulus,
+            exponent,
+            volume_exponent,
+        };
+        let law = OgdenHill {
+            terms: vec![term(0.4, 11.0, 0.3), term(-0.1, -4.5, 1.2)],
+        };
+        for area_change in [-0.4, -1e-6, 0.0, 0.3, 4.0] {
+            for z in [0.0, 1e-8, 0.5] {
+                for volume_root_change in [-0.6, -1e-7, 0.0, 0.2, 3.0] {
+                    let at = || BodyStretches {
+                        area_change,
+                        shape: law.shape(area_change, z),
+                        volume_root_change,
+                    };
+                    let (own, all) = (law.thickness_slope(at()), law.evaluate(at()));
+                    let scale = 1e-12 * all.bb.abs().max(own.abs());
+                    assert!((own - all.b).abs() <= scale, "{own} {}", all.b);
+                }
+            }
+        }
+        let far = BodyStretches {
+            area_change: 0.0,
+            shape: law.shape(0.0, 0.0),
+            volume_root_change: 1e40,
+        };
+        assert!(law.thickness_slope(far).is_nan());
+    }
 }

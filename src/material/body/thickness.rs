@@ -1,5 +1,7 @@
 //! The thickness of a sheet with free surfaces: W_b = 0.
 
+use std::sync::LazyLock;
+
 use super::{BodyDerivatives, BodyLaw, BodySheet, BodyStretches};
 
 /// Steps of Newton's method before the root is looked for between bounds.
@@ -14,6 +16,13 @@ const FARTHEST: f64 = 12.0;
 
 /// In how many pieces.
 const PIECES: usize = 960;
+
+/// λ₃^⅓ − 1 where the pieces end.
+static THICKNESSES: LazyLock<Vec<f64>> = LazyLock::new(|| {
+    let logarithm = |step: usize| FARTHEST * (2.0 * step as f64 / PIECES as f64 - 1.0);
+    let ends = (0..=PIECES).map(|step| (logarithm(step) / 3.0).exp_m1());
+    ends.collect()
+});
 
 /// 2 (J − 1)/(J + 1), which is ln J to the second order.
 #[inline(always)]
@@ -117,14 +126,14 @@ impl<L: BodyLaw> BodySheet<L> {
     /// The root at which W_b rises that is nearest to the series of small strain.
     fn bisected(&self, area_change: f64, z: f64, shape: L::Shape) -> f64 {
         let slope = |root: f64| {
-            let w = self.evaluated(area_change, shape, root);
-            if w.energy.is_finite() { w.b } else { f64::NAN }
+            self.law.thickness_slope(BodyStretches {
+                area_change,
+                shape,
+                volume_root_change: root,
+            })
         };
-        let area = area_change.ln_1p();
-        let place = |step: usize| {
-            let thickness = FARTHEST * (2.0 * step as f64 / PIECES as f64 - 1.0);
-            ((area + thickness) / 3.0).exp_m1()
-        };
+        let area = (area_change.ln_1p() / 3.0).exp_m1();
+        let place = |step: usize| area + (1.0 + area) * THICKNESSES[step];
         let Some([mut low, mut high]) = rising(place, slope, self.expected(area_change, z)) else {
             return f64::NAN;
         };
@@ -152,9 +161,13 @@ fn rising(
     let off = |piece: usize| 0.5 * (place(piece) + place(piece + 1)) - number;
     let mut values = vec![None; PIECES + 1];
     let mut value = |step: usize| *values[step].get_or_insert_with(|| function(place(step)));
-    let mut above = 0;
-    while above < PIECES && off(above) < 0.0 {
-        above += 1;
+    let (mut above, mut end) = (0, PIECES);
+    while above < end {
+        let middle = usize::midpoint(above, end);
+        match off(middle) < 0.0 {
+            true => above = middle + 1,
+            false => end = middle,
+        }
     }
     let mut below = above;
     while below > 0 || above < PIECES {
