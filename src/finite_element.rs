@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use crate::error::{Error, SolveFault};
 use crate::mesh::{CellShape, Grid, Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{ClampedPlate, Model};
 use crate::solve::{NewtonSettings, State};
 
-use error_estimate::{ErrorEstimate, SheetSolution};
+use error_estimate::{ErrorEstimate, SheetSolution, side_by_side};
 use recovery::Recovery;
 
 pub mod convergence;
@@ -117,16 +115,13 @@ impl FiniteElements {
         recovery: &Recovery,
     ) -> Vec<Result<ErrorEstimate, SolveFault>> {
         let influences = self.model(plate).influences(states, Side::Right.name(), 0);
-        let estimate = |(state, influence): (&State, Result<Vec<f64>, SolveFault>)| {
-            let solved = SheetSolution {
-                law: &*plate.law,
-                thickness: plate.thickness,
-                mesh: &self.mesh,
-                displacement: &state.displacement,
-            };
-            Ok(solved.estimate(recovery, &influence?))
-        };
-        states.par_iter().zip(influences).map(estimate).collect()
+        let solved = states.iter().map(|state| SheetSolution {
+            law: &*plate.law,
+            thickness: plate.thickness,
+            mesh: &self.mesh,
+            displacement: &state.displacement,
+        });
+        side_by_side(solved.collect(), recovery, influences)
     }
 
     /// Solves all stretches of the plate, one after the other.

@@ -7,7 +7,39 @@
 //! Where less than [`HISTORY`] states are known, the state of rest at s = 0 is one more.
 
 /// States that the next one is extrapolated from.
-pub const HISTORY: usize = 3;
+const HISTORY: usize = 3;
+
+/// The last states of a path.
+pub struct Known<F> {
+    /// The parameter of each, none of them rest's.
+    pub parameters: Vec<f64>,
+    /// Its field.
+    pub fields: Vec<F>,
+}
+
+impl<F> Known<F> {
+    /// None yet.
+    pub fn none() -> Self {
+        Self {
+            parameters: Vec::new(),
+            fields: Vec::new(),
+        }
+    }
+
+    /// Takes a state; one at the same parameter is replaced, that of rest is known.
+    pub fn take(&mut self, parameter: f64, field: F) {
+        let same = self.parameters.iter().position(|own| *own == parameter);
+        let full = (self.parameters.len() == HISTORY).then_some(0);
+        if let Some(left_out) = same.or(full) {
+            self.parameters.remove(left_out);
+            self.fields.remove(left_out);
+        }
+        if parameter != 0.0 {
+            self.parameters.push(parameter);
+            self.fields.push(field);
+        }
+    }
+}
 
 /// The shares of states at some parameters in the polynomial through them, at another parameter.
 pub fn value_shares(known: &[f64], parameter: f64) -> Vec<f64> {

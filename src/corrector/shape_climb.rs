@@ -95,7 +95,9 @@ pub fn climb(
     factor: f64,
     settings: ClimbSettings,
 ) -> Result<ShapeClimb, Error> {
-    Climb::new(problem, meshes, settings).correct(factor)
+    Ok(Climb::new(problem, meshes, settings)
+        .ascent(factor)?
+        .climbed())
 }
 
 /// The meshes of a problem, ready to correct at any load factor.
@@ -124,12 +126,15 @@ impl<'a> Climb<'a> {
     /// # Errors
     /// [`Error::Input`] where a mesh does not suit the problem, [`Error::Solve`] where no field was found.
     pub fn correct(&mut self, factor: f64) -> Result<ShapeClimb, Error> {
-        check_memory(&*self.levels.problem.law, "the climb")?;
         // Two sets of systems would need twice the memory.
         self.systems = None;
-        let ascent = Ascent::of(&self.levels, factor, self.settings)?;
-        let (climbed, systems) = ascent.end(&self.levels, self.settings.tolerance)?;
-        self.systems = Some(systems);
-        Ok(climbed)
+        let mut ascent = self.ascent(factor)?;
+        self.systems = Some(ascent.systems(&self.levels, self.settings.tolerance)?);
+        Ok(ascent.climbed())
+    }
+
+    fn ascent(&self, factor: f64) -> Result<Ascent, Error> {
+        check_memory(&*self.levels.problem.law, "the climb")?;
+        Ascent::of(&self.levels, factor, self.settings)
     }
 }

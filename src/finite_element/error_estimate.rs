@@ -36,8 +36,10 @@
 //! - R. Becker, R. Rannacher, Acta Numerica 10, 1 (2001), doi:10.1017/S0962492901000010 (force)
 
 use nalgebra::{Matrix4, Vector4};
+use rayon::prelude::*;
 
 use super::recovery::Recovery;
+use crate::error::SolveFault;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::{GAUSS_3, Mesh};
@@ -53,6 +55,17 @@ pub struct SheetSolution<'a> {
     pub mesh: &'a Mesh,
     /// ux, uy of node after node in mm.
     pub displacement: &'a [f64],
+}
+
+/// The estimated errors of some fields on one mesh, each with the influence field of its force; where that was not found, why.
+pub fn side_by_side(
+    solutions: Vec<SheetSolution>,
+    recovery: &Recovery,
+    influences: Vec<Result<Vec<f64>, SolveFault>>,
+) -> Vec<Result<ErrorEstimate, SolveFault>> {
+    let pairs = solutions.into_par_iter().zip(influences);
+    let estimates = pairs.map(|(own, influence)| Ok(own.estimate(recovery, &influence?)));
+    estimates.collect()
 }
 
 /// An error in the energy norm of the tangent, cell by cell.

@@ -59,10 +59,14 @@ impl Factor {
         factor.factorise().then_some(factor)
     }
 
+    /// Where column j of row i is kept.
+    fn place(&self, i: usize, j: usize) -> usize {
+        (i + 1) * self.numbers.width + j
+    }
+
     /// Row i from column `first` to the diagonal.
     fn row(&self, i: usize, first: usize) -> &[f64] {
-        let width = self.numbers.width;
-        &self.rows[i * (width + 1) + first + width - i..(i + 1) * (width + 1)]
+        &self.rows[self.place(i, first)..=self.place(i, i)]
     }
 
     /// The first column of row i.
@@ -72,7 +76,7 @@ impl Factor {
 
     /// Writes the operator.
     fn take(&mut self, stencil: &Stencil) {
-        let (lines, width) = (stencil.lines(), self.numbers.width);
+        let lines = stencil.lines();
         for line in 1..lines.count - 1 {
             for node in 0..lines.nodes {
                 for (along, across) in [(0, 0), (0, 1), (1, 0), (1, 1), (1, -1)] {
@@ -86,7 +90,8 @@ impl Factor {
                         for (k, entry) in row.iter().enumerate() {
                             let pair = [places[0] + i, places[1] + k];
                             let [column, row] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
-                            self.rows[row * (width + 1) + column + width - row] = f64::from(*entry);
+                            let place = self.place(row, column);
+                            self.rows[place] = f64::from(*entry);
                         }
                     }
                 }
@@ -96,7 +101,6 @@ impl Factor {
 
     /// L in place of K; false where K is not positive definite.
     fn factorise(&mut self) -> bool {
-        let width = self.numbers.width;
         for i in 0..self.numbers.unknowns {
             let first = self.first(i);
             for j in first..=i {
@@ -109,7 +113,8 @@ impl Factor {
                     true => return false,
                     false => rest / other[known],
                 };
-                self.rows[i * (width + 1) + j + width - i] = entry;
+                let place = self.place(i, j);
+                self.rows[place] = entry;
             }
         }
         true

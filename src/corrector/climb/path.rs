@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Climb, ClimbSolution, Ending, Field, Inverted, Iteration, Start, Way, Work, inverted};
-use crate::corrector::extrapolation::{HISTORY, rate_shares, value_shares};
+use crate::corrector::extrapolation::{Known, rate_shares, value_shares};
 use crate::error::{Error, SolveFault};
 use crate::problem::{DeformedSheet, RigidMotion};
 
@@ -25,13 +25,6 @@ impl fmt::Display for Grips {
         let Self { left, right } = self;
         write!(f, "{left} and {right}")
     }
-}
-
-/// A state of a path or of a plate in the hand.
-#[derive(Clone, Debug)]
-struct KnownState {
-    parameter: f64,
-    field: Field,
 }
 
 impl Climb<'_> {
@@ -60,36 +53,30 @@ impl Climb<'_> {
         let relative_error = at_first.min(at_last);
         let [first_state, last_state] = ends;
         told(&first_state);
-        let mut known = vec![KnownState {
-            parameter: *first,
-            field: first_state.field,
-        }];
+        let mut known = Known::none();
+        known.take(*first, first_state.field);
         // Cycles beyond those that fresh operators, which are of linear cells, take: as many as an element's side has
         // cells. Writing the operators anew costs about as much as a few of them.
         let mut beyond = usize::MAX;
         for stretch in between.iter().copied() {
             let anew = beyond > BEYOND;
-            let climbed = match self.near_known(&known, stretch, relative_error, anew) {
-                Ok(climbed) => {
+            let near = (!known.fields.is_empty())
+                .then(|| self.near_known(&known, stretch, relative_error, anew));
+            let climbed = match near {
+                Some(Ok(climbed)) => {
                     let (_, work) = climbed.work[0];
                     beyond = if anew { 0 } else { beyond };
                     beyond += work.cycles.saturating_sub(self.scheme.side());
                     climbed
                 }
                 // Too far from the states before: a climb of its own.
-                Err(_) => {
+                _ => {
                     beyond = usize::MAX;
                     self.correct(stretch)?
                 }
             };
             told(&climbed);
-            if known.len() == HISTORY {
-                known.remove(0);
-            }
-            known.push(KnownState {
-                parameter: stretch,
-                field: climbed.field,
-            });
+            known.take(stretch, climbed.field);
         }
         told(&last_state);
         Ok(())
@@ -98,19 +85,19 @@ impl Climb<'_> {
     /// The state at one stretch from those before, extrapolated; the operators are written anew where they no longer serve.
     fn near_known(
         &mut self,
-        known: &[KnownState],
+        known: &Known<Field>,
         stretch: f64,
         relative_error: f64,
         anew: bool,
     ) -> Result<ClimbSolution, SolveFault> {
-        let parameters: Vec<f64> = known.iter().map(|own| own.parameter).collect();
-        let mut field = combine(known, &value_shares(&parameters, stretch));
+        let mut field = combine(&known.fields, &value_shares(&known.parameters, stretch));
         if anew {
             self.linearise_below(self.levels.len() - 1, &field)?;
         }
         let error = relative_error * self.departure(&field, stretch);
         let reached = self.near(&mut field, error)?;
-        let force = self.force_along(&combine(known, &rate_shares(&parameters, stretch)));
+        let rate = combine(&known.fields, &rate_shares(&known.parameters, stretch));
+        let force = self.force_along(&rate);
         Ok(ClimbSolution::near(field, force, error, reached))
     }
 
@@ -179,11 +166,11 @@ impl ClimbSolution {
 }
 
 /// The sum of the known fields, each with its share.
-fn combine(known: &[KnownState], shares: &[f64]) -> Field {
-    let mut field = known[0].field.clone();
+fn combine(known: &[Field], shares: &[f64]) -> Field {
+    let mut field = known[0].clone();
     field.scale(shares[0]);
-    for (state, share) in known.iter().zip(shares).skip(1) {
-        field.add(*share, &state.field);
+    for (own, share) in known.iter().zip(shares).skip(1) {
+        field.add(*share, own);
     }
     field
 }

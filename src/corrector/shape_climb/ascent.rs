@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::field::{NEWTON, ShapeClimb, ShapeWork};
+use super::field::{NEWTON, ShapeClimb, ShapeWork, approached};
 use super::levels::{Levels, carrying, on};
 use super::systems::{Scale, Systems};
 use crate::corrector::CorrectorSettings;
@@ -13,8 +13,8 @@ use crate::mass_spring::MassSpring;
 use crate::problem::Model;
 use crate::solve::vector::{add_scaled, difference, norm};
 use crate::solve::{
-    Approach, Assembly, Convergence, FirstTangent, Ladder, LinearSolver, Loading, Nearness, Newton,
-    Potential, State,
+    Approach, Assembly, FirstTangent, Ladder, LinearSolver, Loading, Nearness, Newton, Potential,
+    State,
 };
 
 /// What the iteration may leave on all meshes but the finest, relative to what it may leave there.
@@ -173,32 +173,39 @@ impl Ascent {
         });
     }
 
-    /// The field with its errors, and the systems of the finest mesh.
+    /// s q + s q² + …, what all finer meshes would add.
+    fn discretisation_error(&self) -> f64 {
+        geometric_tail(self.size, self.ratio)
+    }
+
+    /// The systems of the finest mesh.
     ///
     /// # Errors
     /// [`Error::Solve`] where the finest mesh has no tangent.
-    pub fn end(self, levels: &Levels, tolerance: f64) -> Result<(ShapeClimb, Systems), Error> {
-        // s q + s q² + …, what all finer meshes would add.
-        let discretisation_error = geometric_tail(self.size, self.ratio);
-        let left = self.reached.map_or(0.0, |(own, _)| own.left());
-        let scale = Scale::of(levels, &self.state, [discretisation_error, tolerance]);
-        let (scale, newton) = match (self.tangents, self.reached) {
+    pub fn systems(&mut self, levels: &Levels, tolerance: f64) -> Result<Systems, Error> {
+        let errors = [self.discretisation_error(), tolerance];
+        let scale = Scale::of(levels, &self.state, errors);
+        let (scale, newton) = match (self.tangents.take(), self.reached) {
             (Some(Tangents::Solved(newton, _)), Some((own, share))) => {
                 (scale.told(&own, share), Some(*newton))
             }
             _ => (scale.without_multigrid(), None),
         };
-        let systems = Systems::new(levels, &self.state, newton, scale)?;
-        let climbed = ShapeClimb {
-            discretisation_error,
-            iteration_error: match levels.finest() {
+        Systems::new(levels, &self.state, newton, scale)
+    }
+
+    /// The field with its errors.
+    pub fn climbed(self) -> ShapeClimb {
+        let left = self.reached.map_or(0.0, |(own, _)| own.left());
+        ShapeClimb {
+            discretisation_error: self.discretisation_error(),
+            iteration_error: match self.level {
                 0 => f64::NAN,
                 _ => left * self.size,
             },
             state: self.state,
             work: self.work,
-        };
-        Ok((climbed, systems))
+        }
     }
 
     /// Whether the tangents of all meshes are at hand for a finer one.
@@ -235,17 +242,6 @@ fn approach(
     )?;
     let energy = Assembly::residual(potential, &displacement, &mut residual).ok()?;
     model.impose(factor, &mut displacement);
-    let state = State {
-        factor,
-        displacement,
-        residual,
-        history: Vec::new(),
-        load_steps: 1,
-        convergence: Convergence {
-            residuals: vec![1.0, own.left()],
-            energy,
-            ..Convergence::default()
-        },
-    };
+    let state = approached(factor, (displacement, residual), energy, &own);
     Some((state, newton, own))
 }

@@ -1,6 +1,6 @@
 //! A field that has climbed, and what was done for it.
 
-use crate::solve::{NewtonSettings, State};
+use crate::solve::{Approach, Convergence, NewtonSettings, State};
 
 /// Where multigrid does not lead to the end.
 pub const NEWTON: NewtonSettings = NewtonSettings {
@@ -20,6 +20,27 @@ pub struct ShapeClimb {
     pub iteration_error: f64,
     /// What was done on each mesh, coarse to fine; on the finest one alone where the state was found near others.
     pub work: Vec<ShapeWork>,
+}
+
+/// The state at a load factor that an approach came to, with its potential and residual.
+pub fn approached(
+    factor: f64,
+    (displacement, residual): (Vec<f64>, Vec<f64>),
+    energy: f64,
+    own: &Approach,
+) -> State {
+    State {
+        factor,
+        displacement,
+        residual,
+        history: Vec::new(),
+        load_steps: 1,
+        convergence: Convergence {
+            residuals: vec![1.0, own.left()],
+            energy,
+            ..Convergence::default()
+        },
+    }
 }
 
 /// What was done on a mesh.

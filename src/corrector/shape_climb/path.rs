@@ -3,44 +3,21 @@
 use super::Climb;
 use super::field::ShapeClimb;
 use super::systems::Aim;
-use crate::corrector::extrapolation::{HISTORY, value_shares};
+use crate::corrector::extrapolation::{Known, value_shares};
 use crate::error::Error;
 use crate::solve::Loading;
 use crate::solve::vector::add_scaled;
 
-/// The last states of a path.
-#[derive(Default)]
-struct Known {
-    factors: Vec<f64>,
-    fields: Vec<Vec<f64>>,
-}
-
-impl Known {
-    /// Takes a state; one at the same load factor is replaced, that of rest is known.
-    fn take(&mut self, climbed: &ShapeClimb) {
-        let factor = climbed.state.factor;
-        if let Some(same) = self.factors.iter().position(|own| *own == factor) {
-            self.factors.remove(same);
-            self.fields.remove(same);
-        }
-        if self.factors.len() == HISTORY {
-            self.factors.remove(0);
-            self.fields.remove(0);
-        }
-        if factor != 0.0 {
-            self.factors.push(factor);
-            self.fields.push(climbed.state.displacement.clone());
-        }
+/// The field that is expected at a load factor; `None` where nothing is known.
+fn expected(known: &Known<Vec<f64>>, factor: f64) -> Option<Vec<f64>> {
+    let mut field = vec![0.0; known.fields.first()?.len()];
+    for (share, own) in value_shares(&known.parameters, factor)
+        .iter()
+        .zip(&known.fields)
+    {
+        add_scaled(&mut field, *share, own);
     }
-
-    /// The field that is expected at a load factor; `None` where nothing is known.
-    fn expected(&self, factor: f64) -> Option<Vec<f64>> {
-        let mut field = vec![0.0; self.fields.first()?.len()];
-        for (share, own) in value_shares(&self.factors, factor).iter().zip(&self.fields) {
-            add_scaled(&mut field, *share, own);
-        }
-        Some(field)
-    }
+    Some(field)
 }
 
 impl Climb<'_> {
@@ -84,24 +61,29 @@ impl Climb<'_> {
             }
             _ => errors[0],
         };
-        let mut known = Known::default();
-        known.take(&begun);
+        let mut known = Known::none();
+        known.take(*first, begun.state.displacement.clone());
         told(&begun);
         for (place, factor) in others.iter().enumerate() {
             let climbed = match last.take_if(|_| place + 1 == others.len()) {
                 Some((climbed, _)) => climbed,
                 None => self.after(&known, *factor, error_at(*factor))?,
             };
-            known.take(&climbed);
+            known.take(*factor, climbed.state.displacement.clone());
             told(&climbed);
         }
         Ok(())
     }
 
     /// The state at a load factor, with a discretisation error over the size of the field, from those before; where they do not lead there, by a climb of its own.
-    fn after(&mut self, known: &Known, factor: f64, error: f64) -> Result<ShapeClimb, Error> {
+    fn after(
+        &mut self,
+        known: &Known<Vec<f64>>,
+        factor: f64,
+        error: f64,
+    ) -> Result<ShapeClimb, Error> {
         let (levels, systems) = (&self.levels, &mut self.systems);
-        if let (Some(systems), Some(mut start)) = (systems, known.expected(factor)) {
+        if let (Some(systems), Some(mut start)) = (systems, expected(known, factor)) {
             systems.scale.discretisation = error;
             let model = levels.model(levels.finest())?;
             model.impose(factor, &mut start);

@@ -1,12 +1,11 @@
 //! The systems that a climb leaves, for states near others.
 
-use super::field::{NEWTON, ShapeClimb, ShapeWork};
+use super::field::{NEWTON, ShapeClimb, ShapeWork, approached};
 use super::levels::{Levels, carrying};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::solve::{
-    Approach, Convergence, FirstTangent, LinearSolver, Loading, Nearness, Newton, Potential, State,
-    equilibrium,
+    Approach, FirstTangent, LinearSolver, Loading, Nearness, Newton, Potential, State, equilibrium,
 };
 
 /// Cycles that the tangent of the finest mesh costs, about, with a look at its stability.
@@ -276,18 +275,7 @@ impl Systems {
             };
             self.judge(&own, anew);
             loading.impose(aim.factor, &mut u);
-            let state = State {
-                factor: aim.factor,
-                displacement: u,
-                residual,
-                history: Vec::new(),
-                load_steps: 1,
-                convergence: Convergence {
-                    residuals: vec![1.0, own.left()],
-                    energy: f64::NAN,
-                    ..Convergence::default()
-                },
-            };
+            let state = approached(aim.factor, (u, residual), f64::NAN, &own);
             return Some((state, own));
         }
         None

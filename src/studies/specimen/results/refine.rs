@@ -1,18 +1,15 @@
 //! How the finite elements of a specimen are found: on three meshes, each twice as fine as the one before, or by local
 //! refinement.
 
-use rayon::prelude::*;
-
 use super::end::{End, last_groups};
 use super::lattice::solve;
 use super::measured::Measured;
 use super::reference::{Reference, Round};
-use crate::error::{Error, SolveFault};
-use crate::finite_element::error_estimate::{self, ErrorEstimate, bulk};
+use crate::error::Error;
+use crate::finite_element::error_estimate::{ErrorEstimate, SheetSolution, bulk, side_by_side};
 use crate::finite_element::recovery::Recovery;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::solve::State;
 use crate::studies::Progress;
 use crate::studies::specimen::problem::{Refinement, Specimen};
 
@@ -262,14 +259,12 @@ fn estimates(
     let recovery = Recovery::new(mesh);
     let states = &solution.states;
     let influences = model.influences(states, &measured.group, measured.axis);
-    let estimate = |(state, influence): (&State, Result<Vec<f64>, SolveFault>)| {
-        let solved = error_estimate::SheetSolution {
-            law: &*specimen.problem.law,
-            thickness: specimen.problem.thickness,
-            mesh,
-            displacement: &state.displacement,
-        };
-        Some(solved.estimate(&recovery, &influence.ok()?))
-    };
-    Ok(states.par_iter().zip(influences).map(estimate).collect())
+    let solved = states.iter().map(|state| SheetSolution {
+        law: &*specimen.problem.law,
+        thickness: specimen.problem.thickness,
+        mesh,
+        displacement: &state.displacement,
+    });
+    let estimates = side_by_side(solved.collect(), &recovery, influences);
+    Ok(estimates.into_iter().map(Result::ok).collect())
 }
