@@ -63,11 +63,7 @@ impl FiniteElements {
 
     /// Meshes the problem with `cells` elements that become smaller towards the corners; see [`Grid`].
     pub fn graded(plate: &ClampedPlate, cells: [usize; 2], element: Element, grading: f64) -> Self {
-        let grid = Grid {
-            size: plate.size,
-            cells,
-            grading,
-        };
+        let grid = Grid::new(plate.size, cells, grading);
         let mesh = Mesh::of_grid(grid, element.shape());
         let energy = SheetEnergy::of_mesh(Arc::clone(&plate.law), &mesh, plate.thickness);
         Self {

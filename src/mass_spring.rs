@@ -117,7 +117,7 @@ impl MassSpring {
             true => isotropic_shares(&*problem.law),
             false => [1.0, 0.0],
         };
-        let [hx, hy] = mesh.cell_size();
+        let [hx, hy] = mesh.cell_size(0);
         let diagonal = hx.hypot(hy);
         let edge =
             |along: f64, across: f64| 9.0 / 8.0 * across / along - 3.0 / 8.0 * along / across;

@@ -34,11 +34,7 @@ struct Case {
 fn cases() -> Vec<Case> {
     let (hole, bone, ring) = (STRIP_WITH_HOLE, DOG_BONE, RING);
     let graded = |kind| {
-        let grid = Grid {
-            size: [150.0, 50.0],
-            cells: [24, 8],
-            grading: 2.0,
-        };
+        let grid = Grid::new([150.0, 50.0], [24, 8], 2.0);
         Mesh::of_grid(grid, kind)
     };
     let grips = |by: f64| named([("left", held(0.0, 0.0)), ("right", held(by, 0.0))]);

@@ -25,7 +25,7 @@
 
 use std::sync::Arc;
 
-use crate::mesh::{CellShape, Mesh};
+use crate::mesh::{CellShape, Grid, Mesh};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
 
@@ -75,9 +75,24 @@ impl DifferenceScheme {
             Self::Biquadratic => {
                 let grid = mesh.grid();
                 let pairs = grid.cells.map(|cells| cells / 2);
-                Mesh::plate(grid.size, pairs, CellShape::Quad9)
+                Mesh::of_grid(Grid::new(grid.size, pairs, grid.grading), CellShape::Quad9)
             }
         }
+    }
+
+    /// The four-node cells of a plate that the scheme corrects on, smaller towards the corners the larger the grading is; the nodes are
+    /// those of [`Climb::graded`].
+    ///
+    /// # Panics
+    /// When the scheme takes cells two by two and their number is odd, or the grading is below 1.
+    ///
+    /// [`Climb::graded`]: super::climb::Climb::graded
+    pub fn graded(self, size: [f64; 2], cells: [usize; 2], grading: f64) -> Mesh {
+        let grid = Grid {
+            together: self.side(),
+            ..Grid::new(size, cells, grading)
+        };
+        Mesh::of_grid(grid, CellShape::Quad4)
     }
 
     /// The scheme's energy on the nodes of a plate's mesh of four-node cells.
@@ -94,9 +109,7 @@ impl DifferenceScheme {
                 return SheetEnergy::of_mesh(Arc::clone(&problem.law), &pairs, problem.thickness);
             }
         };
-        let step = mesh.cell_size();
-        let volume = problem.thickness * step[0] * step[1] / 4.0;
-        let point = |local: [f64; 2]| {
+        let point = |step: [f64; 2], local: [f64; 2]| {
             let scale =
                 |derivative: &[f64; 2]| [0, 1].map(|axis| derivative[axis] * 2.0 / step[axis]);
             let gradients = CellShape::Quad4
@@ -104,10 +117,16 @@ impl DifferenceScheme {
                 .iter()
                 .map(scale)
                 .collect();
-            SamplingPoint { gradients, volume }
+            SamplingPoint {
+                gradients,
+                volume: problem.thickness * step[0] * step[1] / 4.0,
+            }
         };
-        let points = [[-s, -s], [s, -s], [s, s], [-s, s]].map(point).to_vec();
-        let cells = (0..mesh.cell_count()).map(|cell| (mesh.cell(cell), points.clone()));
+        let cells = (0..mesh.cell_count()).map(|cell| {
+            let places = [[-s, -s], [s, -s], [s, s], [-s, s]];
+            let points = places.map(|local| point(mesh.cell_size(cell), local));
+            (mesh.cell(cell), points.to_vec())
+        });
         SheetEnergy::new(Arc::clone(&problem.law), mesh.nodes.len(), cells)
     }
 }

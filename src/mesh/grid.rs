@@ -47,9 +47,21 @@ pub struct Grid {
     pub cells: [usize; 2],
     /// The exponent g.
     pub grading: f64,
+    /// Cells that are equal side by side along both axes, graded as one: 1, or 2 where they are taken two by two.
+    pub together: usize,
 }
 
 impl Grid {
+    /// A grid of cells each of which is graded for itself.
+    pub fn new(size: [f64; 2], cells: [usize; 2], grading: f64) -> Self {
+        Self {
+            size,
+            cells,
+            grading,
+            together: 1,
+        }
+    }
+
     /// The place of a line in mm, `step` of `steps` along an axis; the last one lies on the side to the last digit.
     fn line(self, axis: usize, step: usize, steps: usize) -> f64 {
         let size = self.size[axis];
@@ -71,10 +83,21 @@ impl Grid {
 
     /// The places of all lines of cells along an axis in mm, from one side to the other.
     pub fn lines(self, axis: usize) -> Vec<f64> {
-        let cells = self.cells[axis];
-        (0..=cells)
-            .map(|step| self.line(axis, step, cells))
+        (0..=self.cells[axis])
+            .map(|line| self.node_line(axis, line, 1))
             .collect()
+    }
+
+    /// Length and width of a cell in mm.
+    pub(super) fn cell_size(self, cell: usize) -> [f64; 2] {
+        let place = [cell / self.cells[1], cell % self.cells[1]];
+        [0, 1].map(|axis| match self.grading == 1.0 {
+            true => self.size[axis] / self.cells[axis] as f64,
+            false => {
+                let line = |line: usize| self.node_line(axis, line, 1);
+                line(place[axis] + 1) - line(place[axis])
+            }
+        })
     }
 
     /// The place of a line of nodes, `degree` of them a cell.
@@ -83,12 +106,13 @@ impl Grid {
         if self.grading == 1.0 {
             return self.line(axis, node, cells * degree);
         }
-        let (cell, part) = (node / degree, node % degree);
-        let from = self.line(axis, cell, cells);
+        let (blocks, steps) = (cells / self.together, degree * self.together);
+        let (block, part) = (node / steps, node % steps);
+        let from = self.line(axis, block, blocks);
         if part == 0 {
             return from;
         }
-        from + (self.line(axis, cell + 1, cells) - from) * part as f64 / degree as f64
+        from + (self.line(axis, block + 1, blocks) - from) * part as f64 / steps as f64
     }
 
     /// The cell that holds a point, and the point's natural coordinates in it.
@@ -102,15 +126,19 @@ impl Grid {
             }
             let share = point[axis] / self.size[axis];
             let near = share.min(1.0 - share).max(0.0);
-            let steps = 0.5 * (2.0 * near).powf(1.0 / self.grading) * cells as f64;
+            let blocks = cells / self.together;
+            let steps = 0.5 * (2.0 * near).powf(1.0 / self.grading) * blocks as f64;
             let steps = if share > 0.5 {
-                cells as f64 - steps
+                blocks as f64 - steps
             } else {
                 steps
             };
-            let index = (steps as usize).min(cells - 1);
-            let [from, to] = [index, index + 1].map(|step| self.line(axis, step, cells));
-            (index, 2.0 * (point[axis] - from) / (to - from) - 1.0)
+            let block = (steps as usize).min(blocks - 1);
+            let [from, to] = [block, block + 1].map(|step| self.line(axis, step, blocks));
+            let along = (point[axis] - from) / (to - from) * self.together as f64;
+            let part = (along as usize).min(self.together - 1);
+            let index = block * self.together + part;
+            (index, 2.0 * (along - part as f64) - 1.0)
         };
         let ((i, x), (j, y)) = (place(0), place(1));
         (i * self.cells[1] + j, [x, y])

@@ -159,11 +159,7 @@ mod tests {
     #[test]
     fn nodes_of_graded_cells_are_found_far_from_the_origin() {
         for (grading, far) in [(1.0, 0.0), (2.0, 0.0), (2.0, 1e3), (3.0, 1e3), (1.0, 1e5)] {
-            let grid = Grid {
-                size: [50.0, 150.0],
-                cells: [8, 20],
-                grading,
-            };
+            let grid = Grid::new([50.0, 150.0], [8, 20], grading);
             let plate = Mesh::of_grid(grid, CellShape::Quad9);
             let nodes = plate
                 .nodes

@@ -10,27 +10,23 @@ impl Mesh {
     /// # Panics
     /// When a size or a number of cells is not positive.
     pub fn plate(size: [f64; 2], cells: [usize; 2], shape: CellShape) -> Self {
-        let grading = 1.0;
-        let grid = Grid {
-            size,
-            cells,
-            grading,
-        };
-        Self::of_grid(grid, shape)
+        Self::of_grid(Grid::new(size, cells, 1.0), shape)
     }
 
     /// The plate of a grid; its groups are the sides `left`, `right`, `bottom`, `top`.
     ///
     /// # Panics
-    /// When a size or a number of cells is not positive, or the grading is below 1.
+    /// When a size or a number of cells is not positive, the grading is below 1, or cells remain that cannot be taken together.
     pub fn of_grid(grid: Grid, shape: CellShape) -> Self {
         let Grid {
             size,
             cells,
             grading,
+            together,
         } = grid;
         assert!(size.iter().all(|size| *size > 0.0) && cells.iter().all(|cells| *cells > 0));
         assert!(grading >= 1.0, "a grading of {grading}");
+        assert!(cells.iter().all(|cells| cells.is_multiple_of(together)));
         assert!(
             matches!(shape, CellShape::Quad4 | CellShape::Quad9),
             "a grid of nodes"
@@ -81,10 +77,9 @@ impl Mesh {
         }
     }
 
-    /// Length and width of a cell of a plate of equal cells in mm.
-    pub fn cell_size(&self) -> [f64; 2] {
-        let Grid { size, cells, .. } = self.grid();
-        [0, 1].map(|axis| size[axis] / cells[axis] as f64)
+    /// Length and width of a cell of a plate in mm.
+    pub fn cell_size(&self, cell: usize) -> [f64; 2] {
+        self.grid().cell_size(cell)
     }
 
     /// The area in mm² that belongs to each node of a plate: from half way to its neighbours to half way to them.
@@ -153,17 +148,20 @@ mod tests {
 
     #[test]
     fn graded_cells_are_symmetric_smaller_at_the_corners_and_found() {
-        for shape in [CellShape::Quad4, CellShape::Quad9] {
-            let grid = Grid {
-                size: [150.0, 50.0],
-                cells: [12, 5],
-                grading: 2.0,
-            };
+        let shapes = [CellShape::Quad4, CellShape::Quad9];
+        for (shape, together) in shapes
+            .into_iter()
+            .flat_map(|shape| [(shape, 1), (shape, 2)])
+        {
+            let single = Grid::new([150.0, 50.0], [12, 6 - together], 2.0);
+            let grid = Grid { together, ..single };
             let mesh = Mesh::of_grid(grid, shape);
-            let column = |cell: usize| mesh.centre(5 * cell)[0];
+            let column = |cell: usize| mesh.centre(grid.cells[1] * cell)[0];
             assert!((column(0) + column(11) - 150.0).abs() < 1e-12);
-            // The first line lies at ½ (2/12)² of the length.
-            assert!((column(0) - 75.0 / 72.0).abs() < 1e-12);
+            // The first line lies at ½ (2/12)² of the length; that of the first pair at ½ (2/6)².
+            let first = [75.0 / 72.0, 75.0 / 36.0][together - 1];
+            assert!((column(0) - first).abs() < 1e-12);
+            assert!((mesh.cell_size(0)[0] - 2.0 * first).abs() < 1e-12);
             for cell in 0..mesh.cell_count() {
                 for local in [[-0.9, 0.3], [0.0, 0.0], [0.99, -0.99]] {
                     let (found, there) = mesh.locate(mesh.place(cell, local));
@@ -173,7 +171,8 @@ mod tests {
             }
             let area: f64 = mesh.nodal_areas().iter().sum();
             assert!((area - 7500.0).abs() < 1e-9);
-            assert!(mesh.describe().contains("12 × 5 cells, graded by 2"));
+            let described = format!("12 × {} cells, graded by 2", grid.cells[1]);
+            assert!(mesh.describe().contains(&described));
         }
     }
 }

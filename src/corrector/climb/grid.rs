@@ -99,11 +99,7 @@ impl Grid {
 
     /// A grid of cells that become smaller towards the corners; see [`mesh::Grid`].
     pub fn graded(size: [f64; 2], cells: [usize; 2], grading: f64) -> Self {
-        let grid = mesh::Grid {
-            size,
-            cells,
-            grading,
-        };
+        let grid = mesh::Grid::new(size, cells, grading);
         Self {
             coordinates: [0, 1].map(|axis| grid.lines(axis)),
         }

@@ -35,33 +35,39 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The direct corrector's field and force; its multipliers are compared with the climb's.
-fn direct(problem: &ClampedPlate, cells: [usize; 2], scheme: DifferenceScheme) -> (Vec<f64>, f64) {
+fn direct(
+    problem: &ClampedPlate,
+    (cells, grading): ([usize; 2], f64),
+    scheme: DifferenceScheme,
+) -> (Vec<f64>, f64) {
     let springs = MassSpring::new(problem, cells, LatticeSettings { area_term: false });
     let newton = NewtonSettings {
         tolerance: 1e-10,
         max_iterations: 60,
     };
-    let data = springs.solve(problem, newton, &|_| ()).unwrap().remove(0);
+    let springs_state = springs.solve(problem, newton, &|_| ()).unwrap().remove(0);
+    let mesh = scheme.graded(problem.size, cells, grading);
+    let data = springs
+        .mesh
+        .displacement_on(&springs_state.displacement, &mesh);
     let settings = CorrectorSettings {
         tolerance: 1e-11,
         movement: 1e-9,
         max_steps: 60,
         solver: Solver::Automatic,
     };
-    let corrector = PlateCorrector::new(problem, &springs.mesh, scheme, settings);
+    let corrector = PlateCorrector::new(problem, &mesh, scheme, settings);
     let stretch = problem.stretches[0];
     let state = corrector
-        .correct(&data.displacement, stretch, KnownConditions::ALL)
+        .correct(&data, stretch, KnownConditions::ALL)
         .unwrap();
     let multipliers: Vec<f64> = state
         .multipliers
         .into_iter()
         .flat_map(|m| m.values)
         .collect();
-    let mut climb = Climb::even(problem, cells, scheme, TIGHT);
-    let climbed = corrector
-        .climb(&mut climb, &data.displacement, stretch)
-        .unwrap();
+    let mut climb = Climb::graded(problem, cells, scheme, grading, TIGHT);
+    let climbed = corrector.climb(&mut climb, &data, stretch).unwrap();
     let own: Vec<f64> = climbed
         .multipliers
         .into_iter()
@@ -118,21 +124,17 @@ fn the_climb_reaches_the_direct_corrector_with_every_scheme_law_and_number_of_ce
             DifferenceScheme::Gauss,
         ),
     ];
-    for (card, size, cells, stretch, scheme) in cases {
+    let graded = |case| [1.0, 1.5, 2.5].map(|grading| (case, grading));
+    for ((card, size, cells, stretch, scheme), grading) in cases.into_iter().flat_map(graded) {
         let problem = problem(card, size, stretch);
-        let (expected, force) = direct(&problem, cells, scheme);
-        let climbed = Climb::even(&problem, cells, scheme, TIGHT)
+        let (expected, force) = direct(&problem, (cells, grading), scheme);
+        let climbed = Climb::graded(&problem, cells, scheme, grading, TIGHT)
             .correct(stretch)
             .unwrap();
         let off = largest_difference(&climbed.field.to_nodes(), &expected);
-        assert!(
-            off < 1e-6 * size[0],
-            "{card} {cells:?} {scheme:?}: {off} mm"
-        );
-        assert!(
-            (climbed.force / force - 1.0).abs() < 1e-7,
-            "{card} {cells:?}"
-        );
+        let told = format!("{card} {cells:?} {scheme:?} graded by {grading}");
+        assert!(off < 1e-6 * size[0], "{told}: {off} mm");
+        assert!((climbed.force / force - 1.0).abs() < 1e-7, "{told}");
     }
 }
 

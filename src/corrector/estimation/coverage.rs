@@ -95,11 +95,7 @@ fn standard_errors_are_the_scatter_over_seeds() {
 #[test]
 fn without_noise_the_intervals_hold_the_truth() {
     let truth = Truth::on(Mesh::of_grid(
-        crate::mesh::Grid {
-            size: SIZE,
-            cells: [48, 28],
-            grading: 3.0,
-        },
+        crate::mesh::Grid::new(SIZE, [48, 28], 3.0),
         CellShape::Quad9,
     ));
     let markers = truth.markers(0.0, 1);

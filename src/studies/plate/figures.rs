@@ -9,7 +9,6 @@ use crate::results::{
     Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, material_chart,
     sheet_figures,
 };
-use crate::solve::State;
 
 const CORRECTED: [u8; 3] = PALETTE[0];
 const MASS_SPRING: [u8; 3] = PALETTE[1];
@@ -122,19 +121,14 @@ fn plates(results: &Results, step: usize, at: &str) -> FieldFigure {
 }
 
 fn error_map(results: &Results, step: usize, at: &str) -> FieldFigure {
-    let mesh = &results.springs.mesh;
-    let models = MODELS.into_iter().zip(results.models(step)).take(2);
-    let distance = |(label, solution): (&str, Option<&State>)| {
-        let reference = results.reference_on_lattice.get(step)?;
-        Some(Panel::distance(
-            label,
-            mesh,
-            &solution?.displacement,
-            reference,
-        ))
+    let (meshes, solutions) = (results.meshes(), results.models(step));
+    let distance = |model: usize| {
+        let reference = results.reference_on[model].get(step)?;
+        let u = &solutions[model]?.displacement;
+        Some(Panel::distance(MODELS[model], meshes[model], u, reference))
     };
     let title = format!("Distance to the finite elements at {at}");
-    FieldFigure::new(title, "distance [mm]", models.filter_map(distance)).logarithmic()
+    FieldFigure::new(title, "distance [mm]", (0..2).filter_map(distance)).logarithmic()
 }
 
 fn estimated_error(results: &Results) -> Option<FieldFigure> {

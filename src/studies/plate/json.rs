@@ -16,6 +16,7 @@ pub fn problem(study: &Study) -> Map<String, Value> {
         "width_mm": study.problem.size[1],
         "thickness_mm": study.problem.thickness,
         "cells": study.cells,
+        "corrector": { "grading": study.corrector.grading },
         "reference": { "element": study.reference.element.name(), "cells": study.reference.meshes(), "grading": study.reference.grading },
     });
     all.as_object().cloned().unwrap_or_default()

@@ -9,6 +9,7 @@ use crate::error::Diagnostic;
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::LatticeSettings;
 use crate::material::Card;
+use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::solve::{LinearSolver, NewtonSettings};
 use crate::studies::pictures::Pictures;
@@ -54,6 +55,8 @@ pub struct Study {
 pub struct Correction {
     /// The finite differences.
     pub scheme: DifferenceScheme,
+    /// How much smaller its cells become towards the corners; see [`crate::mesh::Grid`].
+    pub grading: f64,
     /// How exactly the corrector climbs; `None` where it is direct.
     pub climb: Option<ClimbSettings>,
     /// When the direct corrector stops.
@@ -124,7 +127,17 @@ impl Study {
         };
         let Reference { cells, grading, .. } = self.reference;
         let cells = cells.map(|cells| cells * scheme.side());
-        self.reference.element == element && grading == 1.0 && cells == self.cells
+        self.reference.element == element
+            && grading == self.corrector.grading
+            && cells == self.cells
+    }
+
+    /// The cells of the corrected fields.
+    pub fn corrected_mesh(&self) -> Mesh {
+        let Correction {
+            scheme, grading, ..
+        } = self.corrector;
+        scheme.graded(self.problem.size, self.cells, grading)
     }
 
     /// The finite elements on three meshes, coarse to fine.

@@ -27,6 +27,12 @@ use crate::units::Dimension;
 const WITH_COMPRESSIONS: Bound = Bound::Range(-0.95, 100.0, "from −95 % to 10000 %");
 const SMALLEST: f64 = 1e-9;
 
+/// Cells across a plate that automatic finite elements have at most for graded corrected fields.
+const MOST_ACROSS: f64 = 160.0;
+
+/// Of cells towards the corners.
+const GRADINGS: Bound = Bound::Within(1.0, 4.0);
+
 /// The study that `gelbench new` writes: every key with its default.
 pub const DEFAULT: &str = include_str!("default.toml");
 
@@ -112,7 +118,8 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let mass_spring = read_newton(&section);
     section.unknown_keys();
     let corrector = read_corrector(&root.section("corrector"), &plate, (problem.size, cells));
-    let reference = read_reference(&root.section("finite_element"), &problem, cells);
+    let judged = (cells, corrector.is_some_and(|own| own.grading > 1.0));
+    let reference = read_reference(&root.section("finite_element"), &problem, judged);
     if problem.law.softening().is_some() {
         check_memory(&root, lattice, corrector);
     }
@@ -172,6 +179,7 @@ fn read_corrector(
     if let Some(scheme) = scheme {
         check_pairs(plate, scheme, lattice);
     }
+    let grading = section.number("grading", GRADINGS);
     let climb = section.choice("method", &[("climb", true), ("direct", false)]);
     let bound = Bound::Within(1e-6, 1.0);
     let settings = ClimbSettings {
@@ -186,6 +194,7 @@ fn read_corrector(
     section.unknown_keys();
     Some(Correction {
         scheme: scheme?,
+        grading,
         climb: climb?.then_some(settings),
         direct,
     })
@@ -194,16 +203,16 @@ fn read_corrector(
 fn read_reference(
     section: &Section<'_>,
     plate: &ClampedPlate,
-    lattice: [usize; 2],
+    judged: ([usize; 2], bool),
 ) -> Option<Reference> {
     let element = section.choice("element", &Element::NAMES);
-    let cells = read_reference_cells(section, plate.size, lattice);
+    let cells = read_reference_cells(section, plate.size, judged);
     let unknowns = match element {
         Some(Element::Q1) => 2.0,
         _ => 8.0,
     };
     affords_cells(section, cells, unknowns, plate.stretches.len());
-    let grading = section.number("grading", Bound::Within(1.0, 4.0));
+    let grading = section.number("grading", GRADINGS);
     let newton = read_newton(section);
     let linear_solver = section.choice("method", &LinearSolver::NAMES);
     section.unknown_keys();
@@ -217,11 +226,15 @@ fn read_reference(
 }
 
 /// The cells that a study gives, or those that suit its lattice.
-fn read_reference_cells(section: &Section<'_>, size: [f64; 2], lattice: [usize; 2]) -> [usize; 2] {
+fn read_reference_cells(
+    section: &Section<'_>,
+    size: [f64; 2],
+    judged: ([usize; 2], bool),
+) -> [usize; 2] {
     const KEY: &str = "cells";
     let given = section.count_pair_or("automatic", KEY, [4, MOST_CELLS]);
     let Some(cells) = given.flatten() else {
-        return reference_cells(size, lattice);
+        return reference_cells(size, judged);
     };
     if cells.iter().any(|cells| cells % 4 != 0) {
         let [x, y] = cells.map(|cells| cells.next_multiple_of(4));
@@ -242,11 +255,16 @@ fn read_reference_cells(section: &Section<'_>, size: [f64; 2], lattice: [usize; 
 /// ```
 ///
 /// so that it is 1/100 and less of the lattice's on plates of 1:1 to 20:1 with 4 to 80 cells across. Between the grips a
-/// long plate is nearly in uniaxial tension: over the longer side the cells need not be square.
-fn reference_cells(size: [f64; 2], lattice: [usize; 2]) -> [usize; 2] {
+/// long plate is nearly in uniaxial tension: over the longer side the cells need not be square. On graded cells the corrected field's
+/// error falls with the third power too: n = 2 m there, up to [`MOST_ACROSS`].
+fn reference_cells(size: [f64; 2], (lattice, is_graded): ([usize; 2], bool)) -> [usize; 2] {
     let short = if size[0] < size[1] { 0 } else { 1 };
     let m = lattice[short] as f64;
-    let n = (40.0 * m).sqrt().max(40.0_f64.min(2.0 * (20.0 * m).sqrt()));
+    let equal = (40.0 * m).sqrt().max(40.0_f64.min(2.0 * (20.0 * m).sqrt()));
+    let n = match is_graded {
+        true => equal.max(MOST_ACROSS.min(2.0 * m)),
+        false => equal,
+    };
     let over = |axis: usize| (n * (size[axis] / size[short]).sqrt()).ceil() as usize;
     [0, 1].map(|axis| over(axis).next_multiple_of(4).min(MOST_CELLS))
 }

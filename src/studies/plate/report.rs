@@ -32,9 +32,17 @@ fn introduction(study: &Study, results: &Results) -> String {
     let [nx, ny] = study.cells;
     format!(
         "A clamped plate of {length} × {width} × {} mm, {}. The mass-spring model on {nx} × {ny} cells, \
-         the corrected field on the same nodes, and the finite elements that both are compared with: {}.",
+         the corrected field on {}, and the finite elements that both are compared with: {}.",
         study.problem.thickness,
         study.card.title,
+        match study.corrector.grading == 1.0 {
+            true => "the same nodes".to_owned(),
+            false => format!(
+                "as many cells that become smaller towards the clamped corners (graded by {}), to whose nodes the springs' field \
+                 is interpolated",
+                study.corrector.grading
+            ),
+        },
         results.finest().model.describe()
     )
 }

@@ -29,8 +29,10 @@ pub struct ReferenceMesh {
 /// others go on without it.
 #[derive(Debug)]
 pub struct Results {
-    /// The lattice; its mesh is that of the corrected fields too.
+    /// The lattice.
     pub springs: MassSpring,
+    /// The cells of the corrected fields: those of the lattice, or as many that become smaller towards the corners.
+    pub corrected_mesh: Mesh,
     /// The lattice in equilibrium, one state a stretch, as far as the path goes.
     pub uncorrected: Solution,
     /// The corrected field at every stretch; `None` where none was found.
@@ -39,8 +41,8 @@ pub struct Results {
     pub reference: [ReferenceMesh; 3],
     /// The estimated errors of the finest of them; `None` where its tangent cannot be factorised.
     pub estimates: Vec<Option<ErrorEstimate>>,
-    /// The reference field at the nodes of the lattice in mm, as far as the path goes.
-    pub reference_on_lattice: Vec<Vec<f64>>,
+    /// The reference field in mm at the nodes of the lattice, and at those of the corrected fields, as far as the path goes.
+    pub reference_on: [Vec<Vec<f64>>; 2],
     /// Deviations from the reference, one entry a stretch.
     pub comparison: Vec<StepComparison>,
     /// Why models have no solution at stretches of the study, in the order in which they were solved.
@@ -100,8 +102,11 @@ impl Results {
 
     /// The mesh of each of them.
     pub fn meshes(&self) -> [&Mesh; 3] {
-        let lattice = &self.springs.mesh;
-        [lattice, lattice, &self.finest().model.mesh]
+        [
+            &self.springs.mesh,
+            &self.corrected_mesh,
+            &self.finest().model.mesh,
+        ]
     }
 
     /// The stretches at which a model of [`MODELS`] has a solution.

@@ -14,19 +14,19 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
         thickness: study.problem.thickness,
         past: &[],
     };
-    let lattice = &results.springs.mesh;
     let finest = results.finest();
-    let on_lattice = |model: usize, step: usize, solution: &State| {
+    let meshes = results.meshes();
+    let compared = |model: usize, step: usize, solution: &State| {
         let u = &solution.displacement;
         let past = results.past(model, step);
-        let reference = results.reference_on_lattice.get(step);
+        let reference = results.reference_on[model].get(step);
         let difference = reference.map(|reference| Array::to_finite_elements(u, reference));
-        Grid::sheet(sheet.after(&past), lattice, u).with(difference)
+        Grid::sheet(sheet.after(&past), meshes[model], u).with(difference)
     };
     let springs = |step: usize| Some((step, results.uncorrected.states.get(step)?));
     let steps = || 0..study.problem.stretches.len();
     let mass_spring = steps().filter_map(springs);
-    let mass_spring = mass_spring.map(|(step, solution)| (step, on_lattice(0, step, solution)));
+    let mass_spring = mass_spring.map(|(step, solution)| (step, compared(0, step, solution)));
     let bars = steps().filter_map(springs);
     let bars = bars.map(|(step, own)| {
         (
@@ -36,7 +36,7 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
     });
     let corrected = steps().filter_map(|step| Some((step, results.corrected[step].as_ref()?)));
     let corrected = corrected.map(|(step, state)| {
-        let grid = on_lattice(1, step, &state.state);
+        let grid = compared(1, step, &state.state);
         (step, grid.with(multipliers(state)))
     });
     let elements = finest

@@ -208,11 +208,8 @@ impl Settings {
     ) -> Result<FieldEstimate, Error> {
         let [length, width] = self.data.plate.problem.size;
         let [along, across] = self.data.plate.cells;
-        let grid = Grid {
-            size: [PART * length, width],
-            cells: [(PART * along as f64) as usize, across],
-            grading: 2.0,
-        };
+        let cells = [(PART * along as f64) as usize, across];
+        let grid = Grid::new([PART * length, width], cells, 2.0);
         let mesh = Mesh::of_grid(grid, CellShape::Quad9);
         markers.retain(|marker| marker.place[0] < PART * length);
         let mut knowledge = unknown_grips();

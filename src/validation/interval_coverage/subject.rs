@@ -85,11 +85,7 @@ impl Subject {
     /// The clamped plate.
     pub fn plate(data: &Data) -> Result<Self, Error> {
         let mesh = |cells: [usize; 2]| {
-            let grid = Grid {
-                size: data.plate.problem.size,
-                cells,
-                grading: 2.0,
-            };
+            let grid = Grid::new(data.plate.problem.size, cells, 2.0);
             Mesh::of_grid(grid, CellShape::Quad9)
         };
         let cells = data.plate.cells;

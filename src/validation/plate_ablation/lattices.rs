@@ -37,7 +37,7 @@ impl Variant {
 
     fn lattice(self, fields: &Fields, disturbance: Disturbance) -> MassSpring {
         let mesh = &fields.lattice.mesh;
-        let size = mesh.cell_size();
+        let size = mesh.cell_size(0);
         let range = 1.0 - disturbance.share..=1.0 + disturbance.share;
         let mut random = ChaCha8Rng::seed_from_u64(disturbance.seed);
         let mut factor = |spring: &Spring| {

@@ -89,6 +89,7 @@ fn settings_that_contradict_each_other_are_refused() {
     ));
     assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
     assert!(faults("[finite_element]\ngrading = 0.5\n")[0].contains("must be"));
+    assert!(faults("[corrector]\ngrading = 0.5\n")[0].contains("must be"));
     assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));
     assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("from small to large"));
     assert!(faults("[load]\nstretches = [-0.1, 0.3]\n")[0].contains("one sign"));
@@ -119,6 +120,10 @@ fn a_plate_that_is_compared_with_itself_is_told_so() {
             .unwrap()
             .is_its_own_reference()
     );
+    let graded = own.replace("grading = 1", "grading = 2");
+    assert!(!parse(&graded).unwrap().is_its_own_reference());
+    let both = format!("{graded}[corrector]\ngrading = 2\n");
+    assert!(parse(&both).unwrap().is_its_own_reference());
     let q1 = own.replace("[24, 8]", "[48, 16]\nelement = \"Q1\"");
     assert!(
         parse(&format!("{q1}{gauss}"))

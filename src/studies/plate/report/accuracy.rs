@@ -49,9 +49,13 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
         Block::table(&head, results.comparison.iter().enumerate().map(row)),
         Block::Paragraph(format!(
             "The departure before the correction is what the springs cannot do; the correction removes it. What \
-             remains is the discretisation error of the corrector's finite differences on the lattice's nodes{}, and \
+             remains is the discretisation error of the corrector's finite differences on {}{}, and \
              the finite elements' own discretisation error, estimated from three meshes. The finite elements judge a \
              deviation only where their own error of it is at most a tenth of it.",
+            match study.corrector.grading == 1.0 {
+                true => "the lattice's nodes",
+                false => "the nodes of its graded cells",
+            },
             match study.corrector.scheme {
                 DifferenceScheme::Gauss =>
                     ", whose equations are those of bilinear finite elements there",

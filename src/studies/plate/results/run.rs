@@ -36,7 +36,10 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let plate = &study.problem;
     let springs = MassSpring::new(plate, study.cells, study.lattice);
     let uncorrected = run.solve("mass-spring", &springs.model(plate), study.mass_spring);
-    let corrected = run.timed("corrector", |run| run.correct(&uncorrected));
+    let corrected_mesh = study.corrected_mesh();
+    let corrected = run.timed("corrector", |run| {
+        run.correct(&uncorrected, &corrected_mesh)
+    });
     let reference = run.reference();
     let [.., finest] = &reference;
     let estimates = run.timed("finite elements' error", |_| {
@@ -58,8 +61,8 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     let reference_field = Reference::new(plate, meshes);
     let lattice = &springs.mesh;
     let compare = |(step, stretch): (usize, &f64)| {
-        let deviation = |state, past: &[&[f64]], measures| {
-            reference_field.deviation(lattice, (state, past), measures, step)
+        let deviation = |mesh, state, past: &[&[f64]], measures| {
+            reference_field.deviation(mesh, (state, past), measures, step)
         };
         let springs = uncorrected.states.get(step);
         let past = corrected[..step].iter().flatten();
@@ -67,19 +70,21 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
         StepComparison {
             stretch: *stretch,
             mass_spring: springs.and_then(|state| {
-                deviation(state, &uncorrected.past(step), Measures::of(lattice, state))
+                let measures = Measures::of(lattice, state);
+                deviation(lattice, state, &uncorrected.past(step), measures)
             }),
             corrected: corrected[step]
                 .as_ref()
-                .and_then(|own| deviation(&own.state, &past, own.measures)),
+                .and_then(|own| deviation(&corrected_mesh, &own.state, &past, own.measures)),
             reference: reference_field.self_convergence(step),
         }
     };
     Ok(Results {
-        reference_on_lattice: reference_field.displacements_on(lattice),
+        reference_on: [lattice, &corrected_mesh].map(|mesh| reference_field.displacements_on(mesh)),
         comparison: plate.stretches.iter().enumerate().map(compare).collect(),
         remembers: plate.law.softening().is_some(),
         springs,
+        corrected_mesh,
         uncorrected,
         corrected,
         reference,
@@ -107,15 +112,17 @@ pub fn one_model(study: &Study, kind: ModelKind, progress: Progress) -> OneModel
     }
     // Where the springs end early the correction goes on.
     run.ends.clear();
-    let found: Vec<CorrectedState> = run.correct(&uncorrected).into_iter().flatten().collect();
-    let energy = study.corrector.scheme.energy(plate, &springs.mesh);
+    let mesh = study.corrected_mesh();
+    let found = run.correct(&uncorrected, &mesh).into_iter();
+    let found: Vec<CorrectedState> = found.flatten().collect();
+    let energy = study.corrector.scheme.energy(plate, &mesh);
     let forces = found.iter().map(|own| own.measures.force).collect();
     let (states, multipliers) = found
         .into_iter()
         .map(|own| (own.state, own.multipliers))
         .unzip();
     OneModel {
-        solution: Solution::new(&plate.on(&springs.mesh, &energy), &GRIPS, states),
+        solution: Solution::new(&plate.on(&mesh, &energy), &GRIPS, states),
         forces,
         multipliers,
         ends: run.ends,
@@ -197,25 +204,28 @@ impl<'a> Run<'a> {
         Solution::new(model, &GRIPS, states)
     }
 
-    /// The corrected field at every stretch. Where the springs have no field the affine stretch takes its place: it has a
-    /// say in the multipliers, and in where the direct method begins.
-    fn correct(&mut self, springs: &Solution) -> Vec<Option<CorrectedState>> {
-        let (study, plate, lattice) = (self.study, &self.study.problem, &springs.mesh);
+    /// The corrected field at every stretch, on a mesh to whose nodes the springs' is interpolated. Where the springs have no field the
+    /// affine stretch takes its place: it has a say in the multipliers, and in where the direct method begins.
+    fn correct(&mut self, springs: &Solution, mesh: &Mesh) -> Vec<Option<CorrectedState>> {
+        let (study, plate) = (self.study, &self.study.problem);
         let settings = &study.corrector;
         let mut corrector = Some(PlateCorrector::new(
             plate,
-            lattice,
+            mesh,
             settings.scheme,
             settings.direct,
         ));
-        let even = |climb| Climb::even(plate, study.cells, settings.scheme, climb);
-        let mut climb = settings.climb.map(even);
+        let mut climb = settings.climb.map(|climb| {
+            Climb::graded(plate, study.cells, settings.scheme, settings.grading, climb)
+        });
         let remembers = plate.law.softening().is_some();
         let mut correct = |(step, stretch): (usize, &f64)| {
-            let affine = || plate.affine(lattice, *stretch);
-            let data = springs
-                .displacement(step)
-                .map_or_else(affine, <[f64]>::to_vec);
+            let affine = || plate.affine(mesh, *stretch);
+            let on_nodes = |field: &[f64]| match settings.grading == 1.0 {
+                true => field.to_vec(),
+                false => springs.mesh.displacement_on(field, mesh),
+            };
+            let data = springs.displacement(step).map_or_else(affine, on_nodes);
             let own = corrector.take()?;
             let corrected = match &mut climb {
                 Some(climb) => own.climb(climb, &data, *stretch),
@@ -275,10 +285,13 @@ pub fn fields(
         displacement: state.expect("no model ended").displacement.clone(),
     };
     let [springs, corrected, elements] = results.models(last);
-    let lattice = &results.springs.mesh;
+    let [lattice, cells, finest] = results.meshes();
     Ok([
-        field("finite elements", &results.finest().model.mesh, elements),
+        field("finite elements", finest, elements),
         field("mass-spring", lattice, springs),
-        field("corrected", lattice, corrected),
+        field("corrected", cells, corrected),
     ])
 }
+
+#[cfg(test)]
+mod tests;
