@@ -27,6 +27,7 @@ pub use boundary::BoundaryProblem;
 pub use boundary_conditions::{Drive, Load, Support};
 pub use deformed::{DeformedSheet, PointFault, Stress};
 pub use grip::{Grip, RigidMotion};
+pub(crate) use groups::edge_lengths;
 pub use hand::{Hand, HandMotion};
 pub use model::Model;
 pub use plate::{ClampedPlate, Measures};

@@ -53,6 +53,7 @@ mod result;
 mod robust;
 mod rows;
 mod search;
+mod shares;
 mod start;
 mod task;
 mod transfer;

@@ -1,25 +1,40 @@
-//! Bodies that hold the sheet: all sides of one name move and pull as one, and every node belongs to one body along each axis.
-
-use std::collections::BTreeSet;
+//! Bodies that hold the sheet: all sides of one name move and pull as one, and share the reactions of the nodes where they meet.
 
 use super::knowledge::EdgeCondition;
 use super::outline::Segment;
+use super::shares::{Hold, Share, shares};
+use crate::mesh::Mesh;
 
 /// What holds the sheet.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// The name of its edges.
     pub name: String,
     /// Numbers of its edges.
     pub edges: Vec<usize>,
-    /// Its nodes along x and along y: those that no body before it holds.
-    pub nodes: [Vec<usize>; 2],
-    /// Its turn where bodies meet: known displacements go before rigid ones and these before unknown ones.
-    pub turn: usize,
+    /// The reactions along x and along y that make up its force.
+    pub shares: [Vec<Share>; 2],
+    /// Where bodies meet, known displacements go before rigid ones and these before unknown ones.
+    pub rank: usize,
 }
 
-/// The bodies behind the edges that are not free, in the order of their first edges.
-pub fn bodies<'a>(edges: impl Iterator<Item = (&'a Segment, EdgeCondition)>) -> Vec<Body> {
+impl Body {
+    /// Its force of some reactions, two numbers a node.
+    pub fn force(&self, reactions: &[f64]) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let shares = self.shares[axis].iter();
+            shares
+                .map(|(node, factor)| factor * reactions[2 * node + axis])
+                .sum()
+        })
+    }
+}
+
+/// The bodies behind the edges of a mesh that are not free, in the order of their first edges.
+pub fn bodies<'a>(
+    mesh: &Mesh,
+    edges: impl Iterator<Item = (&'a Segment, EdgeCondition)>,
+) -> Vec<Body> {
     let edges: Vec<_> = edges.collect();
     let mut groups: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
     for (index, (segment, condition)) in edges.iter().enumerate() {
@@ -35,42 +50,52 @@ pub fn bodies<'a>(edges: impl Iterator<Item = (&'a Segment, EdgeCondition)>) -> 
             None => groups.push((named, vec![index])),
         }
     }
-    let rank = |group: &(Option<usize>, Vec<usize>)| match edges[group.1[0]].1 {
-        EdgeCondition::Known(_) => 0,
-        EdgeCondition::Rigid => 1,
-        EdgeCondition::Unknown | EdgeCondition::Free => 2,
+    let members = groups.into_iter().map(|(_, members)| members);
+    let members: Vec<Vec<usize>> = members.collect();
+    let holds = members.iter().map(|members| hold(mesh, &edges, members));
+    let holds: Vec<Hold> = holds.collect();
+    let all = shares(mesh, &holds).into_iter().zip(holds).zip(members);
+    let body = |((shares, hold), members): ((_, Hold), Vec<usize>)| Body {
+        name: edges[members[0]].0.name.clone(),
+        edges: members,
+        shares,
+        rank: hold.rank,
     };
-    groups.sort_by_key(|group| (rank(group), group.1[0]));
-    let mut taken: [BTreeSet<usize>; 2] = Default::default();
-    let body = |(turn, (_, members)): (usize, (Option<usize>, Vec<usize>))| {
-        let (first, condition) = edges[members[0]];
-        let holds = |axis: usize| match condition {
-            EdgeCondition::Known(values) => values[axis].is_some(),
-            _ => true,
-        };
-        let nodes = [0, 1].map(|axis| {
-            let all = members.iter().flat_map(|edge| &edges[*edge].0.nodes);
-            let all = all.filter(|_| holds(axis)).copied();
-            all.filter(|node| taken[axis].insert(*node)).collect()
-        });
-        Body {
-            name: first.name.clone(),
-            edges: members,
-            nodes,
-            turn,
-        }
+    all.map(body).collect()
+}
+
+/// What the body behind some edges holds.
+fn hold(mesh: &Mesh, edges: &[(&Segment, EdgeCondition)], members: &[usize]) -> Hold {
+    let condition = edges[members[0]].1;
+    let nodes_of = |wanted: &dyn Fn(&Segment) -> bool| {
+        let own = members.iter().map(|edge| edges[*edge].0);
+        let own = own.filter(|segment| wanted(segment));
+        own.flat_map(|segment| segment.nodes.iter().copied())
+            .collect()
     };
-    let mut all: Vec<Body> = groups.into_iter().enumerate().map(body).collect();
-    all.sort_by_key(|body| body.edges[0]);
-    all
+    let holds = |axis: usize| match condition {
+        EdgeCondition::Known(values) => values[axis].is_some(),
+        _ => true,
+    };
+    Hold {
+        rank: match condition {
+            EdgeCondition::Known(_) => 0,
+            EdgeCondition::Rigid => 1,
+            EdgeCondition::Unknown | EdgeCondition::Free => 2,
+        },
+        nodes: [0, 1].map(|axis| nodes_of(&|_| holds(axis))),
+        sides: Hold::sides(mesh, &nodes_of(&|segment| !segment.inside)),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::edge_motion::EdgeMotion;
+    use std::collections::BTreeSet;
+
     use super::super::outline::segments;
     use super::*;
-    use crate::mesh::{CellShape, Mesh};
+    use crate::mesh::CellShape;
 
     #[test]
     fn sides_of_one_name_are_one_body_and_corners_belong_to_one() {
@@ -90,14 +115,25 @@ mod tests {
             };
             (part, condition)
         });
-        let found = bodies(conditions);
+        let found = bodies(&mesh, conditions);
         assert_eq!(found.len(), 2);
         let pad = found.iter().find(|body| body.name == "pad").unwrap();
         assert_eq!(pad.edges.len(), 2);
-        assert_eq!(pad.nodes[0].len(), both.len());
         let right = found.iter().find(|body| body.name == "right").unwrap();
-        // The corner with the bottom belongs to the pad.
-        assert_eq!(right.nodes[1].len(), 8);
+        let corner = mesh.nodes.iter().position(|node| *node == [6.0, 0.0]);
+        let factor = |body: &Body, wanted: usize| {
+            let mut shares = body.shares[1].iter();
+            shares
+                .find(|(node, _)| *node == wanted)
+                .map(|(_, factor)| *factor)
+        };
+        // What is left at the corner with the bottom belongs to the pad.
+        assert_eq!(factor(pad, corner.unwrap()), Some(1.0));
+        assert_eq!(factor(right, corner.unwrap()), None);
+        // The tractions beside it belong to their own edge: that of the middle node is four times that of an end.
+        let beside = mesh.nodes.iter().position(|node| *node == [6.0, 0.5]);
+        let [own, other] = [right, pad].map(|body| factor(body, beside.unwrap()).unwrap());
+        assert!((own - 1.25).abs() < 1e-12 && (other + 0.25).abs() < 1e-12);
     }
 
     #[test]

@@ -93,7 +93,7 @@ impl<'a> Equations<'a> {
         };
         Ok(Self {
             task: *task,
-            bodies: bodies(conditions.iter().copied()),
+            bodies: bodies(mesh, conditions.iter().copied()),
             motion,
             law,
             energy,

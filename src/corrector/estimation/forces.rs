@@ -20,8 +20,8 @@ impl NearestField<'_> {
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let first = self.equations.motion.parameters();
         let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
-            let nodes = &self.equations.bodies[index].nodes[axis];
-            let grip = self.equations.grip(nodes, axis, &self.field)?;
+            let shares = &self.equations.bodies[index].shares[axis];
+            let grip = self.equations.grip(shares, axis, &self.field)?;
             let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
             let force = dot(&grip.marks, &reactions);
             let mesh = own.map_or(0.0, |own| {
@@ -98,12 +98,9 @@ impl NearestField<'_> {
     /// |Σ F| of all bodies and forces on the interior over the largest force of a body: how far the forces are from balance.
     pub(super) fn imbalance(&self) -> f64 {
         let reactions = self.reactions();
-        let along = |nodes: &[usize], axis: usize| -> f64 {
-            nodes.iter().map(|node| reactions[2 * node + axis]).sum()
-        };
         let (mut sum, mut largest) = ([0.0; 2], 0.0_f64);
         for body in &self.equations.bodies {
-            let force = [0, 1].map(|axis| along(&body.nodes[axis], axis));
+            let force = body.force(&reactions);
             (0..2).for_each(|axis| sum[axis] += force[axis]);
             largest = largest.max(force[0].hypot(force[1]));
         }

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::body_force::BodyForce;
 use super::equations::{Equations, Place, solve};
 use super::knowledge::MeasuredForce;
+use super::shares::Share;
 use crate::error::Error;
 use crate::solve::Assembly;
 
@@ -84,8 +85,8 @@ impl Equations<'_> {
                 standard_deviation,
             } = measured;
             let own = self.bodies.iter().filter(|body| body.name == *edge);
-            let nodes: Vec<usize> = own.flat_map(|body| &body.nodes[*axis]).copied().collect();
-            let grip = self.grip(&nodes, *axis, field)?;
+            let shares: Vec<Share> = own.flat_map(|body| &body.shares[*axis]).copied().collect();
+            let grip = self.grip(&shares, *axis, field)?;
             let there = dot(&grip.marks, residual) + dot(&grip.pull, still);
             values[row] = (force - there) / standard_deviation;
             let slopes = grip.slopes(sensitivities, (self.motion.parameters(), slopes));
@@ -96,10 +97,12 @@ impl Equations<'_> {
         Ok((rows, values))
     }
 
-    /// The force on nodes along an axis as a function of the field.
-    pub fn grip(&self, nodes: &[usize], axis: usize, field: &[f64]) -> Result<Grip, Error> {
+    /// The force of some reactions along an axis as a function of the field.
+    pub fn grip(&self, shares: &[Share], axis: usize, field: &[f64]) -> Result<Grip, Error> {
         let mut marks = vec![0.0; field.len()];
-        nodes.iter().for_each(|node| marks[2 * node + axis] = 1.0);
+        for (node, factor) in shares {
+            marks[2 * node + axis] += factor;
+        }
         self.newton
             .free()
             .iter()
@@ -113,7 +116,7 @@ impl Equations<'_> {
 
 /// The force g·∂Π/∂u of a grip.
 pub struct Grip {
-    /// g: one at the grip's held unknowns.
+    /// g: the factors of the reactions at the grip's held unknowns.
     pub marks: Vec<f64>,
     /// g·K.
     pub pull: Vec<f64>,

@@ -16,11 +16,13 @@ use std::collections::BTreeSet;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
+use super::bodies::Body;
 use super::equations::Equations;
 use super::knowledge::EdgeCondition;
 use super::linearise::{Linear, dot};
 use super::regression::Trade;
 use super::search::NearestField;
+use super::shares::{Hold, Share, shares};
 use super::task::Edge;
 use crate::mesh::Mesh;
 use crate::problem::sheet_energy::SheetEnergy;
@@ -68,6 +70,20 @@ struct Fine {
 }
 
 impl Fine {
+    /// What a body holds of the refined mesh.
+    fn hold(&self, body: &Body) -> Hold {
+        let nodes = [0, 1].map(|axis| -> BTreeSet<usize> {
+            let own = body.edges.iter().flat_map(|edge| &self.held[*edge][axis]);
+            own.map(|unknown| unknown / 2).collect()
+        });
+        let whole: BTreeSet<usize> = nodes.iter().flatten().copied().collect();
+        Hold {
+            rank: body.rank,
+            sides: Hold::sides(&self.mesh, &whole),
+            nodes,
+        }
+    }
+
     /// ∇u_{h/2} in the middle of a cell of the mesh that was refined: of a quadrilateral the mean of its four parts, which meet
     /// there.
     fn gradient_amid(&self, coarse: usize) -> [f64; 4] {
@@ -201,20 +217,17 @@ impl NearestField<'_> {
     fn force_differences(&self, fine: &Fine) -> Vec<[f64; 2]> {
         let reactions = self.reactions();
         let bodies = &self.equations.bodies;
-        let mut turns: Vec<usize> = (0..bodies.len()).collect();
-        turns.sort_by_key(|body| bodies[*body].turn);
-        let (mut taken, mut all) = (BTreeSet::new(), vec![[0.0; 2]; bodies.len()]);
-        for index in turns {
-            all[index] = [0, 1].map(|axis| {
-                let body = &bodies[index];
-                let nodes = body.nodes[axis].iter();
-                let before: f64 = nodes.map(|node| reactions[2 * node + axis]).sum();
-                let held = body.edges.iter().flat_map(|edge| &fine.held[*edge][axis]);
-                let own = held.filter(|unknown| taken.insert(**unknown));
-                own.map(|unknown| fine.residual[*unknown]).sum::<f64>() - before
-            });
-        }
-        all
+        let holds: Vec<Hold> = bodies.iter().map(|body| fine.hold(body)).collect();
+        let shares = shares(&fine.mesh, &holds).into_iter().zip(bodies);
+        let difference = |(shares, own): ([Vec<Share>; 2], &Body)| {
+            let there = Body {
+                shares,
+                ..own.clone()
+            };
+            let (before, after) = (own.force(&reactions), there.force(&fine.residual));
+            [0, 1].map(|axis| after[axis] - before[axis])
+        };
+        shares.map(difference).collect()
     }
 }
 

@@ -86,7 +86,7 @@ pub fn transfer(
     Ok(FieldEstimate {
         displacement_error: vec![0.0; field.len()],
         cells: cells.collect::<Result<_, _>>()?,
-        forces: forces(&edges, &reactions),
+        forces: forces(mesh, &edges, &reactions),
         markers: differences(mesh, &field, (given, displacement)),
         known_noise: true,
         rule: RULE.into(),
@@ -233,21 +233,16 @@ fn state(specimen: &Specimen, field: &[f64], cell: usize) -> Result<StressEstima
 }
 
 /// The forces of the bodies that hold the sheet.
-fn forces(edges: &[(Segment, EdgeCondition)], reactions: &[f64]) -> Vec<EdgeForce> {
+fn forces(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], reactions: &[f64]) -> Vec<EdgeForce> {
     let bodies = bodies(
+        mesh,
         edges
             .iter()
             .map(|(segment, condition)| (segment, *condition)),
     );
-    let force = |body: Body| {
-        let along = |axis: usize| {
-            let nodes = body.nodes[axis].iter();
-            Estimate::exact(nodes.map(|node| reactions[2 * node + axis]).sum())
-        };
-        EdgeForce {
-            force: [along(0), along(1)],
-            edge: body.name,
-        }
+    let force = |body: Body| EdgeForce {
+        force: body.force(reactions).map(Estimate::exact),
+        edge: body.name,
     };
     bodies.into_iter().map(force).collect()
 }

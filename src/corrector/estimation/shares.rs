@@ -1,0 +1,101 @@
+//! Which part of a reaction belongs to which body where bodies meet.
+//!
+//! At a corner the reaction R of the node comes from both edges. What an edge e gives, q, is told by its tractions beside the corner:
+//!
+//! ```text
+//! q = Rₘ ∫ₑ N ds / ∫ₑ Nₘ ds            N of the corner, m the next node of the edge            [N]
+//! F = q + s (R − Σ q)                                                                       [N]
+//! ```
+//!
+//! which is exact where the tractions are constant. The rest, as at singular corners, belongs in equal parts s to the bodies of the
+//! lowest rank. All parts of one reaction add up to it, so that forces balance as reactions do.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::mesh::Mesh;
+use crate::problem::edge_lengths;
+
+/// What a body holds.
+pub struct Hold {
+    /// Which bodies have the rest where they meet: the lowest.
+    pub rank: usize,
+    /// The nodes held along x and along y.
+    pub nodes: [BTreeSet<usize>; 2],
+    /// The edges of the boundary that it holds, by their nodes; none of a pad on the sheet.
+    pub sides: Vec<Vec<usize>>,
+}
+
+impl Hold {
+    /// The edges of a mesh's boundary between some nodes.
+    pub fn sides(mesh: &Mesh, nodes: &BTreeSet<usize>) -> Vec<Vec<usize>> {
+        let sides = mesh.boundary().iter();
+        let own = sides.filter(|side| side.iter().all(|node| nodes.contains(node)));
+        own.cloned().collect()
+    }
+
+    /// The next node of the edges beside one, and q over its reaction; `None` where there are no such edges, or one on both sides.
+    fn beside(&self, mesh: &Mesh, corner: usize) -> Option<(usize, f64)> {
+        let mut beside = self.sides.iter().filter(|side| side.contains(&corner));
+        let (side, None) = (beside.next()?, beside.next()) else {
+            return None;
+        };
+        // The ends stand first, then the middle.
+        let next = match side[..] {
+            [_, _, middle] => middle,
+            [from, to] if from == corner => to,
+            _ => side[0],
+        };
+        let over = |node: usize| -> f64 {
+            let lengths = self.sides.iter().flat_map(|side| edge_lengths(mesh, side));
+            let own = lengths.filter(|(own, _)| *own == node);
+            own.map(|(_, length)| length).sum()
+        };
+        Some((next, over(corner) / over(next)))
+    }
+}
+
+/// A node and the factor of its reaction.
+pub type Share = (usize, f64);
+
+/// The factors of the reactions that make up the force of each body along each axis.
+pub fn shares(mesh: &Mesh, holds: &[Hold]) -> Vec<[Vec<Share>; 2]> {
+    let mut all: Vec<[BTreeMap<usize, f64>; 2]> = vec![Default::default(); holds.len()];
+    for axis in 0..2 {
+        let mut holders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (body, hold) in holds.iter().enumerate() {
+            for node in &hold.nodes[axis] {
+                holders.entry(*node).or_default().push(body);
+            }
+        }
+        let is_alone = |node: &usize| holders.get(node).is_some_and(|bodies| bodies.len() == 1);
+        for (node, bodies) in &holders {
+            let mut add = |body: usize, node: usize, factor: f64| {
+                *all[body][axis].entry(node).or_insert(0.0) += factor;
+            };
+            let lowest = bodies.iter().map(|body| holds[*body].rank).min();
+            let rest = bodies
+                .iter()
+                .filter(|body| Some(holds[**body].rank) == lowest);
+            let rest: Vec<usize> = rest.copied().collect();
+            let share = 1.0 / rest.len() as f64;
+            rest.iter().for_each(|body| add(*body, *node, share));
+            if bodies.len() == 1 {
+                continue;
+            }
+            for body in bodies {
+                let beside = holds[*body].beside(mesh, *node);
+                let Some((next, factor)) = beside.filter(|(next, _)| is_alone(next)) else {
+                    continue;
+                };
+                add(*body, next, factor);
+                rest.iter()
+                    .for_each(|other| add(*other, next, -share * factor));
+            }
+        }
+    }
+    let list = |own: BTreeMap<usize, f64>| own.into_iter().collect();
+    all.into_iter().map(|own| own.map(list)).collect()
+}
+
+#[cfg(test)]
+mod tests;
