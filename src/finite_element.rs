@@ -6,7 +6,7 @@ use crate::error::{Error, SolveFault};
 use crate::mesh::{CellShape, Grid, Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{ClampedPlate, Model};
-use crate::solve::{NewtonSettings, State};
+use crate::solve::{LinearSolver, NewtonSettings, State};
 
 use error_estimate::{ErrorEstimate, SheetSolution, side_by_side};
 use recovery::Recovery;
@@ -53,6 +53,7 @@ pub struct FiniteElements {
     /// The element.
     pub element: Element,
     energy: SheetEnergy,
+    linear_solver: LinearSolver,
 }
 
 impl FiniteElements {
@@ -70,13 +71,24 @@ impl FiniteElements {
             mesh,
             element,
             energy,
+            linear_solver: LinearSolver::Automatic,
+        }
+    }
+
+    /// The same with another way to solve systems.
+    #[must_use]
+    pub fn solved_by(self, linear_solver: LinearSolver) -> Self {
+        Self {
+            linear_solver,
+            ..self
         }
     }
 
     /// The plate on this mesh.
     pub fn model(&self, plate: &ClampedPlate) -> Model<'_> {
         let name = format!("finite elements ({})", self.describe());
-        plate.on(&self.mesh, &self.energy).named(name)
+        let model = plate.on(&self.mesh, &self.energy).named(name);
+        model.solved_by(self.linear_solver)
     }
 
     /// The strain energy.

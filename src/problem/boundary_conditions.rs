@@ -53,6 +53,6 @@ pub enum Load {
     /// A fluid presses on the deformed thickness λ₃ t: its pressure q is p = λ₃ q here, less than q where
     /// the edge is stretched.
     Pressure(f64),
-    /// A force in N, shared equally by the group's nodes.
+    /// A force in N, spread evenly over the length of the group's edges, whatever their cells are; over its nodes where it has no edges.
     Force([f64; 2]),
 }

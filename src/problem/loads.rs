@@ -9,7 +9,7 @@
 use super::balance::{Body, Resultant};
 use super::boundary_conditions::Load;
 use super::constraints::Constraints;
-use super::groups::{edge_lengths, named, refused};
+use super::groups::{edge_lengths, named, refused, shares};
 use super::pressure::Pressures;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
@@ -160,8 +160,7 @@ pub fn dead_forces(
     let mut forces = vec![0.0; 2 * mesh.nodes.len()];
     match load {
         Load::Force(force) => {
-            let share = 1.0 / group.nodes.len() as f64;
-            for node in &group.nodes {
+            for (node, share) in shares(mesh, group) {
                 forces[2 * node] += share * force[0];
                 forces[2 * node + 1] += share * force[1];
             }
@@ -179,3 +178,6 @@ pub fn dead_forces(
     }
     Ok(forces)
 }
+
+#[cfg(test)]
+mod tests;

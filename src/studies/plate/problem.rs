@@ -143,10 +143,16 @@ impl Study {
     /// The finite elements on three meshes, coarse to fine.
     pub fn finite_elements(&self) -> [FiniteElements; 3] {
         let Reference {
-            element, grading, ..
+            element,
+            grading,
+            linear_solver,
+            ..
         } = self.reference;
         let meshes = self.reference.meshes();
-        meshes.map(|cells| FiniteElements::graded(&self.problem, cells, element, grading))
+        meshes.map(|cells| {
+            let elements = FiniteElements::graded(&self.problem, cells, element, grading);
+            elements.solved_by(linear_solver)
+        })
     }
 }
 

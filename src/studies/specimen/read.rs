@@ -202,7 +202,7 @@ fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refi
     })
 }
 
-/// A force that nodes share equally is another one on a mesh that is refined locally, and a material that softens has no error estimate to
+/// A force on nodes without edges is another one on a mesh that is refined locally, and a material that softens has no error estimate to
 /// refine by.
 fn check_refinement(root: &Section, specimen: &Specimen) {
     if specimen.refinement.is_some() && specimen.problem.law.softening().is_some() {
@@ -211,10 +211,17 @@ fn check_refinement(root: &Section, specimen: &Specimen) {
         root.section("finite_element")
             .fault("adaptive", message, hint);
     }
-    let forces = |(_, load): &(String, Load)| matches!(load, Load::Force(_));
-    if specimen.refinement.is_some() && specimen.problem.loads.iter().any(forces) {
-        let message = "a force is shared by the nodes of its group, which local refinement changes";
-        let hint = "write it as a traction, or leave out `adaptive`";
+    let loads = specimen.problem.loads.iter();
+    let mut forces = loads.filter(|(_, load)| matches!(load, Load::Force(_)));
+    let on_nodes = |(group, _): &(String, Load)| {
+        let lattice = specimen.outline.lattice();
+        let group = lattice.groups().get(group);
+        group.is_some_and(|group| group.edges.is_empty())
+    };
+    if specimen.refinement.is_some() && forces.any(on_nodes) {
+        let message =
+            "a force on nodes without edges is shared by them, which local refinement changes";
+        let hint = "put it on a group with edges, or leave out `adaptive`";
         root.fault("load", message, hint);
     }
 }

@@ -174,9 +174,7 @@ impl<'a> Run<'a> {
         let mut coarser: Option<(Mesh, Vec<State>)> = None;
         self.study.finite_elements().map(|elements| {
             let name = names.next().expect("three meshes");
-            let mut model = elements
-                .model(&self.study.problem)
-                .solved_by(self.study.reference.linear_solver);
+            let mut model = elements.model(&self.study.problem);
             if let Some((mesh, states)) = &coarser {
                 model = model.near(mesh, states);
             }
