@@ -3,7 +3,7 @@ use crate::error::SolveFault;
 use crate::mesh::{CellShape, Shape};
 use crate::solve::{Convergence, State};
 use crate::units::parse_linear_length;
-use samples::{CLAMP, moved, problem, solved, strip, turned};
+use samples::{CLAMP, NEWTON, moved, problem, solved, strip, turned};
 
 pub mod samples;
 mod softening;
@@ -174,6 +174,33 @@ fn a_ring_s_supports_carry_the_pressure_on_its_bore() {
                 let exact = pressure * 2.0 * radius;
                 assert!((force / exact - 1.0).abs() < 1e-10, "{force} {exact}");
             }
+        }
+    }
+}
+
+/// Suction on an end whose corners are free, where the tangent is not symmetric: p = 2 c₁₀ (λ − λ⁻²) √λ, in few iterations on any cells.
+#[test]
+fn suction_stretches_a_strip_as_far_as_it_must() {
+    let stretch: f64 = 1.3;
+    let pressure = 0.1 * (stretch - stretch.powi(-2)) * stretch.sqrt();
+    let supports = [("left", Support::Roller), ("bottom", Support::Roller)];
+    let problem = problem(&supports, &[("right", Load::Pressure(-pressure))]);
+    for (_, shape) in CellShape::NAMES {
+        let mesh = strip(shape);
+        let energy = problem.finite_elements(&mesh);
+        let model = problem.on(&mesh, &energy).unwrap();
+        let states = model.solve(&[0.5, 1.0], NEWTON, &|_| ()).unwrap();
+        for state in &states {
+            let iterations = state.convergence.iterations();
+            assert!(iterations <= 7, "{shape:?}: {iterations}");
+        }
+        for (place, u) in mesh.nodes.iter().zip(states[1].displacement.chunks(2)) {
+            let exact = [
+                (stretch - 1.0) * place[0],
+                (stretch.powf(-0.5) - 1.0) * (place[1] + 5.0),
+            ];
+            let off = (u[0] - exact[0]).hypot(u[1] - exact[1]);
+            assert!(off < 1e-8, "{shape:?} {place:?}: {off}");
         }
     }
 }

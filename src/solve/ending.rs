@@ -54,6 +54,10 @@ pub fn diagnose(
     if let Some(found) = unstable(last).or_else(|| unstable(&u)) {
         return found;
     }
+    if newton.tangent.has_skew_part() {
+        // The modes of its symmetric part alone are no modes of the body.
+        return fault;
+    }
     let Some((_, mode)) = newton.tangent.softest_mode(&*potential, &u) else {
         return fault;
     };

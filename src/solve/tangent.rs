@@ -1,10 +1,14 @@
 //! The tangent of a potential, factorised: small changes of an equilibrium, and its softest mode.
 
+use std::collections::BTreeSet;
+
+use nalgebra::{DMatrix, DVector};
+
 use super::assembly::Assembly;
 use super::iterative::{Iterative, LinearSolver};
 use super::potential::{Inadmissible, Potential, SkewCoupling};
 use super::sparse::{Cholesky, FactorFault};
-use super::vector::{difference, dot, gather, largest, norm, scale, spread};
+use super::vector::{dot, gather, norm, scale, spread};
 use crate::error::SolveFault;
 
 /// The tangent of a potential over its free unknowns, factorised at one state after the other, or solved by multigrid.
@@ -292,6 +296,11 @@ impl Tangent {
         self.skew = couplings.collect();
     }
 
+    /// Whether the tangent taken last was not symmetric.
+    pub(super) fn has_skew_part(&self) -> bool {
+        !self.skew.is_empty()
+    }
+
     /// −K⁻¹ r at the free unknowns.
     fn change(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
         let step = self.step(residual)?;
@@ -312,30 +321,48 @@ impl Tangent {
         self.analysed()?.solve(right).map_err(SolveFault::from)
     }
 
-    /// −K⁻¹ r by the symmetric factor; a skew part, small compared with it, is added by iteration: K_s dᵢ₊₁ = −r − S dᵢ.
+    /// −(K + S)⁻¹ r with the symmetric factor of K.
     pub(super) fn step(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolveFault> {
-        const ITERATIONS: usize = 60;
         let mut negative = gather(self.assembly.free(), residual);
         scale(&mut negative, -1.0);
-        let mut step = self.solve(&negative)?;
-        if self.skew.is_empty() {
-            return Ok(step);
+        let step = self.solve(&negative)?;
+        match self.skew.is_empty() {
+            true => Ok(step),
+            false => self.add_skew(step),
         }
-        let mut last = f64::INFINITY;
-        for _ in 0..ITERATIONS {
-            let mut right = negative.clone();
-            for own in &self.skew {
-                right[own.row] -= own.stiffness * step[own.column];
-                right[own.column] += own.stiffness * step[own.row];
-            }
-            let next = self.solve(&right)?;
-            let change = largest(&difference(&next, &step));
-            if change.is_nan() || change >= last {
-                break;
-            }
-            (step, last) = (next, change);
-            if change <= 1e-14 * largest(&step) {
-                break;
+    }
+
+    /// x = (K + S)⁻¹ b of K⁻¹ b. The skew part S = U C Uᵀ couples a few unknowns, those of U:
+    ///
+    /// ```text
+    /// x = K⁻¹ b − K⁻¹ U y,   (1 + C G) y = C Uᵀ K⁻¹ b,   G = Uᵀ K⁻¹ U
+    /// ```
+    fn add_skew(&mut self, mut step: Vec<f64>) -> Result<Vec<f64>, SolveFault> {
+        let ends = self.skew.iter().flat_map(|own| [own.row, own.column]);
+        let coupled: Vec<usize> = ends.collect::<BTreeSet<_>>().into_iter().collect();
+        let count = coupled.len();
+        let mut columns = Vec::with_capacity(count);
+        for unknown in &coupled {
+            let mut unit = vec![0.0; step.len()];
+            unit[*unknown] = 1.0;
+            columns.push(self.solve(&unit)?);
+        }
+        let mut couplings: DMatrix<f64> = DMatrix::zeros(count, count);
+        for own in &self.skew {
+            let place = |unknown| coupled.binary_search(&unknown).expect("coupled");
+            let (row, column) = (place(own.row), place(own.column));
+            couplings[(row, column)] += own.stiffness;
+            couplings[(column, row)] -= own.stiffness;
+        }
+        let flexibility: DMatrix<f64> =
+            DMatrix::from_fn(count, count, |i, k| columns[k][coupled[i]]);
+        let there = DVector::from_iterator(count, coupled.iter().map(|unknown| step[*unknown]));
+        let system: DMatrix<f64> = DMatrix::identity(count, count) + &couplings * flexibility;
+        let parts = system.lu().solve(&(couplings * there));
+        let parts = parts.ok_or(SolveFault::Singular)?;
+        for (part, column) in parts.iter().zip(&columns) {
+            for (step, column) in step.iter_mut().zip(column) {
+                *step -= part * column;
             }
         }
         Ok(step)
