@@ -115,7 +115,6 @@ fn kind(cell: GridCell) -> CellType {
 /// Vectors and tensors in the plane become those of space.
 fn attribute(array: &Array) -> Attribute {
     let values = &array.values;
-    let fours = values.chunks_exact(4);
     let (elem, data) = match array.components {
         Components::Scalar => {
             let lookup_table = None;
@@ -135,10 +134,12 @@ fn attribute(array: &Array) -> Attribute {
         }
         Components::Stretches => (ElementType::Generic(3), values.clone()),
         Components::Tensor => {
-            let whole = fours.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, 0.0]);
+            let fives = values.chunks_exact(5);
+            let whole = fives.flat_map(|t| [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, t[4]]);
             (ElementType::Tensors, whole.collect())
         }
         Components::Symmetric => {
+            let fours = values.chunks_exact(4);
             let whole = fours.flat_map(|t| [t[0], t[1], t[2], t[3], 0.0, 0.0]);
             (ElementType::Generic(6), whole.collect())
         }
@@ -190,6 +191,16 @@ pub fn collection(grids: &[(f64, String)]) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tensors_have_nine_components_with_the_one_across_the_plane() {
+        let stress = Array::tensors("stress_MPa", [1.0, 2.0, 3.0, 4.0, 5.0]);
+        let Attribute::DataArray(DataArray { data, .. }) = attribute(&stress) else {
+            panic!("an array");
+        };
+        let expected = vec![1.0, 2.0, 0.0, 3.0, 4.0, 0.0, 0.0, 0.0, 5.0];
+        assert_eq!(data.into_vec::<f64>(), Some(expected));
+    }
 
     #[test]
     fn symmetric_tensors_have_six_named_components() {

@@ -9,7 +9,7 @@ pub enum Components {
     Scalar,
     /// x, y of a vector in the plane.
     Vector,
-    /// 11, 12, 21, 22 of a tensor in the plane.
+    /// 11, 12, 21, 22, 33 of a tensor without shear across the plane.
     Tensor,
     /// 11, 22, 33, 12 of a symmetric tensor without shear across the plane.
     Symmetric,
@@ -24,7 +24,8 @@ impl Components {
             Self::Scalar => 1,
             Self::Vector => 2,
             Self::Stretches => 3,
-            Self::Tensor | Self::Symmetric => 4,
+            Self::Symmetric => 4,
+            Self::Tensor => 5,
         }
     }
 }
@@ -51,7 +52,7 @@ impl Array {
         Self::new(name, Components::Vector, values)
     }
 
-    /// Tensors in the plane: 11, 12, 21, 22.
+    /// Tensors without shear across the plane: 11, 12, 21, 22, 33.
     pub fn tensors(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         Self::new(name, Components::Tensor, values)
     }

@@ -63,7 +63,7 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states().map(value));
     let nominal = states().flat_map(|state| {
         let [p11, p12, p21, p22] = state.first_piola_kirchhoff;
-        [p11, p21, p12, p22]
+        [p11, p21, p12, p22, state.nominal_across]
     });
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
         Array::symmetric_tensors(name, states().map(value))
@@ -86,7 +86,7 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
             LocalState::largest_principal_strain,
         ),
         Array::stretches("principal_stretches", states().map(|state| state.stretches)),
-        of("first_invariant_I1", |state| 3.0 + state.i1_minus_3),
+        of("first_invariant_I1", |state| state.first_invariant),
         Array::scalars("thickness_mm", thickness),
         of("energy_density_mJ_per_mm3", |state| state.energy),
     ];

@@ -12,14 +12,16 @@ use crate::mesh::Mesh;
 pub struct LocalState {
     /// First Piola–Kirchhoff stress in MPa: components 11, 12, 21, 22.
     pub first_piola_kirchhoff: [f64; 4],
+    /// P₃₃ = J σ₃₃ in MPa, with the area ratio J in the plane: zero in plane stress.
+    pub nominal_across: f64,
     /// Cauchy stress in MPa: components 11, 22, 33, 12.
     pub cauchy: [f64; 4],
     /// Green–Lagrange strain E = ½ (FᵀF − 1): components 11, 22, 33, 12.
     pub green_lagrange: [f64; 4],
     /// Principal stretches in the plane, the larger first, and that of the thickness.
     pub stretches: [f64; 3],
-    /// I₁ − 3.
-    pub i1_minus_3: f64,
+    /// I₁ = tr C = λ₁² + λ₂² + λ₃², with the sheet's own λ₃.
+    pub first_invariant: f64,
     /// Energy per reference volume in mJ/mm³.
     pub energy: f64,
     /// What softening has left of the stress; 1 without it.
@@ -43,18 +45,15 @@ impl LocalState {
         let [s11, s12, s22] = law.cauchy_stress(&kinematics, &p);
         let [c11, c12, c22] = kinematics.stretch_change;
         let thickness = law.thickness_stretch(&kinematics);
+        let across = after.factor * law.thickness_stress(&kinematics);
         let [larger, smaller] = kinematics.principal_stretches();
         Self {
             first_piola_kirchhoff: p.into(),
-            cauchy: [
-                s11,
-                s22,
-                after.factor * law.thickness_stress(&kinematics),
-                s12,
-            ],
+            nominal_across: nominal_across(law, &kinematics, across),
+            cauchy: [s11, s22, across, s12],
             green_lagrange: [c11, c22, thickness * thickness - 1.0, c12].map(|c| 0.5 * c),
             stretches: [larger, smaller, thickness],
-            i1_minus_3: kinematics.invariants.i1_minus_3,
+            first_invariant: 2.0 + c11 + c22 + thickness * thickness,
             energy: after.energy,
             softening_factor: after.factor,
         }
@@ -63,10 +62,11 @@ impl LocalState {
     fn unknown() -> Self {
         Self {
             first_piola_kirchhoff: [f64::NAN; 4],
+            nominal_across: f64::NAN,
             cauchy: [f64::NAN; 4],
             green_lagrange: [f64::NAN; 4],
             stretches: [f64::NAN; 3],
-            i1_minus_3: f64::NAN,
+            first_invariant: f64::NAN,
             energy: f64::NAN,
             softening_factor: f64::NAN,
         }
@@ -89,6 +89,14 @@ impl LocalState {
     pub fn largest_principal_strain(&self) -> f64 {
         let [e11, e22, _, e12] = self.green_lagrange;
         principal([e11, e12, e22])[0]
+    }
+}
+
+/// P₃₃ in MPa of the Cauchy stress σ₃₃ = `stress`: J σ₃₃; of a law of small strains, whose stresses are one, σ₃₃ itself.
+fn nominal_across(law: &dyn HyperelasticLaw, kinematics: &Kinematics, stress: f64) -> f64 {
+    match law.is_objective() {
+        true => kinematics.area_ratio() * stress,
+        false => stress,
     }
 }
 
@@ -149,7 +157,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::material::{NeoHooke, SoftenedLaw, Softening};
+    use crate::material::volume::bulk_modulus;
+    use crate::material::{NeoHooke, PlaneState, SoftenedLaw, Softening, Volume, VolumeEnergy};
     use crate::mesh::{CellShape, Shape};
 
     const LAW: NeoHooke = NeoHooke { c10: 0.5 };
@@ -201,6 +210,45 @@ mod tests {
                 assert!((state.largest_principal_strain() - strain).abs() < 1e-12);
                 assert!((state.green_lagrange[2] - 0.5 * (1.0 / along - 1.0)).abs() < 1e-12);
             }
+        }
+    }
+
+    /// C₁₀ (J₃^(−⅔) I₁ − 3) + ½ κ (J₃ − 1)², whose stress across the sheet is ∂W/∂λ₃ of stretches λ₁, λ₂, λ₃.
+    #[test]
+    fn a_sheet_that_changes_its_volume_has_the_first_invariant_and_the_stress_of_its_own_thickness()
+    {
+        let (c10, kappa) = (0.5, bulk_modulus(1.0, 0.3));
+        let energy = |stretches: [f64; 3]| {
+            let volume: f64 = stretches.iter().product();
+            let squares: f64 = stretches.iter().map(|stretch| stretch * stretch).sum();
+            c10 * (volume.powf(-2.0 / 3.0) * squares - 3.0) + 0.5 * kappa * (volume - 1.0).powi(2)
+        };
+        for plane in [PlaneState::Stress, PlaneState::Strain] {
+            let volume = Volume {
+                bulk_modulus: kappa,
+                energy: VolumeEnergy::Quadratic,
+                plane,
+            };
+            let law = Arc::new(NeoHooke { c10 }).with_volume(volume).unwrap();
+            let state = LocalState::of(&*law, &[[0.25, 0.15, 0.1, -0.08]]);
+            let squares: f64 = state
+                .stretches
+                .iter()
+                .map(|stretch| stretch * stretch)
+                .sum();
+            assert!((state.first_invariant - squares).abs() < 1e-12, "{plane:?}");
+            let [first, second, third] = state.stretches;
+            let at = |step: f64| energy([first, second, third + step]);
+            let slope = (at(1e-6) - at(-1e-6)) / 2e-6;
+            assert!(
+                (state.nominal_across - slope).abs() < 1e-8,
+                "{plane:?} {slope}"
+            );
+            let is_strained = plane == PlaneState::Strain;
+            assert_eq!(
+                (third == 1.0, slope.abs() > 0.1),
+                (is_strained, is_strained)
+            );
         }
     }
 

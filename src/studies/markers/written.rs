@@ -182,7 +182,11 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
         return grid;
     }
     let cells = estimate.cells.iter();
-    let stress = cells.clone().flat_map(|cell| nominal(cell.stress_error));
+    // Nothing acts across a sheet in plane stress.
+    let stress = cells.clone().flat_map(|cell| {
+        let [xx, xy, yx, yy] = nominal(cell.stress_error);
+        [xx, xy, yx, yy, 0.0]
+    });
     let thickness = cells.map(|cell| cell.thickness_error);
     let [of_displacement, of_stress, of_thickness] = match estimate.is_explained() {
         true => [
