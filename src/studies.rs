@@ -7,6 +7,7 @@ use web_time::Instant;
 use crate::budget::Budget;
 use crate::document::{Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error};
+use crate::material::Card;
 use crate::results::{Outcome, Results};
 use crate::solve::{Attendance, Journal};
 
@@ -153,9 +154,27 @@ impl Kind {
         let document = Document::parse("", text, &faults);
         let root = document.root(Some(&defaults), &faults);
         root.text("kind");
-        root.heading("title");
+        self.title(&root, text, Path::new("."));
         drop(prepare(&root, Path::new(".")));
         faults.keys()
+    }
+
+    /// What the study is called: a specimen or a motion without a title after its material, the others as their case.
+    fn title(&self, root: &Section, text: &str, folder: &Path) -> String {
+        let what = match self.kind {
+            specimen::KIND => "Specimen",
+            motion::KIND => "Moving plate",
+            _ => return root.heading("title"),
+        };
+        root.own_heading("title").unwrap_or_else(|| {
+            // Faults of the card are found where the study is read.
+            let faults = Faults::default();
+            let defaults = Document::parse(self.file, self.study, &faults);
+            let document = Document::parse("", text, &faults);
+            let root = document.root(Some(&defaults), &faults);
+            let card = Card::load(&root.section("material").text("card"), folder);
+            card.map_or_else(|_| what.to_owned(), |card| card.title_of(what))
+        })
     }
 
     /// What `read` makes of a study of this case.
@@ -174,7 +193,7 @@ impl Kind {
             let document = Document::parse(&file, text, &faults);
             let root = document.root(Some(&defaults), &faults);
             root.text("kind");
-            let title = root.heading("title");
+            let title = self.title(&root, text, folder);
             let made = read(&root, folder);
             root.unknown_keys();
             (title, made)

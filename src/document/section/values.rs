@@ -350,6 +350,11 @@ impl<'a> Section<'a> {
         text
     }
 
+    /// A heading that the file itself holds; `None` where it does not, whatever the default is.
+    pub fn own_heading(&self, key: &'static str) -> Option<String> {
+        self.has(key).then(|| self.heading(key))
+    }
+
     fn read<T>(
         &self,
         key: &'static str,

@@ -8,6 +8,9 @@ use crate::material::sheet::PlaneState;
 use crate::material::volume::{POISSON_RATIO, Volume, VolumeEnergy, bulk_modulus};
 use crate::units::Dimension;
 
+/// The law of gels in contact with their solvent.
+const SWELLING: &str = "flory-rehner";
+
 impl Card {
     /// Reads how the material resists a change of volume.
     pub(super) fn resist(&mut self, section: &Section) {
@@ -59,6 +62,32 @@ impl Card {
     pub fn bulk_modulus(&self) -> Option<f64> {
         let stated = self.volume.map(|volume| volume.bulk_modulus);
         stated.or_else(|| self.law.bulk_modulus())
+    }
+
+    /// What the sheet is in words: `an incompressible material in plane stress`.
+    pub fn describe_sheet(&self) -> String {
+        let material = match (self.law_name == SWELLING, self.bulk_modulus()) {
+            (true, _) => "a gel that takes up and gives off solvent".to_owned(),
+            (false, None) => "an incompressible material".to_owned(),
+            (false, Some(modulus)) => {
+                format!("a material that changes its volume (bulk modulus κ = {modulus:.4} MPa)")
+            }
+        };
+        let plane = match self.law.plane_state() {
+            PlaneState::Stress => "plane stress",
+            PlaneState::Strain => "plane strain",
+        };
+        let softens = match self.law.softening() {
+            Some(_) => ", which softens by its largest load",
+            None => "",
+        };
+        format!("{material} in {plane}{softens}")
+    }
+
+    /// The title of a study of this material that gives none: what is studied and the card's title.
+    pub fn title_of(&self, what: &str) -> String {
+        let words: Vec<&str> = self.title.split_whitespace().collect();
+        format!("{what} of {}", words.join(" "))
     }
 
     /// The same material in plane strain; `None` where its card states no resistance to a change of volume.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::material::samples;
 
 #[test]
 fn every_shipped_card_loads() {
@@ -90,5 +91,29 @@ fn an_unknown_card_is_answered_with_the_nearest_name() {
     assert!(
         fault.to_string().contains("did you mean `pva-10`"),
         "{fault}"
+    );
+}
+
+#[test]
+fn a_sheet_is_told_as_its_card_and_plane_state_make_it() {
+    let told = |law, parameters| samples::card(law, parameters).describe_sheet();
+    assert_eq!(
+        told("neo-hooke", "c10 = \"0.05 MPa\""),
+        "an incompressible material in plane stress"
+    );
+    let card = samples::card(
+        "neo-hooke-simo-pister",
+        "mu = \"0.1 MPa\"\npoisson_ratio = 0.3",
+    );
+    let strained = card.in_plane_strain().unwrap().describe_sheet();
+    assert_eq!(
+        strained,
+        "a material that changes its volume (bulk modulus κ = 0.2167 MPa) in plane strain"
+    );
+    let gel = "modulus = \"0.02 MPa\"\nchi = 0.45\npreparation_fraction = 0.1\nchains = \"affine\"";
+    assert!(told("flory-rehner", gel).starts_with("a gel "));
+    let softens = "c10 = \"0.05 MPa\"\n[softening]\nr = 2\nm = \"10 kPa\"\nbeta = 0.1\n";
+    assert!(
+        told("neo-hooke", softens).ends_with("plane stress, which softens by its largest load")
     );
 }

@@ -40,7 +40,10 @@ fn sentences(plate: &MovingPlate) -> Vec<(&'static str, String)> {
     vec![
         (
             "plate",
-            format!("{length} × {width} × {thickness} mm at rest, in plane stress"),
+            format!(
+                "{length} × {width} × {thickness} mm at rest, of {}",
+                plate.card.describe_sheet()
+            ),
         ),
         ("density", format!("{} kg/m³", number(1e12 * plate.density))),
         ("viscosity", viscosity(plate)),

@@ -99,7 +99,7 @@ pub fn keys(text: &str) -> Vec<Key> {
 /// Reads all sections; `None` where there is no card to work with, which is recorded as a fault.
 fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> {
     root.choice("kind", &[("plate", ())]);
-    let title = root.heading("title");
+    let title = root.own_heading("title");
     let material = root.section("material");
     let card = read_card(&material, folder);
     material.unknown_keys();
@@ -128,11 +128,12 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let pictures = Pictures::read(&root.section("pictures"), places, &problem.stretches);
     let output = read_output(&root.section("output"), name);
     root.unknown_keys();
+    let card = card?;
     let study = Study {
         name: name.to_owned(),
-        title,
+        title: title.unwrap_or_else(|| card.title_of("Clamped plate")),
         problem,
-        card: card?,
+        card,
         cells,
         lattice,
         mass_spring,

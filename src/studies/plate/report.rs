@@ -66,7 +66,7 @@ fn reached(results: &Results) -> Option<Block> {
 fn problem(study: &Study) -> Vec<Block> {
     let [length, width] = study.problem.size;
     let rows = [
-        ("sheet", "incompressible, in plane stress".to_owned()),
+        ("sheet", format!("of {}", study.card.describe_sheet())),
         ("length between the grips", format!("{length} mm")),
         ("width", format!("{width} mm")),
         (

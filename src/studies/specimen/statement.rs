@@ -17,11 +17,12 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let loads: Vec<_> = loads.map(|(group, own)| row(group, load(own))).collect();
     let factors: Vec<_> = specimen.factors.iter().map(f64::to_string).collect();
     let text = format!(
-        "The specimen is {}, {} mm thick at rest, of an incompressible material in plane stress: the card `{}`. \
+        "The specimen is {}, {} mm thick at rest, of {}: the card `{}`. \
          Displacements, turns, forces, tractions and pressures below are those at load factor 1 and grow in proportion to \
          it; the load factors are {}.",
         specimen.outline.describe(),
         problem.thickness,
+        specimen.card.describe_sheet(),
         specimen.card.name,
         factors.join(", ")
     );

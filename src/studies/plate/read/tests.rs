@@ -204,3 +204,13 @@ fn only_a_material_that_softens_is_unloaded() {
         &["must differ"],
     );
 }
+
+#[test]
+fn a_study_without_a_title_is_called_after_its_material() {
+    let title = |text: &str| parse(text).unwrap().title;
+    assert_eq!(
+        title("[material]\ncard = \"neo-hooke\""),
+        "Clamped plate of neo-Hooke, C10 = 0.05 MPa (verification)"
+    );
+    assert_eq!(title("title = \"Mine\""), "Mine");
+}
