@@ -287,11 +287,7 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
             _ => Err(QuantityFault::MissingUnit),
         };
     }
-    let normalised = unit
-        .replace('³', "^3")
-        .replace('²', "^2")
-        .replace('μ', "µ")
-        .replace('*', "·");
+    let normalised = normalised(unit);
     if CELSIUS.contains(&&*normalised) {
         return match dimension {
             Dimension::Temperature => admitted(number + ICE_POINT, dimension),
@@ -309,6 +305,25 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
         }),
         None => Err(QuantityFault::UnknownUnit(unit.to_owned())),
     }
+}
+
+/// A unit as the table has it: powers as `^3`, which may be written `³` or, behind a letter, `3`.
+fn normalised(unit: &str) -> String {
+    let mut text = String::new();
+    for letter in unit.chars() {
+        match letter {
+            '²' => text += "^2",
+            '³' => text += "^3",
+            'μ' => text.push('µ'),
+            '*' => text.push('·'),
+            '2' | '3' if text.ends_with(char::is_alphabetic) => {
+                text.push('^');
+                text.push(letter);
+            }
+            other => text.push(other),
+        }
+    }
+    text
 }
 
 fn admitted(value: f64, dimension: Dimension) -> Result<f64, QuantityFault> {

@@ -33,6 +33,7 @@ pub struct Check {
     pub own_error: Option<f64>,
     judgement: Option<Judgement>,
     is_end: bool,
+    is_fault: bool,
 }
 
 impl Check {
@@ -53,12 +54,16 @@ impl Check {
             own_error: None,
             judgement: None,
             is_end: false,
+            is_fault: false,
         }
     }
 
     /// A fault that leaves nothing to be checked.
     pub fn fault(quantity: impl Into<String>, source: &'static str) -> Self {
-        Self::new(quantity, "–", Wanted::AtMost(0.0), source, f64::NAN)
+        Self {
+            is_fault: true,
+            ..Self::new(quantity, "–", Wanted::AtMost(0.0), source, f64::NAN)
+        }
     }
 
     /// The end of a model before its last load factor, of a study that requires all of them.
@@ -72,6 +77,11 @@ impl Check {
     /// Whether it is the end of a model.
     pub fn is_end(&self) -> bool {
         self.is_end
+    }
+
+    /// Whether it is a fault, which has neither a value nor a limit.
+    pub fn is_fault(&self) -> bool {
+        self.is_fault
     }
 
     /// With what the comparison with something that has an error of its own comes to.
@@ -131,6 +141,7 @@ impl Check {
     /// What it has to be, in words.
     pub fn wanted(&self) -> String {
         match self.wanted {
+            _ if self.is_fault => "–".to_owned(),
             Wanted::Equal(value, tolerance) => format!("{} ± {} %", limit(value), limit(tolerance)),
             Wanted::AtMost(most) => format!("≤ {}", limit(most)),
             Wanted::AtLeast(least) => format!("≥ {}", limit(least)),
@@ -200,4 +211,21 @@ pub fn requirements(checks: &[Check]) -> Block {
         "result",
     ];
     Block::table(&head, checks.iter().map(row))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_that_ended_has_neither_a_value_nor_a_limit() {
+        let end = Check::end("springs ended");
+        assert!(end.is_fault() && !end.passed());
+        assert_eq!(end.wanted(), "–");
+        let check = Check::new("force", "%", Wanted::AtMost(0.5), "study", f64::NAN);
+        assert_eq!(
+            (check.is_fault(), check.wanted()),
+            (false, "≤ 0.5".to_owned())
+        );
+    }
 }

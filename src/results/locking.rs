@@ -39,6 +39,9 @@ pub fn locks(mesh: &Mesh) -> bool {
     2 * crossed < triangles
 }
 
+/// What helps finite elements that lock.
+pub const SECOND_DEGREE: &str = "Take finite elements of the second degree (`element = \"Q2\"`)";
+
 /// What is to be said of a sheet that can hardly change its area; nothing of others.
 pub fn reason(law: &dyn HyperelasticLaw) -> Option<String> {
     law.bulk_modulus()?;
@@ -50,17 +53,19 @@ pub fn reason(law: &dyn HyperelasticLaw) -> Option<String> {
     })
 }
 
-/// The warning about models whose cells lock; nothing where there are none, or the sheet's area can change.
-pub fn warning(law: &dyn HyperelasticLaw, locking: &[&str]) -> Option<String> {
-    let models = match locking {
+/// The warning about models whose cells lock, each with what helps it; nothing where there are none, or the sheet's area can
+/// change.
+pub fn warning(law: &dyn HyperelasticLaw, locking: &[(&str, &str)]) -> Option<String> {
+    let (names, remedies): (Vec<&str>, Vec<&str>) = locking.iter().copied().unzip();
+    let models = match &names[..] {
         [] => return None,
         [one] => format!("{one} is"),
         several => format!("{} are", several.join(" and ")),
     };
     let reason = reason(law)?;
     Some(format!(
-        "Warning: {reason}: {models} too stiff. Take finite elements of the second degree (`element = \"Q2\"`); on a plate the \
-         scheme \"biquadratic\", on a specimen `lattice = \"triangles\"`"
+        "Warning: {reason}: {models} too stiff. {}",
+        remedies.join("; ")
     ))
 }
 
@@ -99,7 +104,7 @@ mod tests {
                 plane,
             };
             let law = law.with_volume(volume).unwrap();
-            warning(&*law, &["corrected"]).is_some()
+            warning(&*law, &[("corrected", "Take others")]).is_some()
         };
         assert!(told(PlaneState::Strain, 0.49));
         assert!(!told(PlaneState::Strain, 0.4));

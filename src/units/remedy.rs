@@ -194,8 +194,8 @@ mod tests {
             ("3 CM", Dimension::Length, "did you mean `cm`?"),
             ("3 kpa", Dimension::Stress, "did you mean `kPa`?"),
             ("3 newton", Dimension::Force, "did you mean `N`?"),
-            ("3 N/mm2", Dimension::Stress, "did you mean `N/mm^2`?"),
-            ("1020 kg/m3", Dimension::Density, "did you mean `kg/m^3`?"),
+            ("3 n/mm2", Dimension::Stress, "did you mean `N/mm^2`?"),
+            ("1020 KG/m3", Dimension::Density, "did you mean `kg/m^3`?"),
             ("50 percent", Dimension::Ratio, "Write \"50 %\""),
             ("3 degrees", Dimension::Angle, "did you mean `deg`?"),
             (

@@ -9,6 +9,8 @@ fn quantities_are_converted_to_internal_units() {
     assert_eq!(parse("-1.5e-1 m", Dimension::Length), Ok(-150.0));
     assert_eq!(parse("61.1 kPa", Dimension::Stress), Ok(61.1 * 1e-3));
     assert_eq!(parse("1020 kg/m³", Dimension::Density), Ok(1020.0 * 1e-12));
+    assert_eq!(parse("1020 kg/m3", Dimension::Density), Ok(1020.0 * 1e-12));
+    assert_eq!(parse("3 N/mm2", Dimension::Stress), Ok(3.0));
     assert_eq!(parse("9.81 m/s²", Dimension::Acceleration), Ok(9810.0));
     assert_eq!(parse("3 kPa*s", Dimension::Viscosity), Ok(3e-3));
     assert_eq!(parse("25 °C", Dimension::Temperature), Ok(25.0 + 273.15));

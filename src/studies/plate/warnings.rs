@@ -22,8 +22,13 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
     let finite_elements = study.reference.element == Element::Q1;
     let [_, names @ ..] = MODELS;
     let locking = names.into_iter().zip([corrected, finite_elements]);
-    let locking: Vec<&str> = locking
-        .filter_map(|(name, locks)| locks.then_some(name))
+    let remedies = [
+        "Take the scheme \"biquadratic\" for the corrected field",
+        locking::SECOND_DEGREE,
+    ];
+    let locking: Vec<(&str, &str)> = locking
+        .zip(remedies)
+        .filter_map(|((name, locks), remedy)| locks.then_some((name, remedy)))
         .collect();
     all.extend(locking::warning(&*study.problem.law, &locking));
     all.extend(compression(study, results));

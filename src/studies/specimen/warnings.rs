@@ -29,9 +29,12 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     let lattice = mass_spring::warning(&*specimen.problem.law);
     let mut all: Vec<String> = lattice.into_iter().chain(compression).collect();
     let [_, corrected, finite_elements] = models.named();
-    let locking = [corrected, finite_elements].into_iter();
-    let locking = locking.filter(|model| locking::locks(&model.solution.mesh));
-    let locking: Vec<&str> = locking.map(|model| model.name).collect();
+    let remedies = [specimen.outline.unlocking(), locking::SECOND_DEGREE];
+    let locking = [corrected, finite_elements].into_iter().zip(remedies);
+    let locking = locking.filter(|(model, _)| locking::locks(&model.solution.mesh));
+    let locking: Vec<_> = locking
+        .map(|(model, remedy)| (model.name, remedy))
+        .collect();
     all.extend(locking::warning(&*specimen.problem.law, &locking));
     all.extend(beyond(&specimen.card, &strained));
     all.extend(unstable(&specimen.card, &strained));

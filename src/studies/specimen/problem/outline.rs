@@ -110,7 +110,10 @@ impl Outline {
         match self {
             Self::Shape { shape, .. } => describe(*shape),
             Self::File { mesh, .. } => {
-                let [[left, bottom], [right, top]] = mesh.bounding_box();
+                let [low, high] = mesh.bounding_box();
+                let size = (high[0] - low[0]).max(high[1] - low[1]);
+                let [[left, bottom], [right, top]] =
+                    [low, high].map(|corner| corner.map(|place| without_rounding(place, size)));
                 format!(
                     "the sheet of a mesh file, x from {left} to {right} mm and y from {bottom} to {top} mm"
                 )
@@ -224,12 +227,34 @@ impl Outline {
         }
     }
 
+    /// What helps a corrected field whose cells lock.
+    pub fn unlocking(&self) -> &'static str {
+        match self {
+            Self::Shape { lattice, .. } if !lattice.is_triangle() => {
+                "Take `lattice = \"triangles\"` for the corrected field"
+            }
+            _ => {
+                "The corrected field has the cells of the mesh: go by the finite elements of the second degree, or mesh with \
+                 triangles of which four meet in the middle of a quadrilateral"
+            }
+        }
+    }
+
     /// A refined mesh with its sides on the outline; that of a file is the one of its mesh.
     pub fn fitted(&self, mut mesh: Mesh) -> Mesh {
         if let Self::Shape { shape, .. } = self {
             shape.fit(&mut mesh);
         }
         mesh
+    }
+}
+
+/// A place without what rounding has left of it, compared with the size of the mesh.
+fn without_rounding(place: f64, size: f64) -> f64 {
+    const ROUNDING: f64 = 1e-12;
+    match place.abs() < ROUNDING * size {
+        true => 0.0,
+        false => format!("{place:.11e}").parse().unwrap_or(place),
     }
 }
 
@@ -280,5 +305,42 @@ fn describe(shape: Shape) -> String {
             "a sector of {}° of a ring with radii of {inner} and {outer} mm",
             number(angle.to_degrees())
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{HALVINGS, Outline, without_rounding};
+    use crate::mesh::{CellShape, Shape};
+
+    #[test]
+    fn advice_against_locking_has_keys_that_the_study_has() {
+        let strip = Shape::Strip { size: [20.0, 10.0] };
+        let element = CellShape::Quad9;
+        let shape = |lattice| Outline::Shape {
+            shape: strip,
+            cells: 4,
+            lattice,
+            element,
+        };
+        let file = Outline::File {
+            mesh: Box::new(strip.mesh(4, CellShape::Quad4)),
+            element,
+            polygons: false,
+            halvings: HALVINGS,
+        };
+        assert!(shape(CellShape::Quad4).unlocking().contains("lattice"));
+        for other in [shape(CellShape::Triangle3), file] {
+            assert!(!other.unlocking().contains("lattice"));
+        }
+    }
+
+    #[test]
+    fn places_are_told_without_what_rounding_left() {
+        let told = |place: f64| without_rounding(place, 20.0).to_string();
+        assert_eq!(told(6.123233995736766e-16), "0");
+        assert_eq!(told(20.000000000000004), "20");
+        assert_eq!(told(0.1 + 0.2), "0.3");
+        assert_eq!(told(-12.345678), "-12.345678");
     }
 }
