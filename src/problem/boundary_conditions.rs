@@ -32,6 +32,33 @@ pub enum Support {
     Grip([Drive; 2]),
 }
 
+impl Support {
+    /// Whether it holds what it holds where it is, and pulls nothing.
+    pub fn rests(&self) -> bool {
+        let is_zero = |linear: &Linear| linear.at_origin == 0.0 && linear.slope == [0.0; 2];
+        match self {
+            Self::Displacement(given) => given.iter().flatten().all(|value| *value == 0.0),
+            Self::LinearDisplacement(given) => given.iter().flatten().all(is_zero),
+            Self::Radial { displacement, .. } => *displacement == 0.0,
+            Self::Roller => true,
+            Self::Rotation { angle, .. } => *angle == 0.0,
+            Self::Grip(drives) => drives.iter().all(|drive| match drive {
+                Drive::Displacement(value) | Drive::Force(value) => *value == 0.0,
+            }),
+        }
+    }
+}
+
+impl Load {
+    /// Whether it is none.
+    pub fn is_none(&self) -> bool {
+        match self {
+            Self::Traction(value) | Self::Force(value) => *value == [0.0; 2],
+            Self::Pressure(pressure) => *pressure == 0.0,
+        }
+    }
+}
+
 /// What moves a rigid grip along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {

@@ -1,6 +1,6 @@
 //! What follows from a state of a model: the forces of its supports, what happens at groups, the balance of all forces.
 
-use super::balance::{Balance, Body};
+use super::balance::{Balance, Body, Resultant};
 use super::constraints::Constraints;
 use super::groups::shares;
 use super::model::Model;
@@ -15,7 +15,14 @@ pub struct GroupState {
     pub moment: f64,
     /// Mean displacement over the length of its edges in mm.
     pub displacement: [f64; 2],
+    /// The sum of the sizes of the forces on its nodes in N, of which `force` is what they have in common.
+    pub size: f64,
+    /// What rounding may leave of forces in N, of E t times the largest displacement.
+    pub rounding: f64,
 }
+
+/// Rounding of forces relative to E t times the largest displacement: a body that moves without strain has no others.
+const ROUNDING: f64 = 1e-11;
 
 /// The forces of the supports of a model in one state, and what follows from them.
 pub struct Reactions<'a> {
@@ -83,7 +90,11 @@ impl Reactions<'_> {
                 .map(|(node, share)| share * u[2 * node + axis]);
             parts.fold(0.0, |sum, part| sum + part)
         };
+        let sizes = nodes.iter();
+        let sizes = sizes.map(|node| forces[2 * node].hypot(forces[2 * node + 1]));
         GroupState {
+            size: sizes.sum(),
+            rounding: self.rounding(),
             force: [0, 1].map(sum),
             moment: nodes.iter().map(moment).sum(),
             displacement: [0, 1].map(mean),
@@ -106,7 +117,18 @@ impl Reactions<'_> {
         let body = Body::new(model.mesh, u);
         let supports = body.resultant(&self.forces);
         let loads = model.loads.resultant(self.state.factor, u, &body);
-        let largest = u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-        body.balance(supports, loads, NEGLIGIBLE * model.stiffness * largest)
+        let rounding = self.rounding();
+        if supports.size.max(loads.size) <= 10.0 * rounding {
+            let none = Resultant::default();
+            return body.balance(none, none, rounding);
+        }
+        body.balance(supports, loads, NEGLIGIBLE / ROUNDING * rounding)
+    }
+
+    /// What rounding may leave of forces in N.
+    fn rounding(&self) -> f64 {
+        let u = self.state.displacement.iter();
+        let largest = u.fold(0.0, |most: f64, u| most.max(u.abs()));
+        ROUNDING * self.model.stiffness * largest
     }
 }

@@ -8,6 +8,9 @@ use crate::mesh::Mesh;
 /// clamped corner it grows with every refinement.
 const NEGLIGIBLE: f64 = 1e-3;
 
+/// Stresses below this share of E₀ are what rounding leaves.
+const ROUNDING: f64 = 1e-10;
+
 /// The compression of a sheet, cell by cell, at the centres of the cells.
 #[derive(Clone, Debug)]
 pub struct Wrinkling {
@@ -38,7 +41,8 @@ impl Wrinkling {
             .map(|([larger, smaller], area)| area * larger.abs().max(smaller.abs()))
             .sum();
         let smallest: Vec<f64> = stresses.iter().map(|[_, smaller]| *smaller).collect();
-        let limit = -NEGLIGIBLE * loaded / all;
+        let rounding = ROUNDING * law.youngs_modulus();
+        let limit = -(NEGLIGIBLE * loaded / all).max(rounding);
         let is_thin = law.plane_state() == PlaneState::Stress;
         let compressed = smallest.iter().map(|stress| is_thin && *stress < limit);
         let compressed: Vec<bool> = compressed.collect();
@@ -111,6 +115,20 @@ mod tests {
             "{}",
             bent.area_percent
         );
+    }
+
+    #[test]
+    fn a_rigid_motion_has_no_compression() {
+        let (sine, cosine) = 0.3_f64.sin_cos();
+        let turned = |[x, y]: [f64; 2]| {
+            [
+                3.0 + (cosine - 1.0) * x - sine * y,
+                1.0 + sine * x + (cosine - 1.0) * y,
+            ]
+        };
+        let found = of(turned);
+        assert!(found.smallest.iter().any(|stress| *stress != 0.0));
+        assert_eq!(found.area_percent, 0.0);
     }
 
     #[test]

@@ -8,6 +8,7 @@ use serde_json::Value;
 mod common;
 mod ends;
 mod faults;
+mod nothing;
 
 use common::{folder_with, gelbench, words};
 

@@ -106,7 +106,8 @@ fn cells(state: &GroupState, [force, moment]: [f64; 2]) -> Vec<String> {
     const ROUNDING: f64 = 1e-12;
     let [x, y] = state.force;
     let [u, v] = state.displacement;
-    let shown = |(value, scale): (f64, f64)| match value.abs() < ROUNDING * scale {
+    let is_rounding = state.size <= 10.0 * state.rounding;
+    let shown = |(value, scale): (f64, f64)| match is_rounding || value.abs() < ROUNDING * scale {
         true => number(0.0),
         false => number(value),
     };

@@ -139,12 +139,21 @@ fn deviation(models: &Models, step: usize, expected: &[f64]) -> Option<Deviation
     let lattice = &models.on_lattice.springs.mesh;
     let what = &reference.measured;
     let measured = what.at(&reference.finest, step)?;
+    let none_of = what.none_of(&reference.finest, step);
+    let is_none = |solved: &Solution| none_of.is_some() && what.none_of(solved, step).is_some();
     let of = |solved: &Solution| {
         let field = &solved.states.get(step)?.displacement;
         let displacement = area_weighted_percent(lattice, field, expected);
-        Some([displacement, percent(what.at(solved, step)?, measured)])
+        let value = what.at(solved, step)?;
+        let deviation = match none_of {
+            _ if is_none(solved) => 0.0,
+            Some(all) => 100.0 * (value - measured) / all,
+            None => percent(value, measured),
+        };
+        Some([displacement, deviation])
     };
     Some(Deviation {
+        measures_none: is_none(&models.on_lattice.corrected),
         springs: of(&models.on_lattice.uncorrected),
         corrected: of(&models.on_lattice.corrected)?,
         own: [

@@ -102,8 +102,19 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         pictures,
     };
     given.check(root, &specimen.problem, &mesh);
+    warn_of_rest(root, &specimen.problem);
     check_refinement(root, &specimen);
     Some(specimen)
+}
+
+/// Warns of a sheet that nothing loads or moves.
+fn warn_of_rest(root: &Section, problem: &BoundaryProblem) {
+    let held = problem.supports.iter().all(|(_, support)| support.rests());
+    if held && problem.loads.iter().all(|(_, load)| load.is_none()) {
+        let message = "no support moves and no load acts: the sheet rests";
+        let hint = "give a support a displacement, or a group a [[load]]";
+        root.warning("support", message, hint);
+    }
 }
 
 /// The load factors, ascending unless the material remembers how it was loaded.

@@ -41,6 +41,28 @@ impl Measured {
         solution.groups(step).map(|groups| self.of(groups))
     }
 
+    /// Whether the value at a load factor is none, and what it is none of: a force next to those on the group's nodes in N, a
+    /// displacement next to the largest one in mm; `None` where it is something, or a solution has not reached it.
+    pub fn none_of(&self, solution: &Solution, step: usize) -> Option<f64> {
+        /// Next to the sum of the sizes of the nodes' forces: closed edges pull and press on themselves, and what a mesh
+        /// leaves of that is no force.
+        const NO_FORCE: f64 = 1e-3;
+        const NO_DISPLACEMENT: f64 = 1e-9;
+        let groups = solution.groups(step)?;
+        let (none, all) = match self.quantity {
+            Quantity::Force => {
+                let GroupState { size, rounding, .. } = groups[self.index];
+                ((NO_FORCE * size).max(rounding), size.max(rounding))
+            }
+            Quantity::Displacement => {
+                let field = solution.displacement(step)?.iter();
+                let largest = field.fold(0.0, |most: f64, u| most.max(u.abs()));
+                (NO_DISPLACEMENT * largest, largest)
+            }
+        };
+        (self.of(groups).abs() <= none).then_some(all)
+    }
+
     /// `force` or `displacement`.
     pub fn name(&self) -> &'static str {
         match self.quantity {

@@ -90,8 +90,16 @@ impl Reference {
         }
     }
 
+    /// Whether what is measured is none at a load factor, so that there is no error of it.
+    fn measures_none(&self, step: usize) -> bool {
+        self.measured.none_of(&self.finest, step).is_some()
+    }
+
     /// What the curves that a file's edges stand for change in what is measured at a load factor, in %.
     fn outline_percent(&self, step: usize) -> Option<f64> {
+        if self.measures_none(step) {
+            return Some(0.0);
+        }
         let change = self.outline.as_ref()?.get(step)?;
         let measured = self.measured.at(&self.finest, step)?;
         Some(100.0 * (change / measured).abs())
@@ -117,6 +125,9 @@ impl Reference {
         if !self.rounds.is_empty() {
             return None;
         }
+        if self.measures_none(step) {
+            return Some(0.0);
+        }
         let all = [coarse, middle, &self.finest].map(|own| self.measured.at(own, step));
         let [Some(coarse), Some(middle), Some(fine)] = all else {
             return None;
@@ -126,6 +137,9 @@ impl Reference {
 
     /// The error of what is measured by recovery at a load factor in %.
     pub fn recovered_percent(&self, step: usize) -> Option<f64> {
+        if self.measures_none(step) {
+            return Some(0.0);
+        }
         let estimate = self.estimates.get(step)?.as_ref()?;
         let measured = self.measured.at(&self.finest, step)?;
         Some(100.0 * (estimate.force / measured).abs())

@@ -14,6 +14,8 @@ pub struct Deviation {
     pub corrected: [f64; 2],
     /// The finite elements' own errors of both; not a number where they are not known.
     pub own: [f64; 2],
+    /// Whether what is measured is none, of the corrected field and of the finite elements.
+    pub measures_none: bool,
 }
 
 impl Deviation {
@@ -61,6 +63,9 @@ pub fn checks(specimen: &Specimen, models: &Models, deviations: &[Deviation]) ->
 
 const SOURCE: &str = "the study's tolerance";
 
+/// Why what is measured needs no comparison.
+const NOTHING: &str = "nothing to compare: both are zero next to the forces on single nodes, or to the largest displacement";
+
 fn deviation_checks(specimen: &Specimen, models: &Models, deviations: &[Deviation]) -> [Check; 2] {
     let limits = specimen.tolerances;
     let what = models.reference.measured.name();
@@ -73,7 +78,11 @@ fn deviation_checks(specimen: &Specimen, models: &Models, deviations: &[Deviatio
         let pairs = deviations.iter();
         let pairs = pairs.map(|own| [own.corrected[which].abs(), own.own[which]]);
         let [deviation, own] = worst(pairs);
-        let judgement = judge(deviation, own, limit, models.reference.remedy());
+        let nothing = which == 1 && deviations.iter().all(|own| own.measures_none);
+        let judgement = match nothing {
+            true => Judgement::Exact(NOTHING),
+            false => judge(deviation, own, limit, models.reference.remedy()),
+        };
         let quantity = format!("corrected {name} from the finite elements");
         Check::new(quantity, "%", Wanted::AtMost(limit), SOURCE, deviation).judged(judgement, own)
     })
