@@ -17,6 +17,10 @@
 //! The exit code is 0 when all aims are met, 1 when one is not (its line says FAIL), 3 when something has no solution, and
 //! 4 when a file cannot be written.
 
+#[path = "../common/columns.rs"]
+mod columns;
+#[path = "../common/lines.rs"]
+mod lines;
 mod measure;
 mod opponent;
 mod reference;
@@ -94,17 +98,7 @@ const QUICK: usize = 250_000;
 
 fn main() -> ExitCode {
     let asked = |name: &str| std::env::args().any(|argument| argument == name);
-    match bench(asked("--quick"), asked("--equal-accuracy")) {
-        Ok(0) => ExitCode::SUCCESS,
-        Ok(missed) => {
-            eprintln!("{missed} aims are not met: see the lines that say FAIL");
-            ExitCode::FAILURE
-        }
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::from(error.exit_code())
-        }
-    }
+    lines::ended(bench(asked("--quick"), asked("--equal-accuracy")))
 }
 
 /// All grids up to so many equal cells, and whether the climb is measured on them.
@@ -157,7 +151,8 @@ fn bench(quick: bool, equal_accuracy: bool) -> Result<usize, Error> {
         runs.extend(own);
     }
     let rows = Row::all(&runs);
-    table::print(&rows);
+    let columns: Vec<_> = rows.iter().map(Row::columns).collect();
+    columns::print(&columns);
     let mut verdicts = Verdicts::new(&reference);
     verdicts.equal_accuracy(&runs);
     if !equal_accuracy {
@@ -175,7 +170,7 @@ fn bench(quick: bool, equal_accuracy: bool) -> Result<usize, Error> {
     let picture = table::picture(&runs);
     let picture = picture.map_err(|fault| Error::write("corrected_plate.png", fault))?;
     for (name, bytes) in [
-        ("corrected_plate.csv", table::csv(&rows)),
+        ("corrected_plate.csv", columns::csv(&columns)),
         ("corrected_plate.png", picture),
     ] {
         println!("{}", output::save(&folder.join(name), &bytes)?.display());

@@ -5,6 +5,8 @@ use gelbench::finite_element::Element;
 use gelbench::output;
 use gelbench::results::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
 
+use super::columns::{Columns, number, ratio};
+use super::lines;
 use super::measure::Run;
 use super::opponent::Guess;
 use super::way::{Layout, Way, element, scheme_name};
@@ -74,7 +76,7 @@ impl<'a> Row<'a> {
     }
 
     /// What is printed and written: name and value.
-    fn columns(&self) -> Vec<(&'static str, String)> {
+    pub fn columns(&self) -> Columns {
         let climb = self.climb;
         let equal = self.equal_accuracy[0];
         let mesh = equal.map_or("-".to_owned(), |run| match run.way {
@@ -83,8 +85,6 @@ impl<'a> Row<'a> {
             }
             _ => unreachable!("finite elements"),
         });
-        let number = |value: f64| format!("{value:.4e}");
-        let ratio = |value: f64| format!("{value:.2}");
         vec![
             ("nodes", climb.nodes.to_string()),
             ("grid", climb.layout.to_string()),
@@ -164,57 +164,6 @@ pub fn print_run(run: &Run) {
     );
 }
 
-/// The table in columns.
-pub fn print(rows: &[Row]) {
-    let cells: Vec<Vec<(&str, String)>> = rows.iter().map(Row::columns).collect();
-    let Some(first) = cells.first() else {
-        return;
-    };
-    println!();
-    // Long names stand above, by number, so that a row fits on a line.
-    for (index, (name, _)) in first.iter().enumerate() {
-        println!("({index}) {name}");
-    }
-    let heads: Vec<String> = (0..first.len()).map(|index| format!("({index})")).collect();
-    let width = |column: usize| {
-        let values = cells.iter().map(|row| row[column].1.len());
-        values.max().unwrap_or(0).max(heads[column].len())
-    };
-    let widths: Vec<usize> = (0..first.len()).map(width).collect();
-    let line = |values: Vec<&str>| {
-        let padded = values
-            .iter()
-            .zip(&widths)
-            .map(|(value, width)| format!("{value:>width$}"));
-        println!("{}", padded.collect::<Vec<_>>().join("  "));
-    };
-    line(heads.iter().map(String::as_str).collect());
-    for row in &cells {
-        line(row.iter().map(|(_, value)| value.as_str()).collect());
-    }
-}
-
-/// The table as CSV.
-pub fn csv(rows: &[Row]) -> Vec<u8> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for (index, row) in rows.iter().enumerate() {
-        let columns = row.columns();
-        if index == 0 {
-            let names = columns.iter().map(|(name, _)| *name);
-            writer
-                .write_record(names)
-                .expect("writing to memory does not fail");
-        }
-        let values = columns.iter().map(|(_, value)| value);
-        writer
-            .write_record(values)
-            .expect("writing to memory does not fail");
-    }
-    writer
-        .into_inner()
-        .expect("writing to memory does not fail")
-}
-
 /// Time against nodes, on equal cells, and against error, on the best of all grids.
 pub fn picture(runs: &[Run]) -> Result<Vec<u8>, output::PictureFault> {
     let equal = |run: &Run| run.layout.grading == 1.0;
@@ -260,13 +209,6 @@ fn chart(title: &str, x: &str, points: impl Fn(Way) -> Vec<[f64; 2]>) -> (LineCh
 
 /// The runs that no other is both quicker and more accurate than, from the most accurate on.
 pub fn best(runs: &[Run], of: impl Fn(&Run) -> bool) -> Vec<&Run> {
-    let mut own: Vec<&Run> = runs.iter().filter(|run| of(run)).collect();
-    own.sort_by(|a, b| a.departure_percent.total_cmp(&b.departure_percent));
-    let mut quickest = f64::INFINITY;
-    own.retain(|run| {
-        let quicker = run.seconds < quickest;
-        quickest = quickest.min(run.seconds);
-        quicker
-    });
-    own
+    let own = runs.iter().filter(|run| of(run));
+    lines::best(own, |run| [run.seconds, run.departure_percent])
 }

@@ -1,5 +1,6 @@
 //! What the bench must show, each with what was measured.
 
+use super::lines::{Lines, exponent};
 use super::measure::{Run, SCHEMES};
 use super::opponent::Guess;
 use super::reference::{PUBLISHED_FORCE, Reference};
@@ -16,9 +17,9 @@ fn is_equal(row: &Row) -> bool {
     row.climb.layout.grading == 1.0
 }
 
-/// Lines with pass or fail.
+/// All lines.
 pub struct Verdicts {
-    lines: Vec<(bool, String)>,
+    lines: Lines,
     own_percent: f64,
 }
 
@@ -29,19 +30,15 @@ impl Verdicts {
     pub fn new(reference: &Reference) -> Self {
         let deviation = 100.0 * (reference.force / PUBLISHED_FORCE - 1.0).abs();
         let mut verdicts = Self {
-            lines: Vec::new(),
+            lines: Lines::default(),
             own_percent: reference.own_percent,
         };
         let text = format!(
             "force of the reference: {:.6} N, {deviation:.1e} % from the published {PUBLISHED_FORCE} N (at most 1e-4 %)",
             reference.force
         );
-        verdicts.put(deviation <= 1e-4, text);
+        verdicts.lines.put(deviation <= 1e-4, text);
         verdicts
-    }
-
-    fn put(&mut self, pass: bool, text: String) {
-        self.lines.push((pass, text));
     }
 
     /// At least, or at most, over some rows; the worst one decides.
@@ -71,7 +68,7 @@ impl Verdicts {
             worst.climb.layout,
             scheme_name(worst.scheme)
         );
-        self.put(pass, text);
+        self.lines.put(pass, text);
     }
 
     /// All that is seen from the table.
@@ -143,7 +140,8 @@ impl Verdicts {
             |row| own / row.climb.departure_percent,
         );
         let same = rows.iter().all(|row| row.climb.same_bits);
-        self.put(same, "the same bits with one and two threads".to_owned());
+        self.lines
+            .put(same, "the same bits with one and two threads".to_owned());
     }
 
     /// The quickest climb of some accuracy beside the quickest finite elements, each on the best of all its grids.
@@ -183,30 +181,22 @@ impl Verdicts {
             "times faster at equal accuracy from 0.1 to 1e-4 %, against the quickest of all finite elements: {ratio:.2} (at \
              least {TIMES_FASTER}), worst at {accuracy:.0e} %"
         );
-        self.put(ratio >= TIMES_FASTER, text);
+        self.lines.put(ratio >= TIMES_FASTER, text);
     }
 
     /// The least-squares slope of ln t over ln n.
     fn exponent(&mut self, scheme: DifferenceScheme, rows: &[&Row]) {
         let points = rows.iter().filter(|row| FITTED.contains(&row.climb.nodes));
         let points: Vec<[f64; 2]> = points
-            .map(|row| [(row.climb.nodes as f64).ln(), row.climb.seconds.ln()])
+            .map(|row| [row.climb.nodes as f64, row.climb.seconds])
             .collect();
-        let mean =
-            |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
-        let [x, y] = [mean(0), mean(1)];
-        let covariance: f64 = points
-            .iter()
-            .map(|point| (point[0] - x) * (point[1] - y))
-            .sum();
-        let variance: f64 = points.iter().map(|point| (point[0] - x).powi(2)).sum();
-        let slope = covariance / variance;
+        let slope = exponent(&points);
         let text = format!(
             "exponent of time against nodes, {} climb, {} grids: {slope:.3} (at most 1.05)",
             scheme_name(scheme),
             points.len()
         );
-        self.put(slope <= 1.05, text);
+        self.lines.put(slope <= 1.05, text);
     }
 
     /// The path of many states: built-in and tuned opponents.
@@ -221,7 +211,7 @@ impl Verdicts {
                 1e3 * path.climb,
                 1e3 * seconds
             );
-            self.put(ratio >= 20.0, text);
+            self.lines.put(ratio >= 20.0, text);
         }
         println!(
             "path, {scheme}: {} Newton iterations of the tuned finite elements in {} states, largest deviation of the \
@@ -238,15 +228,11 @@ impl Verdicts {
             1e3 * frames.median,
             1e3 * frames.worst
         );
-        self.put(frames.worst <= 0.016, text);
+        self.lines.put(frames.worst <= 0.016, text);
     }
 
     /// Prints all lines; the number of those that fail.
     pub fn print(&self) -> usize {
-        println!();
-        for (pass, text) in &self.lines {
-            println!("{} {text}", if *pass { "pass" } else { "FAIL" });
-        }
-        self.lines.iter().filter(|(pass, _)| !pass).count()
+        self.lines.print()
     }
 }

@@ -9,7 +9,7 @@ use gelbench::mesh::Mesh;
 use gelbench::problem::{Grip, Model, RigidMotion};
 use gelbench::solve::{LinearSolver, Loading, NewtonSettings, State, Tangent};
 
-use super::shapes::Case;
+use super::shapes::Family;
 use super::{SHARE, distance, timed};
 
 /// States of the path.
@@ -31,12 +31,12 @@ const EXACT: NewtonSettings = NewtonSettings {
 
 /// Follows a path in all ways, side by side, and moves the right grip; whether no state of the climb differs from the direct path by more
 /// than the allowed share of its discretisation error.
-pub fn bench(case: &Case, levels: usize) -> Result<bool, Error> {
-    let meshes = case.meshes(levels);
+pub fn bench(family: &Family, levels: usize) -> Result<bool, Error> {
+    let meshes = family.meshes(levels);
     let factors: Vec<f64> = (1..=STATES)
         .map(|step| f64::from(step) / f64::from(STATES))
         .collect();
-    let exact = direct(case, &meshes[levels - 1], &factors, EXACT)?;
+    let exact = direct(family, &meshes[levels - 1], &factors, EXACT)?;
     let mut seconds = [f64::INFINITY; 4];
     let (mut paths, mut retained_by) = ([Vec::new(), Vec::new()], (Vec::new(), 0));
     for _ in 0..REPETITIONS {
@@ -45,7 +45,7 @@ pub fn bench(case: &Case, levels: usize) -> Result<bool, Error> {
             .enumerate()
         {
             paths[place] = timed(&mut seconds[place], || {
-                climbed(case, &case.meshes(levels), &factors, settings)
+                climbed(family, &family.meshes(levels), &factors, settings)
             })?;
         }
         let errors: Vec<f64> = paths[0]
@@ -53,18 +53,18 @@ pub fn bench(case: &Case, levels: usize) -> Result<bool, Error> {
             .map(|own| own.discretisation_error)
             .collect();
         retained_by = timed(&mut seconds[2], || {
-            let mesh = &case.meshes(levels)[levels - 1];
-            retained(case, mesh, &factors, &errors)
+            let mesh = &family.meshes(levels)[levels - 1];
+            retained(family, mesh, &factors, &errors)
         })?;
         timed(&mut seconds[3], || {
-            let mesh = &case.meshes(levels)[levels - 1];
-            direct(case, mesh, &factors, NEWTON)
+            let mesh = &family.meshes(levels)[levels - 1];
+            direct(family, mesh, &factors, NEWTON)
         })?;
     }
     println!(
         "{}, {} nodes, {STATES} load factors: ms a state, and over that of the fast climb; the largest difference to the direct path \
          over the discretisation error",
-        case.name,
+        family.name(),
         meshes[levels - 1].nodes.len()
     );
     let names = [
@@ -105,53 +105,53 @@ pub fn bench(case: &Case, levels: usize) -> Result<bool, Error> {
         shares.fold(0.0, f64::max),
         retained_by.1
     );
-    frames(case, &meshes)?;
+    frames(family, &meshes)?;
     Ok(passes)
 }
 
 fn climbed(
-    case: &Case,
+    family: &Family,
     meshes: &[Mesh],
     factors: &[f64],
     settings: ClimbSettings,
 ) -> Result<Vec<ShapeClimb>, Error> {
     let mut states = Vec::new();
-    let mut climb = Climb::new(&case.problem, meshes, settings);
+    let mut climb = Climb::new(&family.case.problem, meshes, settings);
     climb.follow(factors, &mut |own| states.push(own.clone()))?;
     Ok(states)
 }
 
 fn direct(
-    case: &Case,
+    family: &Family,
     mesh: &Mesh,
     factors: &[f64],
     settings: NewtonSettings,
 ) -> Result<Vec<State>, Error> {
-    let energy = case.problem.finite_elements(mesh);
-    let model = model(case, mesh, &energy)?.solved_by(LinearSolver::Direct);
+    let energy = family.case.problem.finite_elements(mesh);
+    let model = model(family, mesh, &energy)?.solved_by(LinearSolver::Direct);
     let states = model.solve(factors, settings, &|_| ());
     states.map_err(|end| model.error(&end))
 }
 
 fn model<'a>(
-    case: &Case,
+    family: &Family,
     mesh: &'a Mesh,
     energy: &'a dyn gelbench::solve::Potential,
 ) -> Result<Model<'a>, Error> {
-    let found = case.problem.on(mesh, energy);
+    let found = family.case.problem.on(mesh, energy);
     found.map_err(|fault| Error::Input(vec![fault]))
 }
 
 /// Each state extrapolated from the three before, by Newton's method with the factor of an earlier state as long as it contracts by four;
 /// until a step is below what the fast climb may leave. The fields, and how many factors were taken.
 fn retained(
-    case: &Case,
+    family: &Family,
     mesh: &Mesh,
     factors: &[f64],
     errors: &[f64],
 ) -> Result<(Vec<Vec<f64>>, usize), Error> {
-    let energy = case.problem.finite_elements(mesh);
-    let model = model(case, mesh, &energy)?;
+    let energy = family.case.problem.finite_elements(mesh);
+    let model = model(family, mesh, &energy)?;
     let potential = model.potential(factors[0], &[]);
     let describe = |element: usize| model.describe(element);
     let solver = |fault| Error::Solve {
@@ -215,9 +215,9 @@ fn extrapolated(fields: &[Vec<f64>], factors: &[f64], place: usize) -> Vec<f64> 
 }
 
 /// Moves the right grip by a few mm and turns it a little in every frame.
-fn frames(case: &Case, meshes: &[Mesh]) -> Result<(), Error> {
+fn frames(family: &Family, meshes: &[Mesh]) -> Result<(), Error> {
     const FRAMES: usize = 60;
-    let climb = Climb::new(&case.problem, meshes, ClimbSettings::FAST);
+    let climb = Climb::new(&family.case.problem, meshes, ClimbSettings::FAST);
     let mut hand = Interactive::new(climb, 1.0)?;
     let begin = hand.at_group("right").displacement[0];
     let mut times = Vec::with_capacity(FRAMES);
