@@ -74,6 +74,8 @@ const TURNS: std::ops::Range<usize> = 1..7;
 const ENOUGH: Duration = Duration::from_millis(400);
 const TURN: Duration = Duration::from_millis(25);
 const LONG: f64 = 3.0;
+/// Nodes up to which a line search is tried on one mesh even where Newton's method without one finds the field.
+const FEW: usize = 3_000;
 
 /// A finest mesh with what its fields are compared with.
 struct Compared<'a> {
@@ -108,14 +110,14 @@ impl Bench<'_> {
                 true => None,
                 false => self.tuned(&compared, way, false, progress)?,
             };
-            let long = plain.as_ref().is_some_and(|(run, _)| run.seconds > LONG);
-            let in_steps = match long {
-                true => None,
-                false => self.tuned(&compared, way, true, progress)?,
+            let few = compared.mesh.nodes.len() <= FEW;
+            let in_steps = match plain.is_none() || few {
+                true => self.tuned(&compared, way, true, progress)?,
+                false => None,
             };
             let both = plain.into_iter().chain(in_steps);
             let quickest = both.min_by(|a, b| a.0.seconds.total_cmp(&b.0.seconds));
-            progress.steps = quickest.as_ref().is_some_and(|(_, told)| told.steps);
+            progress.steps = !few && quickest.as_ref().is_some_and(|(_, told)| told.steps);
             runs.extend(quickest);
         }
         self.repeat(&mut runs, &compared)?;

@@ -22,14 +22,14 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The grading g of the plate's grids, for all but equal cells a share more of them from a clamped end to the middle.
-    fn along(self, cells: f64) -> usize {
+    /// How many cells stand along a distance of so many widths from a clamped end: more of them where they are graded.
+    fn along(self, widths: f64) -> usize {
         let more = 0.5 * (1.0 + self.grading);
-        count(more * cells * self.across as f64)
+        count(more * widths * self.across as f64)
     }
 
     /// A share of the way from a clamped end, of so many cells.
-    fn from_end(self, share: f64, cells: usize) -> f64 {
+    fn along_from_end(self, share: f64, cells: usize) -> f64 {
         between_lines(share, cells, |share| share.powf(self.grading))
     }
 
@@ -88,28 +88,9 @@ pub fn strip_with_hole(shape: Shape, layout: Layout) -> Mesh {
     let radial = count((half - radius) / size[1] * layout.across as f64 * 1.2).max(2);
     let ends = layout.along((middle - half) / size[1]);
     let graded = move |t: f64| (2.0 * layout.across(t, around) - 1.0) * FRAC_PI_4;
-    let mut blocks = Vec::new();
-    for (quarter, outer) in [(0.0_f64, ""), (1.0, "top"), (2.0, ""), (3.0, "bottom")] {
-        let towards_ends = outer.is_empty();
-        let map = move |[s, t]: [f64; 2]| {
-            let angle = match towards_ends {
-                true => graded(t),
-                false => (2.0 * t - 1.0) * FRAC_PI_4,
-            };
-            let from = [radius * angle.cos(), radius * angle.sin()];
-            let to = [half, half * angle.tan()];
-            let [x, y] = [0, 1].map(|axis| from[axis] + s * (to[axis] - from[axis]));
-            let (sine, cosine) = (quarter * FRAC_PI_2).sin_cos();
-            [middle + cosine * x - sine * y, sine * x + cosine * y]
-        };
-        blocks.push(Block {
-            map: Box::new(map),
-            cells: [radial, around],
-            sides: ["", outer, "", "hole"],
-        });
-    }
+    let mut blocks = around_hole(middle, [radius, half], [radial, around], graded);
     let from_end = move |[s, t]: [f64; 2]| {
-        let x = (middle - half) * layout.from_end(s, ends);
+        let x = (middle - half) * layout.along_from_end(s, ends);
         [x, half * graded(t).tan()]
     };
     let length = size[0];
@@ -129,62 +110,120 @@ pub fn strip_with_hole(shape: Shape, layout: Layout) -> Mesh {
     mesh_of_blocks(&blocks, layout.kind)
 }
 
+/// The blocks between a hole about (`middle`, 0) and a square; those that look along the strip have their lines at graded angles.
+fn around_hole<'a>(
+    middle: f64,
+    [radius, half]: [f64; 2],
+    cells: [usize; 2],
+    graded: impl Fn(f64) -> f64 + Copy + 'a,
+) -> Vec<Block<'a>> {
+    let quarters = [(0.0_f64, ""), (1.0, "top"), (2.0, ""), (3.0, "bottom")];
+    let block = |(quarter, outer): (f64, &'a str)| {
+        let along = outer.is_empty();
+        let map = move |[s, t]: [f64; 2]| {
+            let angle = match along {
+                true => graded(t),
+                false => (2.0 * t - 1.0) * FRAC_PI_4,
+            };
+            let from = [radius * angle.cos(), radius * angle.sin()];
+            let to = [half, half * angle.tan()];
+            let [x, y] = [0, 1].map(|axis| from[axis] + s * (to[axis] - from[axis]));
+            let (sine, cosine) = (quarter * FRAC_PI_2).sin_cos();
+            [middle + cosine * x - sine * y, sine * x + cosine * y]
+        };
+        Block {
+            map: Box::new(map),
+            cells,
+            sides: ["", outer, "", "hole"],
+        }
+    };
+    quarters.into_iter().map(block).collect()
+}
+
+/// The outline of half a dog-bone by its distance from an end, in mm.
+#[derive(Clone, Copy)]
+struct Bone {
+    length: f64,
+    /// Widths of the ends and of the narrow part.
+    wide: f64,
+    slim: f64,
+    shoulder: f64,
+    /// Where the narrow part begins.
+    begin: f64,
+}
+
+impl Bone {
+    fn new(shape: Shape) -> Self {
+        let Shape::DogBone {
+            size,
+            narrow,
+            shoulder,
+        } = shape
+        else {
+            unreachable!("a dog-bone");
+        };
+        Self {
+            length: size[0],
+            wide: size[1],
+            slim: narrow[1],
+            shoulder,
+            begin: (size[0] - narrow[0]) / 2.0,
+        }
+    }
+
+    /// A point at a share of an arc from the narrow part, and half the width there. Cells are as long as they are wide: dx/ds grows
+    /// with the width.
+    fn on_arc(self, share: f64) -> [f64; 2] {
+        let [mean, more] = [1.0, -1.0].map(|sign| (self.wide + sign * self.slim) / 2.0);
+        let over = self.shoulder * (self.slim * share + more * share * share) / mean;
+        let radius = (self.shoulder * self.shoulder + more * more) / (2.0 * more);
+        let fallen = (radius * radius - over * over).max(0.0).sqrt();
+        [self.begin - over, self.slim / 2.0 + radius - fallen]
+    }
+
+    /// The length of an arc over its width in the mean.
+    fn arcs(self) -> f64 {
+        2.0 * self.shoulder / (self.wide + self.slim)
+    }
+}
+
+/// A place along a dog-bone, and half the width there, at a share of one of its parts.
+type Part = Box<dyn Fn(f64) -> [f64; 2]>;
+
 /// Wide ends, arcs of circles and a narrow middle, each of its own cells, so that the outline's corners are nodes.
 pub fn dog_bone(shape: Shape, layout: Layout) -> Mesh {
-    let Shape::DogBone {
-        size,
-        narrow,
-        shoulder,
-    } = shape
-    else {
-        unreachable!("a dog-bone");
-    };
-    let [wide, slim] = [size[1], narrow[1]];
-    let rise = (wide - slim) / 2.0;
-    let radius = (shoulder * shoulder + rise * rise) / (2.0 * rise);
-    let arc =
-        move |over: f64| slim / 2.0 + radius - (radius * radius - over * over).max(0.0).sqrt();
-    let mean = (wide + slim) / 2.0;
-    // Cells are as long as they are wide: dx/ds grows from the narrow part's width to that of the ends.
-    let over = move |s: f64| shoulder * (slim * s + (wide - slim) / 2.0 * s * s) / mean;
-    let length = size[0];
-    let begin = (length - narrow[0]) / 2.0;
-    let end = begin - shoulder;
-    let [ends, middles] = [layout.along(end / wide), layout.across];
-    let shoulders = count(shoulder / mean * middles as f64);
-    let middles = 2 * count(narrow[0] / slim * middles as f64 / 2.0);
-    type Half = Box<dyn Fn(f64) -> [f64; 2]>;
-    let mirrored = |of: Half| -> Half {
+    let bone = Bone::new(shape);
+    let (end, middle) = (bone.begin - bone.shoulder, bone.length - 2.0 * bone.begin);
+    let ends = layout.along(end / bone.wide);
+    let across = layout.across as f64;
+    let shoulders = count(bone.arcs() * across);
+    let middles = 2 * count(middle / bone.slim * across / 2.0);
+    let mirrored = |of: Part| -> Part {
         Box::new(move |s| {
             let [x, half] = of(1.0 - s);
-            [length - x, half]
+            [bone.length - x, half]
         })
     };
-    let at_end = || -> Half { Box::new(move |s| [end * layout.from_end(s, ends), wide / 2.0]) };
-    let on_arc = || -> Half {
-        Box::new(move |s| {
-            let over = over(1.0 - s);
-            [begin - over, arc(over)]
-        })
-    };
-    let slender: Half = Box::new(move |s| [begin + narrow[0] * s, slim / 2.0]);
-    let parts: Vec<(Half, usize, [&str; 2])> = vec![
+    let at_end =
+        || -> Part { Box::new(move |s| [end * layout.along_from_end(s, ends), bone.wide / 2.0]) };
+    let arc = || -> Part { Box::new(move |s| bone.on_arc(1.0 - s)) };
+    let narrow: Part = Box::new(move |s| [bone.begin + middle * s, bone.slim / 2.0]);
+    let parts = [
         (at_end(), ends, ["left", ""]),
-        (on_arc(), shoulders, ["", ""]),
-        (slender, middles, ["", ""]),
-        (mirrored(on_arc()), shoulders, ["", ""]),
+        (arc(), shoulders, ["", ""]),
+        (narrow, middles, ["", ""]),
+        (mirrored(arc()), shoulders, ["", ""]),
         (mirrored(at_end()), ends, ["", "right"]),
     ];
-    let block = |(half, along, [left, right]): (Half, usize, [&'static str; 2])| Block {
+    let block = |(part, along, [left, right]): (Part, usize, [&'static str; 2])| Block {
         map: Box::new(move |[s, t]: [f64; 2]| {
-            let [x, half] = half(s);
+            let [x, half] = part(s);
             [x, (2.0 * layout.across(t, layout.across) - 1.0) * half]
         }),
         cells: [along, layout.across],
         sides: ["bottom", right, "top", left],
     };
-    let blocks: Vec<Block> = parts.into_iter().map(block).collect();
-    mesh_of_blocks(&blocks, layout.kind)
+    mesh_of_blocks(&parts.map(block), layout.kind)
 }
 
 /// Cook's membrane, clamped at its left side.
@@ -192,7 +231,7 @@ pub fn cook(layout: Layout) -> Mesh {
     let (along, across) = (layout.along(1.0), layout.across);
     let block = Block {
         map: Box::new(move |[s, t]| {
-            let (s, t) = (layout.from_end(s, along), layout.across(t, across));
+            let (s, t) = (layout.along_from_end(s, along), layout.across(t, across));
             [48.0 * s, (1.0 - t) * 44.0 * s + t * (44.0 + 16.0 * s)]
         }),
         cells: [along, across],

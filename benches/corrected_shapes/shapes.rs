@@ -92,7 +92,7 @@ impl Case {
 const QUADRILATERALS: [CellShape; 2] = [CellShape::Quad4, CellShape::Quad9];
 const TRIANGLES: [CellShape; 2] = [CellShape::Triangle3, CellShape::Triangle6];
 
-/// All of them; displacements, tractions and pressures make strains of some 50 %.
+/// All of them; displacements and pressures make strains of some 50 %, the traction on Cook's membrane a little less.
 pub fn all(law: &Arc<dyn HyperelasticLaw>) -> Vec<Case> {
     let problem = |supports, loads| BoundaryProblem {
         thickness: 2.0,
@@ -103,7 +103,7 @@ pub fn all(law: &Arc<dyn HyperelasticLaw>) -> Vec<Case> {
     let grips = |by: f64| named([("left", held(0.0, 0.0)), ("right", held(by, 0.0))]);
     let rollers = named([("start", Support::Roller), ("end", Support::Roller)]);
     let pressed = named([("inside", Load::Pressure(0.01))]);
-    let sheared = named([("right", Load::Traction([0.0, 0.01]))]);
+    let sheared = named([("right", Load::Traction([0.0, 0.005]))]);
     let clamped = named([("left", held(0.0, 0.0))]);
     let case = |name, problem, mesh| Case {
         name,
@@ -138,10 +138,9 @@ pub fn all(law: &Arc<dyn HyperelasticLaw>) -> Vec<Case> {
             })
         },
         Case {
-            // Finer cells have no stable equilibrium: the compressed corner creases.
-            gradings: &[1.5],
+            // Under twice the traction, or on much finer cells, the compressed corner creases, and no field converges.
             finest_grading: 2.0,
-            bases: [[8, 10], [4, 10]],
+            bases: [[8, 5], [4, 5]],
             ..case("Cook's membrane", problem(clamped, sheared), |_, own| {
                 meshes::cook(own)
             })

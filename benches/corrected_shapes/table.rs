@@ -127,27 +127,19 @@ pub fn print_run(run: &Run) {
     );
 }
 
+/// What a chart shows of a shape, and of a way.
+type Points<'a> = &'a dyn Fn(&str, Way) -> Vec<[f64; 2]>;
+
 /// Time against nodes, how many times faster the climb is on the same nodes, and at equal accuracy.
 pub fn picture(runs: &[Run], verdicts: &Verdicts) -> Result<Vec<u8>, output::PictureFault> {
     const HEIGHT: u32 = 430;
-    let shapes = shapes(runs);
-    let on_equal = |shape: &str, way: Way| -> Vec<&Run> {
-        let linear = runs.iter().find(|run| run.shape == shape);
-        let linear = linear.map(|run| run.layout.kind);
-        let own = runs
-            .iter()
-            .filter(|run| run.shape == shape && run.way == way && equal(run));
-        let mut own: Vec<&Run> = own.filter(|run| Some(run.layout.kind) == linear).collect();
-        own.sort_by_key(|run| run.nodes);
-        own
-    };
     let times = |shape: &str, way: Way| -> Vec<[f64; 2]> {
-        let own = on_equal(shape, way).into_iter();
+        let own = linear(runs, shape, way).into_iter();
         own.map(|run| [run.nodes as f64, run.seconds]).collect()
     };
     let faster = |shape: &str, way: Way| -> Vec<[f64; 2]> {
-        let climbs = on_equal(shape, Way::FastClimb);
-        let others = on_equal(shape, way).into_iter();
+        let climbs = linear(runs, shape, Way::FastClimb);
+        let others = linear(runs, shape, way).into_iter();
         let pairs = others.filter_map(|run| {
             let climb = climbs.iter().find(|climb| climb.layout == run.layout)?;
             Some([run.nodes as f64, run.seconds / climb.seconds])
@@ -155,39 +147,59 @@ pub fn picture(runs: &[Run], verdicts: &Verdicts) -> Result<Vec<u8>, output::Pic
         pairs.collect()
     };
     let at_equal_accuracy = |shape: &str, _: Way| verdicts.faster_at_equal_accuracy(shape);
-    let all: [(&str, [&str; 2], &[Way], &dyn Fn(&str, Way) -> Vec<[f64; 2]>); 3] = [
-        (
-            "Linear elements, equal cells: time against nodes (climb solid, finite elements with a nested guess dashed)",
+    let shapes = shapes(runs);
+    let charts = [
+        chart(
+            "Linear elements, equal cells: time against nodes",
             ["nodes", "time [s]"],
+            &shapes,
             &[Way::FastClimb, Way::Nested],
             &times,
         ),
-        (
-            "The same: time over that of the climb (one mesh solid, nested guess dashed; aim: 20)",
+        chart(
+            "Time of finite elements over that of the climb (aim: 20)",
             ["nodes", "times faster [–]"],
+            &shapes,
             &[Way::OneMesh, Way::Nested],
             &faster,
         ),
-        (
-            "Best of all meshes at equal accuracy: time of finite elements over that of the climb (aim: 5)",
-            ["displacement: error [%]", "times faster [–]"],
+        chart(
+            "The same at equal accuracy, best of all meshes (aim: 5)",
+            ["error of the displacement [%]", "times faster [–]"],
+            &shapes,
             &[Way::FastClimb],
             &at_equal_accuracy,
         ),
     ];
-    let charts = all.map(|(title, axes, ways, points)| {
-        let lines = ways.iter().zip([Stroke::Marked, Stroke::Dashed]);
-        let lines = lines.flat_map(|(way, stroke)| {
-            let named = stroke == Stroke::Marked;
-            shapes.iter().zip(&PALETTE).map(move |(shape, colour)| {
-                let label = if named { *shape } else { "" };
-                Line::new(label, points(shape, *way), *colour, stroke)
-            })
-        });
-        let [x, y] = axes.map(Axis::logarithmic);
-        (LineChart::new(title, x, y, lines.collect()), HEIGHT)
-    });
+    let charts = charts.map(|chart| (chart, HEIGHT));
     output::png(&Drawing::Charts(charts.to_vec()))
+}
+
+/// The shapes by colours; the first way is solid, the second dashed.
+fn chart(title: &str, axes: [&str; 2], shapes: &[&str], ways: &[Way], points: Points) -> LineChart {
+    const INK: [u8; 3] = [30, 30, 30];
+    let mut lines = Vec::new();
+    for (way, stroke) in ways.iter().zip([Stroke::Marked, Stroke::Dashed]) {
+        for (shape, colour) in shapes.iter().zip(&PALETTE) {
+            let label = if stroke == Stroke::Marked { *shape } else { "" };
+            lines.push(Line::new(label, points(shape, *way), *colour, stroke));
+        }
+        if ways.len() > 1 {
+            lines.push(Line::new(way.name(), [], INK, stroke));
+        }
+    }
+    let [x, y] = axes.map(Axis::logarithmic);
+    LineChart::new(title, x, y, lines)
+}
+
+/// The runs of a way on equal linear cells of a shape, from the fewest nodes on.
+fn linear<'a>(runs: &'a [Run], shape: &str, way: Way) -> Vec<&'a Run> {
+    let own = runs
+        .iter()
+        .filter(|run| run.shape == shape && run.way == way && equal(run));
+    let mut own: Vec<&Run> = own.filter(|run| run.layout.kind.degree() == 1).collect();
+    own.sort_by_key(|run| run.nodes);
+    own
 }
 
 /// The names of all shapes, in the order in which they were measured.
