@@ -20,6 +20,7 @@ mod quality;
 mod reading;
 mod record;
 mod relaxation;
+mod reweighed;
 mod roles;
 mod rounding;
 mod search;
@@ -57,3 +58,5 @@ mod softening_tests;
 mod tests;
 #[cfg(test)]
 mod verdict_tests;
+#[cfg(test)]
+mod weighting_tests;

@@ -30,6 +30,7 @@ mod section;
 mod syntax;
 mod table;
 mod text;
+mod written;
 
 pub use columns::{Column, is_pixel, plain_name};
 pub use comments::comments;
@@ -43,6 +44,7 @@ pub use records::{read_records, write_records};
 pub use section::Section;
 pub use table::Table;
 pub use text::read_text;
+pub use written::Written;
 
 /// A parsed TOML file.
 #[derive(Debug)]

@@ -55,7 +55,8 @@ def _table(data: Data, name: str, columns: Sequence[str]) -> tuple[str, str]:
         named = {column: array[:, number] for number, column in enumerate(columns)}
     lines = [",".join(named)]
     for row in zip(*(own.tolist() for own in named.values()), strict=True):
-        lines.append(",".join(repr(one) if isinstance(one, float) else str(one) for one in row))
+        # All digits: numbers in memory do not say by how many they were rounded.
+        lines.append(",".join(f"{one:.17g}" if isinstance(one, float) else str(one) for one in row))
     return name, "\n".join(lines) + "\n"
 
 

@@ -5,7 +5,7 @@ use super::least_squares::Residuals;
 use super::misfit::Misfit;
 use super::quality::{Deviations, Quality, aicc, estimates, rounded};
 use super::settings::Weighting;
-use super::test_data::TestData;
+use super::test_data::{Observation, TestData};
 use crate::material::HyperelasticLaw;
 
 /// What is assessed: a law with its values and the tests that it was fitted to.
@@ -28,7 +28,7 @@ impl Assessment<'_> {
             let data = &self.tests[test];
             data.stress_of(self.law, &data.observations[row])
         });
-        let judged = self.judge(points, deviations.weighted);
+        let judged = self.judge(points);
         let estimates = estimates(values, &judged.at_bound, judged.noise.as_ref());
         let n = points as f64;
         let counted = [n, judged.effective(n)];
@@ -36,23 +36,47 @@ impl Assessment<'_> {
         judged.quality((self.law, self.tests), &deviations, estimates, aicc)
     }
 
+    /// Whether the residuals are noise.
+    pub fn is_noise(&self) -> bool {
+        self.judged().is_noise()
+    }
+
     /// What the residuals are, and what the values are worth that no bound holds.
-    fn judge(&self, points: usize, weighted: f64) -> Judged {
+    fn judged(&self) -> Judged {
         let at_bound = at_bound(self.values, self.bounds, [1e-9, 1e-300]);
         let rounded = rounded(self.tests, self.law, self.weighting);
         let left = (self.misfit as &dyn Residuals, self.misfit.curves());
-        let mut judged = Judged::of(left, self.values, at_bound, rounded);
+        Judged::of(left, self.values, at_bound, rounded)
+    }
+
+    /// The same with all points counted, where they were gathered.
+    fn judge(&self, points: usize) -> Judged {
+        let mut judged = self.judged();
         let Some(verdict) = &mut judged.verdict else {
             return judged;
         };
         // Points that were gathered count as many as their means are the less scattered.
         let (rows, estimates) = (self.misfit.count(), self.values.len());
-        let [own, of_means] = [(weighted, points), (judged.sum_of_squares, rows)]
-            .map(|(sum, count)| sum / (count - estimates.min(count - 1)) as f64);
         if rows < points && verdict.answer.has_intervals() {
+            let sums = [(self.weighted(), points), (judged.sum_of_squares, rows)];
+            let [own, of_means] =
+                sums.map(|(sum, count)| sum / (count - estimates.min(count - 1)) as f64);
             let gathered = points as f64 / rows as f64;
             verdict.effective_points *= gathered * (own / of_means).min(1.0);
         }
         judged
+    }
+
+    /// Σ (w (σᵢ − σ))² of all points by the weights of the fitted stresses.
+    fn weighted(&self) -> f64 {
+        let square = |data: &TestData, one: &Observation| {
+            let fitted = data.stress_of(self.law, one);
+            (self.weighting.weight_of(data, fitted) * (one.stress - fitted)).powi(2)
+        };
+        let of_test = |data: &TestData| -> f64 {
+            let rows = data.observations.iter();
+            rows.map(|one| square(data, one)).sum()
+        };
+        self.tests.iter().map(of_test).sum()
     }
 }

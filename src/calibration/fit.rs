@@ -4,7 +4,8 @@
 //! min Σᵢ (wᵢ (σᵢ − σ(p; λᵢ)))²,   w = 1 (absolute)   or   w = 1/max(|σᵢ|, 1 % of the test's largest) (relative)
 //! ```
 //!
-//! σ is the stress that the test measured, nominal or Cauchy. Energies are linear in their parameters
+//! σ is the stress that the test measured, nominal or Cauchy. Where the relative residuals are noise, the weights are those of the fitted
+//! stresses in place of the measured ones. Energies are linear in their parameters
 //! that have the dimension of a stress; given the others, these follow by linear least squares. Starts are drawn for
 //! the others alone (a fixed sequence, the same on every machine), completed linearly, and the best of them
 //! are improved by Levenberg–Marquardt.
@@ -18,6 +19,7 @@ use super::assessment::Assessment;
 use super::least_squares::{self, Residuals};
 use super::misfit::Misfit;
 use super::quality::Quality;
+use super::reweighed::settled;
 use super::search::Search;
 use super::settings::{FitSettings, MEASURE, limits};
 use super::softened::Softened;
@@ -173,13 +175,27 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         );
         Error::input(message, "widen the bounds, or choose another law")
     })?;
-    let (fitted, built) = misfit.build(&minimum.values);
+    let is_noise = |misfit: &Misfit, values: &[f64]| {
+        let (law, _) = misfit.build(values);
+        let (weighting, law, bounds) = (settings.weighting, &*law, &bounds);
+        Assessment {
+            misfit,
+            weighting,
+            tests,
+            law,
+            values,
+            bounds,
+        }
+        .is_noise()
+    };
+    let (misfit, values) = settled(&misfit, minimum.values, &bounds, is_noise);
+    let (fitted, built) = misfit.build(&values);
     let assessment = Assessment {
         misfit: &misfit,
         weighting: settings.weighting,
         tests,
         law: &*fitted,
-        values: &minimum.values,
+        values: &values,
         bounds: &bounds,
     };
     let mut quality = assessment.quality();

@@ -35,12 +35,13 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Of the residuals at some values, in the order of their curves; `rounded` is the mean square that rounding alone leaves.
+    /// Of the residuals at some values, in the order of their curves; `rounded` are the mean squares that
+    /// rounding alone leaves, see [`LeftOver`].
     pub fn of(
         (misfit, curves): (&dyn Residuals, Vec<Rows>),
         values: &[f64],
         at_bound: Vec<bool>,
-        rounded: f64,
+        rounded: [f64; 2],
     ) -> Self {
         let jacobian = least_squares::jacobian(misfit, values, &at_bound);
         let free: Vec<usize> = (0..values.len())
@@ -52,7 +53,7 @@ impl Judged {
             curves,
             design: &jacobian.select_columns(&free),
             residual: &residual,
-            rounded: rounded * residual.len() as f64,
+            rounded: rounded.map(|mean| mean * residual.len() as f64),
         };
         let (verdict, noise) = left_over.judge().unzip();
         Self {
@@ -61,6 +62,12 @@ impl Judged {
             noise,
             sum_of_squares: residual.norm_squared(),
         }
+    }
+
+    /// Whether they are noise.
+    pub fn is_noise(&self) -> bool {
+        self.verdict
+            .is_some_and(|verdict| verdict.answer.has_intervals())
     }
 
     /// The number of independent points that tell as much of the noise as so many do.

@@ -1,9 +1,11 @@
 //! What the columns of a table mean, and the rows read by it.
 
+use std::ops::Range;
+
 use super::cycles::Turns;
 use super::record::{Machine, Part};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Role, check_columns, of_kind, roles};
-use super::rounding::rounding;
+use super::rounding::WrittenColumn;
 use super::test_data::{Observation, StrainColumn, Test, TestData, Times};
 use crate::document::{Faulty, Head, Table};
 use crate::error::{Diagnostic, Error};
@@ -113,7 +115,7 @@ impl Layout {
             drawn_axis: usize::from(widest(1) > widest(0)),
             observations,
             largest_stress,
-            rounding: self.rounding(table),
+            rounding: self.rounding(table, &part.rows),
             times: self.times(table, &part),
             rise: head.quantity("ramp", Dimension::Time)?.unwrap_or(0.0),
             left_out,
@@ -153,16 +155,21 @@ impl Layout {
         Times::Known(times.flat_map(|time| vec![time; each]).collect())
     }
 
-    /// What rounding took from strains and stresses.
-    fn rounding(&self, table: &Table) -> [f64; 2] {
-        let of = |column: usize, factor: f64| {
-            let values: Vec<f64> = table.rows.iter().map(|(row, _)| row[column]).collect();
-            factor.abs() * rounding(&values)
+    /// What rounding took from strains and stresses; nothing of strains that were commanded.
+    fn rounding(&self, table: &Table, rows: &Range<usize>) -> [f64; 2] {
+        let own = |column: usize| WrittenColumn::of(table, column, rows);
+        let measured = own(self.stresses[0].0);
+        let of_strain = |(column, factor): &Scaled| {
+            let read = |value: f64| self.strain.to_nominal(value * factor);
+            let strains = own(*column);
+            match strains.is_commanded(&measured) {
+                true => 0.0,
+                false => strains.rounding(&read),
+            }
         };
-        let strains = self.strains.iter().flatten();
-        let strains = strains.map(|(column, factor)| of(*column, *factor));
         let stresses = self.stresses.iter();
-        let stresses = stresses.map(|(column, factor, _)| of(*column, *factor));
+        let stresses = stresses.map(|(column, factor, _)| own(*column).rounding(&|y| y * factor));
+        let strains = self.strains.iter().flatten().map(of_strain);
         [strains.fold(0.0, f64::max), stresses.fold(0.0, f64::max)]
     }
 
@@ -254,7 +261,6 @@ fn is_plain_stretch(head: &Head, column: usize) -> bool {
 
 /// Column and factor to a ratio, or to MPa.
 type Scaled = (usize, f64);
-
 /// Column, factor to MPa and axis of a stress.
 type StressColumn = (usize, f64, usize);
 

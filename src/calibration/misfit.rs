@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::least_squares::{self, Residuals};
+use super::reweighed::Reweighed;
 use super::settings::{MEASURE, Weighting};
 use super::test_data::{Observation, TestData};
 use crate::material::HyperelasticLaw;
@@ -16,6 +17,7 @@ pub(super) type Rows = Vec<(usize, f64)>;
 pub struct Misfit<'a> {
     law: &'static Law,
     tests: &'a [TestData],
+    weighting: Weighting,
     points: Vec<Point>,
 }
 
@@ -32,7 +34,18 @@ struct Point {
 const BINS: usize = 2000;
 
 impl<'a> Misfit<'a> {
+    /// Residuals weighted by the measured stresses.
     pub fn new(law: &'static Law, tests: &'a [TestData], weighting: Weighting) -> Self {
+        Self::weighted(law, tests, weighting, &|_, one| one.stress)
+    }
+
+    /// Residuals weighted by some stress of every observation.
+    fn weighted(
+        law: &'static Law,
+        tests: &'a [TestData],
+        weighting: Weighting,
+        stress: &dyn Fn(&TestData, &Observation) -> f64,
+    ) -> Self {
         let mut points = Vec::new();
         for (test, data) in tests.iter().enumerate() {
             for axis in [0, 1] {
@@ -41,7 +54,7 @@ impl<'a> Misfit<'a> {
                     .map(|observation| Point {
                         test,
                         observation: *observation,
-                        weight: weighting.weight(data, observation),
+                        weight: weighting.weight_of(data, stress(data, observation)),
                     })
                     .collect();
                 if own.len() > BINS {
@@ -52,7 +65,12 @@ impl<'a> Misfit<'a> {
                 points.extend(own);
             }
         }
-        Self { law, tests, points }
+        Self {
+            law,
+            tests,
+            weighting,
+            points,
+        }
     }
 
     /// Every so manyth point, so that about `count` are left.
@@ -155,6 +173,18 @@ impl Residuals for Misfit<'_> {
             }
         }
         true
+    }
+}
+
+impl Reweighed for Misfit<'_> {
+    fn reweighed(&self, values: &[f64]) -> Self {
+        let (law, _) = self.build(values);
+        let stress = |data: &TestData, one: &Observation| data.stress_of(&*law, one);
+        Self::weighted(self.law, self.tests, self.weighting, &stress)
+    }
+
+    fn is_relative(&self) -> bool {
+        self.weighting == Weighting::Relative
     }
 }
 

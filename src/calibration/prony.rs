@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use super::history::History;
 use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
 use super::misfit::Rows;
+use super::reweighed::Reweighed;
 use super::settings::{MEASURE, Weighting};
 use super::test_data::TestData;
 use crate::material::HyperelasticLaw;
@@ -37,6 +38,7 @@ pub struct ViscousMisfit<'a> {
     tests: &'a [TestData],
     /// The histories.
     pub histories: Vec<History>,
+    weighting: Weighting,
     weights: Vec<Vec<f64>>,
 }
 
@@ -44,7 +46,7 @@ pub struct ViscousMisfit<'a> {
 pub type Found = (f64, Vec<f64>);
 
 impl<'a> ViscousMisfit<'a> {
-    /// The residuals of a law with so many parameters; the means of many rows weigh as all of them.
+    /// The residuals of a law with so many parameters, weighted by the measured stresses.
     pub fn new(
         (law, of_law): (&'static Law, usize),
         tests: &'a [TestData],
@@ -52,16 +54,15 @@ impl<'a> ViscousMisfit<'a> {
         weighting: Weighting,
     ) -> Self {
         let weights = histories.iter().map(|history| {
-            let data = &tests[history.test];
             let states = history.states.iter();
-            states
-                .map(|state| weighting.weight(data, &state.observation) * state.count.sqrt())
-                .collect()
+            let stresses = states.map(|state| state.observation.stress);
+            weights(weighting, &tests[history.test], history, stresses)
         });
         Self {
             law,
             of_law,
             tests,
+            weighting,
             weights: weights.collect(),
             histories,
         }
@@ -257,6 +258,38 @@ impl Residuals for ViscousMisfit<'_> {
         }
         true
     }
+}
+
+impl Reweighed for ViscousMisfit<'_> {
+    fn reweighed(&self, values: &[f64]) -> Self {
+        let stresses = self.stresses(values);
+        let weights = self.histories.iter().zip(stresses).map(|(history, own)| {
+            let data = &self.tests[history.test];
+            weights(self.weighting, data, history, own.into_iter())
+        });
+        Self {
+            weights: weights.collect(),
+            histories: self.histories.clone(),
+            ..*self
+        }
+    }
+
+    fn is_relative(&self) -> bool {
+        self.weighting == Weighting::Relative
+    }
+}
+
+/// The weights of the states of a history by some stresses there; the means of many rows weigh as all of them.
+fn weights(
+    weighting: Weighting,
+    data: &TestData,
+    history: &History,
+    stresses: impl Iterator<Item = f64>,
+) -> Vec<f64> {
+    let pairs = history.states.iter().zip(stresses);
+    pairs
+        .map(|(state, stress)| weighting.weight_of(data, stress) * state.count.sqrt())
+        .collect()
 }
 
 /// All ascending choices of `size` of the first `count` numbers.

@@ -115,10 +115,15 @@ impl Quality {
     }
 }
 
-/// The mean square of weighted residuals that rounding alone leaves, or that no test could tell from nothing.
-pub(super) fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighting) -> f64 {
+/// The mean squares of weighted residuals that rounding of the stresses leaves, or that no test could tell from nothing, and
+/// that rounding of strains and stresses leaves.
+pub(super) fn rounded(
+    tests: &[TestData],
+    law: &dyn HyperelasticLaw,
+    weighting: Weighting,
+) -> [f64; 2] {
     const NOTHING: f64 = 1e-6;
-    let (mut sum, mut count) = (0.0, 0);
+    let (mut sums, mut count) = ([0.0; 2], 0);
     for test in tests {
         let [strain, stress] = test.rounding;
         for one in &test.observations {
@@ -130,14 +135,19 @@ pub(super) fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: 
                 strains: one.strains.map(|x| x * (1.0 + strain / size.max(strain))),
                 ..*one
             };
-            let by_strain = test.stress_of(law, &moved) - test.stress_of(law, one);
+            let by_strain = match strain > 0.0 {
+                true => test.stress_of(law, &moved) - test.stress_of(law, one),
+                false => 0.0,
+            };
             let nothing = NOTHING * test.largest_stress;
-            let square = by_strain.powi(2) + stress * stress + nothing * nothing;
-            sum += weighting.weight(test, one).powi(2) * square;
+            let square = stress * stress + nothing * nothing;
+            let weight = weighting.weight(test, one).powi(2);
+            sums[0] += weight * square;
+            sums[1] += weight * (square + by_strain.powi(2));
             count += 1;
         }
     }
-    sum / f64::from(count)
+    sums.map(|sum| sum / f64::from(count))
 }
 
 /// The values with their uncertainty, NaN where a bound holds them, and their correlation.

@@ -14,6 +14,7 @@ use super::judged::{AT_BOUND, Judged, at_bound};
 use super::least_squares::Residuals;
 use super::prony::{Found, ViscousMisfit};
 use super::quality::{Deviations, Quality, aicc, estimates, rounded};
+use super::reweighed::{Reweighed, settled};
 use super::settings::{FitSettings, MEASURE, limits};
 use super::terms::{SHARES, TIMES, Terms, parameters, transformed};
 use super::test_data::{TestData, Times};
@@ -168,7 +169,12 @@ impl Whole<'_> {
         tried: Vec<(usize, f64)>,
         counted: [f64; 2],
     ) -> Result<Fit, Error> {
-        let judged = self.judged(terms, &values)?;
+        let bounds = self.limits(terms)?;
+        let is_noise = |misfit: &ViscousMisfit, values: &[f64]| {
+            self.judged_by(misfit, &bounds, values).is_noise()
+        };
+        let (misfit, values) = settled(self.misfit, values, &bounds, is_noise);
+        let judged = self.judged_by(&misfit, &bounds, &values);
         let mut parameters = parameters(self.law_parameters, terms, self.resolved);
         for (index, (parameter, value)) in parameters.iter_mut().zip(&values).enumerate() {
             parameter.value = if self.is_logarithmic(index) {
@@ -224,17 +230,27 @@ impl Whole<'_> {
         (estimated, correlation)
     }
 
-    /// Which values a bound holds, and what is left.
-    fn judged(&self, terms: usize, values: &[f64]) -> Result<Judged, Error> {
+    /// The limits of all values with so many terms.
+    fn limits(&self, terms: usize) -> Result<Vec<[f64; 2]>, Error> {
         let all = parameters(self.law_parameters, terms, self.resolved);
         let scale = 1.0;
         let limits = limits(self.law(), &all, &self.settings.bounds, scale);
-        let limits = transformed(limits, self.law_parameters.len())?;
-        let at_bound = at_bound(values, &limits, AT_BOUND);
-        let law = self.misfit.law(values);
+        transformed(limits, self.law_parameters.len())
+    }
+
+    /// Which values a bound holds, and what is left by the weights of the fitted stresses.
+    fn judged(&self, terms: usize, values: &[f64]) -> Result<Judged, Error> {
+        let own = self.misfit.reweighed(values);
+        Ok(self.judged_by(&own, &self.limits(terms)?, values))
+    }
+
+    /// The same by the weights of a misfit.
+    fn judged_by(&self, misfit: &ViscousMisfit, limits: &[[f64; 2]], values: &[f64]) -> Judged {
+        let at_bound = at_bound(values, limits, AT_BOUND);
+        let law = misfit.law(values);
         let rounded = rounded(self.tests, &*law, self.settings.weighting);
-        let left = (self.misfit as &dyn Residuals, self.misfit.curves());
-        Ok(Judged::of(left, values, at_bound, rounded))
+        let left = (misfit as &dyn Residuals, misfit.curves());
+        Judged::of(left, values, at_bound, rounded)
     }
 
     fn law(&self) -> &'static Law {

@@ -12,7 +12,8 @@ pub enum Weighting {
     /// All differences of stress count alike.
     Absolute,
     /// All relative differences count alike: a residual is divided by the measured stress, but by no less than
-    /// a hundredth of the largest one of its test, so that a stress near zero does not outweigh all others.
+    /// a hundredth of the largest one of its test, so that a stress near zero does not outweigh all others. Where the residuals are
+    /// noise, they are divided by the fitted stress in place of the measured one: its weight would share the noise.
     Relative,
 }
 
@@ -38,13 +39,18 @@ impl Weighting {
         }
     }
 
-    /// The weight of an observation.
+    /// The weight of an observation by its own stress.
     pub(super) fn weight(self, data: &TestData, observation: &Observation) -> f64 {
+        self.weight_of(data, observation.stress)
+    }
+
+    /// The weight of a stress in MPa, measured or fitted.
+    pub(super) fn weight_of(self, data: &TestData, stress: f64) -> f64 {
         match self {
             Self::Absolute => 1.0,
             Self::Relative => {
                 let least = SMALLEST_SHARE * data.largest_stress;
-                1.0 / observation.stress.abs().max(least)
+                1.0 / stress.abs().max(least)
             }
         }
     }

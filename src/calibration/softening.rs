@@ -11,7 +11,8 @@ use super::fit::{Fit, check_measures, fit};
 use super::judged::{AT_BOUND, Judged, at_bound};
 use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
 use super::quality::{Deviations, Quality, aicc, estimates, rounded};
-use super::settings::{FitSettings, limits};
+use super::reweighed::settled;
+use super::settings::{FitSettings, Weighting, limits};
 use super::softened::{Softened, cycles};
 use super::softening_misfit::{Base, SOFTENING, SofteningMisfit, softening_parameters};
 use super::test_data::{Observation, TestData};
@@ -30,7 +31,7 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
     check_cycles(tests)?;
     let first = first_loading(base, tests, settings)?;
     let (of_law, scale) = (first.parameters.clone(), first.fitted.youngs_modulus());
-    let misfit = SofteningMisfit::new(base, of_law.len(), tests, settings);
+    let misfit = SofteningMisfit::new(base, of_law.len(), tests, settings.weighting);
     let largest = misfit.largest_energy(&*first.fitted);
     let mut parameters = of_law;
     parameters.extend(softening_parameters(largest));
@@ -48,6 +49,10 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
         let message = format!("{}: no softening describes the data", first.law.name);
         Error::input(message, "look at the strains, or choose another law")
     })?;
+    let is_noise = |misfit: &SofteningMisfit, values: &[f64]| {
+        judged(misfit, tests, values, &bounds, settings.weighting).is_noise()
+    };
+    let (misfit, values) = settled(&misfit, values, &bounds, is_noise);
     let whole = Whole {
         misfit: &misfit,
         tests,
@@ -177,6 +182,20 @@ fn minimum(
     Some(minimise(misfit, &best, bounds, Precision::Full).unwrap_or(best))
 }
 
+/// What the residuals at some values are.
+fn judged(
+    misfit: &SofteningMisfit,
+    tests: &[TestData],
+    values: &[f64],
+    bounds: &[[f64; 2]],
+    weighting: Weighting,
+) -> Judged {
+    let at_bound = at_bound(values, bounds, AT_BOUND);
+    let left = (misfit as &dyn Residuals, misfit.curves());
+    let rounded = rounded(tests, &*misfit.law(values), weighting);
+    Judged::of(left, values, at_bound, rounded)
+}
+
 /// What the values that were found are judged by.
 struct Whole<'a> {
     misfit: &'a SofteningMisfit<'a>,
@@ -228,9 +247,7 @@ impl Whole<'_> {
         predicted: &[Vec<f64>],
     ) -> Quality {
         let weighting = self.settings.weighting;
-        let at_bound = at_bound(values, self.bounds, AT_BOUND);
-        let left = (self.misfit as &dyn Residuals, self.misfit.curves());
-        let judged = Judged::of(left, values, at_bound, rounded(self.tests, law, weighting));
+        let judged = judged(self.misfit, self.tests, values, self.bounds, weighting);
         let estimates = estimates(values, &judged.at_bound, judged.noise.as_ref());
         let deviations = Deviations::of(self.tests, weighting, &|test, row| predicted[test][row]);
         let n = self.misfit.count() as f64;

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::least_squares::Residuals;
 use super::misfit::Rows;
-use super::settings::{FitSettings, MEASURE};
+use super::reweighed::Reweighed;
+use super::settings::{MEASURE, Weighting};
 use super::test_data::{Observation, TestData};
 use crate::document::Bound;
 use crate::material::parameters::{Parameter, StressMeasure};
@@ -54,26 +55,22 @@ pub struct SofteningMisfit<'a> {
     /// How many parameters of the law are found.
     pub of_law: usize,
     tests: &'a [TestData],
+    weighting: Weighting,
     weights: Vec<Vec<f64>>,
 }
 
 impl<'a> SofteningMisfit<'a> {
-    /// The residuals with so many parameters of the law.
-    pub fn new(
-        base: Base<'a>,
-        of_law: usize,
-        tests: &'a [TestData],
-        settings: &FitSettings,
-    ) -> Self {
+    /// The residuals with so many parameters of the law, weighted by the measured stresses.
+    pub fn new(base: Base<'a>, of_law: usize, tests: &'a [TestData], weighting: Weighting) -> Self {
         let weights = tests.iter().map(|data| {
             let rows = data.observations.iter();
-            rows.map(|one| settings.weighting.weight(data, one))
-                .collect()
+            rows.map(|one| weighting.weight(data, one)).collect()
         });
         Self {
             base,
             of_law,
             tests,
+            weighting,
             weights: weights.collect(),
         }
     }
@@ -162,5 +159,24 @@ impl Residuals for SofteningMisfit<'_> {
             *place = weight * (one.stress - stress);
         }
         residuals.iter().all(|residual| residual.is_finite())
+    }
+}
+
+impl Reweighed for SofteningMisfit<'_> {
+    fn reweighed(&self, values: &[f64]) -> Self {
+        let stresses = self.stresses(values);
+        let weights = self.tests.iter().zip(&stresses).map(|(data, own)| {
+            let own = own.iter();
+            own.map(|stress| self.weighting.weight_of(data, *stress))
+                .collect()
+        });
+        Self {
+            weights: weights.collect(),
+            ..*self
+        }
+    }
+
+    fn is_relative(&self) -> bool {
+        self.weighting == Weighting::Relative
     }
 }

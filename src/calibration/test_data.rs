@@ -109,7 +109,8 @@ pub struct TestData {
     pub drawn_axis: usize,
     /// The largest stress without its sign, in MPa.
     pub largest_stress: f64,
-    /// Root mean squares of what rounding took from the strains (nominal) and from the stresses in MPa of the file.
+    /// Root mean squares of what rounding may have taken from the strains (nominal), none from those that were commanded, and from
+    /// the stresses in MPa, by the digits of the file.
     pub rounding: [f64; 2],
     /// When the observations were made.
     pub times: Times,

@@ -98,8 +98,8 @@ pub(super) struct LeftOver<'a> {
     /// Derivatives of the residuals by the parameters that no bound holds.
     pub design: &'a DMatrix<f64>,
     pub residual: &'a DVector<f64>,
-    /// What rounding alone leaves of the sum of squares.
-    pub rounded: f64,
+    /// What rounding of the stresses leaves of the sum of squares, and that of strains and stresses.
+    pub rounded: [f64; 2],
 }
 
 impl LeftOver<'_> {
@@ -145,12 +145,16 @@ impl LeftOver<'_> {
         Some((verdict, noise))
     }
 
-    /// Whether the residuals are about as large as rounding leaves them.
+    /// Whether the residuals are about as large as rounding leaves them, or smaller. Rounded strains count only where the residuals
+    /// are not far smaller than they make them: else the strains are more exact than they are written.
     fn is_rounding(&self) -> bool {
         const FACTOR: f64 = 2.0;
+        const FAR: f64 = 0.3;
         let freedom = self.residual.len() - self.design.ncols();
         let share = freedom as f64 / self.residual.len() as f64;
-        self.residual.norm_squared() <= FACTOR * share * self.rounded
+        let [stresses, both] = self.rounded.map(|one| share * one);
+        let left = self.residual.norm_squared();
+        left <= FACTOR * stresses || (FAR * both..=FACTOR * both).contains(&left)
     }
 }
 

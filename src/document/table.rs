@@ -101,7 +101,7 @@ impl Table {
         }
     }
 
-    fn records<'a>(&self, text: &'a str) -> csv::Reader<&'a [u8]> {
+    pub(super) fn records<'a>(&self, text: &'a str) -> csv::Reader<&'a [u8]> {
         csv::ReaderBuilder::new()
             .delimiter(self.delimiter)
             .has_headers(false)

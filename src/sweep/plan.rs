@@ -78,11 +78,8 @@ impl FittedParameters {
             .zip(texts("unit"))
             .ok_or_else(|| wrong("holds parameters without keys or units"))?;
         let values = numbers("value").ok_or_else(|| wrong("holds parameters without values"))?;
-        let errors = numbers("standard_error").ok_or_else(|| {
-            Diagnostic::error(file, "its parameters have no standard errors").hint(
-                "a fit that leaves a systematic pattern, or has parameters at a bound, has no uncertainty: choose another law",
-            )
-        })?;
+        let errors =
+            numbers("standard_error").ok_or_else(|| without_errors(file, &fit, parameters))?;
         let correlation = |i: usize, j: usize| fit["correlation"][i][j].as_f64();
         let count = keys.len();
         let mut covariance = DMatrix::zeros(count, count);
@@ -123,6 +120,35 @@ impl FittedParameters {
             .map(|(value, unit)| Setting::Number(*value, unit))
             .collect()
     }
+}
+
+/// Why the parameters of a fit have no standard errors, and what to do.
+fn without_errors(file: &str, fit: &Value, parameters: &[Value]) -> Diagnostic {
+    let held: Vec<&str> = parameters
+        .iter()
+        .filter(|one| one["at_bound"] == true)
+        .filter_map(|one| one["key"].as_str())
+        .collect();
+    let (reason, hint) = match fit["verdict"]["answer"].as_str() {
+        Some("systematic") => (
+            "what it leaves is systematic, no noise".to_owned(),
+            "fit a law that follows the data, or vary its parameters by ranges of your own",
+        ),
+        Some("rounding") => (
+            "what it leaves is no more than the numbers of its data were rounded by".to_owned(),
+            "its data have no noise to be uncertain by: vary its parameters by ranges of your own",
+        ),
+        _ if !held.is_empty() => (
+            format!("a bound holds {}", held.join(", ")),
+            "widen the bound, or fit a law with fewer parameters",
+        ),
+        _ => (
+            "nothing says how its data scatter".to_owned(),
+            "fit it to more points, or vary its parameters by ranges of your own",
+        ),
+    };
+    let message = format!("its parameters have no standard errors: {reason}");
+    Diagnostic::error(file, message).hint(hint)
 }
 
 /// Refuses no key, a key twice, and one within another.

@@ -167,6 +167,25 @@ fn parameters_of_a_fit_are_drawn_with_their_correlation() {
 }
 
 #[test]
+fn a_fit_without_standard_errors_is_refused_for_its_own_reason() {
+    for (what, reason) in [
+        (r#""verdict": {"answer": "systematic"}"#, "is systematic"),
+        (r#""verdict": {"answer": "rounding"}"#, "were rounded by"),
+        (
+            r#""verdict": {"answer": "white noise"}"#,
+            "a bound holds c10",
+        ),
+    ] {
+        let bound = what.contains("white");
+        let fit = format!(
+            r#"{{"parameters": [{{"key": "c10", "unit": "MPa", "value": 0.1, "standard_error": null, "at_bound": {bound}}}], {what}}}"#
+        );
+        let told = FittedParameters::parse("fit.json", &fit).unwrap_err();
+        assert!(told.to_string().contains(reason), "{told}");
+    }
+}
+
+#[test]
 fn paths_and_names_are_values_too() {
     let texts = |text: &str| match Variable::parse(text).unwrap().values {
         Values::Listed(all) => all,

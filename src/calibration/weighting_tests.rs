@@ -1,0 +1,254 @@
+//! What is said of the residuals of laws with noise that is proportional to the stress, or the same everywhere, by the weights
+//! that suit it; and of strains that were commanded.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+
+use super::*;
+use crate::document::Statements;
+use crate::material::HyperelasticLaw;
+use crate::material::parameters::{StrainMeasure, StressMeasure};
+use crate::material::registry::Law;
+
+const SEEDS: u64 = 40;
+const NOISE: f64 = 0.03;
+
+/// A law, its values and the stretch to which it is pulled.
+type Subject = (&'static str, &'static [f64], f64);
+
+const SUBJECTS: [Subject; 5] = [
+    ("neo-hooke", &[0.05], 2.0),
+    ("mooney-rivlin", &[0.04, 0.02], 2.0),
+    ("yeoh", &[0.03, 0.01, 0.002], 2.0),
+    ("gent", &[0.1, 30.0], 2.0),
+    ("ogden-1", &[0.05, 3.0], 2.0),
+];
+
+fn of(name: &str, values: &[f64]) -> Box<dyn HyperelasticLaw> {
+    let law = Law::named(name).unwrap();
+    law.with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal)
+        .0
+}
+
+fn read(text: &str) -> TestData {
+    TestData::parse("a.csv", text, &Statements::new()).unwrap()
+}
+
+/// A test of a law with so many points and noise that suits the weighting.
+fn measured(
+    test: &str,
+    subject: Subject,
+    weighting: Weighting,
+    points: usize,
+    seed: u64,
+) -> TestData {
+    let (name, values, most) = subject;
+    let law = of(name, values);
+    let stress = |x: f64| match test {
+        "uniaxial" => law.tension([1.0, 0.0], x).nominal_stress,
+        "planar" => law.biaxial([x, 0.0])[0],
+        _ => law.biaxial([x, x])[0],
+    };
+    let scale = 0.3 * stress(most - 1.0);
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut text = format!("# test: {test}\nstretch [-],nominal_stress [MPa]\n");
+    for row in 0..points {
+        let x = 0.02 + (most - 1.02) * row as f64 / (points - 1) as f64;
+        let noise: f64 = StandardNormal.sample(&mut random);
+        let size = match weighting {
+            Weighting::Absolute => scale,
+            Weighting::Relative => stress(x),
+        };
+        text += &format!("{:.10},{:.10}\n", 1.0 + x, stress(x) + NOISE * size * noise);
+    }
+    read(&text)
+}
+
+fn fitted(name: &str, tests: &[TestData], weighting: Weighting) -> Quality {
+    let settings = FitSettings {
+        weighting,
+        ..FitSettings::default()
+    };
+    fit(Law::named(name).unwrap(), tests, &settings)
+        .unwrap()
+        .quality
+}
+
+/// How many fits were called systematic, intervals that hold the truth, and intervals.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    systematic: usize,
+    held: usize,
+    intervals: usize,
+    vague: usize,
+}
+
+impl Counts {
+    fn of(quality: &Quality, truth: &[f64]) -> Self {
+        let verdict = quality.verdict.unwrap().answer;
+        let held = quality.estimates.iter().zip(truth);
+        let held = held.filter(|(one, truth)| (one.interval[0]..=one.interval[1]).contains(*truth));
+        let told = usize::from(verdict.has_intervals());
+        Self {
+            systematic: usize::from(verdict == Answer::Systematic),
+            held: told * held.count(),
+            intervals: told * truth.len(),
+            vague: told * usize::from(!quality.is_identifiable()),
+        }
+    }
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            systematic: self.systematic + other.systematic,
+            held: self.held + other.held,
+            intervals: self.intervals + other.intervals,
+            vague: self.vague + other.vague,
+        }
+    }
+}
+
+fn counts(tests: &[&str], subject: Subject, weighting: Weighting) -> Counts {
+    let one = |seed: u64| {
+        let test = |(number, name): (usize, &&str)| {
+            let points = 40 / tests.len();
+            measured(name, subject, weighting, points, 3 * seed + number as u64)
+        };
+        let data: Vec<TestData> = tests.iter().enumerate().map(test).collect();
+        Counts::of(&fitted(subject.0, &data, weighting), subject.1)
+    };
+    let all = (0..SEEDS).into_par_iter().map(one);
+    all.reduce(Counts::default, Counts::add)
+}
+
+/// One fit in a hundred may be called systematic, and one interval in twenty may miss the truth.
+#[test]
+fn noise_that_suits_the_weights_is_called_noise_and_intervals_hold_the_truth() {
+    const ALL: [&str; 3] = ["uniaxial", "planar", "equibiaxial"];
+    for weighting in [Weighting::Absolute, Weighting::Relative] {
+        let mut sum = Counts::default();
+        for subject in SUBJECTS {
+            let found = counts(&ALL[..1], subject, weighting);
+            assert!(
+                found.systematic <= 3,
+                "{} {weighting:?}: {found:?}",
+                subject.0
+            );
+            sum = sum.add(found);
+        }
+        let joint = counts(&ALL, ("mooney-rivlin", &[0.04, 0.01], 1.6), weighting);
+        assert!(joint.systematic <= 3 && joint.vague == 0, "{joint:?}");
+        sum = sum.add(joint);
+        println!("{weighting:?} {sum:?}");
+        let share = sum.held as f64 / sum.intervals as f64;
+        assert!(sum.systematic <= 8, "{weighting:?}: {sum:?}");
+        assert!((0.92..=0.99).contains(&share), "{weighting:?}: {sum:?}");
+    }
+}
+
+#[test]
+fn a_wrong_law_is_found_by_either_weighting() {
+    let subject = ("yeoh", &[0.03, 0.01, 0.002][..], 2.5);
+    for weighting in [Weighting::Absolute, Weighting::Relative] {
+        let found = (0..10).filter(|seed| {
+            let data = [measured("uniaxial", subject, weighting, 40, *seed)];
+            let verdict = fitted("neo-hooke", &data, weighting).verdict.unwrap();
+            verdict.answer == Answer::Systematic
+        });
+        assert_eq!(found.count(), 10, "{weighting:?}");
+    }
+}
+
+/// Noise of 10 % in measured weights makes stresses softer by 2 %, which is four standard errors of 400 points.
+#[test]
+fn proportional_noise_does_not_make_a_law_softer() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n".to_owned();
+    for row in 0..4000 {
+        let stretch = 1.1 + row as f64 / 4000.0;
+        let noise: f64 = StandardNormal.sample(&mut random);
+        let stress = 0.1 * (stretch - stretch.powi(-2)) * (1.0 + 0.1 * noise);
+        text += &format!("{stretch:.8},{stress:.10}\n");
+    }
+    let found = fitted("neo-hooke", &[read(&text)], Weighting::Relative);
+    let one = found.estimates[0];
+    assert!((one.value / 0.05 - 1.0).abs() < 0.006, "{one:?}");
+    assert!(one.interval[0] < 0.05 && 0.05 < one.interval[1], "{one:?}");
+}
+
+/// Rows of neo-Hooke with C₁₀ = 0.05 MPa at some stretches with noise as a share of the largest stress.
+fn neo_hooke(stretches: &[f64], noise: f64, seed: u64) -> Vec<(f64, f64)> {
+    let stress = |stretch: f64| 0.1 * (stretch - stretch.powi(-2));
+    let largest = stretches.iter().copied().map(stress).fold(0.0, f64::max);
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut row = |stretch: &f64| {
+        let z: f64 = StandardNormal.sample(&mut random);
+        (*stretch, stress(*stretch) + noise * largest * z)
+    };
+    stretches.iter().map(&mut row).collect()
+}
+
+fn answer(text: &str) -> Answer {
+    let found = fitted("neo-hooke", &[read(text)], Weighting::Absolute);
+    found.verdict.unwrap().answer
+}
+
+#[test]
+fn commanded_strains_are_no_rounding() {
+    let replicates: Vec<f64> = (0..30)
+        .map(|row| 1.0 + 0.1 * (1 + row / 3) as f64)
+        .collect();
+    let percent: Vec<f64> = (1..=30).map(|row| 1.0 + 0.01 * row as f64).collect();
+    for seed in 0..5 {
+        for decimals in [1, 6] {
+            let rows = neo_hooke(&replicates, 0.03, seed).into_iter();
+            let rows = rows.map(|(l, s)| format!("{l:.decimals$},{s:.6}\n"));
+            let text = format!(
+                "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{}",
+                rows.collect::<String>()
+            );
+            assert!(answer(&text).has_intervals(), "{seed} {decimals}");
+        }
+        let rows = neo_hooke(&percent, 0.003, seed).into_iter();
+        let rows = rows.map(|(l, s)| format!("{:.0},{:.4}\n", 100.0 * (l - 1.0), 1e3 * s));
+        let text = format!(
+            "# test: uniaxial\nnominal_strain [%],nominal_stress [kPa]\n{}",
+            rows.collect::<String>()
+        );
+        assert!(answer(&text).has_intervals(), "{seed}");
+    }
+}
+
+#[test]
+fn a_machine_s_unit_of_length_does_not_change_the_verdict() {
+    let stretches: Vec<f64> = (0..=80).map(|row| 1.0 + 0.005 * row as f64).collect();
+    for (noise, force, noisy) in [(0.01, 6, true), (0.0, 2, false)] {
+        for (unit, factor) in [("mm", 1.0), ("in", 25.4), ("m", 1e3)] {
+            let rows = neo_hooke(&stretches, noise, 1).into_iter();
+            let rows = rows
+                .map(|(l, s)| format!("{:.7},{:.force$}\n", 20.0 * (l - 1.0) / factor, 10.0 * s));
+            let head = "# test: uniaxial; length: 20 mm; area: 10 mm^2; zero: none";
+            let text = format!(
+                "{head}\nExtension [{unit}],Load [N]\n{}",
+                rows.collect::<String>()
+            );
+            assert_eq!(answer(&text).has_intervals(), noisy, "{unit} {noise}");
+        }
+    }
+}
+
+/// Stresses with three decimals, and strains every 1/60 with three.
+#[test]
+fn data_that_were_rounded_are_called_so() {
+    let stretches: Vec<f64> = (1..=60).map(|row| 1.0 + f64::from(row) / 60.0).collect();
+    for (strain, stress) in [(10, 3), (3, 10), (2, 3)] {
+        let rows = neo_hooke(&stretches, 0.0, 1).into_iter();
+        let rows = rows.map(|(l, s)| format!("{l:.strain$},{s:.stress$}\n"));
+        let text = format!(
+            "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{}",
+            rows.collect::<String>()
+        );
+        assert_eq!(answer(&text), Answer::Rounding, "{strain} {stress}");
+    }
+}
