@@ -106,6 +106,9 @@ pub struct Kind {
     pub slow: bool,
 }
 
+/// What studies without a title are called before the title of their card, by their kind; the others are called as their case.
+const UNTITLED: [(&str, &str); 2] = [("specimen", "Specimen"), ("motion", "Moving plate")];
+
 impl Kind {
     /// Reads a study of this case by `prepare`, which may ask for so much.
     ///
@@ -161,10 +164,8 @@ impl Kind {
 
     /// What the study is called: a specimen or a motion without a title after its material, the others as their case.
     fn title(&self, root: &Section, text: &str, folder: &Path) -> String {
-        let what = match self.kind {
-            specimen::KIND => "Specimen",
-            motion::KIND => "Moving plate",
-            _ => return root.heading("title"),
+        let Some((_, what)) = UNTITLED.iter().find(|(kind, _)| *kind == self.kind) else {
+            return root.heading("title");
         };
         root.own_heading("title").unwrap_or_else(|| {
             // Faults of the card are found where the study is read.
@@ -173,7 +174,7 @@ impl Kind {
             let document = Document::parse("", text, &faults);
             let root = document.root(Some(&defaults), &faults);
             let card = Card::load(&root.section("material").text("card"), folder);
-            card.map_or_else(|_| what.to_owned(), |card| card.title_of(what))
+            card.map_or_else(|_| (*what).to_owned(), |card| card.title_of(what))
         })
     }
 

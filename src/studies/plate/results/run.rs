@@ -9,6 +9,7 @@ use crate::corrector::PlateCorrector;
 use crate::corrector::climb::Climb;
 use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::error::Error;
+use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::finite_element::recovery::Recovery;
 use crate::mass_spring::MassSpring;
 use crate::material::softened_law::check_memory;
@@ -42,16 +43,7 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     });
     let reference = run.reference();
     let [.., finest] = &reference;
-    let estimates = run.timed("finite elements' error", |_| {
-        let recovery = Recovery::new(&finest.model.mesh);
-        let states = &finest.solution.states;
-        if plate.law.softening().is_some() {
-            // Recovery knows no history.
-            return vec![None; states.len()];
-        }
-        let found = finest.model.estimates(plate, states, &recovery).into_iter();
-        found.map(Result::ok).collect()
-    });
+    let estimates = run.timed("finite elements' error", |_| estimates(plate, finest));
     let reached = [&uncorrected, &finest.solution].map(Solution::reached);
     if reached == [0, 0] && corrected.iter().all(Option::is_none) {
         return Err(run.ends.swap_remove(0));
@@ -92,6 +84,18 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
         ends: run.ends,
         times: run.times,
     })
+}
+
+/// The estimated errors of the finest finite elements; `None` where the tangent cannot be factorised.
+fn estimates(plate: &ClampedPlate, finest: &ReferenceMesh) -> Vec<Option<ErrorEstimate>> {
+    let states = &finest.solution.states;
+    if plate.law.softening().is_some() {
+        // Recovery knows no history.
+        return vec![None; states.len()];
+    }
+    let recovery = Recovery::new(&finest.model.mesh);
+    let found = finest.model.estimates(plate, states, &recovery);
+    found.into_iter().map(Result::ok).collect()
 }
 
 /// One model of a study alone.
