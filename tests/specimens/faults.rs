@@ -45,14 +45,6 @@ fn faults_of_a_specimen_are_told_with_their_place() {
         (
             strip,
             format!(
-                "{PULLED}[[load]]\ngroup = \"top\"\nkind = \"force\"\ny = \"1 N\"\n\
-                [finite_element]\nelement = \"T1\"\nadaptive = true\n"
-            ),
-            "a force is shared by the nodes of its group",
-        ),
-        (
-            strip,
-            format!(
                 "{PULLED}[[support]]\ngroup = \"top\"\nkind = \"displacement\"\ny = \"1 mm\"\n"
             ),
             "support 1 on the group `left` (a clamp) and support 3 on the group `top` (y = 1 mm) contradict each other",

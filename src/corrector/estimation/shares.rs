@@ -59,42 +59,44 @@ pub type Share = (usize, f64);
 
 /// The factors of the reactions that make up the force of each body along each axis.
 pub fn shares(mesh: &Mesh, holds: &[Hold]) -> Vec<[Vec<Share>; 2]> {
-    let mut all: Vec<[BTreeMap<usize, f64>; 2]> = vec![Default::default(); holds.len()];
-    for axis in 0..2 {
-        let mut holders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (body, hold) in holds.iter().enumerate() {
-            for node in &hold.nodes[axis] {
-                holders.entry(*node).or_default().push(body);
-            }
-        }
-        let is_alone = |node: &usize| holders.get(node).is_some_and(|bodies| bodies.len() == 1);
-        for (node, bodies) in &holders {
-            let mut add = |body: usize, node: usize, factor: f64| {
-                *all[body][axis].entry(node).or_insert(0.0) += factor;
-            };
-            let lowest = bodies.iter().map(|body| holds[*body].rank).min();
-            let rest = bodies
-                .iter()
-                .filter(|body| Some(holds[**body].rank) == lowest);
-            let rest: Vec<usize> = rest.copied().collect();
-            let share = 1.0 / rest.len() as f64;
-            rest.iter().for_each(|body| add(*body, *node, share));
-            if bodies.len() == 1 {
-                continue;
-            }
-            for body in bodies {
-                let beside = holds[*body].beside(mesh, *node);
-                let Some((next, factor)) = beside.filter(|(next, _)| is_alone(next)) else {
-                    continue;
-                };
-                add(*body, next, factor);
-                rest.iter()
-                    .for_each(|other| add(*other, next, -share * factor));
-            }
+    let [along_x, along_y] = [0, 1].map(|axis| shares_along(mesh, holds, axis));
+    let pairs = along_x.into_iter().zip(along_y);
+    pairs.map(|(x, y)| [x, y]).collect()
+}
+
+/// Those along one axis.
+fn shares_along(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<Vec<Share>> {
+    let mut holders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (body, hold) in holds.iter().enumerate() {
+        for node in &hold.nodes[axis] {
+            holders.entry(*node).or_default().push(body);
         }
     }
-    let list = |own: BTreeMap<usize, f64>| own.into_iter().collect();
-    all.into_iter().map(|own| own.map(list)).collect()
+    let is_alone = |node: &usize| holders.get(node).is_some_and(|bodies| bodies.len() == 1);
+    let mut all: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); holds.len()];
+    let mut add = |body: usize, node: usize, factor: f64| {
+        *all[body].entry(node).or_insert(0.0) += factor;
+    };
+    for (node, bodies) in &holders {
+        let lowest = bodies.iter().map(|body| holds[*body].rank).min();
+        let rest = bodies.iter().copied();
+        let rest: Vec<usize> = rest
+            .filter(|body| Some(holds[*body].rank) == lowest)
+            .collect();
+        let share = 1.0 / rest.len() as f64;
+        rest.iter().for_each(|body| add(*body, *node, share));
+        for body in bodies.iter().filter(|_| bodies.len() > 1) {
+            let beside = holds[*body].beside(mesh, *node);
+            let Some((next, factor)) = beside.filter(|(next, _)| is_alone(next)) else {
+                continue;
+            };
+            add(*body, next, factor);
+            rest.iter()
+                .for_each(|other| add(*other, next, -share * factor));
+        }
+    }
+    let all = all.into_iter();
+    all.map(|own| own.into_iter().collect()).collect()
 }
 
 #[cfg(test)]
