@@ -74,7 +74,7 @@ const LEAST: usize = 300;
 pub struct Extent {
     /// Of equal cells: of the families that have a mesh of about 10⁵ nodes, and of the others of their kind.
     equal: [usize; 2],
-    /// Of equal cells: the largest mesh, of any family.
+    /// Of equal linear cells: the largest mesh, of any family.
     largest: usize,
     graded: usize,
     reference: usize,
@@ -215,7 +215,7 @@ fn meshes_of<'a>(case: &'a Case, grading: f64, extent: &Extent) -> Vec<(Family<'
                 false => extent.graded,
             };
             let mut levels = family.levels(LEAST..=most);
-            if grading == 1.0 {
+            if grading == 1.0 && kind == case.kinds[0] {
                 levels.extend(family.levels(extent.equal[0] + 1..=extent.largest));
             }
             all.push((family, levels));

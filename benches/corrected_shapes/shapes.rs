@@ -149,7 +149,7 @@ pub fn all(law: &Arc<dyn HyperelasticLaw>) -> Vec<Case> {
             gripped: Some(60.0),
             kinds: TRIANGLES,
             gradings: &[2.0],
-            finest_grading: 4.0,
+            finest_grading: 3.0,
             bases: [[10, 14], [8, 10]],
             ..case(
                 "unstructured",
