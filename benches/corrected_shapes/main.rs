@@ -1,8 +1,8 @@
 //! The climb on any shape compared with finite elements: time, error, memory and work, from some hundred nodes to about a million.
 //!
 //! ```text
-//! cargo bench --bench corrected_shapes              all of it, about a quarter of an hour and 6 GB
-//! cargo bench --bench corrected_shapes -- --quick   up to 50,000 nodes
+//! cargo bench --bench corrected_shapes              all of it, about a quarter of an hour and 7 GB
+//! cargo bench --bench corrected_shapes -- --quick   up to 32,000 nodes
 //! cargo bench --bench corrected_shapes -- --path    a hundred load factors, and grips in the hand, on some 10,000 nodes
 //! cargo bench --bench corrected_shapes -- Cook      shapes with such a word in their names alone
 //! ```
