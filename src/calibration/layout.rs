@@ -261,6 +261,7 @@ fn is_plain_stretch(head: &Head, column: usize) -> bool {
 
 /// Column and factor to a ratio, or to MPa.
 type Scaled = (usize, f64);
+
 /// Column, factor to MPa and axis of a stress.
 type StressColumn = (usize, f64, usize);
 

@@ -140,7 +140,6 @@ fn noise_that_suits_the_weights_is_called_noise_and_intervals_hold_the_truth() {
         let joint = counts(&ALL, ("mooney-rivlin", &[0.04, 0.01], 1.6), weighting);
         assert!(joint.systematic <= 3 && joint.vague == 0, "{joint:?}");
         sum = sum.add(joint);
-        println!("{weighting:?} {sum:?}");
         let share = sum.held as f64 / sum.intervals as f64;
         assert!(sum.systematic <= 8, "{weighting:?}: {sum:?}");
         assert!((0.92..=0.99).contains(&share), "{weighting:?}: {sum:?}");

@@ -63,6 +63,13 @@ pub struct Correction {
     pub direct: CorrectorSettings,
 }
 
+impl Correction {
+    /// Whether the corrected field has cells of its own, and not the lattice's nodes.
+    pub fn is_graded(&self) -> bool {
+        self.grading > 1.0
+    }
+}
+
 /// The finite elements of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {

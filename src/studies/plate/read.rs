@@ -118,7 +118,7 @@ fn read_sections(name: &str, folder: &Path, root: Section<'_>) -> Option<Study> 
     let mass_spring = read_newton(&section);
     section.unknown_keys();
     let corrector = read_corrector(&root.section("corrector"), &plate, (problem.size, cells));
-    let judged = (cells, corrector.is_some_and(|own| own.grading > 1.0));
+    let judged = (cells, corrector.is_some_and(|own| own.is_graded()));
     let reference = read_reference(&root.section("finite_element"), &problem, judged);
     if problem.law.softening().is_some() {
         check_memory(&root, lattice, corrector);

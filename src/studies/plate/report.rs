@@ -35,9 +35,9 @@ fn introduction(study: &Study, results: &Results) -> String {
          the corrected field on {}, and the finite elements that both are compared with: {}.",
         study.problem.thickness,
         study.card.title,
-        match study.corrector.grading == 1.0 {
-            true => "the same nodes".to_owned(),
-            false => format!(
+        match study.corrector.is_graded() {
+            false => "the same nodes".to_owned(),
+            true => format!(
                 "as many cells that become smaller towards the clamped corners (graded by {}), to whose nodes the springs' field \
                  is interpolated",
                 study.corrector.grading

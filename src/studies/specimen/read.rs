@@ -103,7 +103,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     };
     given.check(root, &specimen.problem, &mesh);
     warn_of_rest(root, &specimen.problem);
-    check_refinement(root, &specimen);
+    check_refinement(root, &specimen, &mesh);
     Some(specimen)
 }
 
@@ -215,7 +215,7 @@ fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refi
 
 /// A force on nodes without edges is another one on a mesh that is refined locally, and a material that softens has no error estimate to
 /// refine by.
-fn check_refinement(root: &Section, specimen: &Specimen) {
+fn check_refinement(root: &Section, specimen: &Specimen, mesh: &Mesh) {
     if specimen.refinement.is_some() && specimen.problem.law.softening().is_some() {
         let message = "this card softens, and the error estimate that refines the mesh has no memory of the largest load";
         let hint = "leave out `adaptive`, or the card's `[softening]`";
@@ -225,8 +225,7 @@ fn check_refinement(root: &Section, specimen: &Specimen) {
     let loads = specimen.problem.loads.iter();
     let mut forces = loads.filter(|(_, load)| matches!(load, Load::Force(_)));
     let on_nodes = |(group, _): &(String, Load)| {
-        let lattice = specimen.outline.lattice();
-        let group = lattice.groups().get(group);
+        let group = mesh.groups().get(group);
         group.is_some_and(|group| group.edges.is_empty())
     };
     if specimen.refinement.is_some() && forces.any(on_nodes) {

@@ -52,9 +52,9 @@ pub fn error_budget(study: &Study, results: &Results) -> Vec<Block> {
              remains is the discretisation error of the corrector's finite differences on {}{}, and \
              the finite elements' own discretisation error, estimated from three meshes. The finite elements judge a \
              deviation only where their own error of it is at most a tenth of it.",
-            match study.corrector.grading == 1.0 {
-                true => "the lattice's nodes",
-                false => "the nodes of its graded cells",
+            match study.corrector.is_graded() {
+                true => "the nodes of its graded cells",
+                false => "the lattice's nodes",
             },
             match study.corrector.scheme {
                 DifferenceScheme::Gauss =>

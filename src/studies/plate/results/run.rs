@@ -223,9 +223,9 @@ impl<'a> Run<'a> {
         let remembers = plate.law.softening().is_some();
         let mut correct = |(step, stretch): (usize, &f64)| {
             let affine = || plate.affine(mesh, *stretch);
-            let on_nodes = |field: &[f64]| match settings.grading == 1.0 {
-                true => field.to_vec(),
-                false => springs.mesh.displacement_on(field, mesh),
+            let on_nodes = |field: &[f64]| match settings.is_graded() {
+                true => springs.mesh.displacement_on(field, mesh),
+                false => field.to_vec(),
             };
             let data = springs.displacement(step).map_or_else(affine, on_nodes);
             let own = corrector.take()?;
