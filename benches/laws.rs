@@ -1,4 +1,4 @@
-//! The time of stresses and tangents at many points, of laws that keep their volume and of the same laws with a bulk modulus.
+//! The time of stresses, and of energies, stresses and tangents at many points, of laws that keep their volume and of the same laws with a bulk modulus.
 //!
 //! ```text
 //! cargo bench --bench laws
@@ -14,6 +14,7 @@ use std::time::Instant;
 
 use gelbench::finite_element::{Element, FiniteElements};
 use gelbench::material::samples;
+use gelbench::material::sheet::COMPONENTS;
 use gelbench::material::volume::bulk_modulus;
 use gelbench::material::{HyperelasticLaw, PlaneState, Volume, VolumeEnergy};
 use gelbench::problem::ClampedPlate;
@@ -121,9 +122,9 @@ fn stress(law: &Law, gradients: &[Vec<f64>; 4]) -> f64 {
 }
 
 fn tangent(law: &Law, gradients: &[Vec<f64>; 4]) -> f64 {
-    let mut found: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; POINTS]);
+    let mut found: [Vec<f64>; COMPONENTS] = std::array::from_fn(|_| vec![0.0; POINTS]);
     let start = Instant::now();
-    law.tangents(
+    law.responses(
         gradients.each_ref().map(|line| &line[..]),
         found.each_mut().map(|line| &mut line[..]),
     );

@@ -38,6 +38,7 @@ pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
 pub use potential::{
     After, DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum, add_by_elements,
+    linearise_by_elements,
 };
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, FactorFault, SparseLu};

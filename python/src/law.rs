@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use gelbench::material::code::{Code, CodeLaw};
 use gelbench::material::law::TensionResponse;
-use gelbench::material::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
+use gelbench::material::sheet::{COMPONENTS, Gradient, Kinematics, PlaneState, SheetResponse};
 use gelbench::material::{
     EnergyDerivatives, HyperelasticLaw, InvariantLaw, Invariants, Softening, Volume,
 };
@@ -191,9 +191,9 @@ impl HyperelasticLaw for Watched {
         self.law.stresses(gradients, stresses)
     }
 
-    fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
+    fn responses(&self, gradients: [&[f64]; 4], responses: [&mut [f64]; COMPONENTS]) -> bool {
         self.watch.check();
-        self.law.tangents(gradients, tangents)
+        self.law.responses(gradients, responses)
     }
 
     fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {

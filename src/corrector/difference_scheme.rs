@@ -27,7 +27,7 @@ use std::sync::Arc;
 
 use crate::mesh::{CellShape, Grid, Mesh};
 use crate::problem::ClampedPlate;
-use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
+use crate::problem::sheet_energy::SheetEnergy;
 
 /// Where in a cell the differences are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -109,24 +109,17 @@ impl DifferenceScheme {
                 return SheetEnergy::of_mesh(Arc::clone(&problem.law), &pairs, problem.thickness);
             }
         };
-        let point = |step: [f64; 2], local: [f64; 2]| {
-            let scale =
-                |derivative: &[f64; 2]| [0, 1].map(|axis| derivative[axis] * 2.0 / step[axis]);
-            let gradients = CellShape::Quad4
-                .derivatives(local)
-                .iter()
-                .map(scale)
-                .collect();
-            SamplingPoint {
-                gradients,
-                volume: problem.thickness * step[0] * step[1] / 4.0,
+        let mut energy = SheetEnergy::new(Arc::clone(&problem.law), mesh.nodes.len());
+        for cell in 0..mesh.cell_count() {
+            let step = mesh.cell_size(cell);
+            for local in [[-s, -s], [s, -s], [s, s], [-s, s]] {
+                let derivatives = CellShape::Quad4.derivatives(local).into_iter();
+                let scale = |own: [f64; 2]| [0, 1].map(|axis| own[axis] * 2.0 / step[axis]);
+                let volume = problem.thickness * step[0] * step[1] / 4.0;
+                energy.push_point(derivatives.map(scale), volume);
             }
-        };
-        let cells = (0..mesh.cell_count()).map(|cell| {
-            let places = [[-s, -s], [s, -s], [s, s], [-s, s]];
-            let points = places.map(|local| point(mesh.cell_size(cell), local));
-            (mesh.cell(cell), points.to_vec())
-        });
-        SheetEnergy::new(Arc::clone(&problem.law), mesh.nodes.len(), cells)
+            energy.push_cell(mesh.cell(cell));
+        }
+        energy
     }
 }

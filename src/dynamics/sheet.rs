@@ -90,8 +90,8 @@ impl<'a> SheetViscosity<'a> {
         &self,
         element: usize,
         u: &[f64],
-    ) -> Result<Vec<(&'a SamplingPoint, Kinematics)>, Inadmissible> {
-        let points = self.energy.cell_points(element).iter();
+    ) -> Result<Vec<(SamplingPoint<'a>, Kinematics)>, Inadmissible> {
+        let points = self.energy.cell_points(element);
         points
             .map(|point| {
                 let kinematics = Kinematics::new(&point.gradient(u));
@@ -133,7 +133,7 @@ impl Viscosity for SheetViscosity<'_> {
             if let (Some(sums), Some(tangents)) = (&mut local.tangents, own.tangents) {
                 for (sum, tangent) in sums.iter_mut().zip(tangents) {
                     let scaled = tangent * point.volume;
-                    add_stiffness(sum, &point.gradients, scaled.as_slice());
+                    add_stiffness(sum, point.gradients, scaled.as_slice());
                 }
             }
         }

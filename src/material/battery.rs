@@ -10,7 +10,7 @@ use super::invariants::{EnergyDerivatives, Invariants};
 use super::law::HyperelasticLaw;
 use super::registry::LAWS;
 use super::samples;
-use super::sheet::{Gradient, Kinematics};
+use super::sheet::{COMPONENTS, Gradient, Kinematics};
 
 mod changing_volume;
 mod particular;
@@ -337,19 +337,24 @@ fn many_points_at_once_are_each_point_by_itself() {
             std::array::from_fn(|k| (0..points).map(|point| gradient(point)[k]).collect());
         let gradients = lines.each_ref().map(|line| &line[..]);
         let mut stresses: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; points]);
-        let mut tangents: [Vec<f64>; 10] = std::array::from_fn(|_| vec![0.0; points]);
+        let mut responses: [Vec<f64>; COMPONENTS] = std::array::from_fn(|_| vec![0.0; points]);
         assert!(law.stresses(gradients, stresses.each_mut().map(|p| &mut p[..])));
-        assert!(law.tangents(gradients, tangents.each_mut().map(|a| &mut a[..])));
+        assert!(law.responses(gradients, responses.each_mut().map(|a| &mut a[..])));
         for point in 0..points {
             let kinematics = Kinematics::new(&gradient(point)).unwrap();
             let (_, stress) = law.stress(&kinematics);
-            let tangent = law.response(&kinematics).tangent;
             for k in 0..4 {
                 assert_eq!(stresses[k][point], stress[k], "{name}");
             }
+            let alone = law.response(&kinematics);
+            assert_eq!(responses[0][point], alone.energy, "{name}");
+            for k in 0..4 {
+                let stress = alone.first_piola_kirchhoff_stress[k];
+                assert_eq!(responses[1 + k][point], stress, "{name}");
+            }
             let entries = (0..4).flat_map(|column| (column..4).map(move |row| (row, column)));
-            for (entry, values) in entries.zip(&tangents) {
-                assert_eq!(values[point], tangent[entry], "{name} {entry:?}");
+            for (entry, values) in entries.zip(&responses[5..]) {
+                assert_eq!(values[point], alone.tangent[entry], "{name} {entry:?}");
             }
         }
         let inverted = [&[0.0, -2.0][..], &[0.0; 2], &[0.0; 2], &[0.0; 2]];

@@ -29,7 +29,7 @@ use super::exponential::exponential_less_one;
 use super::law::{HyperelasticLaw, TensionResponse};
 use super::logarithm::logarithm_of_one_plus;
 use super::measures::{Derivatives, Measures};
-use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse};
+use super::sheet::{COMPONENTS, Gradient, Kinematics, PlaneState, SheetResponse};
 
 mod points;
 mod thickness;
@@ -248,8 +248,8 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
         self.stresses_at(gradients, stresses)
     }
 
-    fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
-        self.tangents_at(gradients, tangents)
+    fn responses(&self, gradients: [&[f64]; 4], responses: [&mut [f64]; COMPONENTS]) -> bool {
+        self.responses_at(gradients, responses)
     }
 
     fn tension(&self, _: [f64; 2], strain: f64) -> TensionResponse {

@@ -1,5 +1,6 @@
 //! Laws of the first two invariants.
 
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 use pulp::{Arch, NullaryFnOnce};
@@ -7,9 +8,9 @@ use pulp::{Arch, NullaryFnOnce};
 use super::code::{Code, CodeLaw};
 use super::flory::{self, IsochoricLaw};
 use super::invariants::{EnergyDerivatives, Invariants};
-use super::law::{HyperelasticLaw, TensionResponse, lower_triangle};
+use super::law::{HyperelasticLaw, LANES, TensionResponse, store};
 use super::measures::Derivatives;
-use super::sheet::{Gradient, Kinematics, SheetResponse};
+use super::sheet::{COMPONENTS, Gradient, Kinematics, SheetResponse};
 use super::volume::Volume;
 
 /// An isotropic law Ψ(I₁, I₂).
@@ -27,19 +28,21 @@ pub trait InvariantLaw: Send + Sync + std::fmt::Debug {
 }
 
 impl<L: InvariantLaw> HyperelasticLaw for L {
-    fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
-        Arch::new().dispatch(StressLoop {
+    fn stresses(&self, gradients: [&[f64]; 4], made: [&mut [f64]; 4]) -> bool {
+        Arch::new().dispatch(PointLoop {
             law: self,
             gradients,
-            stresses,
+            made,
+            kind: PhantomData::<Stress>,
         })
     }
 
-    fn tangents(&self, gradients: [&[f64]; 4], tangents: [&mut [f64]; 10]) -> bool {
-        Arch::new().dispatch(TangentLoop {
+    fn responses(&self, gradients: [&[f64]; 4], made: [&mut [f64]; COMPONENTS]) -> bool {
+        Arch::new().dispatch(PointLoop {
             law: self,
             gradients,
-            tangents,
+            made,
+            kind: PhantomData::<Response>,
         })
     }
 
@@ -142,62 +145,65 @@ impl<L: InvariantLaw> IsochoricLaw for L {
     }
 }
 
-/// Straight-line code for each point: the compiler makes one instruction of several points, with the widest
-/// vectors that the machine has. No operation is fused with another, so that all machines give the same bits.
-struct StressLoop<'a, L> {
-    law: &'a L,
-    gradients: [&'a [f64]; 4],
-    stresses: [&'a mut [f64]; 4],
+/// What is made of the kinematics and derivatives at a point.
+trait Made<const N: usize> {
+    /// Component by component.
+    fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; N];
 }
 
-impl<L: InvariantLaw> NullaryFnOnce for StressLoop<'_, L> {
-    type Output = bool;
+struct Stress;
 
+impl Made<4> for Stress {
     #[inline(always)]
-    fn call(self) -> bool {
-        let points = self.gradients[0].len();
-        let [h11, h12, h21, h22] = self.gradients.map(|component| &component[..points]);
-        let [p11, p12, p21, p22] = self.stresses.map(|component| &mut component[..points]);
-        let mut inverted = 0_u64;
-        for point in 0..points {
-            let h = Gradient::new(h11[point], h12[point], h21[point], h22[point]);
-            let kinematics = Kinematics::unchecked(&h);
-            let (_, p) = kinematics.stress(&self.law.evaluate(kinematics.invariants));
-            (p11[point], p12[point]) = (p[0], p[1]);
-            (p21[point], p22[point]) = (p[2], p[3]);
-            inverted |= u64::from(!kinematics.is_admissible());
-        }
-        inverted == 0
+    fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; 4] {
+        kinematics.stress(w).1.into()
     }
 }
 
-/// As [`StressLoop`].
-struct TangentLoop<'a, L> {
-    law: &'a L,
-    gradients: [&'a [f64]; 4],
-    tangents: [&'a mut [f64]; 10],
+struct Response;
+
+impl Made<COMPONENTS> for Response {
+    #[inline(always)]
+    fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; COMPONENTS] {
+        kinematics.response(w).components()
+    }
 }
 
-impl<L: InvariantLaw> NullaryFnOnce for TangentLoop<'_, L> {
+/// Straight-line code for each point: the compiler makes one instruction of several points, with the widest
+/// vectors that the machine has. No operation is fused with another, so that all machines give the same bits.
+struct PointLoop<'a, L, M, const N: usize> {
+    law: &'a L,
+    gradients: [&'a [f64]; 4],
+    made: [&'a mut [f64]; N],
+    kind: PhantomData<M>,
+}
+
+impl<L: InvariantLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
     type Output = bool;
 
     #[inline(always)]
-    fn call(self) -> bool {
+    fn call(mut self) -> bool {
         let points = self.gradients[0].len();
-        let [h11, h12, h21, h22] = self.gradients.map(|component| &component[..points]);
-        let [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] =
-            self.tangents.map(|component| &mut component[..points]);
         let mut inverted = 0_u64;
-        for point in 0..points {
-            let h = Gradient::new(h11[point], h12[point], h21[point], h22[point]);
-            let kinematics = Kinematics::unchecked(&h);
-            let response = kinematics.response(&self.law.evaluate(kinematics.invariants));
-            let lower = lower_triangle(&response.tangent);
-            (a0[point], a1[point], a2[point]) = (lower[0], lower[1], lower[2]);
-            (a3[point], a4[point], a5[point]) = (lower[3], lower[4], lower[5]);
-            (a6[point], a7[point]) = (lower[6], lower[7]);
-            (a8[point], a9[point]) = (lower[8], lower[9]);
-            inverted |= u64::from(!kinematics.is_admissible());
+        for first in (0..points).step_by(LANES) {
+            let count = LANES.min(points - first);
+            // Places of their own, which no store reaches; behind the last point rest.
+            let mut gradients = [[0.0; LANES]; 4];
+            for (own, component) in gradients.iter_mut().zip(&self.gradients) {
+                own[..count].copy_from_slice(&component[first..first + count]);
+            }
+            let [h11, h12, h21, h22] = &gradients;
+            let mut found = [[0.0; LANES]; N];
+            for lane in 0..LANES {
+                let h = Gradient::new(h11[lane], h12[lane], h21[lane], h22[lane]);
+                let kinematics = Kinematics::unchecked(&h);
+                let made = M::of(&kinematics, &self.law.evaluate(kinematics.invariants));
+                for (component, value) in found.iter_mut().zip(made) {
+                    component[lane] = value;
+                }
+                inverted |= u64::from(!kinematics.is_admissible());
+            }
+            store(&mut self.made, &found, first, count);
         }
         inverted == 0
     }

@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use nalgebra::Matrix4;
-
 use super::code::{Code, CodeLaw};
-use super::sheet::{Gradient, Kinematics, PlaneState, SheetResponse, cofactor};
+use super::sheet::{COMPONENTS, Gradient, Kinematics, PlaneState, SheetResponse, cofactor};
 use super::softening::Softening;
 use super::volume::Volume;
 
@@ -55,18 +53,18 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         true
     }
 
-    /// The components of ∂P/∂F on and below the diagonal, column by column, at many points at once; whether
+    /// Energy, P and the components of ∂P/∂F on and below the diagonal, column by column, at many points at once; whether
     /// J is positive at all of them.
     ///
     /// All slices have one length.
-    fn tangents(&self, gradients: [&[f64]; 4], mut tangents: [&mut [f64]; 10]) -> bool {
+    fn responses(&self, gradients: [&[f64]; 4], mut responses: [&mut [f64]; COMPONENTS]) -> bool {
         for point in 0..gradients[0].len() {
             let h = gradients.map(|component| component[point]);
             let Ok(kinematics) = Kinematics::new(&h.into()) else {
                 return false;
             };
-            let lower = lower_triangle(&self.response(&kinematics).tangent);
-            for (component, value) in tangents.iter_mut().zip(lower) {
+            let response = self.response(&kinematics).components();
+            for (component, value) in responses.iter_mut().zip(response) {
                 component[point] = value;
             }
         }
@@ -174,10 +172,18 @@ pub struct TensionResponse {
     pub slope: f64,
 }
 
-/// The components on and below the diagonal, column by column.
+/// Points that are evaluated side by side.
+pub(super) const LANES: usize = 16;
+
+/// Copies what was found at `count` points to the places from `first` on.
 #[inline(always)]
-pub(super) fn lower_triangle(a: &Matrix4<f64>) -> [f64; 10] {
-    [
-        a[0], a[1], a[2], a[3], a[5], a[6], a[7], a[10], a[11], a[15],
-    ]
+pub(super) fn store<const N: usize>(
+    all: &mut [&mut [f64]; N],
+    found: &[[f64; LANES]; N],
+    first: usize,
+    count: usize,
+) {
+    for (all, found) in all.iter_mut().zip(found) {
+        all[first..first + count].copy_from_slice(&found[..count]);
+    }
 }

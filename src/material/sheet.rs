@@ -84,6 +84,34 @@ pub struct SheetResponse {
     pub tangent: Matrix4<f64>,
 }
 
+/// Components of a [`SheetResponse`]: Ψ, P, and ∂P/∂F on and below the diagonal, column by column.
+pub const COMPONENTS: usize = 15;
+
+impl SheetResponse {
+    /// All of them.
+    #[inline(always)]
+    pub fn components(&self) -> [f64; COMPONENTS] {
+        let (p, a) = (&self.first_piola_kirchhoff_stress, &self.tangent);
+        [
+            self.energy,
+            p[0],
+            p[1],
+            p[2],
+            p[3],
+            a[0],
+            a[1],
+            a[2],
+            a[3],
+            a[5],
+            a[6],
+            a[7],
+            a[10],
+            a[11],
+            a[15],
+        ]
+    }
+}
+
 impl Kinematics {
     /// The sheet at rest.
     pub fn rest() -> Self {

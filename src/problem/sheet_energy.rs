@@ -6,15 +6,17 @@ use std::sync::Arc;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::stability::is_stable;
-use crate::mesh::{Mesh, QuadraturePoint};
+use crate::mesh::Mesh;
 use crate::solve::vector::gather;
-use crate::solve::{Connectivity, Inadmissible, Local, Potential, add_by_elements};
+use crate::solve::{
+    Connectivity, Inadmissible, Local, Potential, add_by_elements, linearise_by_elements,
+};
 
 /// Where the energy is sampled: the displacement gradient there as a combination of nodal values.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SamplingPoint {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SamplingPoint<'a> {
     /// ∂u/∂X = Σ uₐ ⊗ gₐ with one gₐ in 1/mm for each node of the cell.
-    pub gradients: Vec<[f64; 2]>,
+    pub gradients: &'a [[f64; 2]],
     /// Share of the sheet's reference volume in mm³.
     pub volume: f64,
 }
@@ -25,7 +27,12 @@ pub struct SheetEnergy {
     law: Arc<dyn HyperelasticLaw>,
     /// The unknowns of each cell: ux, uy of node after node.
     connectivity: Connectivity,
-    points: Vec<SamplingPoint>,
+    /// The gradients of all points, one after the other.
+    gradients: Vec<[f64; 2]>,
+    /// Where the gradients of each cell begin.
+    gradient_starts: Vec<usize>,
+    /// The volumes of all points in mm³.
+    volumes: Vec<f64>,
     /// Where the points of each cell begin.
     point_starts: Vec<usize>,
     /// The largest energy of every point so far in mJ/mm³; nothing where it was never loaded, or remembers nothing.
@@ -33,42 +40,42 @@ pub struct SheetEnergy {
 }
 
 impl SheetEnergy {
-    /// The energy of cells; `cells` gives each cell's nodes and points.
-    pub fn new<'a>(
-        law: Arc<dyn HyperelasticLaw>,
-        nodes: usize,
-        cells: impl Iterator<Item = (&'a [usize], Vec<SamplingPoint>)>,
-    ) -> Self {
-        let mut energy = Self {
+    /// No cells yet, of so many nodes.
+    pub fn new(law: Arc<dyn HyperelasticLaw>, nodes: usize) -> Self {
+        Self {
             law,
             connectivity: Connectivity::new(2 * nodes),
-            points: Vec::new(),
+            gradients: Vec::new(),
+            gradient_starts: vec![0],
+            volumes: Vec::new(),
             point_starts: vec![0],
             history: Vec::new(),
-        };
-        for (nodes, points) in cells {
-            energy.connectivity.push_nodes(nodes);
-            energy.points.extend(points);
-            energy.point_starts.push(energy.points.len());
         }
-        energy
+    }
+
+    /// Appends a cell of some nodes whose points were pushed before.
+    pub fn push_cell(&mut self, nodes: &[usize]) {
+        self.connectivity.push_nodes(nodes);
+        self.gradient_starts.push(self.gradients.len());
+        self.point_starts.push(self.volumes.len());
+    }
+
+    /// Appends a point of the next cell: a gradient for each of its nodes, and its volume in mm³.
+    pub fn push_point(&mut self, gradients: impl IntoIterator<Item = [f64; 2]>, volume: f64) {
+        self.gradients.extend(gradients);
+        self.volumes.push(volume);
     }
 
     /// The energy of the cells of a mesh, integrated by their quadrature: the finite-element method.
     pub fn of_mesh(law: Arc<dyn HyperelasticLaw>, mesh: &Mesh, thickness: f64) -> Self {
-        let points = |cell: usize| {
-            let rule = mesh.shape(cell).quadrature().into_iter();
-            let point = |(local, weight): QuadraturePoint| {
+        let mut energy = Self::new(law, mesh.nodes.len());
+        for cell in 0..mesh.cell_count() {
+            for (local, weight) in mesh.shape(cell).quadrature() {
                 let (gradients, jacobian) = mesh.gradients(cell, local);
-                SamplingPoint {
-                    gradients,
-                    volume: thickness * jacobian * weight,
-                }
-            };
-            rule.map(point).collect()
-        };
-        let cells = (0..mesh.cell_count()).map(|cell| (mesh.cell(cell), points(cell)));
-        let energy = Self::new(law, mesh.nodes.len(), cells);
+                energy.push_point(gradients, thickness * jacobian * weight);
+            }
+            energy.push_cell(mesh.cell(cell));
+        }
         Self {
             connectivity: energy.connectivity.with_places(mesh.nodes.clone()),
             ..energy
@@ -96,8 +103,16 @@ impl SheetEnergy {
     }
 
     /// The sampling points of a cell.
-    pub fn cell_points(&self, cell: usize) -> &[SamplingPoint] {
-        &self.points[self.point_starts[cell]..self.point_starts[cell + 1]]
+    pub fn cell_points(&self, cell: usize) -> impl ExactSizeIterator<Item = SamplingPoint<'_>> {
+        let nodes = self.element_unknowns(cell).len() / 2;
+        let first = self.gradient_starts[cell];
+        let gradients = &self.gradients[first..self.gradient_starts[cell + 1]];
+        let volumes = &self.volumes[self.point_starts[cell]..self.point_starts[cell + 1]];
+        let points = gradients.chunks_exact(nodes).zip(volumes);
+        points.map(|(gradients, volume)| SamplingPoint {
+            gradients,
+            volume: *volume,
+        })
     }
 
     /// The material.
@@ -106,7 +121,7 @@ impl SheetEnergy {
     }
 }
 
-impl SamplingPoint {
+impl SamplingPoint<'_> {
     /// ∂u/∂X, or ∂u̇/∂X, from nodal values: components 11, 12, 21, 22.
     pub fn gradient(&self, u: &[f64]) -> Gradient {
         let mut h = Gradient::zeros();
@@ -122,7 +137,7 @@ impl SamplingPoint {
     /// Adds the nodal forces of a first Piola–Kirchhoff stress in MPa.
     pub fn add_force(&self, stress: &Gradient, force: &mut [f64]) {
         let traction = stress * self.volume;
-        for (r, g) in force.chunks_exact_mut(2).zip(&self.gradients) {
+        for (r, g) in force.chunks_exact_mut(2).zip(self.gradients) {
             r[0] += traction[0] * g[0] + traction[1] * g[1];
             r[1] += traction[2] * g[0] + traction[3] * g[1];
         }
@@ -158,7 +173,7 @@ impl Potential for SheetEnergy {
         let softening = self.law.softening().filter(|_| !history.is_empty());
         let softening = softening.map(|own| (own, &history[self.point_starts[element]..]));
         let mut energy = 0.0;
-        for (index, point) in self.cell_points(element).iter().enumerate() {
+        for (index, point) in self.cell_points(element).enumerate() {
             let kinematics = point.kinematics(u).map_err(|()| Inadmissible { element })?;
             let (density, stress) = match &mut local.stiffness {
                 None => {
@@ -170,7 +185,7 @@ impl Potential for SheetEnergy {
                     let response =
                         softening.map_or(virgin, |(own, most)| own.response(virgin, most[index]));
                     let tangent = response.tangent * point.volume;
-                    add_stiffness(stiffness, &point.gradients, tangent.as_slice());
+                    add_stiffness(stiffness, point.gradients, tangent.as_slice());
                     (response.energy, response.first_piola_kirchhoff_stress)
                 }
             };
@@ -191,11 +206,23 @@ impl Potential for SheetEnergy {
         }
     }
 
+    fn linearise(
+        &self,
+        u: &[f64],
+        forces: &mut [f64],
+        take: &mut dyn FnMut(usize, &[f64]),
+    ) -> Result<f64, Inadmissible> {
+        match self.history.is_empty() {
+            true => self.linearise_virgin(u, forces, take),
+            false => linearise_by_elements(self, u, forces, take),
+        }
+    }
+
     fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
         if self.law.softening().is_none() {
             return;
         }
-        history.resize(self.points.len(), 0.0);
+        history.resize(self.volumes.len(), 0.0);
         for element in 0..self.elements() {
             let own = gather(self.element_unknowns(element), u);
             let first = self.point_starts[element];
@@ -211,14 +238,14 @@ impl Potential for SheetEnergy {
         let Some(softening) = self.law.softening() else {
             return 0.0;
         };
-        let points = self.points.iter().zip(history);
-        let parts = points.map(|(point, most)| point.volume * softening.dissipated(*most));
+        let points = self.volumes.iter().zip(history);
+        let parts = points.map(|(volume, most)| volume * softening.dissipated(*most));
         parts.sum()
     }
 
     /// The first sampling point at which the law is not stable after Drucker.
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        self.cell_points(element).iter().find_map(|point| {
+        self.cell_points(element).find_map(|point| {
             let kinematics = point.kinematics(u).ok()?;
             let unstable = !is_stable(&*self.law, &kinematics);
             unstable.then(|| format!("I₁ = {:.2}", 3.0 + kinematics.invariants.i1_minus_3))

@@ -1,22 +1,26 @@
-//! The forces of a sheet alone, many points at once: laws are quickest so.
+//! A sheet's forces and tangents at many points at once: laws are quickest so.
 
 use std::ops::Range;
 
-use super::sheet_energy::SheetEnergy;
+use super::sheet_energy::{SheetEnergy, add_stiffness};
 use crate::material::HyperelasticLaw;
+use crate::material::sheet::COMPONENTS;
 use crate::solve::{Inadmissible, Potential};
 
 /// Points that are evaluated together, at least.
 const BLOCK: usize = 256;
 
-/// Points of some cells side by side: components 11, 12, 21, 22 of the displacement gradient and of P in MPa.
-#[derive(Default)]
-struct Points {
+/// Points of some cells side by side, with N numbers that a law makes at each.
+struct Points<const N: usize> {
+    /// Components 11, 12, 21, 22 of the displacement gradient.
     gradients: [Vec<f64>; 4],
-    stresses: [Vec<f64>; 4],
+    made: [Vec<f64>; N],
     /// Displacements or forces of one cell.
     cell: Vec<f64>,
 }
+
+/// What a law makes at many points at once; whether all of them are admissible.
+type Make<const N: usize> = fn(&dyn HyperelasticLaw, [&[f64]; 4], [&mut [f64]; N]) -> bool;
 
 impl SheetEnergy {
     /// Adds ∂Π/∂u in N at the displacements `u` of a body without a history.
@@ -28,7 +32,57 @@ impl SheetEnergy {
         u: &[f64],
         forces: &mut [f64],
     ) -> Result<(), Inadmissible> {
-        let mut points = Points::default();
+        let make: Make<4> = |law, h, made| law.stresses(h, made);
+        self.in_blocks(u, make, |points, cells| {
+            let mut place = 0;
+            for cell in cells {
+                points.add_forces(self, cell, (place, 0), forces);
+                place += self.cell_points(cell).len();
+            }
+        })
+    }
+
+    /// As [`Potential::linearise`], of a body without a history.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with the first inverted cell.
+    pub(super) fn linearise_virgin(
+        &self,
+        u: &[f64],
+        forces: &mut [f64],
+        take: &mut dyn FnMut(usize, &[f64]),
+    ) -> Result<f64, Inadmissible> {
+        let (mut energy, mut stiffness) = (0.0, Vec::new());
+        let make: Make<COMPONENTS> = |law, h, made| law.responses(h, made);
+        self.in_blocks(u, make, |points, cells| {
+            let mut place = 0;
+            for cell in cells {
+                let size = self.element_unknowns(cell).len();
+                stiffness.clear();
+                stiffness.resize(size * size, 0.0);
+                let mut own = 0.0;
+                for (index, point) in (place..).zip(self.cell_points(cell)) {
+                    own += point.volume * points.made[0][index];
+                    let tangent = points.tangent(index).map(|a| a * point.volume);
+                    add_stiffness(&mut stiffness, point.gradients, &tangent);
+                }
+                energy += own;
+                points.add_forces(self, cell, (place, 1), forces);
+                take(cell, &stiffness);
+                place += self.cell_points(cell).len();
+            }
+        })?;
+        Ok(energy)
+    }
+
+    /// Evaluates a law at the points of all cells, some cells at a time.
+    fn in_blocks<const N: usize>(
+        &self,
+        u: &[f64],
+        make: Make<N>,
+        mut take: impl FnMut(&mut Points<N>, Range<usize>),
+    ) -> Result<(), Inadmissible> {
+        let mut points = Points::new();
         let mut first = 0;
         while first < self.elements() {
             let mut last = first;
@@ -37,24 +91,32 @@ impl SheetEnergy {
                 points.push(self, last, u);
                 last += 1;
             }
-            if !points.evaluate(self.law()) {
+            if !points.evaluate(self.law(), make) {
                 let faulty = (first..last).find(|cell| {
-                    let mut alone = Points::default();
+                    let mut alone = Points::new();
                     alone.push(self, *cell, u);
-                    !alone.evaluate(self.law())
+                    !alone.evaluate(self.law(), make)
                 });
                 return Err(Inadmissible {
                     element: faulty.unwrap_or(first),
                 });
             }
-            points.add_forces(self, first..last, forces);
+            take(&mut points, first..last);
             first = last;
         }
         Ok(())
     }
 }
 
-impl Points {
+impl<const N: usize> Points<N> {
+    fn new() -> Self {
+        Self {
+            gradients: Default::default(),
+            made: [const { Vec::new() }; N],
+            cell: Vec::new(),
+        }
+    }
+
     /// Takes the points of another cell.
     fn push(&mut self, energy: &SheetEnergy, cell: usize, u: &[f64]) {
         let unknowns = energy.element_unknowns(cell).iter();
@@ -68,33 +130,43 @@ impl Points {
         }
     }
 
-    /// P at all points; whether all of them are admissible.
-    fn evaluate(&mut self, law: &dyn HyperelasticLaw) -> bool {
+    /// Evaluates a law at all points; whether all of them are admissible.
+    fn evaluate(&mut self, law: &dyn HyperelasticLaw, make: Make<N>) -> bool {
         let count = self.gradients[0].len();
-        let sizes = self.stresses.iter_mut();
+        let sizes = self.made.iter_mut();
         sizes.for_each(|own| own.resize(count, 0.0));
         let gradients = self.gradients.each_ref().map(|own| &own[..]);
-        let stresses = self.stresses.each_mut().map(|own| &mut own[..]);
-        let positive = law.stresses(gradients, stresses);
-        positive && self.stresses.iter().flatten().all(|p| p.is_finite())
+        let made = self.made.each_mut().map(|own| &mut own[..]);
+        let positive = make(law, gradients, made);
+        positive && self.made.iter().flatten().all(|own| own.is_finite())
     }
 
-    /// Adds the forces of the cells whose points they are.
-    fn add_forces(&mut self, energy: &SheetEnergy, cells: Range<usize>, forces: &mut [f64]) {
-        let mut place = 0;
-        for cell in cells {
-            let unknowns = energy.element_unknowns(cell);
-            self.cell.clear();
-            self.cell.resize(unknowns.len(), 0.0);
-            for point in energy.cell_points(cell) {
-                let stress = self.stresses.each_ref().map(|own| own[place]);
-                point.add_force(&stress.into(), &mut self.cell);
-                place += 1;
-            }
-            for (unknown, force) in unknowns.iter().zip(&self.cell) {
-                forces[*unknown] += force;
-            }
+    /// Adds the forces of a cell whose points begin at a place, with P from a component on.
+    fn add_forces(
+        &mut self,
+        energy: &SheetEnergy,
+        cell: usize,
+        (place, first): (usize, usize),
+        forces: &mut [f64],
+    ) {
+        let unknowns = energy.element_unknowns(cell);
+        self.cell.clear();
+        self.cell.resize(unknowns.len(), 0.0);
+        for (index, point) in (place..).zip(energy.cell_points(cell)) {
+            let stress = [0, 1, 2, 3].map(|own| self.made[first + own][index]);
+            point.add_force(&stress.into(), &mut self.cell);
         }
+        for (unknown, force) in unknowns.iter().zip(&self.cell) {
+            forces[*unknown] += force;
+        }
+    }
+}
+
+impl Points<COMPONENTS> {
+    /// ∂P/∂F at a point, column by column.
+    fn tangent(&self, point: usize) -> [f64; 16] {
+        const LOWER: [usize; 16] = [0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 7, 8, 3, 6, 8, 9];
+        LOWER.map(|own| self.made[5 + own][point])
     }
 }
 

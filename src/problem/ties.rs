@@ -50,6 +50,40 @@ impl<'a> TiedPotential<'a> {
     }
 }
 
+impl TiedPotential<'_> {
+    /// Evaluates the untied potential at u = T v, whose forces become those of v: f ← f + Tᵀ r.
+    fn untied<T>(
+        &self,
+        v: &[f64],
+        forces: &mut [f64],
+        evaluate: impl FnOnce(&[f64], &mut [f64]) -> Result<T, Inadmissible>,
+    ) -> Result<T, Inadmissible> {
+        let (mut u, mut untied) = (v.to_vec(), vec![0.0; v.len()]);
+        for (unknown, master) in self.ties {
+            u[*unknown] = v[*master];
+        }
+        let found = evaluate(&u, &mut untied)?;
+        for (unknown, master) in self.ties {
+            untied[*master] += std::mem::take(&mut untied[*unknown]);
+        }
+        for (force, own) in forces.iter_mut().zip(untied) {
+            *force += own;
+        }
+        Ok(found)
+    }
+}
+
+/// Adds Tᵀ K T of an element, whose unknowns have these places among those that are left; elements may fill the lower triangle alone.
+fn fold(places: &[usize], stiffness: &[f64], folded: &mut [f64]) {
+    let (own, size) = (places.len(), folded.len().isqrt());
+    for (row, to_row) in places.iter().enumerate() {
+        for (column, to_column) in places.iter().enumerate() {
+            let value = stiffness[row.max(column) * own + row.min(column)];
+            folded[to_row * size + to_column] += value;
+        }
+    }
+}
+
 impl Potential for TiedPotential<'_> {
     fn connectivity(&self) -> &Connectivity {
         &self.connectivity
@@ -75,7 +109,7 @@ impl Potential for TiedPotential<'_> {
         let Some(places) = self.places.get(&element) else {
             return self.potential.evaluate_element(element, u, local);
         };
-        let (size, own) = (u.len(), places.len());
+        let own = places.len();
         let mut residual = vec![0.0; own];
         let mut matrix = vec![0.0; local.stiffness.as_ref().map_or(0, |_| own * own)];
         let inner = Local {
@@ -89,30 +123,35 @@ impl Potential for TiedPotential<'_> {
             local.residual[*place] += r;
         }
         if let Some(stiffness) = local.stiffness {
-            for (row, to_row) in places.iter().enumerate() {
-                for (column, to_column) in places.iter().enumerate() {
-                    // Elements may fill the lower triangle alone.
-                    let value = matrix[row.max(column) * own + row.min(column)];
-                    stiffness[to_row * size + to_column] += value;
-                }
-            }
+            fold(places, &matrix, stiffness);
         }
         Ok(energy)
     }
 
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        let (mut whole, mut untied) = (u.to_vec(), vec![0.0; u.len()]);
-        for (unknown, master) in self.ties {
-            whole[*unknown] = u[*master];
-        }
-        self.potential.add_forces(&whole, &mut untied)?;
-        for (unknown, master) in self.ties {
-            untied[*master] += std::mem::take(&mut untied[*unknown]);
-        }
-        for (force, own) in forces.iter_mut().zip(untied) {
-            *force += own;
-        }
-        Ok(())
+        self.untied(u, forces, |u, untied| self.potential.add_forces(u, untied))
+    }
+
+    fn linearise(
+        &self,
+        u: &[f64],
+        forces: &mut [f64],
+        take: &mut dyn FnMut(usize, &[f64]),
+    ) -> Result<f64, Inadmissible> {
+        let mut folded = Vec::new();
+        let mut take = |element: usize, stiffness: &[f64]| {
+            let Some(places) = self.places.get(&element) else {
+                return take(element, stiffness);
+            };
+            let size = self.element_unknowns(element).len();
+            folded.clear();
+            folded.resize(size * size, 0.0);
+            fold(places, stiffness, &mut folded);
+            take(element, &folded);
+        };
+        self.untied(u, forces, |u, untied| {
+            self.potential.linearise(u, untied, &mut take)
+        })
     }
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {

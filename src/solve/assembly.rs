@@ -3,7 +3,7 @@
 use super::connectivity::Connectivity;
 use super::dissection::dissection;
 use super::pattern::SymmetricPattern;
-use super::potential::{Inadmissible, Local, Potential, add_by_elements};
+use super::potential::{ElementTerms, Inadmissible, Potential, add_by_elements};
 use super::scatter::{NOWHERE, Scatter};
 use super::sparse::{Cholesky, FactorFault};
 use super::vector::{dot, moved, norm};
@@ -144,70 +144,19 @@ impl Assembly {
         residual.fill(0.0);
         stiffness.clear();
         stiffness.resize(self.pattern.entries(), 0.0);
-        let mut own = ElementTerms::default();
-        let mut energy = 0.0;
-        for element in 0..potential.elements() {
-            let unknowns = potential.element_unknowns(element);
-            let size = unknowns.len();
-            energy += own.evaluate(potential, element, u)?;
-            unknowns
-                .iter()
-                .zip(&own.residual)
-                .for_each(|(unknown, r)| residual[*unknown] += r);
+        potential.linearise(u, residual, &mut |element, own| {
+            let size = potential.element_unknowns(element).len();
             let mut places = self.scatter.of(element).iter();
             for row in 0..size {
-                for (value, place) in own.stiffness[row * size..=row * size + row]
-                    .iter()
-                    .zip(&mut places)
-                {
+                let values = &own[row * size..=row * size + row];
+                for (value, place) in values.iter().zip(&mut places) {
                     if *place != NOWHERE {
                         stiffness[*place] += value;
                     }
                 }
             }
-        }
-        Ok(energy)
+        })
     }
-}
-
-/// Residual and stiffness of one element after the other, in the same memory.
-#[derive(Default)]
-struct ElementTerms {
-    values: Vec<f64>,
-    residual: Vec<f64>,
-    /// Row by row; the lower triangle at least.
-    stiffness: Vec<f64>,
-}
-
-impl ElementTerms {
-    /// Takes an element's terms at `u`; its energy.
-    fn evaluate(
-        &mut self,
-        potential: &dyn Potential,
-        element: usize,
-        u: &[f64],
-    ) -> Result<f64, Inadmissible> {
-        let unknowns = potential.element_unknowns(element);
-        let size = unknowns.len();
-        gather(unknowns, u, &mut self.values);
-        self.residual.clear();
-        self.residual.resize(size, 0.0);
-        self.stiffness.clear();
-        self.stiffness.resize(size * size, 0.0);
-        potential.evaluate_element(
-            element,
-            &self.values,
-            Local {
-                residual: &mut self.residual,
-                stiffness: Some(&mut self.stiffness),
-            },
-        )
-    }
-}
-
-fn gather(unknowns: &[usize], u: &[f64], values: &mut Vec<f64>) {
-    values.clear();
-    values.extend(unknowns.iter().map(|unknown| u[*unknown]));
 }
 
 /// Checks ∂Π/∂u and ∂²Π/∂u² against central differences along a direction; returns the smallest

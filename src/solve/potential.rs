@@ -58,6 +58,19 @@ pub trait Potential: Sync {
         add_by_elements(self, u, forces).map(|_| ())
     }
 
+    /// Π; adds ∂Π/∂u at all unknowns, and gives `take` every element with its stiffness, row by row, the lower triangle at least.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with an element that is inverted.
+    fn linearise(
+        &self,
+        u: &[f64],
+        forces: &mut [f64],
+        take: &mut dyn FnMut(usize, &[f64]),
+    ) -> Result<f64, Inadmissible> {
+        linearise_by_elements(self, u, forces, take)
+    }
+
     /// What the derivatives of the residual have in addition to the symmetric stiffness of the elements: forces without a
     /// potential, such as a pressure that follows an edge up to its free end. None for a true potential.
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
@@ -137,6 +150,69 @@ pub fn add_by_elements<P: Potential + ?Sized>(
     Ok(energy)
 }
 
+/// [`Potential::linearise`], element by element.
+///
+/// # Errors
+/// [`Inadmissible`] with the first inverted element.
+pub fn linearise_by_elements<P: Potential + ?Sized>(
+    potential: &P,
+    u: &[f64],
+    forces: &mut [f64],
+    take: &mut dyn FnMut(usize, &[f64]),
+) -> Result<f64, Inadmissible> {
+    let mut own = ElementTerms::default();
+    let mut energy = 0.0;
+    for element in 0..potential.elements() {
+        energy += own.evaluate(potential, element, u)?;
+        for (unknown, force) in potential
+            .element_unknowns(element)
+            .iter()
+            .zip(&own.residual)
+        {
+            forces[*unknown] += force;
+        }
+        take(element, &own.stiffness);
+    }
+    Ok(energy)
+}
+
+/// Residual and stiffness of one element after the other, in the same memory.
+#[derive(Default)]
+pub struct ElementTerms {
+    values: Vec<f64>,
+    residual: Vec<f64>,
+    /// Row by row; the lower triangle at least.
+    pub stiffness: Vec<f64>,
+}
+
+impl ElementTerms {
+    /// Takes an element's terms at `u`; its energy.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] when the element is inverted.
+    pub fn evaluate<P: Potential + ?Sized>(
+        &mut self,
+        potential: &P,
+        element: usize,
+        u: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        let unknowns = potential.element_unknowns(element);
+        let size = unknowns.len();
+        self.values.clear();
+        self.values
+            .extend(unknowns.iter().map(|unknown| u[*unknown]));
+        self.residual.clear();
+        self.residual.resize(size, 0.0);
+        self.stiffness.clear();
+        self.stiffness.resize(size * size, 0.0);
+        let local = Local {
+            residual: &mut self.residual,
+            stiffness: Some(&mut self.stiffness),
+        };
+        potential.evaluate_element(element, &self.values, local)
+    }
+}
+
 impl<P: Potential + ?Sized> Potential for &P {
     fn connectivity(&self) -> &Connectivity {
         (**self).connectivity()
@@ -153,6 +229,15 @@ impl<P: Potential + ?Sized> Potential for &P {
 
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
         (**self).add_forces(u, forces)
+    }
+
+    fn linearise(
+        &self,
+        u: &[f64],
+        forces: &mut [f64],
+        take: &mut dyn FnMut(usize, &[f64]),
+    ) -> Result<f64, Inadmissible> {
+        (**self).linearise(u, forces, take)
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
@@ -222,6 +307,18 @@ impl Potential for After<'_> {
         }
     }
 
+    fn linearise(
+        &self,
+        u: &[f64],
+        forces: &mut [f64],
+        take: &mut dyn FnMut(usize, &[f64]),
+    ) -> Result<f64, Inadmissible> {
+        match self.history.is_empty() {
+            true => self.energy.linearise(u, forces, take),
+            false => linearise_by_elements(self, u, forces, take),
+        }
+    }
+
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
         self.energy.skew_couplings()
     }
@@ -259,6 +356,12 @@ impl<'a> Sum<'a> {
         Self::new(energy, forces)
     }
 
+    fn of_second(&self, fault: Inadmissible) -> Inadmissible {
+        Inadmissible {
+            element: self.first.elements() + fault.element,
+        }
+    }
+
     /// The part that an element belongs to, and its number there.
     fn part(&self, element: usize) -> (&dyn Potential, usize) {
         match element.checked_sub(self.first.elements()) {
@@ -287,9 +390,20 @@ impl Potential for Sum<'_> {
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
         self.first.add_forces(u, forces)?;
         let second = self.second.add_forces(u, forces);
-        second.map_err(|fault| Inadmissible {
-            element: self.first.elements() + fault.element,
-        })
+        second.map_err(|fault| self.of_second(fault))
+    }
+
+    fn linearise(
+        &self,
+        u: &[f64],
+        forces: &mut [f64],
+        take: &mut dyn FnMut(usize, &[f64]),
+    ) -> Result<f64, Inadmissible> {
+        let before = self.first.elements();
+        let first = self.first.linearise(u, forces, take)?;
+        let mut take = |element, stiffness: &[f64]| take(before + element, stiffness);
+        let second = self.second.linearise(u, forces, &mut take);
+        Ok(first + second.map_err(|fault| self.of_second(fault))?)
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {

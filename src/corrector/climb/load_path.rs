@@ -10,7 +10,7 @@ use super::start::contracted_stretch;
 use super::{Climb, DifferenceScheme};
 use crate::error::{Error, SolveFault};
 use crate::problem::ClampedPlate;
-use crate::problem::sheet_energy::{SamplingPoint, SheetEnergy};
+use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{
     Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State,
     Tangent, compliance, follow,
@@ -213,30 +213,29 @@ fn sampled<const NODES: usize>(
             |line: usize| (row * order..=(row + 1) * order).map(move |j| line * width + j);
         lines.flat_map(on_line).collect()
     };
-    let points = |[column, row]: [usize; 2]| -> Vec<SamplingPoint> {
+    let law = std::sync::Arc::clone(&problem.law);
+    let mut energy = SheetEnergy::new(law, grid.nodes());
+    for [column, row] in places {
         let sides = [
             grid.span(0, column * order, (column + 1) * order),
             grid.span(1, row * order, (row + 1) * order),
         ];
-        let pairs = (0..NODES).flat_map(|a| (0..NODES).map(move |b| [a, b]));
-        pairs
-            .map(|point| sampling_point(rule, point, sides, problem.thickness))
-            .collect()
-    };
-    let cells: Vec<_> = places.map(|place| (nodes(place), points(place))).collect();
-    let cells = cells
-        .iter()
-        .map(|(nodes, points)| (&nodes[..], points.clone()));
-    SheetEnergy::new(std::sync::Arc::clone(&problem.law), grid.nodes(), cells)
+        for place in (0..NODES).flat_map(|a| (0..NODES).map(move |b| [a, b])) {
+            push_point(&mut energy, rule, place, sides, problem.thickness);
+        }
+        energy.push_cell(&nodes([column, row]));
+    }
+    energy
 }
 
 /// One point of an element with given sides: ∂φ/∂X = φ′ φ/hx, ∂φ/∂Y = φ φ′/hy of its nodes, line by line.
-fn sampling_point<const NODES: usize>(
+fn push_point<const NODES: usize>(
+    energy: &mut SheetEnergy,
     rule: &Rule<NODES>,
     [a, b]: [usize; 2],
     [hx, hy]: [f64; 2],
     thickness: f64,
-) -> SamplingPoint {
+) {
     let Rule {
         weights,
         values,
@@ -249,8 +248,6 @@ fn sampling_point<const NODES: usize>(
             values[a][line] * derivatives[b][node] / hy,
         ]
     };
-    SamplingPoint {
-        gradients: pairs.map(gradient).collect(),
-        volume: thickness * hx * hy * weights[a] * weights[b],
-    }
+    let volume = thickness * hx * hy * weights[a] * weights[b];
+    energy.push_point(pairs.map(gradient), volume);
 }

@@ -1,6 +1,7 @@
 //! The linearised equation on a grid: the stiffness of each cell from the tangent in its middle.
 
 use crate::material::HyperelasticLaw;
+use crate::material::sheet::COMPONENTS;
 use crate::multigrid::Stencil;
 
 use super::grid::{Field, Grid};
@@ -21,7 +22,7 @@ pub fn linearise(
         let line = |axis: usize, line: usize| &u.components[axis][line * u.width..][..u.width];
         let cells = u.width - 1;
         let mut gradients = [[0.0; BLOCK]; 4];
-        let mut tangents = [[0.0; BLOCK]; 10];
+        let mut responses = [[0.0; BLOCK]; COMPONENTS];
         let mut admissible = true;
         for first in (0..cells).step_by(BLOCK) {
             let count = BLOCK.min(cells - first);
@@ -38,12 +39,12 @@ pub fn linearise(
                     gradients[2 * axis + 1][cell] = 0.5 * (above - below) / height;
                 }
             }
-            admissible &= law.tangents(
+            admissible &= law.responses(
                 gradients.each_ref().map(|h| &h[..count]),
-                tangents.each_mut().map(|a| &mut a[..count]),
+                responses.each_mut().map(|own| &mut own[..count]),
             );
             // A₁₁ A₂₁ A₃₁ A₄₁ A₂₂ A₃₂ A₄₂ A₃₃ A₄₃ A₄₄ over the components 11, 12, 21, 22.
-            let [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] = &tangents;
+            let [_, _, _, _, _, a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] = &responses;
             for cell in 0..count {
                 let ratio = thickness * grid.span(1, first + cell, first + cell + 1) / width;
                 let inverse = thickness * thickness / ratio;

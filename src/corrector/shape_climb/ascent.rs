@@ -5,16 +5,15 @@ use std::collections::BTreeMap;
 use super::field::{NEWTON, ShapeClimb, ShapeWork, approached};
 use super::levels::{Levels, carrying, on};
 use super::systems::{Scale, Systems};
-use crate::corrector::CorrectorSettings;
 use crate::corrector::climb::{ClimbSettings, Ratios, geometric_tail};
-use crate::corrector::specimen::correct;
+use crate::corrector::specimen::correct_without_multipliers;
 use crate::error::Error;
 use crate::mass_spring::MassSpring;
 use crate::problem::Model;
 use crate::solve::vector::{add_scaled, difference, norm};
 use crate::solve::{
-    Approach, Assembly, FirstTangent, Ladder, LinearSolver, Loading, Nearness, Newton, Potential,
-    State,
+    Approach, Assembly, FirstTangent, Ladder, LinearSolver, Loading, Nearness, Newton,
+    NewtonSettings, Potential, State,
 };
 
 /// What the iteration may leave on all meshes but the finest, relative to what it may leave there.
@@ -22,6 +21,18 @@ const ON_THE_WAY: f64 = 3.0;
 
 /// What of the allowed share is used: the imbalance tells the error of the field in the energy, not in the displacement.
 const SURE: f64 = 0.1;
+
+/// The springs are a first guess, which the correction changes by some hundredths: to be nearer to their equilibrium is lost time.
+const SPRINGS: NewtonSettings = NewtonSettings {
+    tolerance: 5e-2,
+    ..NEWTON
+};
+
+/// What the finer meshes add is larger by far.
+const COARSEST: NewtonSettings = NewtonSettings {
+    tolerance: 1e-6,
+    ..NEWTON
+};
 
 /// The tangents of a mesh and of the coarser ones.
 enum Tangents {
@@ -69,6 +80,12 @@ impl Ascent {
             let slack = if finest { 1.0 } else { ON_THE_WAY };
             ascent.climb(levels, slack * settings.tolerance)?;
         }
+        let model = levels.model(ascent.level)?;
+        let state = &mut ascent.state;
+        let mut forces = vec![0.0; state.displacement.len()];
+        let potential = model.potential(factor, &[]);
+        let found = Assembly::residual(&*potential, &state.displacement, &mut forces);
+        state.convergence.energy = found.unwrap_or(f64::NAN);
         Ok(ascent)
     }
 
@@ -87,12 +104,11 @@ impl Ascent {
         let corrected = |state: State| {
             let interpolation = springs.mesh.interpolation_on(mesh);
             let data = interpolation.apply(&state.displacement);
-            let settings = CorrectorSettings::default();
-            correct(&model, &data, &data, (factor, &[]), settings).ok()
+            correct_without_multipliers(&model, &data, (factor, &[]), COARSEST).ok()
         };
-        let by_springs = by_springs.reach(&[factor], NEWTON).ok();
+        let by_springs = by_springs.reach(&[factor], SPRINGS).ok();
         let state = match by_springs.and_then(corrected) {
-            Some(corrected) => corrected.state,
+            Some(corrected) => corrected,
             None => model.reach(&[factor], NEWTON)?,
         };
         let potential = model.potential(factor, &[]);
@@ -240,8 +256,7 @@ fn approach(
         Nearness::Share(share),
         FirstTangent::Own,
     )?;
-    let energy = Assembly::residual(potential, &displacement, &mut residual).ok()?;
     model.impose(factor, &mut displacement);
-    let state = approached(factor, (displacement, residual), energy, &own);
+    let state = approached(factor, (displacement, residual), f64::NAN, &own);
     Some((state, newton, own))
 }

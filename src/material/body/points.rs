@@ -5,9 +5,9 @@ use std::marker::PhantomData;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::{BodyLaw, BodySheet, BodyStretches};
-use crate::material::law::lower_triangle;
+use crate::material::law::{LANES, store};
 use crate::material::measures::{Derivatives, Measures};
-use crate::material::sheet::{Gradient, Kinematics};
+use crate::material::sheet::{COMPONENTS, Gradient, Kinematics};
 
 impl<L: BodyLaw> BodySheet<L> {
     /// As [`HyperelasticLaw::stresses`](crate::material::HyperelasticLaw::stresses).
@@ -15,9 +15,13 @@ impl<L: BodyLaw> BodySheet<L> {
         self.each::<Stress, 4>(gradients, made)
     }
 
-    /// As [`HyperelasticLaw::tangents`](crate::material::HyperelasticLaw::tangents).
-    pub(super) fn tangents_at(&self, gradients: [&[f64]; 4], made: [&mut [f64]; 10]) -> bool {
-        self.each::<Tangent, 10>(gradients, made)
+    /// As [`HyperelasticLaw::responses`](crate::material::HyperelasticLaw::responses).
+    pub(super) fn responses_at(
+        &self,
+        gradients: [&[f64]; 4],
+        made: [&mut [f64]; COMPONENTS],
+    ) -> bool {
+        self.each::<Response, COMPONENTS>(gradients, made)
     }
 
     fn each<M: Made<N>, const N: usize>(
@@ -33,9 +37,6 @@ impl<L: BodyLaw> BodySheet<L> {
         })
     }
 }
-
-/// Points that find their thickness together.
-const LANES: usize = 16;
 
 /// Some points of a loop; behind the last one rest.
 struct Lanes<S> {
@@ -115,12 +116,12 @@ impl Made<4> for Stress {
     }
 }
 
-struct Tangent;
+struct Response;
 
-impl Made<10> for Tangent {
+impl Made<COMPONENTS> for Response {
     #[inline(always)]
-    fn of(measures: &Measures, w: &Derivatives) -> [f64; 10] {
-        lower_triangle(&measures.response(w).tangent)
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; COMPONENTS] {
+        measures.response(w).components()
     }
 }
 
@@ -159,18 +160,5 @@ impl<L: BodyLaw, M: Made<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, 
             store(&mut self.made, &found, first, count);
         }
         true
-    }
-}
-
-/// Copies what was found at `count` points to the places from `first` on.
-#[inline(always)]
-fn store<const N: usize>(
-    all: &mut [&mut [f64]; N],
-    found: &[[f64; LANES]; N],
-    first: usize,
-    count: usize,
-) {
-    for (all, found) in all.iter_mut().zip(found) {
-        all[first..first + count].copy_from_slice(&found[..count]);
     }
 }

@@ -20,11 +20,9 @@ pub struct Level<const N: usize, const M: usize> {
     residual: Vec<[f32; N]>,
 }
 
-/// The operator of a level, with the inverses of its blocks on the diagonal.
+/// The operator A of a level: its blocks below the diagonal, L, and the inverses of those on it, D⁻¹. A = L + D + Lᵀ.
 pub struct Operator<const N: usize> {
-    matrix: Blocks<N, N, f32>,
-    /// Where the block on the diagonal of each row is.
-    diagonal: Vec<usize>,
+    below: Blocks<N, N, f32>,
     inverses: Vec<[[f32; N]; N]>,
 }
 
@@ -46,28 +44,61 @@ impl<const N: usize> Operator<N> {
     /// One that is to be taken later.
     pub fn none(nodes: usize) -> Self {
         Self {
-            matrix: Blocks::default(),
-            diagonal: vec![0; nodes],
-            inverses: Vec::new(),
+            below: Blocks::default(),
+            inverses: vec![[[0.0; N]; N]; nodes],
         }
     }
 
     /// The operator of a matrix, and the inverses in double precision; `None` where a block on the diagonal has none.
     pub fn of(matrix: &Blocks<N, N>) -> Option<(Self, Vec<[[f64; N]; N]>)> {
-        let find = |row: usize| {
-            let places = matrix.starts[row]..matrix.starts[row + 1];
-            let own = matrix.columns[places.clone()].binary_search(&(row as u32));
-            own.ok().map(|place| places.start + place)
+        let mut below = Blocks {
+            starts: vec![0],
+            ..Blocks::default()
         };
-        let diagonal = (0..matrix.rows()).map(find).collect::<Option<Vec<_>>>()?;
-        let inverses = diagonal.iter().map(|place| inverse(&matrix.values[*place]));
-        let inverses = inverses.collect::<Option<Vec<_>>>()?;
+        let mut inverses = Vec::with_capacity(matrix.rows());
+        for row in 0..matrix.rows() {
+            for (column, block) in matrix.row(row).take_while(|(column, _)| *column <= row) {
+                if column == row {
+                    inverses.push(inverse(block)?);
+                } else {
+                    below.columns.push(column as u32);
+                    below.values.push(rounded(block));
+                }
+            }
+            below.starts.push(below.columns.len());
+        }
         let operator = Self {
-            matrix: matrix.rounded(),
-            diagonal,
+            below,
             inverses: inverses.iter().map(rounded).collect(),
         };
-        Some((operator, inverses))
+        (operator.inverses.len() == matrix.rows()).then_some((operator, inverses))
+    }
+
+    /// x of one row of a sweep, (b − L x) D⁻¹, of what L x of the columns before is not in `sum` yet; what this x is for the rows before,
+    /// −Lᵀ x, is added to their sums.
+    #[inline(always)]
+    fn relax(&self, row: usize, mut sum: [f32; N], x: &mut [[f32; N]], before: &mut [[f32; N]]) {
+        let places = self.below.starts[row]..self.below.starts[row + 1];
+        let columns = &self.below.columns[places.clone()];
+        let blocks = &self.below.values[places];
+        for (column, block) in columns.iter().zip(blocks) {
+            let x = &x[*column as usize];
+            for i in 0..N {
+                for k in 0..N {
+                    sum[i] -= block[i][k] * x[k];
+                }
+            }
+        }
+        let own = times(&self.inverses[row], &sum);
+        for (column, block) in columns.iter().zip(blocks) {
+            let before = &mut before[*column as usize];
+            for i in 0..N {
+                for k in 0..N {
+                    before[k] -= block[i][k] * own[i];
+                }
+            }
+        }
+        x[row] = own;
     }
 }
 
@@ -107,7 +138,7 @@ impl<const N: usize> Level<N, 3> {
 impl<const N: usize, const M: usize> Level<N, M> {
     /// A level of an operator.
     pub fn new(operator: Operator<N>, transfer: Transfer<N, M>) -> Self {
-        let zeros = vec![[0.0; N]; operator.diagonal.len()];
+        let zeros = vec![[0.0; N]; operator.inverses.len()];
         Self {
             operator,
             transfer,
@@ -124,28 +155,16 @@ impl<const N: usize, const M: usize> Level<N, M> {
 
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
-        self.operator.diagonal.len()
+        self.operator.inverses.len()
     }
 
     /// Smooths from zero, forward, and writes the right-hand side of the next coarser level.
     pub fn descend(&mut self, coarser: &mut [[f32; M]]) {
-        let Operator {
-            matrix,
-            diagonal,
-            inverses,
-        } = &self.operator;
-        for row in 0..diagonal.len() {
-            let mut sum = self.b[row];
-            let before = matrix.starts[row]..diagonal[row];
-            subtract(&mut sum, matrix, before, &self.x);
-            self.x[row] = times(&inverses[row], &sum);
-        }
         // What is left are the terms that the forward sweep did not know.
-        for (row, own) in diagonal.iter().enumerate() {
-            let mut sum = [0.0; N];
-            let after = own + 1..matrix.starts[row + 1];
-            subtract(&mut sum, matrix, after, &self.x);
-            self.residual[row] = sum;
+        self.residual.fill([0.0; N]);
+        for row in 0..self.nodes() {
+            let (x, before) = (&mut self.x, &mut self.residual);
+            self.operator.relax(row, self.b[row], x, before);
         }
         for (row, sum) in coarser.iter_mut().enumerate() {
             *sum = [0.0; M];
@@ -162,17 +181,10 @@ impl<const N: usize, const M: usize> Level<N, M> {
                 add_product(x, block, &coarser[column]);
             }
         }
-        let Operator {
-            matrix,
-            diagonal,
-            inverses,
-        } = &self.operator;
-        for (row, own) in diagonal.iter().enumerate().rev() {
-            let mut sum = self.b[row];
-            subtract(&mut sum, matrix, matrix.starts[row]..*own, &self.x);
-            let after = own + 1..matrix.starts[row + 1];
-            subtract(&mut sum, matrix, after, &self.x);
-            self.x[row] = times(&inverses[row], &sum);
+        self.residual.copy_from_slice(&self.b);
+        for row in (0..self.nodes()).rev() {
+            let (x, before) = (&mut self.x, &mut self.residual);
+            self.operator.relax(row, before[row], x, before);
         }
     }
 }
@@ -200,25 +212,6 @@ fn inverse<const N: usize>(block: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     Some(std::array::from_fn(|row| {
         std::array::from_fn(|column| inverse[(row, column)])
     }))
-}
-
-/// sum ← sum − Σ Aᵢₖ xₖ over some places of the matrix.
-#[inline(always)]
-fn subtract<const N: usize>(
-    sum: &mut [f32; N],
-    matrix: &Blocks<N, N, f32>,
-    places: std::ops::Range<usize>,
-    x: &[[f32; N]],
-) {
-    let columns = &matrix.columns[places.clone()];
-    for (column, block) in columns.iter().zip(&matrix.values[places]) {
-        let x = &x[*column as usize];
-        for i in 0..N {
-            for k in 0..N {
-                sum[i] -= block[i][k] * x[k];
-            }
-        }
-    }
 }
 
 fn rounded<const N: usize>(block: &[[f64; N]; N]) -> [[f32; N]; N] {
