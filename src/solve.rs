@@ -37,8 +37,8 @@ pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
 pub use potential::{
-    After, DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum, add_by_elements,
-    linearise_by_elements,
+    After, DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum, Take,
+    evaluate_by_elements,
 };
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, FactorFault, SparseLu};

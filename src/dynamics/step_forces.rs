@@ -2,7 +2,7 @@
 
 use super::viscosity::{ElementMotion, Memory, Viscosity, ViscousLocal};
 use crate::solve::vector::gather;
-use crate::solve::{Connectivity, Inadmissible, Local, Potential};
+use crate::solve::{Connectivity, Inadmissible, Local, Potential, Take, evaluate_by_elements};
 
 /// The forces of a body at given velocities as if they were those of a potential: ∂Π/∂u where it is elastic, and f_v.
 pub struct StepForces<'a> {
@@ -57,6 +57,13 @@ impl StepForces<'_> {
 impl Potential for StepForces<'_> {
     fn connectivity(&self) -> &Connectivity {
         self.energy.connectivity()
+    }
+
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+        match (self.elastic, self.viscosity) {
+            (true, None) => self.energy.evaluate(u, forces, take),
+            _ => evaluate_by_elements(self, u, forces, take),
+        }
     }
 
     fn evaluate_element(

@@ -8,9 +8,7 @@ use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
 use crate::solve::vector::gather;
-use crate::solve::{
-    Connectivity, Inadmissible, Local, Potential, add_by_elements, linearise_by_elements,
-};
+use crate::solve::{Connectivity, Inadmissible, Local, Potential, Take, evaluate_by_elements};
 
 /// Where the energy is sampled: the displacement gradient there as a combination of nodal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -202,19 +200,14 @@ impl Potential for SheetEnergy {
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
         match self.history.is_empty() {
             true => self.add_virgin_forces(u, forces),
-            false => add_by_elements(self, u, forces).map(|_| ()),
+            false => evaluate_by_elements(self, u, forces, None).map(|_| ()),
         }
     }
 
-    fn linearise(
-        &self,
-        u: &[f64],
-        forces: &mut [f64],
-        take: &mut dyn FnMut(usize, &[f64]),
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
         match self.history.is_empty() {
-            true => self.linearise_virgin(u, forces, take),
-            false => linearise_by_elements(self, u, forces, take),
+            true => self.evaluate_virgin(u, forces, take),
+            false => evaluate_by_elements(self, u, forces, take),
         }
     }
 

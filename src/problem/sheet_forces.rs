@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::sheet_energy::{SheetEnergy, add_stiffness};
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::COMPONENTS;
-use crate::solve::{Inadmissible, Potential};
+use crate::solve::{Inadmissible, Potential, Take};
 
 /// Points that are evaluated together, at least.
 const BLOCK: usize = 256;
@@ -42,33 +42,29 @@ impl SheetEnergy {
         })
     }
 
-    /// As [`Potential::linearise`], of a body without a history.
+    /// As [`Potential::evaluate`], of a body without a history.
     ///
     /// # Errors
     /// [`Inadmissible`] with the first inverted cell.
-    pub(super) fn linearise_virgin(
+    pub(super) fn evaluate_virgin(
         &self,
         u: &[f64],
         forces: &mut [f64],
-        take: &mut dyn FnMut(usize, &[f64]),
+        mut take: Take<'_>,
     ) -> Result<f64, Inadmissible> {
         let (mut energy, mut stiffness) = (0.0, Vec::new());
         let make: Make<COMPONENTS> = |law, h, made| law.responses(h, made);
         self.in_blocks(u, make, |points, cells| {
             let mut place = 0;
             for cell in cells {
-                let size = self.element_unknowns(cell).len();
-                stiffness.clear();
-                stiffness.resize(size * size, 0.0);
-                let mut own = 0.0;
-                for (index, point) in (place..).zip(self.cell_points(cell)) {
-                    own += point.volume * points.made[0][index];
-                    let tangent = points.tangent(index).map(|a| a * point.volume);
-                    add_stiffness(&mut stiffness, point.gradients, &tangent);
-                }
-                energy += own;
+                let own = (place..).zip(self.cell_points(cell));
+                let terms = own.map(|(index, point)| point.volume * points.made[0][index]);
+                energy += terms.sum::<f64>();
                 points.add_forces(self, cell, (place, 1), forces);
-                take(cell, &stiffness);
+                if let Some(take) = &mut take {
+                    points.stiffness(self, cell, place, &mut stiffness);
+                    take(cell, &stiffness);
+                }
                 place += self.cell_points(cell).len();
             }
         })?;
@@ -163,6 +159,17 @@ impl<const N: usize> Points<N> {
 }
 
 impl Points<COMPONENTS> {
+    /// Writes the stiffness of a cell whose points begin at a place.
+    fn stiffness(&self, energy: &SheetEnergy, cell: usize, place: usize, stiffness: &mut Vec<f64>) {
+        let size = energy.element_unknowns(cell).len();
+        stiffness.clear();
+        stiffness.resize(size * size, 0.0);
+        for (index, point) in (place..).zip(energy.cell_points(cell)) {
+            let tangent = self.tangent(index).map(|a| a * point.volume);
+            add_stiffness(stiffness, point.gradients, &tangent);
+        }
+    }
+
     /// ∂P/∂F at a point, column by column.
     fn tangent(&self, point: usize) -> [f64; 16] {
         const LOWER: [usize; 16] = [0, 1, 2, 3, 1, 4, 5, 6, 2, 5, 7, 8, 3, 6, 8, 9];

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::solve::vector::gather;
-use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling};
+use crate::solve::{Connectivity, Inadmissible, Local, Potential, SkewCoupling, Take};
 
 /// Π(u) with uᵢ = uₖ for every tie (i, k): elements depend on the k alone, and no equation is left for an i.
 ///
@@ -132,12 +132,12 @@ impl Potential for TiedPotential<'_> {
         self.untied(u, forces, |u, untied| self.potential.add_forces(u, untied))
     }
 
-    fn linearise(
-        &self,
-        u: &[f64],
-        forces: &mut [f64],
-        take: &mut dyn FnMut(usize, &[f64]),
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+        let Some(take) = take else {
+            return self.untied(u, forces, |u, untied| {
+                self.potential.evaluate(u, untied, None)
+            });
+        };
         let mut folded = Vec::new();
         let mut take = |element: usize, stiffness: &[f64]| {
             let Some(places) = self.places.get(&element) else {
@@ -150,7 +150,7 @@ impl Potential for TiedPotential<'_> {
             take(element, &folded);
         };
         self.untied(u, forces, |u, untied| {
-            self.potential.linearise(u, untied, &mut take)
+            self.potential.evaluate(u, untied, Some(&mut take))
         })
     }
 

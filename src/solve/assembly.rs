@@ -3,7 +3,7 @@
 use super::connectivity::Connectivity;
 use super::dissection::dissection;
 use super::pattern::SymmetricPattern;
-use super::potential::{ElementTerms, Inadmissible, Potential, add_by_elements};
+use super::potential::{ElementTerms, Inadmissible, Potential};
 use super::scatter::{NOWHERE, Scatter};
 use super::sparse::{Cholesky, FactorFault};
 use super::vector::{dot, moved, norm};
@@ -99,7 +99,7 @@ impl Assembly {
         residual: &mut [f64],
     ) -> Result<f64, Inadmissible> {
         residual.fill(0.0);
-        add_by_elements(potential, u, residual)
+        potential.evaluate(u, residual, None)
     }
 
     /// Adds the forces K m of a small motion m of some unknowns, at all unknowns.
@@ -119,7 +119,7 @@ impl Assembly {
                 continue;
             }
             let size = unknowns.len();
-            own.evaluate(potential, element, u)?;
+            own.evaluate(potential, element, u, true)?;
             for row in 0..size {
                 for column in 0..size {
                     let stiffness = own.stiffness[row.max(column) * size + row.min(column)];
@@ -144,7 +144,7 @@ impl Assembly {
         residual.fill(0.0);
         stiffness.clear();
         stiffness.resize(self.pattern.entries(), 0.0);
-        potential.linearise(u, residual, &mut |element, own| {
+        let mut take = |element: usize, own: &[f64]| {
             let size = potential.element_unknowns(element).len();
             let mut places = self.scatter.of(element).iter();
             for row in 0..size {
@@ -155,7 +155,8 @@ impl Assembly {
                     }
                 }
             }
-        })
+        };
+        potential.evaluate(u, residual, Some(&mut take))
     }
 }
 

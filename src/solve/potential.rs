@@ -31,6 +31,9 @@ pub struct SkewCoupling {
     pub stiffness: f64,
 }
 
+/// What takes each element with its stiffness, row by row, the lower triangle at least; `None` where stiffnesses are not wanted.
+pub type Take<'a> = Option<&'a mut dyn FnMut(usize, &[f64])>;
+
 /// A potential energy Π(u) = Σ Πₑ(u), one term an element.
 ///
 /// Mass-spring lattices, finite elements, loads and the corrector's difference scheme are all of this kind,
@@ -55,20 +58,15 @@ pub trait Potential: Sync {
     /// # Errors
     /// [`Inadmissible`] with an element that is inverted.
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        add_by_elements(self, u, forces).map(|_| ())
+        evaluate_by_elements(self, u, forces, None).map(|_| ())
     }
 
-    /// Π; adds ∂Π/∂u at all unknowns, and gives `take` every element with its stiffness, row by row, the lower triangle at least.
+    /// Π; adds ∂Π/∂u at all unknowns, and gives the stiffnesses of all elements where they are wanted.
     ///
     /// # Errors
     /// [`Inadmissible`] with an element that is inverted.
-    fn linearise(
-        &self,
-        u: &[f64],
-        forces: &mut [f64],
-        take: &mut dyn FnMut(usize, &[f64]),
-    ) -> Result<f64, Inadmissible> {
-        linearise_by_elements(self, u, forces, take)
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+        evaluate_by_elements(self, u, forces, take)
     }
 
     /// What the derivatives of the residual have in addition to the symmetric stiffness of the elements: forces without a
@@ -121,57 +119,27 @@ pub trait Potential: Sync {
     }
 }
 
-/// Adds ∂Π/∂u at all unknowns, element by element; Π.
+/// [`Potential::evaluate`], element by element.
 ///
 /// # Errors
 /// [`Inadmissible`] with the first inverted element.
-pub fn add_by_elements<P: Potential + ?Sized>(
+pub fn evaluate_by_elements<P: Potential + ?Sized>(
     potential: &P,
     u: &[f64],
     forces: &mut [f64],
-) -> Result<f64, Inadmissible> {
-    let (mut own, mut residual) = (Vec::new(), Vec::new());
-    let mut energy = 0.0;
-    for element in 0..potential.elements() {
-        let unknowns = potential.element_unknowns(element);
-        own.clear();
-        own.extend(unknowns.iter().map(|unknown| u[*unknown]));
-        residual.clear();
-        residual.resize(own.len(), 0.0);
-        let local = Local {
-            residual: &mut residual,
-            stiffness: None,
-        };
-        energy += potential.evaluate_element(element, &own, local)?;
-        for (unknown, force) in unknowns.iter().zip(&residual) {
-            forces[*unknown] += force;
-        }
-    }
-    Ok(energy)
-}
-
-/// [`Potential::linearise`], element by element.
-///
-/// # Errors
-/// [`Inadmissible`] with the first inverted element.
-pub fn linearise_by_elements<P: Potential + ?Sized>(
-    potential: &P,
-    u: &[f64],
-    forces: &mut [f64],
-    take: &mut dyn FnMut(usize, &[f64]),
+    mut take: Take<'_>,
 ) -> Result<f64, Inadmissible> {
     let mut own = ElementTerms::default();
     let mut energy = 0.0;
     for element in 0..potential.elements() {
-        energy += own.evaluate(potential, element, u)?;
-        for (unknown, force) in potential
-            .element_unknowns(element)
-            .iter()
-            .zip(&own.residual)
-        {
+        energy += own.evaluate(potential, element, u, take.is_some())?;
+        let unknowns = potential.element_unknowns(element);
+        for (unknown, force) in unknowns.iter().zip(&own.residual) {
             forces[*unknown] += force;
         }
-        take(element, &own.stiffness);
+        if let Some(take) = &mut take {
+            take(element, &own.stiffness);
+        }
     }
     Ok(energy)
 }
@@ -186,7 +154,7 @@ pub struct ElementTerms {
 }
 
 impl ElementTerms {
-    /// Takes an element's terms at `u`; its energy.
+    /// Takes an element's terms at `u`, its stiffness where it is wanted; its energy.
     ///
     /// # Errors
     /// [`Inadmissible`] when the element is inverted.
@@ -195,6 +163,7 @@ impl ElementTerms {
         potential: &P,
         element: usize,
         u: &[f64],
+        with_stiffness: bool,
     ) -> Result<f64, Inadmissible> {
         let unknowns = potential.element_unknowns(element);
         let size = unknowns.len();
@@ -203,11 +172,13 @@ impl ElementTerms {
             .extend(unknowns.iter().map(|unknown| u[*unknown]));
         self.residual.clear();
         self.residual.resize(size, 0.0);
-        self.stiffness.clear();
-        self.stiffness.resize(size * size, 0.0);
+        if with_stiffness {
+            self.stiffness.clear();
+            self.stiffness.resize(size * size, 0.0);
+        }
         let local = Local {
             residual: &mut self.residual,
-            stiffness: Some(&mut self.stiffness),
+            stiffness: with_stiffness.then_some(&mut self.stiffness),
         };
         potential.evaluate_element(element, &self.values, local)
     }
@@ -231,13 +202,8 @@ impl<P: Potential + ?Sized> Potential for &P {
         (**self).add_forces(u, forces)
     }
 
-    fn linearise(
-        &self,
-        u: &[f64],
-        forces: &mut [f64],
-        take: &mut dyn FnMut(usize, &[f64]),
-    ) -> Result<f64, Inadmissible> {
-        (**self).linearise(u, forces, take)
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+        (**self).evaluate(u, forces, take)
     }
 
     fn skew_couplings(&self) -> Vec<SkewCoupling> {
@@ -303,19 +269,14 @@ impl Potential for After<'_> {
     fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
         match self.history.is_empty() {
             true => self.energy.add_forces(u, forces),
-            false => add_by_elements(self, u, forces).map(|_| ()),
+            false => evaluate_by_elements(self, u, forces, None).map(|_| ()),
         }
     }
 
-    fn linearise(
-        &self,
-        u: &[f64],
-        forces: &mut [f64],
-        take: &mut dyn FnMut(usize, &[f64]),
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
         match self.history.is_empty() {
-            true => self.energy.linearise(u, forces, take),
-            false => linearise_by_elements(self, u, forces, take),
+            true => self.energy.evaluate(u, forces, take),
+            false => evaluate_by_elements(self, u, forces, take),
         }
     }
 
@@ -393,16 +354,25 @@ impl Potential for Sum<'_> {
         second.map_err(|fault| self.of_second(fault))
     }
 
-    fn linearise(
+    fn evaluate(
         &self,
         u: &[f64],
         forces: &mut [f64],
-        take: &mut dyn FnMut(usize, &[f64]),
+        take: Take<'_>,
     ) -> Result<f64, Inadmissible> {
         let before = self.first.elements();
-        let first = self.first.linearise(u, forces, take)?;
-        let mut take = |element, stiffness: &[f64]| take(before + element, stiffness);
-        let second = self.second.linearise(u, forces, &mut take);
+        let (first, second) = match take {
+            None => {
+                let first = self.first.evaluate(u, forces, None)?;
+                (first, self.second.evaluate(u, forces, None))
+            }
+            Some(take) => {
+                let mut own = |element, stiffness: &[f64]| take(element, stiffness);
+                let first = self.first.evaluate(u, forces, Some(&mut own))?;
+                let mut own = |element, stiffness: &[f64]| take(before + element, stiffness);
+                (first, self.second.evaluate(u, forces, Some(&mut own)))
+            }
+        };
         Ok(first + second.map_err(|fault| self.of_second(fault))?)
     }
 
