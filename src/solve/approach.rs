@@ -146,12 +146,10 @@ impl Newton {
 
     /// Takes the tangent at `u` for multigrid; `None` where there is none, or `u` is not admissible.
     pub fn take_tangent(&mut self, potential: &dyn Potential, u: &[f64]) -> Option<()> {
-        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
-        let assembly = &self.tangent.assembly;
-        let linearised = assembly.linearise(potential, u, &mut residual, &mut stiffness);
-        linearised.ok()?;
-        self.tangent.take(&stiffness)?;
-        self.tangent.iterative.as_mut()?.prepare().ok()
+        let iterative = self.tangent.iterative.as_mut()?;
+        let mut residual = vec![0.0; u.len()];
+        iterative.linearise(potential, u, &mut residual).ok()?;
+        iterative.prepare().ok()
     }
 
     /// About what the free unknowns do when held ones move a little from an equilibrium `u`, by multigrid on the tangent taken
@@ -182,7 +180,6 @@ impl Newton {
         tangent: FirstTangent,
     ) -> Option<Approach> {
         let begun = self.tangent.iterative.as_ref()?.iterations;
-        let mut stiffness = Vec::new();
         let mut own = Approach::default();
         let mut pace = Pace {
             nearness,
@@ -196,10 +193,8 @@ impl Newton {
         }
         for _ in 0..MOST {
             if std::mem::take(&mut anew) {
-                let assembly = &self.tangent.assembly;
-                let linearised = assembly.linearise(potential, u, residual, &mut stiffness);
-                linearised.ok()?;
-                self.tangent.take(&stiffness)?;
+                let iterative = self.tangent.iterative.as_mut()?;
+                iterative.linearise(potential, u, residual).ok()?;
                 own.linearisations += 1;
                 pace.last = None;
             }

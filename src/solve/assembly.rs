@@ -1,5 +1,7 @@
 //! The assembly of a potential: its residual, and its stiffness over the free unknowns.
 
+use std::sync::OnceLock;
+
 use super::connectivity::Connectivity;
 use super::dissection::dissection;
 use super::pattern::SymmetricPattern;
@@ -15,8 +17,10 @@ pub struct Assembly {
     free_index: Vec<Option<usize>>,
     /// The free unknowns, ascending.
     free: Vec<usize>,
-    pattern: SymmetricPattern,
-    scatter: Scatter,
+    /// The free unknowns of each element.
+    elements: Connectivity,
+    /// Found when it is first needed.
+    sparse: OnceLock<(SymmetricPattern, Scatter)>,
     /// Where each free unknown is, if that is known of all.
     places: Option<Vec<[f64; 2]>>,
 }
@@ -38,15 +42,14 @@ impl Assembly {
             let unknowns = potential.element_unknowns(element).iter();
             elements.push(unknowns.map(|unknown| free_index[*unknown].unwrap_or(NOWHERE)));
         }
-        let (pattern, scatter) = Scatter::new(&elements);
         let connectivity = potential.connectivity();
         let places = free.iter().map(|unknown| connectivity.place(*unknown));
         Self {
             places: places.collect(),
             free_index,
             free,
-            pattern,
-            scatter,
+            elements,
+            sparse: OnceLock::new(),
         }
     }
 
@@ -72,7 +75,17 @@ impl Assembly {
 
     /// Pattern of the stiffness over the free unknowns.
     pub fn pattern(&self) -> &SymmetricPattern {
-        &self.pattern
+        &self.sparse().0
+    }
+
+    fn sparse(&self) -> &(SymmetricPattern, Scatter) {
+        self.sparse.get_or_init(|| Scatter::new(&self.elements))
+    }
+
+    /// The largest entry on the diagonal of a stiffness.
+    pub fn stiffest(&self, stiffness: &[f64]) -> f64 {
+        let diagonal = self.pattern().diagonal().iter();
+        diagonal.fold(0.0, |most: f64, place| most.max(stiffness[*place].abs()))
     }
 
     /// Analyses the pattern of the stiffness, in an order by places where the system is large and they are known.
@@ -82,10 +95,10 @@ impl Assembly {
     pub fn analyse(&self) -> Result<Cholesky, FactorFault> {
         match &self.places {
             Some(places) if places.len() >= WORTH_DISSECTION => {
-                let order = dissection(&self.pattern, places);
-                Cholesky::analyse_in_order(self.pattern.clone(), &order)
+                let order = dissection(self.pattern(), places);
+                Cholesky::analyse_in_order(self.pattern().clone(), &order)
             }
-            _ => Cholesky::analyse(self.pattern.clone()),
+            _ => Cholesky::analyse(self.pattern().clone()),
         }
     }
 
@@ -143,10 +156,11 @@ impl Assembly {
     ) -> Result<f64, Inadmissible> {
         residual.fill(0.0);
         stiffness.clear();
-        stiffness.resize(self.pattern.entries(), 0.0);
+        let (pattern, scatter) = self.sparse();
+        stiffness.resize(pattern.entries(), 0.0);
         let mut take = |element: usize, own: &[f64]| {
             let size = potential.element_unknowns(element).len();
-            let mut places = self.scatter.of(element).iter();
+            let mut places = scatter.of(element).iter();
             for row in 0..size {
                 let values = &own[row * size..=row * size + row];
                 for (value, place) in values.iter().zip(&mut places) {
@@ -176,7 +190,7 @@ pub fn derivative_errors(potential: &dyn Potential, u: &[f64], direction: &[f64]
         .linearise(potential, u, &mut residual, &mut stiffness)
         .expect("admissible");
     let slope = dot(&residual, direction);
-    let product = assembly.pattern.multiply(&stiffness, direction);
+    let product = assembly.pattern().multiply(&stiffness, direction);
     let mut best = [f64::INFINITY; 2];
     for step in (1..8).map(|power| 10f64.powi(-power)) {
         let ((up_energy, up), (down_energy, down)) = (at(step), at(-step));

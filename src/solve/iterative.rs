@@ -1,10 +1,10 @@
 //! A tangent without a factor: conjugate gradients with one cycle of multigrid each.
 
-use super::aggregation::{Hierarchy, Motions};
+use super::aggregation::Hierarchy;
 use super::assembly::Assembly;
 use super::nested::{Carry, Ladder, Nested};
 use super::nodal::{NodalMatrix, Nodes, conjugate_gradients};
-use super::potential::Potential;
+use super::potential::{Inadmissible, Potential};
 use super::sparse::FactorFault;
 
 /// How systems with the tangent are solved.
@@ -33,10 +33,7 @@ const STALE: f64 = 1.6;
 /// The tangent of a potential by nodes, with a cycle that was made for it or for one before it.
 pub struct Iterative {
     nodes: Nodes,
-    motions: Vec<Motions<2>>,
     matrix: NodalMatrix,
-    /// The values taken last.
-    values: Vec<f64>,
     cycle: Cycle,
     /// Whether the cycle was made for the values taken last, or for others, or is to be made.
     made: Made,
@@ -109,10 +106,8 @@ impl Iterative {
             .iter()
             .map(|own| free(own.row) && free(own.column));
         (!skew.any(|couples| couples)).then(|| Self {
-            motions: nodes.motions(),
-            matrix: NodalMatrix::new(&nodes, assembly.pattern()),
+            matrix: NodalMatrix::new(&nodes, assembly.free(), potential),
             nodes,
-            values: Vec::new(),
             cycle: Cycle::Aggregation(None),
             made: Made::Not,
             pace: f64::INFINITY,
@@ -140,21 +135,34 @@ impl Iterative {
         matches!(self.cycle, Cycle::Nested(_))
     }
 
-    /// Takes the tangent at another state.
-    pub fn take(&mut self, assembly: &Assembly, values: &[f64]) {
-        self.matrix.take(&self.nodes, assembly.pattern(), values);
-        self.values.clear();
-        self.values.extend_from_slice(values);
+    /// Takes the tangent of a potential at another state; its energy, and ∂Π/∂u at all unknowns. There is no tangent where there is none
+    /// at that state.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with the first inverted element.
+    pub fn linearise(
+        &mut self,
+        potential: &dyn Potential,
+        u: &[f64],
+        residual: &mut [f64],
+    ) -> Result<f64, Inadmissible> {
+        let energy = self.matrix.linearise(potential, u, residual);
         // Aggregates are dear, and good for tangents beside their own.
         self.made = match (&self.cycle, self.made) {
             (Cycle::Aggregation(_), Made::ForThese | Made::ForOthers) => Made::ForOthers,
             _ => Made::Not,
         };
+        energy
     }
 
-    /// The values taken last.
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    /// The entries of the tangent taken last.
+    pub fn entries(&self, assembly: &Assembly) -> Vec<f64> {
+        self.matrix.entries(&self.nodes, assembly.pattern())
+    }
+
+    /// The largest entry on its diagonal.
+    pub fn stiffest(&self) -> f64 {
+        self.matrix.stiffest()
     }
 
     /// x of K x = b, until the residual has fallen by `reduction` in the norm of the preconditioner.
@@ -178,7 +186,7 @@ impl Iterative {
         loop {
             self.prepare()?;
             let cycle = |r: &[[f64; 2]], z: &mut [[f64; 2]]| self.cycle.apply(r, z);
-            let found = conjugate_gradients(&self.matrix.blocks, cycle, &b, &reduction, MOST);
+            let found = conjugate_gradients(&self.matrix, cycle, &b, &reduction, MOST);
             self.iterations += found.as_ref().map_or(MOST, |found| found.iterations);
             if let Ok(found) = &found
                 && found.reduction <= reduction(found.first)
@@ -224,8 +232,8 @@ impl Iterative {
             match &mut self.cycle {
                 Cycle::Aggregation(cycle) => {
                     *cycle = Some(Box::new(Hierarchy::new(
-                        &self.matrix.blocks,
-                        &self.motions,
+                        &self.matrix.whole(),
+                        &self.nodes.motions(),
                     )?));
                 }
                 Cycle::Nested(cycle) => cycle.take(&self.matrix.blocks)?,
@@ -247,6 +255,6 @@ impl Iterative {
         }
         let start = self.nodes.uneven();
         let cycle = |r: &[[f64; 2]], z: &mut [[f64; 2]]| self.cycle.apply(r, z);
-        conjugate_gradients(&self.matrix.blocks, cycle, &start, |_| 0.0, iterations).is_ok()
+        conjugate_gradients(&self.matrix, cycle, &start, |_| 0.0, iterations).is_ok()
     }
 }

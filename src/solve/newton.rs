@@ -159,7 +159,8 @@ impl Newton {
             let linearised =
                 (self.tangent.assembly).linearise(potential, u, residual, &mut stiffness);
             let energy = linearised.map_err(|fault| inverted(fault, describe))?;
-            let mut now = self.measure(u, residual, energy, &stiffness, &mut log)?;
+            let stiffest = self.tangent.assembly.stiffest(&stiffness);
+            let mut now = self.measure(u, residual, energy, stiffest, &mut log)?;
             now.shifted = self.tangent.factorise(&mut stiffness)?;
             if now.shifted && self.indefinite.is_none() {
                 self.indefinite = Some(u.to_vec());
@@ -208,11 +209,11 @@ impl Newton {
         settings: NewtonSettings,
     ) -> Option<Convergence> {
         let mut log = Convergence::default();
-        let mut stiffness = Vec::new();
         loop {
-            let assembly = &self.tangent.assembly;
-            let linearised = assembly.linearise(potential, u, residual, &mut stiffness);
-            let now = self.measure(u, residual, linearised.ok()?, &stiffness, &mut log);
+            let iterative = self.tangent.iterative.as_mut()?;
+            let energy = iterative.linearise(potential, u, residual).ok()?;
+            let stiffest = iterative.stiffest();
+            let now = self.measure(u, residual, energy, stiffest, &mut log);
             let now = now.ok()?;
             let Tangent {
                 assembly,
@@ -220,7 +221,6 @@ impl Newton {
                 ..
             } = &mut self.tangent;
             let iterative = iterative.as_mut()?;
-            iterative.take(assembly, &stiffness);
             if now.relative <= settings.tolerance {
                 return iterative.is_definite().then_some(log);
             }
@@ -250,11 +250,9 @@ impl Newton {
         u: &[f64],
         residual: &[f64],
         energy: f64,
-        stiffness: &[f64],
+        stiffest: f64,
         log: &mut Convergence,
     ) -> Result<Iterate, SolveFault> {
-        let diagonal = self.tangent.assembly.pattern().diagonal().iter();
-        let stiffest = diagonal.fold(0.0, |most: f64, place| most.max(stiffness[*place].abs()));
         let negligible = NEGLIGIBLE * stiffest;
         let relative = self.relative_residual(residual, negligible * largest(u));
         if !relative.is_finite() {

@@ -1,11 +1,13 @@
-//! A stiffness by nodes with two unknowns each, and conjugate gradients for it.
+//! Unknowns by nodes with two each, and conjugate gradients for their stiffness.
 
 use super::aggregation::Motions;
-use super::aggregation::blocks::Blocks;
 use super::krylov::irregular;
-use super::pattern::SymmetricPattern;
 use super::sparse::FactorFault;
 use crate::statistics::extremes;
+
+mod matrix;
+
+pub use matrix::NodalMatrix;
 
 /// Which node and component each unknown of a stiffness is. A component without an unknown, because it is held, is
 /// one that nothing moves: its row is that of the identity.
@@ -17,14 +19,6 @@ pub struct Nodes {
     places: Vec<[f64; 2]>,
     /// Which components of each node are unknowns.
     free: Vec<[bool; 2]>,
-}
-
-/// A stiffness by nodes.
-pub struct NodalMatrix {
-    /// The blocks of nodes.
-    pub blocks: Blocks<2, 2>,
-    /// For each stored entry of the symmetric pattern its block below or on the diagonal, and the one above it.
-    slots: Vec<[u32; 2]>,
 }
 
 impl Nodes {
@@ -115,107 +109,6 @@ impl Nodes {
     }
 }
 
-impl NodalMatrix {
-    /// The matrix of a pattern over the unknowns of some nodes; its values are taken later.
-    pub fn new(nodes: &Nodes, pattern: &SymmetricPattern) -> Self {
-        let (starts, columns) = adjacency(nodes, pattern);
-        let blocks = Blocks {
-            values: vec![[[0.0; 2]; 2]; columns.len()],
-            starts,
-            columns,
-        };
-        let find = |row: u32, column: u32| {
-            let start = blocks.starts[row as usize];
-            let own = &blocks.columns[start..blocks.starts[row as usize + 1]];
-            let place = own.binary_search(&column);
-            (start + place.expect("a block of the pattern")) as u32
-        };
-        let mut slots = Vec::with_capacity(pattern.entries());
-        for column in 0..pattern.size() {
-            let to = nodes.of[column].0;
-            let mut found = (u32::MAX, [0; 2]);
-            for row in pattern.column(column) {
-                let from = nodes.of[*row].0;
-                if from != found.0 {
-                    found = (from, [find(from, to), find(to, from)]);
-                }
-                slots.push(found.1);
-            }
-        }
-        Self { blocks, slots }
-    }
-
-    /// Takes the values of a pattern.
-    pub fn take(&mut self, nodes: &Nodes, pattern: &SymmetricPattern, values: &[f64]) {
-        self.blocks.values.fill([[0.0; 2]; 2]);
-        let mut entries = self.slots.iter().zip(values);
-        for column in 0..pattern.size() {
-            let k = usize::from(nodes.of[column].1);
-            for row in pattern.column(column) {
-                let i = usize::from(nodes.of[*row].1);
-                let ([lower, upper], value) = entries.next().expect("a value each");
-                self.blocks.values[*lower as usize][i][k] = *value;
-                self.blocks.values[*upper as usize][k][i] = *value;
-            }
-        }
-        for (node, free) in nodes.free.iter().enumerate() {
-            for axis in (0..2).filter(|axis| !free[*axis]) {
-                let start = self.blocks.starts[node];
-                let own = &self.blocks.columns[start..self.blocks.starts[node + 1]];
-                let place = own.binary_search(&(node as u32)).expect("a diagonal");
-                self.blocks.values[start + place][axis][axis] = 1.0;
-            }
-        }
-    }
-}
-
-/// The nodes that each node is coupled with, itself among them, ascending: where those of each begin, and all of them.
-fn adjacency(nodes: &Nodes, pattern: &SymmetricPattern) -> (Vec<usize>, Vec<u32>) {
-    let count = nodes.places.len();
-    let (mut above, mut begins) = (Vec::<u32>::new(), vec![0]);
-    let (mut own, mut column) = (Vec::new(), 0);
-    for unknowns in nodes.of.chunk_by(|one, other| one.0 == other.0) {
-        let node = unknowns[0].0;
-        own.clear();
-        for _ in unknowns {
-            let rows = pattern.column(column).iter().map(|row| nodes.of[*row].0);
-            own.extend(rows.filter(|row| *row > node));
-            column += 1;
-        }
-        own.sort_unstable();
-        own.dedup();
-        above.extend_from_slice(&own);
-        begins.push(above.len());
-    }
-    let above = |node: usize| &above[begins[node]..begins[node + 1]];
-    let mut starts = vec![0; count + 1];
-    for node in 0..count {
-        starts[node + 1] += 1 + above(node).len();
-        above(node)
-            .iter()
-            .for_each(|other| starts[*other as usize + 1] += 1);
-    }
-    for node in 0..count {
-        starts[node + 1] += starts[node];
-    }
-    let (mut columns, mut next) = (vec![0; starts[count]], starts.clone());
-    let mut put = |node: usize, other: u32| {
-        columns[next[node]] = other;
-        next[node] += 1;
-    };
-    for node in 0..count {
-        // All nodes below have put themselves here before.
-        put(node, node as u32);
-        above(node)
-            .iter()
-            .for_each(|other| put(*other as usize, node as u32));
-    }
-    for node in 0..count {
-        above(node).iter().for_each(|other| put(node, *other));
-    }
-    (starts, columns)
-}
-
 /// What conjugate gradients found.
 pub struct Found {
     /// The approximate solution.
@@ -234,7 +127,7 @@ pub struct Found {
 /// # Errors
 /// [`FactorFault::NotPositiveDefinite`] where a direction has no positive stiffness.
 pub fn conjugate_gradients(
-    matrix: &Blocks<2, 2>,
+    matrix: &NodalMatrix,
     mut precondition: impl FnMut(&[[f64; 2]], &mut [[f64; 2]]),
     b: &[[f64; 2]],
     reduction: impl FnOnce(f64) -> f64,

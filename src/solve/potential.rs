@@ -354,12 +354,7 @@ impl Potential for Sum<'_> {
         second.map_err(|fault| self.of_second(fault))
     }
 
-    fn evaluate(
-        &self,
-        u: &[f64],
-        forces: &mut [f64],
-        take: Take<'_>,
-    ) -> Result<f64, Inadmissible> {
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
         let before = self.first.elements();
         let (first, second) = match take {
             None => {

@@ -66,12 +66,6 @@ impl Tangent {
         self.assembly.free()
     }
 
-    /// Takes the values of a tangent for multigrid; `None` where there is none.
-    pub(super) fn take(&mut self, stiffness: &[f64]) -> Option<()> {
-        self.iterative.as_mut()?.take(&self.assembly, stiffness);
-        Some(())
-    }
-
     /// Factorises the tangent at `u` for [`Self::changes`]; the residual there, at held unknowns too.
     ///
     /// # Errors
@@ -225,18 +219,18 @@ impl Tangent {
         u: &[f64],
         describe: Describe,
     ) -> Result<(Vec<f64>, bool), SolveFault> {
-        let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
-        self.assembly
-            .linearise(potential, u, &mut residual, &mut stiffness)
-            .map_err(|fault| inverted(fault, describe))?;
-        let shifted = match &mut self.iterative {
-            Some(iterative) => {
-                iterative.take(&self.assembly, &stiffness);
-                self.factorised = false;
-                false
-            }
-            None => self.factorise(&mut stiffness)?,
-        };
+        let mut residual = vec![0.0; u.len()];
+        if let Some(iterative) = &mut self.iterative {
+            let linearised = iterative.linearise(potential, u, &mut residual);
+            linearised.map_err(|fault| inverted(fault, describe))?;
+            self.factorised = false;
+            return Ok((residual, false));
+        }
+        let mut stiffness = Vec::new();
+        let assembly = &self.assembly;
+        let linearised = assembly.linearise(potential, u, &mut residual, &mut stiffness);
+        linearised.map_err(|fault| inverted(fault, describe))?;
+        let shifted = self.factorise(&mut stiffness)?;
         Ok((residual, shifted))
     }
 
@@ -244,8 +238,8 @@ impl Tangent {
     fn replace_by_factor(&mut self) -> Result<bool, SolveFault> {
         match &self.iterative {
             Some(iterative) if !self.factorised => {
-                let mut values = iterative.values().to_vec();
-                self.factorise(&mut values)
+                let mut entries = iterative.entries(&self.assembly);
+                self.factorise(&mut entries)
             }
             _ => Ok(false),
         }

@@ -1,12 +1,28 @@
 use super::*;
 use crate::solve::nodal::{NodalMatrix, Nodes, conjugate_gradients};
+use crate::solve::{Assembly, Connectivity, Inadmissible, Local, Potential};
 
-/// Plane stress of a soft sheet at rest, E = 1, ν = ½, on a grid of bilinear rectangles hx × hy, its left side held.
+/// Plane stress of a soft sheet at rest, E = 1, ν = ½, on a grid of bilinear rectangles, its left side held: ½ uᵀ K u.
 struct Sheet {
-    unknowns: Vec<usize>,
-    places: Vec<[f64; 2]>,
-    pattern: SymmetricPattern,
-    values: Vec<f64>,
+    connectivity: Connectivity,
+    held: Vec<bool>,
+    stiffness: [[f64; 8]; 8],
+}
+
+impl Potential for Sheet {
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
+    }
+
+    fn evaluate_element(&self, _: usize, u: &[f64], local: Local<'_>) -> Result<f64, Inadmissible> {
+        for (force, row) in local.residual.iter_mut().zip(&self.stiffness) {
+            *force = crate::solve::vector::dot(row, u);
+        }
+        if let Some(stiffness) = local.stiffness {
+            stiffness.copy_from_slice(self.stiffness.as_flattened());
+        }
+        Ok(0.5 * crate::solve::vector::dot(local.residual, u))
+    }
 }
 
 /// The stiffness of a rectangle by one point a corner of the 2 × 2 Gauss rule.
@@ -55,66 +71,42 @@ fn sheet(cells: [usize; 2], size: [f64; 2], slides: bool, order: impl Fn(usize) 
             held[2 * node(i, j) + 1] = i == 0 && (!slides || j == 0);
         }
     }
-    let unknowns: Vec<usize> = (0..2 * count).filter(|unknown| !held[*unknown]).collect();
-    let index = |unknown: usize| unknowns.binary_search(&unknown).ok();
-    let cell = |i: usize, j: usize| {
-        let nodes = [
+    let mut connectivity = Connectivity::new(2 * count);
+    for [i, j] in (0..nx).flat_map(|i| (0..ny).map(move |j| [i, j])) {
+        connectivity.push_nodes(&[
             node(i, j),
             node(i + 1, j),
             node(i + 1, j + 1),
             node(i, j + 1),
-        ];
-        let all: Vec<usize> = nodes
-            .iter()
-            .flat_map(|node| [2 * node, 2 * node + 1])
-            .collect();
-        all
-    };
-    let cells: Vec<Vec<usize>> = (0..nx)
-        .flat_map(|i| (0..ny).map(move |j| [i, j]))
-        .map(|[i, j]| cell(i, j))
-        .collect();
-    let mut columns = vec![Vec::new(); unknowns.len()];
-    for own in &cells {
-        for column in own.iter().filter_map(|unknown| index(*unknown)) {
-            columns[column].extend(own.iter().filter_map(|unknown| index(*unknown)));
-        }
-    }
-    let pattern = SymmetricPattern::new(columns.into_iter());
-    let mut values = vec![0.0; pattern.entries()];
-    let stiffness = rectangle(h);
-    for own in &cells {
-        for (a, row) in own.iter().enumerate() {
-            for (b, column) in own.iter().enumerate() {
-                if let (Some(row), Some(column)) = (index(*row), index(*column))
-                    && row >= column
-                {
-                    values[pattern.position(row, column).unwrap()] += stiffness[a][b];
-                }
-            }
-        }
+        ]);
     }
     Sheet {
-        places: unknowns.iter().map(|unknown| places[unknown / 2]).collect(),
-        unknowns,
-        pattern,
-        values,
+        connectivity: connectivity.with_places(places),
+        held,
+        stiffness: rectangle(h),
     }
 }
 
 impl Sheet {
+    fn matrix(&self) -> (Nodes, NodalMatrix) {
+        let assembly = Assembly::new(self, &self.held);
+        let nodes = Nodes::new(assembly.free(), assembly.places().unwrap());
+        let mut matrix = NodalMatrix::new(&nodes, assembly.free(), self);
+        let rest = vec![0.0; self.held.len()];
+        matrix.linearise(self, &rest, &mut rest.clone()).unwrap();
+        (nodes, matrix)
+    }
+
     fn prepare(&self) -> (Nodes, NodalMatrix, Hierarchy) {
-        let nodes = Nodes::new(&self.unknowns, &self.places);
-        let mut matrix = NodalMatrix::new(&nodes, &self.pattern);
-        matrix.take(&nodes, &self.pattern, &self.values);
-        let cycle = Hierarchy::new(&matrix.blocks, &nodes.motions()).unwrap();
+        let (nodes, matrix) = self.matrix();
+        let cycle = Hierarchy::new(&matrix.whole(), &nodes.motions()).unwrap();
         (nodes, matrix, cycle)
     }
 
     fn iterations(&self) -> usize {
         let (nodes, matrix, mut cycle) = self.prepare();
         let found = conjugate_gradients(
-            &matrix.blocks,
+            &matrix,
             |r, z| cycle.apply(r, z),
             &nodes.uneven(),
             |_| 1e-8,
@@ -124,7 +116,14 @@ impl Sheet {
         assert!(found.reduction <= 1e-8);
         // The true residual has fallen too.
         let b = nodes.gather(&nodes.uneven());
-        let image = self.pattern.multiply(&self.values, &nodes.gather(&found.x));
+        let assembly = Assembly::new(self, &self.held);
+        let (rest, mut values) = (vec![0.0; self.held.len()], Vec::new());
+        let linearised = assembly.linearise(self, &rest, &mut rest.clone(), &mut values);
+        linearised.unwrap();
+        assert_eq!(matrix.entries(&nodes, assembly.pattern()), values);
+        let image = assembly
+            .pattern()
+            .multiply(&values, &nodes.gather(&found.x));
         let left = crate::solve::vector::difference(&b, &image);
         let (left, whole) = (
             crate::solve::vector::norm(&left),
@@ -194,18 +193,17 @@ fn the_order_of_the_nodes_costs_a_few_iterations_at_most() {
 
 #[test]
 fn an_indefinite_matrix_is_seen() {
-    let mut sheet = sheet([30, 10], [3.0, 1.0], false, |node| node);
+    let sheet = sheet([30, 10], [3.0, 1.0], false, |node| node);
     // Springs of negative stiffness below all nodes: the softest modes fall below zero, all diagonal entries stay positive.
-    for place in sheet.pattern.diagonal().to_vec() {
-        sheet.values[place] -= 0.01;
+    let (nodes, mut matrix) = sheet.matrix();
+    for end in &matrix.blocks.starts[1..] {
+        let block = &mut matrix.blocks.values[end - 1];
+        (block[0][0], block[1][1]) = (block[0][0] - 0.01, block[1][1] - 0.01);
     }
-    let nodes = Nodes::new(&sheet.unknowns, &sheet.places);
-    let mut matrix = NodalMatrix::new(&nodes, &sheet.pattern);
-    matrix.take(&nodes, &sheet.pattern, &sheet.values);
-    let seen = match Hierarchy::new(&matrix.blocks, &nodes.motions()) {
+    let seen = match Hierarchy::new(&matrix.whole(), &nodes.motions()) {
         Err(_) => true,
         Ok(mut cycle) => conjugate_gradients(
-            &matrix.blocks,
+            &matrix,
             |r, z| cycle.apply(r, z),
             &nodes.uneven(),
             |_| 0.0,
