@@ -113,15 +113,25 @@ impl Mesh {
     /// point.
     pub fn gradients(&self, cell: usize, local: [f64; 2]) -> (Vec<[f64; 2]>, f64) {
         let derivatives = self.shape(cell).derivatives(local);
-        let map = self.map(cell, &derivatives);
+        let (gradients, jacobian) = self.transformed(cell, &derivatives);
+        (gradients.collect(), jacobian)
+    }
+
+    /// Gradients and Jacobian as [`Self::gradients`] where the derivatives by natural coordinates are known.
+    pub fn transformed<'a>(
+        &self,
+        cell: usize,
+        derivatives: &'a [[f64; 2]],
+    ) -> (impl Iterator<Item = [f64; 2]> + use<'a>, f64) {
+        let map = self.map(cell, derivatives);
         let jacobian = determinant(&map);
-        let transform = |d: &[f64; 2]| {
+        let transform = move |d: &[f64; 2]| {
             [
                 (d[0] * map[1][1] - d[1] * map[1][0]) / jacobian,
                 (d[1] * map[0][0] - d[0] * map[0][1]) / jacobian,
             ]
         };
-        (derivatives.iter().map(transform).collect(), jacobian)
+        (derivatives.iter().map(transform), jacobian)
     }
 
     /// ∂Xᵢ/∂ξⱼ of a cell.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::stability::is_stable;
-use crate::mesh::Mesh;
+use crate::mesh::{CellShape, Mesh};
 use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible, Local, Potential, Take, evaluate_by_elements};
 
@@ -58,6 +58,14 @@ impl SheetEnergy {
         self.point_starts.push(self.volumes.len());
     }
 
+    /// Makes room for so many cells like the first one.
+    fn reserve(&mut self, cells: usize) {
+        self.gradients.reserve(cells * self.gradients.len());
+        self.gradient_starts.reserve(cells);
+        self.volumes.reserve(cells * self.volumes.len());
+        self.point_starts.reserve(cells);
+    }
+
     /// Appends a point of the next cell: a gradient for each of its nodes, and its volume in mm³.
     pub fn push_point(&mut self, gradients: impl IntoIterator<Item = [f64; 2]>, volume: f64) {
         self.gradients.extend(gradients);
@@ -67,12 +75,20 @@ impl SheetEnergy {
     /// The energy of the cells of a mesh, integrated by their quadrature: the finite-element method.
     pub fn of_mesh(law: Arc<dyn HyperelasticLaw>, mesh: &Mesh, thickness: f64) -> Self {
         let mut energy = Self::new(law, mesh.nodes.len());
+        let mut rule = (None, Vec::new());
         for cell in 0..mesh.cell_count() {
-            for (local, weight) in mesh.shape(cell).quadrature() {
-                let (gradients, jacobian) = mesh.gradients(cell, local);
-                energy.push_point(gradients, thickness * jacobian * weight);
+            let shape = mesh.shape(cell);
+            if rule.0 != Some(shape) {
+                rule = (Some(shape), quadrature(shape));
+            }
+            for (derivatives, weight) in &rule.1 {
+                let (gradients, jacobian) = mesh.transformed(cell, derivatives);
+                energy.push_point(gradients, thickness * jacobian * *weight);
             }
             energy.push_cell(mesh.cell(cell));
+            if cell == 0 {
+                energy.reserve(mesh.cell_count());
+            }
         }
         Self {
             connectivity: energy.connectivity.with_places(mesh.nodes.clone()),
@@ -244,6 +260,14 @@ impl Potential for SheetEnergy {
             unstable.then(|| format!("I₁ = {:.2}", 3.0 + kinematics.invariants.i1_minus_3))
         })
     }
+}
+
+/// The derivatives of a shape's functions by natural coordinates at the points of its quadrature, with their weights.
+fn quadrature(shape: CellShape) -> Vec<(Vec<[f64; 2]>, f64)> {
+    let points = shape.quadrature().into_iter();
+    points
+        .map(|(local, weight)| (shape.derivatives(local), weight))
+        .collect()
 }
 
 /// K_(a i)(b k) += gₐ_J A_(i J)(k L) g_b_L over the lower triangle; `a` is symmetric, 4 × 4.

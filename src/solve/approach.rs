@@ -4,6 +4,7 @@ use super::assembly::Assembly;
 use super::iterative::{Iterative, LinearSolver, Solved};
 use super::nested::{Carry, Ladder};
 use super::newton::Newton;
+use super::nodal::Wanted;
 use super::potential::Potential;
 use super::tangent::Tangent;
 use super::vector::{gather, scale, spread};
@@ -62,6 +63,9 @@ const SERVES: f64 = 0.25;
 /// What a system's residual has to fall by at least and at most: less is not worth a new imbalance, more is lost to what is not linear.
 const FALLS: [f64; 2] = [0.1, 0.05];
 
+/// What one iteration leaves of an imbalance, at most: mostly a third to a half.
+const STEP: f64 = 0.6;
+
 /// What the imbalances tell.
 struct Pace {
     nearness: Nearness,
@@ -90,13 +94,16 @@ impl Pace {
         self.last.is_none_or(|last| weight <= SERVES * last)
     }
 
-    /// What a system's residual has to fall by: from 1 on it is not solved.
-    fn reduction(&self, weight: f64) -> f64 {
+    /// What is wanted of a system with an imbalance of some weight.
+    fn wanted(&self, weight: f64) -> Wanted {
         if self.is_near(weight) || !self.serves(weight) {
-            return 1.0;
+            return Wanted::Size;
+        }
+        if self.is_near(STEP * weight) {
+            return Wanted::Step;
         }
         let wanted = 0.5 * self.enough(weight) / weight;
-        wanted.clamp(FALLS[1], FALLS[0])
+        Wanted::Reduction(wanted.clamp(FALLS[1], FALLS[0]))
     }
 }
 
@@ -201,17 +208,27 @@ impl Newton {
             let mut right = gather(self.free(), residual);
             scale(&mut right, -1.0);
             let iterative = self.tangent.iterative.as_mut()?;
-            let solved = iterative.solve_as_far_as(&right, |weight| pace.reduction(weight));
+            let solved = iterative.solve_as_far_as(&right, |weight| pace.wanted(weight));
             let Solved { x, weight } = solved.ok()?;
             if pace.first.is_nan() {
                 pace.first = weight;
             }
-            if pace.is_near(weight) {
+            let wanted = pace.wanted(weight);
+            let last = match wanted {
+                Wanted::Step => STEP * weight,
+                _ => weight,
+            };
+            if pace.is_near(last) {
+                if wanted == Wanted::Step {
+                    self.step(potential, u, residual, &x)?;
+                    own.steps += 1;
+                }
+                let iterative = self.tangent.iterative.as_mut()?;
                 let stable = own.linearisations == 0 || iterative.is_definite();
                 return stable.then_some(Approach {
                     iterations: iterative.iterations - begun,
                     first: pace.first,
-                    last: weight,
+                    last,
                     ..own
                 });
             }

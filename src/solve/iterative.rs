@@ -3,7 +3,7 @@
 use super::aggregation::Hierarchy;
 use super::assembly::Assembly;
 use super::nested::{Carry, Ladder, Nested};
-use super::nodal::{NodalMatrix, Nodes, conjugate_gradients};
+use super::nodal::{NodalMatrix, Nodes, Wanted, conjugate_gradients};
 use super::potential::{Inadmissible, Potential};
 use super::sparse::FactorFault;
 
@@ -170,32 +170,36 @@ impl Iterative {
     /// # Errors
     /// [`FactorFault`] where K is not positive definite, or the iteration does not get there.
     pub fn solve(&mut self, b: &[f64], reduction: f64) -> Result<Vec<f64>, FactorFault> {
-        Ok(self.solve_as_far_as(b, |_| reduction)?.x)
+        Ok(self.solve_as_far_as(b, |_| Wanted::Reduction(reduction))?.x)
     }
 
-    /// The same with a reduction that depends on the weight of b; from 1 on nothing is done but weighing.
+    /// The same as far as is wanted at the weight of b.
     ///
     /// # Errors
     /// As [`Self::solve`].
     pub fn solve_as_far_as(
         &mut self,
         b: &[f64],
-        reduction: impl Fn(f64) -> f64,
+        wanted: impl Fn(f64) -> Wanted,
     ) -> Result<Solved, FactorFault> {
         let b = self.nodes.spread(b);
         loop {
             self.prepare()?;
             let cycle = |r: &[[f64; 2]], z: &mut [[f64; 2]]| self.cycle.apply(r, z);
-            let found = conjugate_gradients(&self.matrix, cycle, &b, &reduction, MOST);
+            let found = conjugate_gradients(&self.matrix, cycle, &b, &wanted, MOST);
             self.iterations += found.as_ref().map_or(MOST, |found| found.iterations);
-            if let Ok(found) = &found
-                && found.reduction <= reduction(found.first)
-            {
-                self.judge(found.iterations, found.reduction);
-                return Ok(Solved {
-                    x: self.nodes.gather(&found.x),
-                    weight: found.first,
-                });
+            if let Ok(found) = &found {
+                let reached = match wanted(found.first) {
+                    Wanted::Size | Wanted::Step => true,
+                    Wanted::Reduction(reduction) => found.reduction <= reduction,
+                };
+                if reached {
+                    self.judge(found.iterations, found.reduction);
+                    return Ok(Solved {
+                        x: self.nodes.gather(&found.x),
+                        weight: found.first,
+                    });
+                }
             }
             match (&self.cycle, self.made) {
                 // These cells do not suit the smoother.
@@ -211,7 +215,7 @@ impl Iterative {
 
     /// Gives a cycle up that was made for other values and takes many more iterations than one made for its own.
     fn judge(&mut self, iterations: usize, reduction: f64) {
-        if iterations == 0 {
+        if reduction == 1.0 {
             return;
         }
         let digits = -reduction.max(1e-16).log10();
@@ -248,13 +252,20 @@ impl Iterative {
     pub fn is_definite(&mut self) -> bool {
         let iterations = match self.cycle {
             Cycle::Aggregation(_) => 12,
-            Cycle::Nested(_) => 6,
+            Cycle::Nested(_) => 5,
         };
         if self.prepare().is_err() {
             return false;
         }
         let start = self.nodes.uneven();
         let cycle = |r: &[[f64; 2]], z: &mut [[f64; 2]]| self.cycle.apply(r, z);
-        conjugate_gradients(&self.matrix, cycle, &start, |_| 0.0, iterations).is_ok()
+        conjugate_gradients(
+            &self.matrix,
+            cycle,
+            &start,
+            |_| Wanted::Reduction(0.0),
+            iterations,
+        )
+        .is_ok()
     }
 }

@@ -16,20 +16,20 @@
 use std::collections::BTreeMap;
 
 use super::aggregation::blocks::Blocks;
-use super::aggregation::level::{Level, Operator, Transfer};
+use super::aggregation::level::{Level, Operator, Prolongation};
 use super::aggregation::single_precision;
 use super::assembly::Assembly;
 use super::nodal::Nodes;
 use super::potential::Potential;
 use super::sparse::{Cholesky, FactorFault};
 
-/// Writes the unknowns of the coarser system, with their shares, that an unknown of the finer one is made of.
+/// Writes the unknowns of the coarser system, of the same component, with their shares, that an unknown of the finer one is made of.
 pub type Carry<'a> = &'a dyn Fn(usize, &mut Vec<(usize, f64)>);
 
 /// The systems from coarse to fine.
 pub struct Nested {
     /// Above the coarsest one.
-    levels: Vec<Level<2, 2>>,
+    levels: Vec<Level<2, 2, Shares>>,
     coarsest: Cholesky,
     /// The nodes of the coarsest system, and right-hand side and solution there.
     coarsest_nodes: Nodes,
@@ -84,48 +84,88 @@ impl Ladder {
 
     /// Puts a finer system on top, whose matrix is to be taken.
     pub fn above(self, unknowns: &[usize], nodes: &Nodes, carry: Carry) -> Nested {
-        let prolongation = self.prolongation(unknowns, nodes, carry);
-        let transfer = Transfer::new(&prolongation, self.nodes.count());
+        let shares = self.shares(unknowns, nodes, carry);
         let mut cycle = self.cycle;
         let operator = Operator::none(nodes.count());
-        cycle.levels.push(Level::new(operator, transfer));
+        cycle.levels.push(Level::new(operator, shares));
         cycle
     }
 
     /// P, from the free unknowns of the finest system to those of a finer one.
-    fn prolongation(&self, unknowns: &[usize], nodes: &Nodes, carry: Carry) -> Blocks<2, 2> {
-        let mut prolongation = Blocks {
+    fn shares(&self, unknowns: &[usize], nodes: &Nodes, carry: Carry) -> Shares {
+        let mut shares = Shares {
             starts: vec![0; nodes.count() + 1],
-            ..Blocks::default()
+            ..Shares::default()
         };
-        let (mut row, mut terms) = (Vec::<(u32, [[f64; 2]; 2])>::new(), Vec::new());
+        let mut terms = Vec::new();
         for (own, unknown) in unknowns.iter().enumerate() {
             let (node, axis) = nodes.of_unknown(own);
+            let begin = shares.starts[node] as usize;
             terms.clear();
             carry(*unknown, &mut terms);
             for (coarse, share) in &terms {
                 let Some(index) = self.free_index[*coarse] else {
                     continue;
                 };
-                let (column, k) = self.nodes.of_unknown(index);
-                let known = row.iter().position(|(known, _)| *known as usize == column);
-                let place = known.unwrap_or_else(|| {
-                    row.push((column as u32, [[0.0; 2]; 2]));
-                    row.len() - 1
-                });
-                row[place].1[axis][k] += share;
-            }
-            let ends = own + 1 == unknowns.len() || nodes.of_unknown(own + 1).0 != node;
-            if ends {
-                row.sort_unstable_by_key(|(column, _)| *column);
-                for (column, block) in row.drain(..) {
-                    prolongation.columns.push(column);
-                    prolongation.values.push(block);
+                if share.abs() < LEAST {
+                    continue;
                 }
-                prolongation.starts[node + 1] = prolongation.columns.len();
+                let (column, k) = self.nodes.of_unknown(index);
+                debug_assert_eq!(axis, k, "components are carried to themselves");
+                let known = shares.columns[begin..].iter();
+                let known = known.clone().position(|known| *known as usize == column);
+                let place = known.map_or(shares.columns.len(), |known| begin + known);
+                if known.is_none() {
+                    shares.columns.push(column as u32);
+                    shares.values.push([0.0; 2]);
+                }
+                shares.values[place][axis] += *share as f32;
+            }
+            shares.starts[node + 1] = shares.columns.len() as u32;
+        }
+        shares
+    }
+}
+
+/// Shares below this are rounding.
+const LEAST: f64 = 1e-7;
+
+/// The shares that the components of coarser nodes have in those of finer ones.
+#[derive(Default)]
+struct Shares {
+    /// Where those of each finer node begin.
+    starts: Vec<u32>,
+    columns: Vec<u32>,
+    values: Vec<[f32; 2]>,
+}
+
+impl Shares {
+    fn of(&self, node: usize) -> impl Iterator<Item = (usize, &[f32; 2])> {
+        let places = self.starts[node] as usize..self.starts[node + 1] as usize;
+        let columns = self.columns[places.clone()].iter();
+        let columns = columns.map(|column| *column as usize);
+        columns.zip(&self.values[places])
+    }
+}
+
+impl Prolongation<2, 2> for Shares {
+    fn prolong(&self, y: &[[f32; 2]], x: &mut [[f32; 2]]) {
+        for (node, x) in x.iter_mut().enumerate() {
+            for (column, share) in self.of(node) {
+                x[0] += share[0] * y[column][0];
+                x[1] += share[1] * y[column][1];
             }
         }
-        prolongation
+    }
+
+    fn restrict(&self, x: &[[f32; 2]], y: &mut [[f32; 2]]) {
+        y.fill([0.0; 2]);
+        for (node, x) in x.iter().enumerate() {
+            for (column, share) in self.of(node) {
+                y[column][0] += share[0] * x[0];
+                y[column][1] += share[1] * x[1];
+            }
+        }
     }
 }
 
@@ -162,7 +202,7 @@ impl Nested {
         }
     }
 
-    fn finest(&mut self) -> &mut Level<2, 2> {
+    fn finest(&mut self) -> &mut Level<2, 2, Shares> {
         self.levels
             .last_mut()
             .expect("a system on the coarsest one")

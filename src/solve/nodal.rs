@@ -117,12 +117,23 @@ pub struct Found {
     pub iterations: usize,
     /// ‖b‖_M, with the preconditioner's norm.
     pub first: f64,
-    /// ‖b − A x‖_M over ‖b‖_M.
+    /// ‖b − A x‖_M over ‖b‖_M before the last iteration that was allowed, or where the iteration ended before.
     pub reduction: f64,
 }
 
-/// x of A x = b by conjugate gradients with a preconditioner z = M r, for so many iterations, or until the residual has fallen by what is
-/// wanted at its first size.
+/// What is wanted of a system with a right-hand side of some size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// Its size alone.
+    Size,
+    /// One iteration.
+    Step,
+    /// That the residual falls by a factor.
+    Reduction(f64),
+}
+
+/// x of A x = b by conjugate gradients with a preconditioner z = M r, for so many iterations, or as far as is wanted at the first size of
+/// the residual.
 ///
 /// # Errors
 /// [`FactorFault::NotPositiveDefinite`] where a direction has no positive stiffness.
@@ -130,7 +141,7 @@ pub fn conjugate_gradients(
     matrix: &NodalMatrix,
     mut precondition: impl FnMut(&[[f64; 2]], &mut [[f64; 2]]),
     b: &[[f64; 2]],
-    reduction: impl FnOnce(f64) -> f64,
+    wanted: impl FnOnce(f64) -> Wanted,
     most: usize,
 ) -> Result<Found, FactorFault> {
     let size = b.len();
@@ -145,11 +156,15 @@ pub fn conjugate_gradients(
         first: first.max(0.0).sqrt(),
         reduction: 1.0,
     };
-    let reduction = reduction(found.first);
     if first == 0.0 {
         found.reduction = 0.0;
         return Ok(found);
     }
+    let (reduction, most) = match wanted(found.first) {
+        Wanted::Size => return Ok(found),
+        Wanted::Step => (0.0, 1),
+        Wanted::Reduction(reduction) => (reduction, most),
+    };
     let mut direction = z.clone();
     let mut image = vec![[0.0; 2]; size];
     while found.iterations < most && found.reduction > reduction {
@@ -165,6 +180,10 @@ pub fn conjugate_gradients(
                 r[i][axis] -= length * image[i][axis];
             }
         }
+        found.iterations += 1;
+        if found.iterations == most {
+            break;
+        }
         // z of before: rounding makes the preconditioner slightly unsymmetric (Polak and Ribière).
         let last = product(&r, &z);
         precondition(&r, &mut z);
@@ -176,7 +195,6 @@ pub fn conjugate_gradients(
             }
         }
         square = next;
-        found.iterations += 1;
         found.reduction = (next.max(0.0) / first).sqrt();
     }
     Ok(found)

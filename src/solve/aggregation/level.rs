@@ -10,9 +10,9 @@ use super::blocks::{Blocks, add_product};
 use super::prolongation::{Motions, smoothed, tentative};
 
 /// A level above the coarsest one, with N unknowns a node, and M on the next coarser one.
-pub struct Level<const N: usize, const M: usize> {
+pub struct Level<const N: usize, const M: usize, P = Blocks<N, M, f32>> {
     operator: Operator<N>,
-    transfer: Transfer<N, M>,
+    prolongation: P,
     /// The right-hand side, to be written.
     pub b: Vec<[f32; N]>,
     /// The approximate solution.
@@ -26,10 +26,37 @@ pub struct Operator<const N: usize> {
     inverses: Vec<[[f32; N]; N]>,
 }
 
-/// To a level from the next coarser one, and back.
-pub struct Transfer<const N: usize, const M: usize> {
-    prolongation: Blocks<N, M, f32>,
-    restriction: Blocks<M, N, f32>,
+/// What carries fields to a level from the next coarser one, P.
+pub trait Prolongation<const N: usize, const M: usize> {
+    /// x ← x + P y.
+    fn prolong(&self, y: &[[f32; M]], x: &mut [[f32; N]]);
+
+    /// y = Pᵀ x.
+    fn restrict(&self, x: &[[f32; N]], y: &mut [[f32; M]]);
+}
+
+impl<const N: usize, const M: usize> Prolongation<N, M> for Blocks<N, M, f32> {
+    fn prolong(&self, y: &[[f32; M]], x: &mut [[f32; N]]) {
+        for (row, x) in x.iter_mut().enumerate() {
+            for (column, block) in self.row(row) {
+                add_product(x, block, &y[column]);
+            }
+        }
+    }
+
+    fn restrict(&self, x: &[[f32; N]], y: &mut [[f32; M]]) {
+        y.fill([0.0; M]);
+        for (row, x) in x.iter().enumerate() {
+            for (column, block) in self.row(row) {
+                let sum = &mut y[column];
+                for i in 0..N {
+                    for k in 0..M {
+                        sum[k] += block[i][k] * x[i];
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// The operator of the next coarser level, and the motions without strain there.
@@ -102,16 +129,6 @@ impl<const N: usize> Operator<N> {
     }
 }
 
-impl<const N: usize, const M: usize> Transfer<N, M> {
-    /// The transfer of a prolongation P from so many coarse nodes; the restriction is Pᵀ.
-    pub fn new(prolongation: &Blocks<N, M>, coarse: usize) -> Self {
-        Self {
-            prolongation: prolongation.rounded(),
-            restriction: prolongation.transposed(coarse).rounded(),
-        }
-    }
-}
-
 impl<const N: usize> Level<N, 3> {
     /// A level with the operator `matrix` and what comes below it; `None` where a block on the diagonal has no inverse.
     pub fn aggregated(matrix: &Blocks<N, N>, motions: &[Motions<N>]) -> Option<(Self, Coarser)> {
@@ -123,25 +140,21 @@ impl<const N: usize> Level<N, 3> {
         let image = matrix.product(&prolongation, aggregates.count);
         let mut coarse = restriction.product(&image, aggregates.count);
         fill_gaps(&mut coarse);
-        let transfer = Transfer {
-            prolongation: prolongation.rounded(),
-            restriction: restriction.rounded(),
-        };
         let coarser = Coarser {
             matrix: coarse,
             motions: coarse_motions,
         };
-        Some((Self::new(operator, transfer), coarser))
+        Some((Self::new(operator, prolongation.rounded()), coarser))
     }
 }
 
-impl<const N: usize, const M: usize> Level<N, M> {
+impl<const N: usize, const M: usize, P: Prolongation<N, M>> Level<N, M, P> {
     /// A level of an operator.
-    pub fn new(operator: Operator<N>, transfer: Transfer<N, M>) -> Self {
+    pub fn new(operator: Operator<N>, prolongation: P) -> Self {
         let zeros = vec![[0.0; N]; operator.inverses.len()];
         Self {
             operator,
-            transfer,
+            prolongation,
             b: zeros.clone(),
             x: zeros.clone(),
             residual: zeros,
@@ -166,21 +179,12 @@ impl<const N: usize, const M: usize> Level<N, M> {
             let (x, before) = (&mut self.x, &mut self.residual);
             self.operator.relax(row, self.b[row], x, before);
         }
-        for (row, sum) in coarser.iter_mut().enumerate() {
-            *sum = [0.0; M];
-            for (column, block) in self.transfer.restriction.row(row) {
-                add_product(sum, block, &self.residual[column]);
-            }
-        }
+        self.prolongation.restrict(&self.residual, coarser);
     }
 
     /// Adds the correction of the next coarser level and smooths backward.
     pub fn ascend(&mut self, coarser: &[[f32; M]]) {
-        for (row, x) in self.x.iter_mut().enumerate() {
-            for (column, block) in self.transfer.prolongation.row(row) {
-                add_product(x, block, &coarser[column]);
-            }
-        }
+        self.prolongation.prolong(coarser, &mut self.x);
         self.residual.copy_from_slice(&self.b);
         for row in (0..self.nodes()).rev() {
             let (x, before) = (&mut self.x, &mut self.residual);
