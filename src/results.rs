@@ -26,6 +26,7 @@ mod report;
 mod series;
 mod sheet_arrays;
 mod sheet_figures;
+pub mod small_strain;
 mod softening;
 mod state;
 mod stress_unit;

@@ -228,6 +228,10 @@ impl HyperelasticLaw for Watched {
         self.law.plane_state()
     }
 
+    fn is_for_small_strains(&self) -> bool {
+        self.law.is_for_small_strains()
+    }
+
     fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
         self.law.in_plane_strain()
     }

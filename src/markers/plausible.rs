@@ -21,7 +21,7 @@ const MARGIN: f64 = 0.5;
 const RATIOS: [f64; 6] = [10.0, 25.4, 100.0, 254.0, 1e3, 1e6];
 
 /// A sheet thicker than this share of its smaller extent is told.
-const THICK: f64 = 0.5;
+pub const THICK: f64 = 0.5;
 
 /// Whether a sheet is thin: where it is not, one of the lengths is in another unit.
 pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {

@@ -110,6 +110,11 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         PlaneState::Stress
     }
 
+    /// Whether it holds for strains and rotations alone that are small against 1.
+    fn is_for_small_strains(&self) -> bool {
+        false
+    }
+
     /// The same law in plane strain; `None` for a law without a change of volume, which has no stress there that follows from
     /// the strain.
     fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {

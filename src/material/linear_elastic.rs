@@ -139,6 +139,10 @@ impl HyperelasticLaw for LinearElastic {
         self.plane
     }
 
+    fn is_for_small_strains(&self) -> bool {
+        true
+    }
+
     fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
         Some(Arc::new(Self {
             plane: PlaneState::Strain,

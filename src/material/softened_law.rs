@@ -72,6 +72,10 @@ impl HyperelasticLaw for SoftenedLaw {
         self.virgin.plane_state()
     }
 
+    fn is_for_small_strains(&self) -> bool {
+        self.virgin.is_for_small_strains()
+    }
+
     fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
         Some(Arc::new(Self {
             virgin: self.virgin.in_plane_strain()?,

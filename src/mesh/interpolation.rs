@@ -100,8 +100,10 @@ impl Mesh {
     /// Where the nodes of another mesh of the specimen are in this one, to interpolate many fields.
     pub fn interpolation_on(&self, other: &Self) -> Interpolation {
         let (mut starts, mut terms) = (vec![0], Vec::new());
+        let mut cell = 0;
         for node in &other.nodes {
-            let (cell, local) = self.locate(*node);
+            let local;
+            (cell, local) = self.locate_near(cell, *node);
             let values = self.shape(cell).values(local);
             terms.extend(self.cell(cell).iter().copied().zip(values));
             starts.push(terms.len());

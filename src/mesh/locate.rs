@@ -17,6 +17,22 @@ impl Mesh {
         }
     }
 
+    /// The same of a point that is likely to be in some cell.
+    pub(super) fn locate_near(&self, likely: usize, point: [f64; 2]) -> (usize, [f64; 2]) {
+        let there = self.grid.is_none().then(|| self.within(likely, point));
+        match there.flatten() {
+            Some(local) => (likely, local),
+            None => self.locate(point),
+        }
+    }
+
+    /// The natural coordinates of a point in a cell that holds it; `None` where the cell does not.
+    fn within(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
+        let in_box = self.is_in_box(cell, point);
+        let local = in_box.then(|| self.natural_coordinates(cell, point))??;
+        (self.shape(cell).outside(local) < 1e-12).then_some(local)
+    }
+
     /// How far a point lies outside of the mesh, in sizes of its nearest cell; zero inside.
     pub fn outside(&self, point: [f64; 2]) -> f64 {
         let (cell, local) = self.locate(point);
@@ -36,12 +52,7 @@ impl Mesh {
 
     fn search(&self, point: [f64; 2]) -> (usize, [f64; 2]) {
         let mut near = self.buckets().around(point).iter();
-        let inside = near.find_map(|cell| {
-            let in_box = self.is_in_box(*cell, point);
-            let local = in_box.then(|| self.natural_coordinates(*cell, point))??;
-            let holds = self.shape(*cell).outside(local) < 1e-12;
-            holds.then_some((*cell, local))
-        });
+        let inside = near.find_map(|cell| Some((*cell, self.within(*cell, point)?)));
         inside.unwrap_or_else(|| self.nearest(point))
     }
 

@@ -79,7 +79,8 @@ pub fn warning<'a>(
     })
 }
 
-fn area(mesh: &Mesh, cell: usize) -> f64 {
+/// The area of a cell at rest in mm².
+pub(super) fn area(mesh: &Mesh, cell: usize) -> f64 {
     let rule = mesh.shape(cell).quadrature().into_iter();
     rule.map(|(local, weight)| weight * mesh.gradients(cell, local).1)
         .sum()

@@ -7,6 +7,7 @@ use super::other_files;
 use crate::budget::{Budget, Need};
 use crate::document::{self, Bound, Section, file};
 use crate::error::Error;
+use crate::markers::THICK;
 use crate::mass_spring::LARGEST_ASPECT;
 use crate::material::curve::Mode;
 use crate::material::parameters::OffsetTreatment;
@@ -141,6 +142,7 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, 
     if let Some(cells) = cells {
         check_aspect(section, size, cells);
     }
+    check_thickness(section, thickness, size, card);
     let law: Arc<dyn HyperelasticLaw> = match card {
         Some(card) => Arc::clone(&card.law),
         None => Arc::new(NeoHooke { c10: 1.0 }),
@@ -152,6 +154,20 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, 
         stretches: Vec::new(),
     };
     (problem, cells.unwrap_or([2, 2]))
+}
+
+/// Plane stress is that of thin sheets.
+pub fn check_thickness(section: &Section<'_>, thickness: f64, size: [f64; 2], card: Option<&Card>) {
+    let thin = card.is_none_or(|card| card.law.plane_state() == PlaneState::Stress);
+    if thin && thickness > THICK * size[0].min(size[1]) {
+        let message = format!(
+            "{thickness} mm of a sheet of {:.4} × {:.4} mm: no thin sheet, as plane stress takes it to be",
+            size[0], size[1]
+        );
+        let hint =
+            "look at the units of the lengths; a body that is held across is in plane strain";
+        section.warning("thickness", &message, hint);
+    }
 }
 
 /// Whether so many states on the mesh of `cells`, with so many unknowns a cell, are not too much; that they are is recorded.

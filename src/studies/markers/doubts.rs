@@ -8,6 +8,7 @@ use super::report::{outliers, used};
 use crate::corrector::estimation::{Answer, FieldEstimate};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
+use crate::results::small_strain;
 use crate::statistics::{Estimate, small_probability};
 
 impl MarkerStudy {
@@ -16,9 +17,16 @@ impl MarkerStudy {
         let mut all = self.doubts.clone();
         let frames = self.series.frames.iter().zip(estimates);
         for (frame, estimate) in frames {
-            all.extend(of_frame(frame, estimate));
+            all.extend(of_frame(frame, estimate, self.strains(estimate)));
         }
         all
+    }
+
+    /// Strains that are too large for the law.
+    fn strains(&self, estimate: &FieldEstimate) -> Option<Doubt> {
+        let law = self.law(estimate);
+        let reason = small_strain::reason(&*law, &self.mesh, &estimate.displacement)?;
+        Some((reason, small_strain::LARGE_STRAINS))
     }
 
     /// An estimate whose intervals of forces hold that the edge may lie a marker's spacing farther out: one more row of
@@ -52,12 +60,13 @@ fn widen(estimate: &mut Estimate, by: f64) {
     }
 }
 
-fn of_frame(frame: &Frame, estimate: &FieldEstimate) -> Vec<Diagnostic> {
+fn of_frame(frame: &Frame, estimate: &FieldEstimate, strains: Option<Doubt>) -> Vec<Diagnostic> {
     let doubts = [
         noise(estimate),
         many_outliers(estimate),
         edges(estimate),
         not_explained(estimate),
+        strains,
     ];
     let doubts = doubts.into_iter().flatten().chain(forces(estimate));
     let named = |(message, hint): (String, &str)| {

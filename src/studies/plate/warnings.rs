@@ -7,12 +7,12 @@ use crate::problem::ClampedPlate;
 use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
-use crate::results::{locking, wrinkling};
+use crate::results::{locking, small_strain, wrinkling};
 
 /// Reactions further from balance than this, relative to the largest, deserve a word.
 const BALANCED: f64 = 1e-9;
 
-/// The warnings about a run: a lattice of another ν, compression, doubtful stability, reactions out of balance.
+/// The warnings about a run: a lattice of another ν, compression, a law of small strains, doubtful stability, reactions out of balance.
 pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
     let mut all = Vec::new();
     if !study.lattice.area_term {
@@ -31,14 +31,14 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
         .filter_map(|((name, locks), remedy)| locks.then_some((name, remedy)))
         .collect();
     all.extend(locking::warning(&*study.problem.law, &locking));
-    all.extend(compression(study, results));
+    all.extend(compression_and_strains(study, results));
     all.extend(instability(results));
     all.extend(imbalance(results));
     all
 }
 
-/// Compression in the finite elements, or in the corrected field where there are none.
-fn compression(study: &Study, results: &Results) -> Option<String> {
+/// Compression, and strains that are too large for the law, in the finite elements, or in the corrected field where there are none.
+fn compression_and_strains(study: &Study, results: &Results) -> Vec<String> {
     let finest = results.finest();
     let model = match finest.solution.states.is_empty() {
         true => 1,
@@ -51,7 +51,11 @@ fn compression(study: &Study, results: &Results) -> Option<String> {
         let load = ClampedPlate::describe_step(solution.factor);
         Some((load, &*solution.displacement))
     });
-    wrinkling::warning(&*study.problem.law, mesh, states)
+    let states: Vec<_> = states.collect();
+    let law = &*study.problem.law;
+    let compression = wrinkling::warning(law, mesh, states.iter().cloned());
+    let strains = small_strain::warning(law, mesh, states.into_iter());
+    compression.into_iter().chain(strains).collect()
 }
 
 /// States that were reached through tangents that are not positive definite.

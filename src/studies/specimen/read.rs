@@ -11,7 +11,7 @@ use crate::mesh::{CellShape, Mesh, import};
 use crate::problem::{BoundaryProblem, Load};
 use crate::solve::LinearSolver;
 use crate::studies::pictures::Pictures;
-use crate::studies::sections::{Tolerances, read_card};
+use crate::studies::sections::{Tolerances, check_thickness, read_card};
 use crate::units::Dimension;
 
 mod outline;
@@ -101,6 +101,9 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         outline,
         pictures,
     };
+    let [low, high] = mesh.bounding_box();
+    let size = [0, 1].map(|axis| high[axis] - low[axis]);
+    check_thickness(section, thickness, size, Some(&specimen.card));
     given.check(root, &specimen.problem, &mesh);
     warn_of_rest(root, &specimen.problem);
     check_refinement(root, &specimen, &mesh);

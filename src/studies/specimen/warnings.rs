@@ -10,7 +10,7 @@ use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::results::{locking, wrinkling};
+use crate::results::{locking, small_strain, wrinkling};
 
 /// All warnings, each in a sentence.
 pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
@@ -36,6 +36,7 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         .map(|(model, remedy)| (model.name, remedy))
         .collect();
     all.extend(locking::warning(&*specimen.problem.law, &locking));
+    all.extend(small_strain::warning(&*specimen.problem.law, mesh, loads()));
     all.extend(beyond(&specimen.card, &strained));
     all.extend(unstable(&specimen.card, &strained));
     all

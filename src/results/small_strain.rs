@@ -1,0 +1,103 @@
+//! Fields that a law of small strains cannot have.
+
+use nalgebra::Matrix2;
+
+use super::wrinkling::area;
+use crate::material::HyperelasticLaw;
+use crate::mesh::Mesh;
+
+/// Strains and rotations in rad up to which linear elasticity is taken at its word: its stresses are wrong by some times the strain, and
+/// by the square of the rotation.
+const SMALL: [f64; 2] = [0.05, 0.1];
+
+/// The share of the sheet that may have more: beside a clamped corner strains have no bound.
+const BESIDE_CORNERS: f64 = 0.01;
+
+/// The strain |λ − 1| and the rotation in rad that a small share of the sheet exceeds, by the centres of the cells.
+fn extremes(mesh: &Mesh, displacement: &[f64]) -> [f64; 2] {
+    let (mut strains, mut rotations) = (Vec::new(), Vec::new());
+    for cell in 0..mesh.cell_count() {
+        let [xx, xy, yx, yy] = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
+        let stretches = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy).singular_values();
+        let area = area(mesh, cell);
+        strains.push((area, (stretches.max() - 1.0).max(1.0 - stretches.min())));
+        rotations.push((area, (yx - xy).atan2(2.0 + xx + yy).abs()));
+    }
+    [strains, rotations].map(exceeded_by_some)
+}
+
+/// The largest value that more than a small share of the area reaches.
+fn exceeded_by_some(mut values: Vec<(f64, f64)>) -> f64 {
+    values.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut left: f64 = BESIDE_CORNERS * values.iter().map(|(area, _)| area).sum::<f64>();
+    let reached = values.iter().find(|(area, _)| {
+        left -= area;
+        left < 0.0
+    });
+    reached.map_or(0.0, |(_, value)| *value)
+}
+
+/// What is to be said of a field of a law that holds for small strains and rotations alone; nothing of others.
+pub fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Option<String> {
+    if !law.is_for_small_strains() {
+        return None;
+    }
+    let [strain, rotation] = extremes(mesh, displacement);
+    (strain > SMALL[0] || rotation > SMALL[1]).then(|| {
+        format!(
+            "linear elasticity is for strains and rotations that are small against 1, and here they reach {:.0} % and {:.0}°",
+            100.0 * strain,
+            rotation.to_degrees()
+        )
+    })
+}
+
+/// What helps.
+pub const LARGE_STRAINS: &str = "Take a law for large strains, such as `neo-hooke` with `[volume]`";
+
+/// The warning about the states of a model, each at a load that is named: about the first that is too large.
+pub fn warning<'a>(
+    law: &dyn HyperelasticLaw,
+    mesh: &Mesh,
+    mut states: impl Iterator<Item = (String, &'a [f64])>,
+) -> Option<String> {
+    let (load, reason) = states.find_map(|(load, u)| Some((load, reason(law, mesh, u)?)))?;
+    Some(format!("Warning: {reason} at {load}. {LARGE_STRAINS}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{LinearElastic, NeoHooke, PlaneState};
+    use crate::mesh::CellShape;
+
+    #[test]
+    fn large_strains_and_large_rotations_are_told_of_linear_elasticity_alone() {
+        let mesh = Mesh::plate([4.0, 1.0], [4, 2], CellShape::Quad4);
+        let field = |f: &dyn Fn(f64, f64) -> [f64; 2]| -> Vec<f64> {
+            mesh.nodes.iter().flat_map(|[x, y]| f(*x, *y)).collect()
+        };
+        let linear = LinearElastic {
+            shear_modulus: 0.05,
+            lame_modulus: 0.1,
+            plane: PlaneState::Stress,
+        };
+        let turned = |angle: f64| {
+            let (sine, cosine) = angle.sin_cos();
+            field(&move |x, y| [(cosine - 1.0) * x - sine * y, sine * x + (cosine - 1.0) * y])
+        };
+        let pulled = |strain: f64| field(&move |x, _| [strain * x, 0.0]);
+        assert_eq!(reason(&linear, &mesh, &pulled(0.04)), None);
+        assert_eq!(reason(&linear, &mesh, &turned(-0.09)), None);
+        let told = reason(&linear, &mesh, &pulled(0.4)).unwrap();
+        assert!(told.ends_with("40 % and 0°"), "{told}");
+        let told = reason(&linear, &mesh, &turned(-0.35)).unwrap();
+        assert!(told.ends_with("0 % and 20°"), "{told}");
+        // One cell of two hundred is not the sheet.
+        let fine = Mesh::plate([4.0, 1.0], [20, 10], CellShape::Quad4);
+        let mut spot = vec![0.0; 2 * fine.nodes.len()];
+        spot[0] = -0.2;
+        assert_eq!(reason(&linear, &fine, &spot), None);
+        assert_eq!(reason(&NeoHooke { c10: 0.05 }, &mesh, &pulled(0.4)), None);
+    }
+}
