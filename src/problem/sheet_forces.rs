@@ -118,11 +118,15 @@ impl<const N: usize> Points<N> {
         let unknowns = energy.element_unknowns(cell).iter();
         self.cell.clear();
         self.cell.extend(unknowns.map(|unknown| u[*unknown]));
-        for point in energy.cell_points(cell) {
+        let points = energy.cell_points(cell);
+        let begin = self.gradients[0].len();
+        let [xx, xy, yx, yy] = self.gradients.each_mut().map(|component| {
+            component.resize(begin + points.len(), 0.0);
+            &mut component[begin..]
+        });
+        for (index, point) in points.enumerate() {
             let h = point.gradient(&self.cell);
-            for (component, value) in self.gradients.iter_mut().zip(h.as_slice()) {
-                component.push(*value);
-            }
+            (xx[index], xy[index], yx[index], yy[index]) = (h[0], h[1], h[2], h[3]);
         }
     }
 
