@@ -5,6 +5,7 @@
 mod aggregation;
 mod approach;
 pub mod assembly;
+mod composed;
 mod connectivity;
 pub mod dissection;
 mod ending;
@@ -27,6 +28,7 @@ pub mod vector;
 
 pub use approach::{Approach, FirstTangent, Nearness};
 pub use assembly::Assembly;
+pub use composed::{After, DeadForces, Sum};
 pub use connectivity::Connectivity;
 pub use equilibrium::equilibrium;
 pub use iterative::{LinearSolver, WORTH_MULTIGRID};
@@ -36,10 +38,7 @@ pub use nested::{Carry, Ladder};
 pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
-pub use potential::{
-    After, DeadForces, Inadmissible, Local, Potential, SkewCoupling, Sum, Take,
-    evaluate_by_elements,
-};
+pub use potential::{Inadmissible, Local, Potential, SkewCoupling, Take, evaluate_by_elements};
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, FactorFault, SparseLu};
 pub use tangent::Tangent;

@@ -188,11 +188,11 @@ mod tests {
     use crate::material::{HyperelasticLaw, NeoHooke, Ogden};
     use crate::mesh::{CellShape, Shape};
     use crate::problem::{BoundaryProblem, Drive, Load, Support};
-    use crate::solve::{Assembly, Loading};
+    use crate::solve::{Loading, evaluate_by_elements};
 
-    /// Sheets with tied nodes, a pressure and a traction, whose forces element by element come with an energy.
+    /// Energy, forces and stiffnesses of sheets with tied nodes, a pressure and a traction.
     #[test]
-    fn forces_alone_are_those_that_come_with_the_energy() {
+    fn many_points_at_once_are_element_by_element() {
         let ring = Shape::RingSector {
             radii: [10.0, 20.0],
             angle: 1.2,
@@ -226,17 +226,36 @@ mod tests {
                 model.impose(1.0, &mut u);
                 let potential = model.potential(1.0, &[]);
                 let mut with_energy = vec![0.0; u.len()];
-                Assembly::residual(&*potential, &u, &mut with_energy).unwrap();
+                let mut lower = Vec::new();
+                let mut take = |element: usize, own: &[f64]| lower.push((element, own.to_vec()));
+                let take = Some(&mut take as &mut dyn FnMut(usize, &[f64]));
+                let energy = evaluate_by_elements(&*potential, &u, &mut with_energy, take).unwrap();
                 let mut alone = vec![0.0; u.len()];
                 potential.add_forces(&u, &mut alone).unwrap();
-                for (unknown, (own, other)) in alone.iter().zip(&with_energy).enumerate() {
-                    assert!(
-                        (own - other).abs() < 1e-13,
-                        "{kind:?}, {unknown}: {own} {other}"
-                    );
+                let (mut together, mut place) = (vec![0.0; u.len()], 0);
+                let mut take = |element: usize, own: &[f64]| {
+                    let (other_element, other) = &lower[place];
+                    assert_eq!(element, *other_element);
+                    let size = other.len().isqrt();
+                    for row in 0..size {
+                        for entry in row * size..=row * size + row {
+                            let far = (own[entry] - other[entry]).abs();
+                            assert!(far < 1e-13, "{kind:?}, {element}, {entry}: {far}");
+                        }
+                    }
+                    place += 1;
+                };
+                let found = potential.evaluate(&u, &mut together, Some(&mut take));
+                assert!((found.unwrap() / energy - 1.0).abs() < 1e-13);
+                assert_eq!(place, lower.len());
+                for (unknown, other) in with_energy.iter().enumerate() {
+                    for own in [alone[unknown], together[unknown]] {
+                        let far = (own - other).abs();
+                        assert!(far < 1e-13, "{kind:?}, {unknown}: {own} {other}");
+                    }
                 }
                 let folded: Vec<f64> = u.iter().map(|u| -400.0 * u).collect();
-                let by_element = Assembly::residual(&*potential, &folded, &mut with_energy);
+                let by_element = evaluate_by_elements(&*potential, &folded, &mut with_energy, None);
                 assert!(by_element.is_err());
                 assert_eq!(
                     potential.add_forces(&folded, &mut alone),

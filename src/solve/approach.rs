@@ -63,9 +63,6 @@ const SERVES: f64 = 0.25;
 /// What a system's residual has to fall by at least and at most: less is not worth a new imbalance, more is lost to what is not linear.
 const FALLS: [f64; 2] = [0.1, 0.05];
 
-/// What one iteration leaves of an imbalance, at most: mostly a third to a half.
-const STEP: f64 = 0.6;
-
 /// What the imbalances tell.
 struct Pace {
     nearness: Nearness,
@@ -94,12 +91,12 @@ impl Pace {
         self.last.is_none_or(|last| weight <= SERVES * last)
     }
 
-    /// What is wanted of a system with an imbalance of some weight.
-    fn wanted(&self, weight: f64) -> Wanted {
+    /// What is wanted of a system with an imbalance of some weight, where an iteration leaves about so much of it.
+    fn wanted(&self, weight: f64, rate: f64) -> Wanted {
         if self.is_near(weight) || !self.serves(weight) {
             return Wanted::Size;
         }
-        if self.is_near(STEP * weight) {
+        if self.is_near(rate * weight) {
             return Wanted::Step;
         }
         let wanted = 0.5 * self.enough(weight) / weight;
@@ -208,29 +205,25 @@ impl Newton {
             let mut right = gather(self.free(), residual);
             scale(&mut right, -1.0);
             let iterative = self.tangent.iterative.as_mut()?;
-            let solved = iterative.solve_as_far_as(&right, |weight| pace.wanted(weight));
+            let rate = iterative.rate;
+            let solved = iterative.solve_as_far_as(&right, |weight| pace.wanted(weight, rate));
             let Solved { x, weight } = solved.ok()?;
             if pace.first.is_nan() {
                 pace.first = weight;
             }
-            let wanted = pace.wanted(weight);
-            let last = match wanted {
-                Wanted::Step => STEP * weight,
-                _ => weight,
-            };
-            if pace.is_near(last) {
+            own.first = pace.first;
+            let wanted = pace.wanted(weight, rate);
+            if wanted == Wanted::Step || pace.is_near(weight) {
+                own.last = weight;
                 if wanted == Wanted::Step {
-                    self.step(potential, u, residual, &x)?;
+                    let length = self.step(potential, u, residual, &x)?;
+                    own.last *= 1.0 - (1.0 - rate) * length;
                     own.steps += 1;
                 }
                 let iterative = self.tangent.iterative.as_mut()?;
+                own.iterations = iterative.iterations - begun;
                 let stable = own.linearisations == 0 || iterative.is_definite();
-                return stable.then_some(Approach {
-                    iterations: iterative.iterations - begun,
-                    first: pace.first,
-                    last,
-                    ..own
-                });
+                return stable.then_some(own);
             }
             if pace.serves(weight) {
                 self.step(potential, u, residual, &x)?;
@@ -245,14 +238,14 @@ impl Newton {
         None
     }
 
-    /// Takes a step, half of it and so on where cells turn over; `None` where even a short one does.
+    /// Takes a step, half of it and so on where cells turn over; its length, `None` where even a short one does.
     fn step(
         &self,
         potential: &dyn Potential,
         u: &mut [f64],
         residual: &mut [f64],
         step: &[f64],
-    ) -> Option<()> {
+    ) -> Option<f64> {
         const HALVES: usize = 6;
         let start = gather(self.free(), u);
         let mut length = 1.0;
@@ -262,7 +255,7 @@ impl Newton {
             }
             residual.fill(0.0);
             if potential.add_forces(u, residual).is_ok() {
-                return Some(());
+                return Some(length);
             }
             length *= 0.5;
         }

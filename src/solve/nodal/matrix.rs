@@ -92,9 +92,9 @@ impl NodalMatrix {
         }
         for own in &self.partly {
             let block = &mut self.blocks.values[own.block];
-            for i in 0..2 {
-                for k in (0..2).filter(|k| !own.free[i][*k]) {
-                    block[i][k] = if own.on_diagonal && i == k { 1.0 } else { 0.0 };
+            for (i, (row, free)) in block.iter_mut().zip(own.free).enumerate() {
+                for k in (0..2).filter(|k| !free[*k]) {
+                    row[k] = if own.on_diagonal && i == k { 1.0 } else { 0.0 };
                 }
             }
         }
@@ -198,7 +198,7 @@ impl ElementBlocks {
 /// Whether unknowns are both of one node, both of another one, and so on.
 fn has_both_unknowns_in_turn(unknowns: &[usize]) -> bool {
     let nodes = unknowns.chunks(2);
-    let both = |own: &[usize]| own.len() == 2 && own[0] % 2 == 0 && own[1] == own[0] + 1;
+    let both = |own: &[usize]| own.len() == 2 && own[0].is_multiple_of(2) && own[1] == own[0] + 1;
     let other = |place: usize| !unknowns[..place].contains(&unknowns[place]);
     nodes.clone().all(both) && (0..unknowns.len()).step_by(2).all(other)
 }

@@ -1,0 +1,192 @@
+//! Potentials made of others: of a body with a history, sums, and dead forces.
+
+use super::connectivity::Connectivity;
+use super::potential::{Inadmissible, Local, Potential, SkewCoupling, Take, evaluate_by_elements};
+
+/// An energy of a body with a history, which is empty where the body was never loaded or has no memory.
+pub struct After<'a> {
+    energy: &'a dyn Potential,
+    history: &'a [f64],
+}
+
+impl<'a> After<'a> {
+    /// Π of a body that remembers what [`Potential::remember`] has taken into its history.
+    pub fn new(energy: &'a dyn Potential, history: &'a [f64]) -> Self {
+        Self { energy, history }
+    }
+}
+
+impl Potential for After<'_> {
+    fn connectivity(&self) -> &Connectivity {
+        self.energy.connectivity()
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        match self.history.is_empty() {
+            true => self.energy.evaluate_element(element, u, local),
+            false => {
+                let history = self.history;
+                self.energy.evaluate_after(element, u, local, history)
+            }
+        }
+    }
+
+    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
+        match self.history.is_empty() {
+            true => self.energy.add_forces(u, forces),
+            false => evaluate_by_elements(self, u, forces, None).map(|_| ()),
+        }
+    }
+
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+        match self.history.is_empty() {
+            true => self.energy.evaluate(u, forces, take),
+            false => evaluate_by_elements(self, u, forces, take),
+        }
+    }
+
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        self.energy.skew_couplings()
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        self.energy.instability(element, u)
+    }
+}
+
+/// The sum of two potentials of the same unknowns: the elements of the first, then those of the second.
+pub struct Sum<'a> {
+    first: Box<dyn Potential + 'a>,
+    second: Box<dyn Potential + 'a>,
+    connectivity: Connectivity,
+}
+
+impl<'a> Sum<'a> {
+    /// Π₁ + Π₂; the places of the unknowns are those that the first potential knows.
+    pub fn new(first: impl Potential + 'a, second: impl Potential + 'a) -> Self {
+        let mut connectivity = first.connectivity().clone();
+        for element in 0..second.elements() {
+            connectivity.push(second.element_unknowns(element).iter().copied());
+        }
+        Self {
+            first: Box::new(first),
+            second: Box::new(second),
+            connectivity,
+        }
+    }
+
+    /// Π − f·u with a force in N on every unknown.
+    pub fn with_forces(energy: impl Potential + 'a, forces: &[f64]) -> Self {
+        let forces = forces.iter().copied().enumerate();
+        let forces = DeadForces::new(energy.unknowns(), forces);
+        Self::new(energy, forces)
+    }
+
+    fn of_second(&self, fault: Inadmissible) -> Inadmissible {
+        Inadmissible {
+            element: self.first.elements() + fault.element,
+        }
+    }
+
+    /// The part that an element belongs to, and its number there.
+    fn part(&self, element: usize) -> (&dyn Potential, usize) {
+        match element.checked_sub(self.first.elements()) {
+            Some(own) => (&*self.second, own),
+            None => (&*self.first, element),
+        }
+    }
+}
+
+impl Potential for Sum<'_> {
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        let (part, own) = self.part(element);
+        let energy = part.evaluate_element(own, u, local);
+        energy.map_err(|_| Inadmissible { element })
+    }
+
+    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
+        self.first.add_forces(u, forces)?;
+        let second = self.second.add_forces(u, forces);
+        second.map_err(|fault| self.of_second(fault))
+    }
+
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+        let before = self.first.elements();
+        let (first, second) = match take {
+            None => {
+                let first = self.first.evaluate(u, forces, None)?;
+                (first, self.second.evaluate(u, forces, None))
+            }
+            Some(take) => {
+                let mut own = |element, stiffness: &[f64]| take(element, stiffness);
+                let first = self.first.evaluate(u, forces, Some(&mut own))?;
+                let mut own = |element, stiffness: &[f64]| take(before + element, stiffness);
+                (first, self.second.evaluate(u, forces, Some(&mut own)))
+            }
+        };
+        Ok(first + second.map_err(|fault| self.of_second(fault))?)
+    }
+
+    fn skew_couplings(&self) -> Vec<SkewCoupling> {
+        let mut all = self.first.skew_couplings();
+        all.extend(self.second.skew_couplings());
+        all
+    }
+
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        let (part, own) = self.part(element);
+        part.instability(own, u)
+    }
+}
+
+/// The potential −f·u of dead forces: each is an element of its own.
+pub struct DeadForces {
+    connectivity: Connectivity,
+    forces: Vec<f64>,
+}
+
+impl DeadForces {
+    /// Forces in N on some of so many unknowns.
+    pub fn new(unknowns: usize, forces: impl IntoIterator<Item = (usize, f64)>) -> Self {
+        let mut own = Self {
+            connectivity: Connectivity::new(unknowns),
+            forces: Vec::new(),
+        };
+        for (unknown, force) in forces {
+            own.connectivity.push([unknown]);
+            own.forces.push(force);
+        }
+        own
+    }
+}
+
+impl Potential for DeadForces {
+    fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
+    }
+
+    fn evaluate_element(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+    ) -> Result<f64, Inadmissible> {
+        let force = self.forces[element];
+        local.residual[0] = -force;
+        Ok(-force * u[0])
+    }
+}
