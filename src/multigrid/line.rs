@@ -214,7 +214,7 @@ fn load_pair<S: Simd>(pair: Pair, place: usize) -> [S::f32s; 2] {
 /// a x + b y.
 #[inline(always)]
 fn combine<S: Simd>(simd: S, [a, b]: [S::f32s; 2], [x, y]: [S::f32s; 2]) -> S::f32s {
-    simd.add_f32s(simd.mul_f32s(a, x), simd.mul_f32s(b, y))
+    simd.mul_add_e_f32s(b, y, simd.mul_f32s(a, x))
 }
 
 /// r − A x for a block A = [a b; c d].

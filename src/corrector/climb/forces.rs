@@ -1,18 +1,20 @@
 //! The governing equation F(u) = ∂Π/∂u on a grid, evaluated for many elements at a time.
 
+use std::ops::Range;
+
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::grid::{Field, Grid, Rule};
 use crate::material::HyperelasticLaw;
 
-/// Elements of a column that are evaluated together: their numbers stay in the nearest cache.
+/// Elements that are evaluated together: their numbers stay in the nearest cache.
 const BLOCK: usize = 32;
 
 /// Numbers of double precision in the widest vector of today's machines.
 const VECTOR: usize = 8;
 
-/// Elements that one thread does in one go at least, times their nodes.
+/// Columns of elements that one thread does in one go at least.
 const COLUMNS_AT_ONCE: usize = 8;
 
 /// F(u) in N at all nodes, of elements with `NODES` nodes along each axis; at the grips these are the reactions.
@@ -43,21 +45,14 @@ pub fn forces<const NODES: usize>(
             pairs.max(1)
         };
         let work = |(chunk, (f_x, f_y)): (usize, (&mut [f64], &mut [f64]))| {
-            let mut workspace = Workspace::<NODES>::new();
-            let mut admissible = true;
-            let columns =
-                (chunk * at_once..pairs.min((chunk + 1) * at_once)).map(|pair| 2 * pair + colour);
-            for (place, column) in columns.enumerate() {
-                let here = place * pair;
-                let end = (here + (order + 1) * u.width).min(f_x.len());
-                admissible &= workspace.column(
-                    (law, thickness, grid, rule),
-                    u,
-                    column,
-                    [&mut f_x[here..end], &mut f_y[here..end]],
-                );
-            }
-            admissible
+            let first = chunk * at_once;
+            let columns = Columns {
+                first: 2 * first + colour,
+                count: at_once.min(pairs - first),
+                elements: (u.width - 1) / order,
+            };
+            let sheet = (law, thickness, grid, rule);
+            Workspace::<NODES>::new().columns(sheet, u, columns, [f_x, f_y])
         };
         if offset >= f_x.len() || pairs == 0 {
             continue;
@@ -77,6 +72,47 @@ pub fn forces<const NODES: usize>(
 
 type Plate<'a, const NODES: usize> = (&'a dyn HyperelasticLaw, f64, &'a Grid, &'a Rule<NODES>);
 
+/// Every second one of some columns of elements.
+#[derive(Clone, Copy)]
+struct Columns {
+    first: usize,
+    count: usize,
+    /// Of each column.
+    elements: usize,
+}
+
+/// Neighbours in a column that are evaluated together.
+struct Run {
+    /// The number of the column among its like.
+    place: usize,
+    first: usize,
+    count: usize,
+    /// Where they begin in the block.
+    lane: usize,
+}
+
+impl Columns {
+    /// The runs of a block of elements, column by column.
+    fn runs(self, block: Range<usize>) -> impl Iterator<Item = Run> {
+        let places = block.start / self.elements..block.end.div_ceil(self.elements);
+        places.map(move |place| {
+            let begin = place * self.elements;
+            let from = block.start.max(begin);
+            Run {
+                place,
+                first: from - begin,
+                count: block.end.min(begin + self.elements) - from,
+                lane: from - block.start,
+            }
+        })
+    }
+
+    /// The column of a run.
+    fn column(self, run: &Run) -> usize {
+        self.first + 2 * run.place
+    }
+}
+
 /// Points of an element at most, and nodes.
 const POINTS: usize = 9;
 
@@ -89,7 +125,8 @@ struct Workspace<const NODES: usize> {
     forces: [f64; 2 * POINTS * BLOCK],
     gradients: [[f64; POINTS * BLOCK]; 4],
     stresses: [[f64; POINTS * BLOCK]; 4],
-    lengths: [f64; BLOCK],
+    /// Sides of the elements along X and Y in mm.
+    sides: [[f64; BLOCK]; 2],
 }
 
 /// The numbers of a vector that begin at a place.
@@ -103,10 +140,18 @@ fn store<S: Simd>(numbers: &mut [f64], place: usize, vector: S::f64s) {
     S::as_mut_simd_f64s(&mut numbers[place..place + S::F64_LANES]).0[0] = vector;
 }
 
-/// sum + factor · vector.
+/// Σ cₖ xₖ.
 #[inline(always)]
-fn add_product<S: Simd>(simd: S, sum: S::f64s, factor: f64, vector: S::f64s) -> S::f64s {
-    simd.add_f64s(sum, simd.mul_f64s(simd.splat_f64s(factor), vector))
+fn combine<S: Simd, const NODES: usize>(
+    simd: S,
+    factors: &[f64; NODES],
+    vectors: [S::f64s; NODES],
+) -> S::f64s {
+    let mut sum = simd.mul_f64s(simd.splat_f64s(factors[0]), vectors[0]);
+    for k in 1..NODES {
+        sum = simd.mul_add_e_f64s(simd.splat_f64s(factors[k]), vectors[k], sum);
+    }
+    sum
 }
 
 impl<const NODES: usize> Workspace<NODES> {
@@ -117,32 +162,32 @@ impl<const NODES: usize> Workspace<NODES> {
             forces: [0.0; 2 * POINTS * BLOCK],
             gradients: [[0.0; POINTS * BLOCK]; 4],
             stresses: [[0.0; POINTS * BLOCK]; 4],
-            lengths: [1.0; BLOCK],
+            sides: [[1.0; BLOCK]; 2],
         }
     }
 
-    /// Adds the forces of one column of elements to those of its lines.
-    fn column(
+    /// Adds the forces of some columns of elements to those of their lines, which begin with that of the first column.
+    fn columns(
         &mut self,
         (law, thickness, grid, rule): Plate<'_, NODES>,
         u: &Field,
-        column: usize,
+        columns: Columns,
         mut forces: [&mut [f64]; 2],
     ) -> bool {
-        let order = NODES - 1;
-        let width = grid.span(0, column * order, (column + 1) * order);
-        let elements = (u.width - 1) / order;
+        let elements = columns.count * columns.elements;
         let mut admissible = true;
         for first in (0..elements).step_by(BLOCK) {
-            let count = BLOCK.min(elements - first);
-            let padded = count.next_multiple_of(VECTOR);
-            self.gather(grid, u, [column, first], [count, padded]);
+            let block = first..(first + BLOCK).min(elements);
+            let padded = block.len().next_multiple_of(VECTOR);
+            for run in columns.runs(block.clone()) {
+                self.gather(grid, u, columns.column(&run), &run);
+            }
+            self.pad(block.len(), padded);
             let points = padded * NODES * NODES;
             Arch::new().dispatch(Gradients {
                 rule,
-                width,
                 padded,
-                lengths: &self.lengths,
+                sides: &self.sides,
                 displacements: &self.displacements,
                 gradients: self.gradients.each_mut().map(|h| &mut h[..points]),
             });
@@ -153,63 +198,65 @@ impl<const NODES: usize> Workspace<NODES> {
             Arch::new().dispatch(NodalForces {
                 rule,
                 thickness,
-                width,
                 padded,
-                lengths: &self.lengths,
+                sides: &self.sides,
                 stresses: self.stresses.each_ref().map(|p| &p[..points]),
                 forces: &mut self.forces,
             });
-            self.add(u.width, first * order, count, &mut forces);
+            for run in columns.runs(block) {
+                self.add(u.width, &run, &mut forces);
+            }
         }
         admissible
     }
 
-    /// Takes the displacements of a block over; the last element is repeated up to a whole vector.
-    fn gather(
-        &mut self,
-        grid: &Grid,
-        u: &Field,
-        [column, first]: [usize; 2],
-        [count, padded]: [usize; 2],
-    ) {
+    /// Takes the displacements of some elements of a column over.
+    fn gather(&mut self, grid: &Grid, u: &Field, column: usize, run: &Run) {
         let order = NODES - 1;
-        for element in 0..count {
-            let node = (first + element) * order;
-            self.lengths[element] = grid.span(1, node, node + order);
+        let lanes = run.lane..run.lane + run.count;
+        let width = grid.span(0, column * order, (column + 1) * order);
+        self.sides[0][lanes.clone()].fill(width);
+        for (element, height) in self.sides[1][lanes.clone()].iter_mut().enumerate() {
+            let node = (run.first + element) * order;
+            *height = grid.span(1, node, node + order);
         }
-        let last = self.lengths[count - 1];
-        self.lengths[count..padded].fill(last);
         let mut kinds = self.displacements.chunks_exact_mut(BLOCK);
         for component in &u.components {
             for line in 0..NODES {
                 let line = &component[(column * order + line) * u.width..][..u.width];
                 for node in 0..NODES {
                     let kind = kinds.next().expect("a place for each node");
-                    let from = line[first * order + node..].iter().step_by(order);
-                    kind[..count]
-                        .iter_mut()
-                        .zip(from)
-                        .for_each(|(to, u)| *to = *u);
-                    let last = kind[count - 1];
-                    kind[count..padded].fill(last);
+                    let from = line[run.first * order + node..].iter().step_by(order);
+                    let to = kind[lanes.clone()].iter_mut();
+                    to.zip(from).for_each(|(to, u)| *to = *u);
                 }
             }
         }
     }
 
-    /// Adds the nodal forces of a block to the lines.
-    fn add(&self, width: usize, first: usize, count: usize, forces: &mut [&mut [f64]; 2]) {
+    /// Repeats the last of some elements up to a whole vector.
+    fn pad(&mut self, count: usize, padded: usize) {
+        let displacements = self.displacements.chunks_exact_mut(BLOCK);
+        let kinds = displacements.take(2 * NODES * NODES);
+        for kind in kinds.chain(self.sides.iter_mut().map(|side| &mut side[..])) {
+            let last = kind[count - 1];
+            kind[count..padded].fill(last);
+        }
+    }
+
+    /// Adds the nodal forces of some elements of a column to its lines. Of two elements at a node, the one below comes first,
+    /// wherever blocks begin.
+    fn add(&self, width: usize, run: &Run, forces: &mut [&mut [f64]; 2]) {
         let order = NODES - 1;
-        let mut kinds = self.forces.chunks_exact(BLOCK);
-        for forces in forces {
+        let column = 2 * run.place * order * width + run.first * order;
+        for (axis, forces) in forces.iter_mut().enumerate() {
             for line in 0..NODES {
-                let target = &mut forces[line * width + first..][..count * order + 1];
-                for node in 0..NODES {
-                    let kind = kinds.next().expect("a place for each node");
+                let target = &mut forces[column + line * width..][..run.count * order + 1];
+                for node in (0..NODES).rev() {
+                    let kind = (axis * NODES + line) * NODES + node;
+                    let own = &self.forces[kind * BLOCK + run.lane..][..run.count];
                     let target = target[node..].iter_mut().step_by(order);
-                    target
-                        .zip(&kind[..count])
-                        .for_each(|(sum, force)| *sum += force);
+                    target.zip(own).for_each(|(sum, force)| *sum += force);
                 }
             }
         }
@@ -218,9 +265,8 @@ impl<const NODES: usize> Workspace<NODES> {
 
 struct Gradients<'a, const NODES: usize> {
     rule: &'a Rule<NODES>,
-    width: f64,
     padded: usize,
-    lengths: &'a [f64],
+    sides: &'a [[f64; BLOCK]; 2],
     displacements: &'a [f64],
     gradients: [&'a mut [f64]; 4],
 }
@@ -228,7 +274,7 @@ struct Gradients<'a, const NODES: usize> {
 impl<const NODES: usize> WithSimd for Gradients<'_, NODES> {
     type Output = ();
 
-    /// ∂u/∂X = Σ φ′ φ u / hx, ∂u/∂Y = Σ φ φ′ u / hy.
+    /// ∂u/∂X = Σ φ (Σ φ′ u) / hx, ∂u/∂Y = Σ φ′ (Σ φ u) / hy: the inner sums over lines, the outer ones along them.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Rule {
@@ -236,28 +282,30 @@ impl<const NODES: usize> WithSimd for Gradients<'_, NODES> {
             derivatives,
             ..
         } = self.rule;
-        let inverse_width = 1.0 / self.width;
-        let zero = simd.splat_f64s(0.0);
         let [h11, h12, h21, h22] = self.gradients;
-        for (axis, [h_x, h_y]) in [[h11, h12], [h21, h22]].into_iter().enumerate() {
-            for first in (0..self.padded).step_by(S::F64_LANES) {
-                let lengths = load::<S>(self.lengths, first);
+        let mut components = [[h11, h12], [h21, h22]];
+        let (zero, one) = (simd.splat_f64s(0.0), simd.splat_f64s(1.0));
+        for first in (0..self.padded).step_by(S::F64_LANES) {
+            let by_width = simd.div_f64s(one, load::<S>(&self.sides[0], first));
+            let by_height = simd.div_f64s(one, load::<S>(&self.sides[1], first));
+            for (axis, [h_x, h_y]) in components.iter_mut().enumerate() {
                 for across in 0..NODES {
-                    for along in 0..NODES {
-                        let (mut sum_x, mut sum_y) = (zero, zero);
-                        for line in 0..NODES {
-                            for node in 0..NODES {
-                                let kind = (axis * NODES + line) * NODES + node;
-                                let u = load::<S>(self.displacements, kind * BLOCK + first);
-                                let x = derivatives[across][line] * values[along][node];
-                                let y = values[across][line] * derivatives[along][node];
-                                sum_x = add_product(simd, sum_x, x * inverse_width, u);
-                                sum_y = add_product(simd, sum_y, y, u);
-                            }
+                    let (mut slopes, mut means) = ([zero; NODES], [zero; NODES]);
+                    for node in 0..NODES {
+                        let mut u = [zero; NODES];
+                        for (line, u) in u.iter_mut().enumerate() {
+                            let kind = (axis * NODES + line) * NODES + node;
+                            *u = load::<S>(self.displacements, kind * BLOCK + first);
                         }
+                        slopes[node] = combine(simd, &derivatives[across], u);
+                        means[node] = combine(simd, &values[across], u);
+                    }
+                    for along in 0..NODES {
                         let place = (across * NODES + along) * self.padded + first;
-                        store::<S>(h_x, place, sum_x);
-                        store::<S>(h_y, place, simd.div_f64s(sum_y, lengths));
+                        let x = combine(simd, &values[along], slopes);
+                        let y = combine(simd, &derivatives[along], means);
+                        store::<S>(h_x, place, simd.mul_f64s(by_width, x));
+                        store::<S>(h_y, place, simd.mul_f64s(by_height, y));
                     }
                 }
             }
@@ -268,9 +316,8 @@ impl<const NODES: usize> WithSimd for Gradients<'_, NODES> {
 struct NodalForces<'a, const NODES: usize> {
     rule: &'a Rule<NODES>,
     thickness: f64,
-    width: f64,
     padded: usize,
-    lengths: &'a [f64],
+    sides: &'a [[f64; BLOCK]; 2],
     stresses: [&'a [f64]; 4],
     forces: &'a mut [f64],
 }
@@ -281,39 +328,52 @@ impl<const NODES: usize> WithSimd for NodalForces<'_, NODES> {
     /// The transpose of [`Gradients`], weighted with the volume V = t hx hy of each point.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Rule {
-            values,
-            derivatives,
-            weights,
-        } = self.rule;
+        let values = weighted(&self.rule.weights, &self.rule.values);
+        let derivatives = weighted(&self.rule.weights, &self.rule.derivatives);
+        let thickness = simd.splat_f64s(self.thickness);
         let zero = simd.splat_f64s(0.0);
         let [p11, p12, p21, p22] = self.stresses;
-        for (axis, [p_x, p_y]) in [[p11, p12], [p21, p22]].into_iter().enumerate() {
-            for first in (0..self.padded).step_by(S::F64_LANES) {
-                let lengths = load::<S>(self.lengths, first);
-                for line in 0..NODES {
-                    for node in 0..NODES {
-                        let (mut sum_x, mut sum_y) = (zero, zero);
-                        for across in 0..NODES {
-                            for along in 0..NODES {
-                                let place = (across * NODES + along) * self.padded + first;
-                                let weight = weights[across] * weights[along] * self.thickness;
-                                let x = weight * derivatives[across][line] * values[along][node];
-                                let y = weight * values[across][line] * derivatives[along][node];
-                                sum_x = add_product(simd, sum_x, x, load::<S>(p_x, place));
-                                sum_y = add_product(simd, sum_y, y, load::<S>(p_y, place));
-                            }
+        for first in (0..self.padded).step_by(S::F64_LANES) {
+            let by_x = simd.mul_f64s(thickness, load::<S>(&self.sides[1], first));
+            let by_y = simd.mul_f64s(thickness, load::<S>(&self.sides[0], first));
+            for (axis, [p_x, p_y]) in [[p11, p12], [p21, p22]].into_iter().enumerate() {
+                for node in 0..NODES {
+                    let (mut x, mut y) = ([zero; NODES], [zero; NODES]);
+                    for across in 0..NODES {
+                        let (mut along_x, mut along_y) = ([zero; NODES], [zero; NODES]);
+                        for along in 0..NODES {
+                            let place = (across * NODES + along) * self.padded + first;
+                            along_x[along] = load::<S>(p_x, place);
+                            along_y[along] = load::<S>(p_y, place);
                         }
-                        let sum = simd.mul_f64s(lengths, sum_x);
-                        let place = ((axis * NODES + line) * NODES + node) * BLOCK + first;
-                        store::<S>(
-                            self.forces,
-                            place,
-                            add_product(simd, sum, self.width, sum_y),
+                        x[across] = simd.mul_f64s(by_x, combine(simd, &values[node], along_x));
+                        y[across] = simd.mul_f64s(by_y, combine(simd, &derivatives[node], along_y));
+                    }
+                    for line in 0..NODES {
+                        let sum = simd.add_f64s(
+                            combine(simd, &derivatives[line], x),
+                            combine(simd, &values[line], y),
                         );
+                        let kind = (axis * NODES + line) * NODES + node;
+                        store::<S>(self.forces, kind * BLOCK + first, sum);
                     }
                 }
             }
         }
     }
+}
+
+/// What each point gives to each node, from what each node gives to each point: the transpose, weighted.
+#[inline(always)]
+fn weighted<const NODES: usize>(
+    weights: &[f64; NODES],
+    of_point: &[[f64; NODES]; NODES],
+) -> [[f64; NODES]; NODES] {
+    let mut of_node = [[0.0; NODES]; NODES];
+    for (point, weight) in weights.iter().enumerate() {
+        for (node, of_node) in of_node.iter_mut().enumerate() {
+            of_node[point] = weight * of_point[point][node];
+        }
+    }
+    of_node
 }
