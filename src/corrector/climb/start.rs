@@ -3,14 +3,11 @@
 //! The corrector does not care where ū came from, so that several starts are tried in a fixed order until one can be
 //! corrected: see [`Start`].
 
-use std::sync::Arc;
-
 use super::ascent::Ascent;
 use super::way::{Start, Way};
 use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE, Work};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings, MassSpring};
-use crate::problem::ClampedPlate;
 use crate::solve::NewtonSettings;
 
 /// A corrected field on the first grid.
@@ -36,8 +33,8 @@ const LOAD_STEPS: [usize; 4] = [2, 4, 8, 16];
 /// Cells of a lattice of springs at most: more would take longer than what follows.
 const MOST_CELLS: usize = 10_000;
 
-/// Linearisations on the first grid, because its start is far away.
-const LINEARISATIONS: usize = 2;
+/// The start is far away, so that the first grid is linearised twice: what the first iteration may leave of its first correction.
+const FIRST_TOLERANCE: f64 = 0.05;
 
 impl Climb<'_> {
     /// The corrected field on the first grid: the first of all starts that can be corrected there, or Newton's method
@@ -123,7 +120,7 @@ impl Climb<'_> {
             START_TOLERANCE
         };
         let (mut work, mut left, mut weakest) = (Work::default(), f64::NAN, 1.0);
-        for _ in 0..LINEARISATIONS {
+        for tolerance in [tolerance.max(FIRST_TOLERANCE), tolerance] {
             self.linearise_below(self.start, field)?;
             let enough = |first: f64, left: f64| left <= tolerance * first;
             let reached = self.solve(self.start, field, &enough)?;
@@ -136,23 +133,23 @@ impl Climb<'_> {
 
     /// The springs in equilibrium, at the nodes of the grid at which the climb begins; nothing where they find none.
     ///
-    /// The lattice has the grid's own cells where springs can make them isotropic, else as many cells of a sound shape.
+    /// The lattice has about half as many cells as the grid along both axes: what it adds to them is little beside what springs
+    /// are wrong by. Its cells have a shape that springs can make isotropic.
     fn springs(&self, stretch: f64, area_term: bool) -> Option<Field> {
         let grid = &self.levels[self.start].grid;
-        let cells = sound_cells(self.problem.size, grid.cells());
+        let halves = grid.cells().map(|cells| cells.div_ceil(2).max(2));
+        let cells = sound_cells(self.problem.size, halves);
         if cells[0] * cells[1] > MOST_CELLS {
             return None;
         }
-        let problem = ClampedPlate {
-            size: self.problem.size,
-            thickness: self.problem.thickness,
-            law: Arc::clone(&self.problem.law),
-            stretches: vec![stretch],
-        };
-        let springs = MassSpring::new(&problem, cells, LatticeSettings { area_term });
-        let solved = springs.solve(&problem, SPRINGS, &|_| ()).ok()?;
+        let springs = MassSpring::new(self.problem, cells, LatticeSettings { area_term });
         let lattice = Grid::even(self.problem.size, cells);
-        let field = Field::of_nodes(&lattice, &solved[0].displacement);
+        let mut guess = contracted_stretch(self.problem.size, &lattice, stretch);
+        guess.scale(if stretch == 0.0 { 1.0 } else { 1.0 / stretch });
+        let model = self.problem.on(&springs.mesh, springs.potential());
+        let model = model.guessing(guess.to_nodes());
+        let solved = model.reach(&[stretch], SPRINGS).ok()?;
+        let field = Field::of_nodes(&lattice, &solved.displacement);
         Some(field.onto(&lattice, grid))
     }
 }

@@ -8,6 +8,7 @@ use crate::corrector::DifferenceScheme;
 use crate::corrector::climb::{ClimbSettings, ClimbSolution};
 use crate::material::samples;
 use crate::mesh::{CellShape, Mesh};
+use crate::problem::ClampedPlate;
 
 fn problem(card: &str, size: [f64; 2], stretch: f64) -> ClampedPlate {
     let mut laws = samples::all().into_iter();
@@ -159,10 +160,7 @@ fn a_way_that_names_springs_began_with_them() {
     let way = climb.correct(0.5).unwrap().way;
     assert_eq!((way.start, way.cells), (Start::Springs, [8, 3]));
     let grid = climb.levels[climb.start].grid.clone();
-    let lattice = MassSpring::new(&problem, way.cells, LatticeSettings { area_term: false });
-    let springs = lattice.solve(&problem, SPRINGS, &|_| ()).unwrap();
-    let even = Grid::even(problem.size, way.cells);
-    let mut away = Field::of_nodes(&even, &springs[0].displacement).onto(&even, &grid);
+    let mut away = climb.springs(0.5, false).unwrap();
     away.add(
         -1.0,
         &climb.along_load_path(climb.start, 0.5).unwrap().field,
