@@ -7,7 +7,7 @@
 //! | step | how |
 //! |---|---|
 //! | smoother | block Gauss–Seidel in four colours, once down and once, in the reverse order, up: symmetric |
-//! | where cells are long | lines along their short sides too, every second one at a time (zebra) |
+//! | where cells are long | lines along their short sides, every second one at a time (zebra): along X instead of it, along Y besides |
 //! | restriction | the transpose of the prolongation |
 //! | prolongation | linear between the coarser grid's nodes, whatever their number |
 //! | coarser operators | discretised anew on the coarser grid, not by products of matrices |

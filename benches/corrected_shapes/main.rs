@@ -4,6 +4,7 @@
 //! cargo bench --bench corrected_shapes              all of it, about a quarter of an hour and 7 GB
 //! cargo bench --bench corrected_shapes -- --quick   up to 32,000 nodes
 //! cargo bench --bench corrected_shapes -- --path    a hundred load factors, and grips in the hand, on some 10,000 nodes
+//! cargo bench --bench corrected_shapes -- --spent   time per unknown, as published solvers tell it
 //! cargo bench --bench corrected_shapes -- Cook      shapes with such a word in their names alone
 //! ```
 //!
@@ -40,6 +41,7 @@ mod opponent;
 mod path;
 mod reference;
 mod shapes;
+mod spent;
 mod table;
 mod verdict;
 mod way;
@@ -127,6 +129,7 @@ fn main() -> ExitCode {
     });
     lines::ended(one.install(|| match (has("--path"), has("--quick")) {
         (true, _) => paths(),
+        _ if has("--spent") => spent(),
         (_, true) => bench(&QUICK, &two),
         _ => bench(&FULL, &two),
     }))
@@ -222,6 +225,13 @@ fn meshes_of<'a>(case: &'a Case, grading: f64, extent: &Extent) -> Vec<(Family<'
         }
     }
     all
+}
+
+/// What is spent per unknown on all shapes; no aim is set for it.
+fn spent() -> Result<usize, Error> {
+    let law = Card::load("pva-10", Path::new("."))?.law;
+    spent::bench(&shapes::all(&law))?;
+    Ok(0)
 }
 
 /// Nodes of the meshes on which paths are followed, about.

@@ -7,11 +7,13 @@ pub struct Buckets {
     step: f64,
     counts: [usize; 2],
     cells: Vec<Vec<usize>>,
+    /// Lower left and upper right corner of the box around each cell.
+    boxes: Vec<[[f64; 2]; 2]>,
 }
 
 impl Buckets {
     /// Sorts the boxes of cells within the box around all of them.
-    pub fn new([low, high]: [[f64; 2]; 2], boxes: &[[[f64; 2]; 2]]) -> Self {
+    pub fn new([low, high]: [[f64; 2]; 2], boxes: Vec<[[f64; 2]; 2]>) -> Self {
         let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(f64::MIN_POSITIVE));
         let step = (size[0] * size[1] / boxes.len().max(1) as f64).sqrt();
         let step = step.max(size[0].max(size[1]) / 2000.0);
@@ -21,6 +23,7 @@ impl Buckets {
             step,
             counts,
             cells: vec![Vec::new(); counts[0] * counts[1]],
+            boxes: Vec::new(),
         };
         for (cell, corners) in boxes.iter().enumerate() {
             let [from, to] = corners.map(|corner| buckets.place(corner));
@@ -30,7 +33,13 @@ impl Buckets {
                 }
             }
         }
-        buckets
+        Self { boxes, ..buckets }
+    }
+
+    /// Whether a point lies in the box around a cell.
+    pub fn is_in_box(&self, cell: usize, point: [f64; 2]) -> bool {
+        let [low, high] = self.boxes[cell];
+        (0..2).all(|axis| (low[axis]..=high[axis]).contains(&point[axis]))
     }
 
     fn place(&self, point: [f64; 2]) -> [usize; 2] {

@@ -28,7 +28,7 @@ impl Mesh {
 
     /// The natural coordinates of a point in a cell that holds it; `None` where the cell does not.
     fn within(&self, cell: usize, point: [f64; 2]) -> Option<[f64; 2]> {
-        let in_box = self.is_in_box(cell, point);
+        let in_box = self.buckets().is_in_box(cell, point);
         let local = in_box.then(|| self.natural_coordinates(cell, point))??;
         (self.shape(cell).outside(local) < 1e-12).then_some(local)
     }
@@ -43,10 +43,8 @@ impl Mesh {
 
     fn buckets(&self) -> &Buckets {
         self.buckets.get_or_init(|| {
-            let boxes: Vec<_> = (0..self.cell_count())
-                .map(|cell| self.cell_box(cell))
-                .collect();
-            Buckets::new(self.bounding_box(), &boxes)
+            let boxes = (0..self.cell_count()).map(|cell| self.cell_box(cell));
+            Buckets::new(self.bounding_box(), boxes.collect())
         })
     }
 
@@ -133,17 +131,13 @@ impl Mesh {
         margin: f64,
         own: impl Fn(usize) -> bool,
     ) -> bool {
-        let around = self.buckets().around(point).iter();
-        let mut others = around.filter(|cell| !own(**cell) && self.is_in_box(**cell, point));
+        let buckets = self.buckets();
+        let around = buckets.around(point).iter();
+        let mut others = around.filter(|cell| !own(**cell) && buckets.is_in_box(**cell, point));
         others.any(|cell| {
             let local = self.natural_coordinates(*cell, point);
             local.is_some_and(|local| self.shape(*cell).depth(local) > margin)
         })
-    }
-
-    fn is_in_box(&self, cell: usize, point: [f64; 2]) -> bool {
-        let [low, high] = self.cell_box(cell);
-        (0..2).all(|axis| (low[axis]..=high[axis]).contains(&point[axis]))
     }
 
     /// Lower left and upper right corner of a box around a cell, in mm. A curved edge lies within the triangle of its

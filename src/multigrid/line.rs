@@ -2,7 +2,7 @@
 
 use pulp::{NullaryFnOnce, Simd, WithSimd};
 
-use super::vector::Pair;
+use super::vector::{Pair, VECTOR};
 
 /// Coefficients kept for a node: the blocks, and the inverse of its own block.
 pub const COEFFICIENTS: usize = 20;
@@ -351,20 +351,31 @@ pub struct SmoothLine<'a> {
     pub b: Pair<'a>,
     pub x_x: &'a mut [f32],
     pub x_y: &'a mut [f32],
-    pub scratch: &'a mut [Vec<f32>; 4],
+    pub scratch: &'a mut [Vec<f32>; 2],
     /// The place in a line at which the nodes of the first colour begin.
     pub first: usize,
 }
+
+/// One at the nodes of a colour, zero at the others, from a place that is even.
+pub const OWN: [[f32; VECTOR]; 2] = {
+    let mut own = [[0.0; VECTOR]; 2];
+    let mut place = 0;
+    while place < VECTOR {
+        own[place % 2][place] = 1.0;
+        place += 1;
+    }
+    own
+};
 
 impl WithSimd for SmoothLine<'_> {
     type Output = ();
 
     /// Both colours are solved for at all nodes and taken over at their own: twice the arithmetic, but in
-    /// vectors.
+    /// vectors. Nodes of one colour are no neighbours.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let nodes = self.x_x.len() - 2;
-        let [g_x, g_y, t_x, t_y] = self.scratch;
+        let [g_x, g_y] = self.scratch;
         for place in (0..nodes).step_by(S::F32_LANES) {
             let b = load_pair::<S>(self.b, place + 1);
             let [x, y] = subtract_beside(simd, b, [self.before, self.own], self.beside, place);
@@ -372,17 +383,17 @@ impl WithSimd for SmoothLine<'_> {
             store::<S>(g_y, place, y);
         }
         for colour in [self.first, 1 - self.first] {
+            let own = load::<S>(&OWN[colour], 0);
+            let other = load::<S>(&OWN[1 - colour], 0);
             for place in (0..nodes).step_by(S::F32_LANES) {
                 let g = [load::<S>(g_x, place), load::<S>(g_y, place)];
                 let r = subtract_along(simd, g, self.own, [self.x_x, self.x_y], place);
                 let [a, b, c, d] = self.own.block::<S>([17, 18, 18, 19], place + 1);
-                store::<S>(t_x, place, combine(simd, [a, b], r));
-                store::<S>(t_y, place, combine(simd, [c, d], r));
-            }
-            for (x, t) in [(&mut *self.x_x, &*t_x), (&mut *self.x_y, &*t_y)] {
-                let own = x[1 + colour..=nodes].iter_mut().step_by(2);
-                let new = t[colour..nodes].iter().step_by(2);
-                own.zip(new).for_each(|(x, t)| *x = *t);
+                let [x, y] = load_pair::<S>([self.x_x, self.x_y], place + 1);
+                let x = combine(simd, [own, other], [combine(simd, [a, b], r), x]);
+                let y = combine(simd, [own, other], [combine(simd, [c, d], r), y]);
+                store::<S>(self.x_x, place + 1, x);
+                store::<S>(self.x_y, place + 1, y);
             }
         }
     }

@@ -106,12 +106,21 @@ impl Stencil {
         });
     }
 
-    /// One Gauss–Seidel sweep in four colours: odd lines, then even ones, and on each odd nodes before even
-    /// ones; the other way round where `reversed`.
-    pub fn smooth(&self, x: &mut Vector, b: &Vector, reversed: bool) {
+    /// One Gauss–Seidel sweep in four colours over all lines but those that are `left_out`: odd lines, then even ones, and on each
+    /// odd nodes before even ones; the other way round where `reversed`.
+    pub fn smooth(
+        &self,
+        x: &mut Vector,
+        b: &Vector,
+        left_out: impl Fn(usize) -> bool + Sync,
+        reversed: bool,
+    ) {
         let lines = self.lines;
         for parity in if reversed { [0, 1] } else { [1, 0] } {
             x.for_each_of_parity(parity, |line, beside: Neighbours, x_x, x_y| {
+                if left_out(line) {
+                    return;
+                }
                 SCRATCH.with_borrow_mut(|scratch| {
                     for line in &mut *scratch {
                         line.resize(lines.padded(), 0.0);
@@ -151,5 +160,5 @@ impl Stencil {
 }
 
 thread_local! {
-    static SCRATCH: RefCell<[Vec<f32>; 4]> = const { RefCell::new([const { Vec::new() }; 4]) };
+    static SCRATCH: RefCell<[Vec<f32>; 2]> = const { RefCell::new([const { Vec::new() }; 2]) };
 }

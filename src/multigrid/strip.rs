@@ -22,7 +22,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::line::{LineStencil, residual, store};
+use super::line::{LineStencil, OWN, residual, store};
 use super::stencil::Stencil;
 use super::tridiagonal::{FACTOR, Factorise, LANES, PAIR, substitute};
 use super::vector::{Lines, Vector};
@@ -91,6 +91,12 @@ impl LineSmoother {
     pub fn ranges(&self) -> Vec<Range<usize>> {
         let ranges = self.strips.iter().map(|strip| strip.range.clone());
         ranges.collect()
+    }
+
+    /// Whether all nodes of a line of the grid are solved for on lines across it: they need no other smoother.
+    pub fn holds(&self, line: usize) -> bool {
+        let mut across = self.strips.iter().filter(|strip| strip.axis == Axis::X);
+        across.any(|strip| strip.range.contains(&line))
     }
 
     /// Forgets the factors: the operator is written anew.
@@ -263,9 +269,9 @@ impl Strip {
                     for (batch, x) in batches {
                         let place = batch * places + line - start;
                         let own = &corrections[(2 * place + component) * LANES..][..LANES];
-                        let own = own[colour..].iter().step_by(2);
-                        let x = x[colour..].iter_mut().step_by(2);
-                        x.zip(own).for_each(|(x, correction)| *x += correction);
+                        for ((x, correction), own) in x.iter_mut().zip(own).zip(&OWN[colour]) {
+                            *x += own * correction;
+                        }
                     }
                 }
             }),

@@ -54,6 +54,7 @@ impl Component {
     }
 
     /// A line with its two ends.
+    #[inline(always)]
     pub fn line(&self, line: usize) -> &[f32] {
         let stride = self.lines.stride();
         &self.values[self.lines.place(line) * stride..][..stride]
@@ -80,11 +81,13 @@ pub struct Neighbours<'a> {
 
 impl<'a> Neighbours<'a> {
     /// A line of the other parity.
+    #[inline(always)]
     pub fn line(&self, line: usize) -> Pair<'a> {
         debug_assert_ne!(line % 2, self.parity);
         let stride = self.lines.stride();
-        self.values
-            .map(|values| &values[line / 2 * stride..][..stride])
+        let [x, y] = self.values;
+        let begin = line / 2 * stride;
+        [&x[begin..][..stride], &y[begin..][..stride]]
     }
 }
 
@@ -110,10 +113,10 @@ impl Vector {
     }
 
     /// A line of both components.
+    #[inline(always)]
     pub fn line(&self, line: usize) -> Pair<'_> {
-        self.components
-            .each_ref()
-            .map(|component| component.line(line))
+        let [x, y] = &self.components;
+        [x.line(line), y.line(line)]
     }
 
     /// Calls `write` with each free line's number and its two components.

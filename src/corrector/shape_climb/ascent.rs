@@ -28,8 +28,12 @@ const SPRINGS: NewtonSettings = NewtonSettings {
     ..NEWTON
 };
 
-/// What the finer meshes add is larger by far.
+/// What the finer meshes add is larger by far, where there are any.
 const COARSEST: NewtonSettings = NewtonSettings {
+    tolerance: 1e-4,
+    ..NEWTON
+};
+const ALONE: NewtonSettings = NewtonSettings {
     tolerance: 1e-6,
     ..NEWTON
 };
@@ -104,7 +108,11 @@ impl Ascent {
         let corrected = |state: State| {
             let interpolation = springs.mesh.interpolation_on(mesh);
             let data = interpolation.apply(&state.displacement);
-            correct_without_multipliers(&model, &data, (factor, &[]), COARSEST).ok()
+            let settings = match levels.finest() {
+                0 => ALONE,
+                _ => COARSEST,
+            };
+            correct_without_multipliers(&model, &data, (factor, &[]), settings).ok()
         };
         let by_springs = by_springs.reach(&[factor], SPRINGS).ok();
         let state = match by_springs.and_then(corrected) {
