@@ -27,8 +27,8 @@ use super::stencil::Stencil;
 use super::tridiagonal::{FACTOR, Factorise, LANES, PAIR, substitute};
 use super::vector::{Lines, Vector};
 
-/// Cells whose sides differ by more than this factor are long: with 3 some graded grids take half as many cycles again.
-const LONG: f64 = 2.5;
+/// Cells whose sides differ by more than this factor are long: with more a cycle leaves more than half of some errors.
+const LONG: f64 = 2.0;
 /// Spacings that differ by less are equal.
 const EQUAL: f64 = 1e-6;
 

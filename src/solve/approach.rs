@@ -63,6 +63,9 @@ const SERVES: f64 = 0.25;
 /// What a system's residual has to fall by at least and at most: less is not worth a new imbalance, more is lost to what is not linear.
 const FALLS: [f64; 2] = [0.1, 0.05];
 
+/// What one iteration leaves of an imbalance, at least: less than on average, as it is the first one.
+const STEP: f64 = 0.6;
+
 /// What the imbalances tell.
 struct Pace {
     nearness: Nearness,
@@ -205,7 +208,7 @@ impl Newton {
             let mut right = gather(self.free(), residual);
             scale(&mut right, -1.0);
             let iterative = self.tangent.iterative.as_mut()?;
-            let rate = iterative.rate;
+            let rate = iterative.rate.max(STEP);
             let solved = iterative.solve_as_far_as(&right, |weight| pace.wanted(weight, rate));
             let Solved { x, weight } = solved.ok()?;
             if pace.first.is_nan() {

@@ -146,8 +146,7 @@ impl Climb<'_> {
         let lattice = Grid::even(self.problem.size, cells);
         let mut guess = contracted_stretch(self.problem.size, &lattice, stretch);
         guess.scale(if stretch == 0.0 { 1.0 } else { 1.0 / stretch });
-        let model = self.problem.on(&springs.mesh, springs.potential());
-        let model = model.guessing(guess.to_nodes());
+        let model = springs.model(self.problem).guessing(guess.to_nodes());
         let solved = model.reach(&[stretch], SPRINGS).ok()?;
         let field = Field::of_nodes(&lattice, &solved.displacement);
         Some(field.onto(&lattice, grid))
