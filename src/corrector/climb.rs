@@ -1,6 +1,6 @@
 //! The corrector's fast path: solve a few springs, then climb from grid to grid.
 //!
-//! The springs are solved on a very coarse lattice and corrected there. The field then climbs from grid to grid,
+//! The springs are solved on a very coarse lattice and corrected on the first grid. The field then climbs from grid to grid,
 //! each with about twice as many cells along both axes: it is interpolated by cubics, the governing equation is
 //! linearised once, and a few conjugate-gradient iterations, each preconditioned by one V-cycle and each with
 //! one evaluation of F, bring the correction that the finer grid asks for. No load steps, no factorisation.
@@ -124,7 +124,7 @@ pub struct Climb<'a> {
 
 /// Unknowns of the coarsest grid at most: those of 12 × 4 cells are solved by their factor faster than by coarser grids.
 const COARSEST: usize = 120;
-/// Nodes of the lattice of springs at least, where the finest grid has as many.
+/// Nodes of the first grid at least, on which the springs are corrected, where the finest grid has as many.
 const SPRINGS: usize = 30;
 /// Times that a grid's equation is linearised anew before it is given up.
 const LINEARISATIONS: usize = 6;

@@ -76,6 +76,14 @@ struct Pace {
 }
 
 impl Pace {
+    fn new(nearness: Nearness) -> Self {
+        Self {
+            nearness,
+            first: f64::NAN,
+            last: None,
+        }
+    }
+
     /// The imbalance that may be left; `weight` is the present one.
     fn enough(&self, weight: f64) -> f64 {
         match self.nearness {
@@ -187,12 +195,7 @@ impl Newton {
         tangent: FirstTangent,
     ) -> Option<Approach> {
         let begun = self.tangent.iterative.as_ref()?.iterations;
-        let mut own = Approach::default();
-        let mut pace = Pace {
-            nearness,
-            first: f64::NAN,
-            last: None,
-        };
+        let (mut own, mut pace) = (Approach::default(), Pace::new(nearness));
         let mut anew = tangent == FirstTangent::Own;
         if !anew {
             residual.fill(0.0);

@@ -174,12 +174,8 @@ pub fn conjugate_gradients(
             return Err(FactorFault::NotPositiveDefinite);
         }
         let length = square / stiffness;
-        for i in 0..size {
-            for axis in 0..2 {
-                found.x[i][axis] += length * direction[i][axis];
-                r[i][axis] -= length * image[i][axis];
-            }
-        }
+        add(&mut found.x, length, &direction);
+        add(&mut r, -length, &image);
         found.iterations += 1;
         if found.iterations == most {
             break;
@@ -198,6 +194,15 @@ pub fn conjugate_gradients(
         found.reduction = (next.max(0.0) / first).sqrt();
     }
     Ok(found)
+}
+
+/// a ← a + s b.
+fn add(a: &mut [[f64; 2]], s: f64, b: &[[f64; 2]]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        for (a, b) in a.iter_mut().zip(b) {
+            *a += s * b;
+        }
+    }
 }
 
 /// a · b.

@@ -73,10 +73,14 @@ impl Way {
 }
 
 impl fmt::Display for Way {
-    /// `springs on 8 × 4 cells`, and `; Newton's method along a path of load steps on 60 × 20 cells` where it was needed.
+    /// `springs, corrected on 8 × 4 cells`, and `; Newton's method along a path of load steps on 60 × 20 cells` where it was needed.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [along, across] = self.cells;
-        write!(f, "{} on {along} × {across} cells", self.start)?;
+        let corrected = match self.start {
+            Start::LoadPath | Start::AffineStretch => "",
+            _ => ", corrected",
+        };
+        write!(f, "{}{corrected} on {along} × {across} cells", self.start)?;
         for [along, across] in &self.by_load_path {
             write!(f, "; {} on {along} × {across} cells", Start::LoadPath)?;
         }
