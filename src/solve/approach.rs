@@ -63,9 +63,6 @@ const SERVES: f64 = 0.25;
 /// What a system's residual has to fall by at least and at most: less is not worth a new imbalance, more is lost to what is not linear.
 const FALLS: [f64; 2] = [0.1, 0.05];
 
-/// What one iteration leaves of an imbalance, at least: less than on average, as it is the first one.
-const STEP: f64 = 0.6;
-
 /// What the imbalances tell.
 struct Pace {
     nearness: Nearness,
@@ -102,13 +99,10 @@ impl Pace {
         self.last.is_none_or(|last| weight <= SERVES * last)
     }
 
-    /// What is wanted of a system with an imbalance of some weight, where an iteration leaves about so much of it.
-    fn wanted(&self, weight: f64, rate: f64) -> Wanted {
+    /// What is wanted of a system with an imbalance of some weight.
+    fn wanted(&self, weight: f64) -> Wanted {
         if self.is_near(weight) || !self.serves(weight) {
             return Wanted::Size;
-        }
-        if self.is_near(rate * weight) {
-            return Wanted::Step;
         }
         let wanted = 0.5 * self.enough(weight) / weight;
         Wanted::Reduction(wanted.clamp(FALLS[1], FALLS[0]))
@@ -211,21 +205,14 @@ impl Newton {
             let mut right = gather(self.free(), residual);
             scale(&mut right, -1.0);
             let iterative = self.tangent.iterative.as_mut()?;
-            let rate = iterative.rate.max(STEP);
-            let solved = iterative.solve_as_far_as(&right, |weight| pace.wanted(weight, rate));
+            let solved = iterative.solve_as_far_as(&right, |weight| pace.wanted(weight));
             let Solved { x, weight } = solved.ok()?;
             if pace.first.is_nan() {
                 pace.first = weight;
             }
             own.first = pace.first;
-            let wanted = pace.wanted(weight, rate);
-            if wanted == Wanted::Step || pace.is_near(weight) {
+            if pace.is_near(weight) {
                 own.last = weight;
-                if wanted == Wanted::Step {
-                    let length = self.step(potential, u, residual, &x)?;
-                    own.last *= 1.0 - (1.0 - rate) * length;
-                    own.steps += 1;
-                }
                 let iterative = self.tangent.iterative.as_mut()?;
                 own.iterations = iterative.iterations - begun;
                 let stable = own.linearisations == 0 || iterative.is_definite();
@@ -244,14 +231,14 @@ impl Newton {
         None
     }
 
-    /// Takes a step, half of it and so on where cells turn over; its length, `None` where even a short one does.
+    /// Takes a step, half of it and so on where cells turn over; `None` where even a short one does.
     fn step(
         &self,
         potential: &dyn Potential,
         u: &mut [f64],
         residual: &mut [f64],
         step: &[f64],
-    ) -> Option<f64> {
+    ) -> Option<()> {
         const HALVES: usize = 6;
         let start = gather(self.free(), u);
         let mut length = 1.0;
@@ -261,7 +248,7 @@ impl Newton {
             }
             residual.fill(0.0);
             if potential.add_forces(u, residual).is_ok() {
-                return Some(length);
+                return Some(());
             }
             length *= 0.5;
         }

@@ -41,8 +41,6 @@ pub struct Iterative {
     pace: f64,
     /// Iterations of all systems so far.
     pub iterations: usize,
-    /// What an iteration left of the residual in the system that was solved last; 1 before.
-    pub rate: f64,
 }
 
 /// What stands for the inverse of the matrix.
@@ -114,7 +112,6 @@ impl Iterative {
             made: Made::Not,
             pace: f64::INFINITY,
             iterations: 0,
-            rate: 1.0,
         })
     }
 
@@ -193,7 +190,7 @@ impl Iterative {
             self.iterations += found.as_ref().map_or(MOST, |found| found.iterations);
             if let Ok(found) = &found {
                 let reached = match wanted(found.first) {
-                    Wanted::Size | Wanted::Step => true,
+                    Wanted::Size => true,
                     Wanted::Reduction(reduction) => found.reduction <= reduction,
                 };
                 if reached {
@@ -218,10 +215,9 @@ impl Iterative {
 
     /// Gives a cycle up that was made for other values and takes many more iterations than one made for its own.
     fn judge(&mut self, iterations: usize, reduction: f64) {
-        if iterations == 0 || reduction == 1.0 {
+        if reduction == 1.0 {
             return;
         }
-        self.rate = reduction.max(1e-16).powf(1.0 / iterations as f64);
         let digits = -reduction.max(1e-16).log10();
         let pace = (iterations as f64 - 1.0) / digits.max(1.0);
         if self.made == Made::ForThese {

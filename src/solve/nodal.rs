@@ -126,8 +126,6 @@ pub struct Found {
 pub enum Wanted {
     /// Its size alone.
     Size,
-    /// One iteration.
-    Step,
     /// That the residual falls by a factor.
     Reduction(f64),
 }
@@ -160,10 +158,8 @@ pub fn conjugate_gradients(
         found.reduction = 0.0;
         return Ok(found);
     }
-    let (reduction, most) = match wanted(found.first) {
-        Wanted::Size => return Ok(found),
-        Wanted::Step => (0.0, 1),
-        Wanted::Reduction(reduction) => (reduction, most),
+    let Wanted::Reduction(reduction) = wanted(found.first) else {
+        return Ok(found);
     };
     let mut direction = z.clone();
     let mut image = vec![[0.0; 2]; size];
