@@ -117,15 +117,14 @@ impl HyperelasticLaw for PythonLaw {
         true
     }
 
-    fn tangents(&self, gradients: [&[f64]; 4], mut tangents: [&mut [f64]; 10]) -> bool {
+    fn responses(&self, gradients: [&[f64]; 4], mut responses: [&mut [f64]; COMPONENTS]) -> bool {
         let Some((states, derivatives)) = self.at_all(gradients) else {
             return false;
         };
         for (point, (state, derivatives)) in states.iter().zip(&derivatives).enumerate() {
-            let tangent = state.response(derivatives).tangent;
-            let lower = (0..4).flat_map(|column| (column..4).map(move |row| (row, column)));
-            for (component, place) in tangents.iter_mut().zip(lower) {
-                component[point] = tangent[place];
+            let components = state.response(derivatives).components();
+            for (all, own) in responses.iter_mut().zip(components) {
+                all[point] = own;
             }
         }
         true
