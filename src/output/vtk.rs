@@ -2,6 +2,7 @@
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
+use rayon::prelude::*;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, ElementType, IOBuffer,
     UnstructuredGridPiece, Version, VertexNumbers, Vtk,
@@ -13,16 +14,21 @@ use crate::results::{Array, Components, Grid, GridCell, GridSeries};
 /// A program for ParaView that shows the models of the folder that it is in, side by side.
 pub const VIEW: &str = include_str!("view.py");
 
-/// The files of a series, one after the other: `NAME_001.vtu` and so on, and `NAME.pvd` where its grids have times.
+/// The files of a series, one after the other: `NAME_001.vtu` and so on, and `NAME.pvd` where its grids have times. As many at once are
+/// made as there are threads.
 pub fn files(series: &GridSeries) -> impl Iterator<Item = (String, Vec<u8>)> {
-    let grids = series.grids.iter();
     let file = |name: &str| format!("{name}.vtu");
-    let timed = grids.clone();
+    let timed = series.grids.iter();
     let timed: Vec<_> = timed
         .filter_map(|named| Some((named.time?, named.name.clone())))
         .collect();
     let played = (!timed.is_empty()).then(|| (format!("{}.pvd", series.name), collection(&timed)));
-    let files = grids.map(move |named| (file(&named.name), grid(&named.grid)));
+    let at_once = series.grids.chunks(rayon::current_num_threads());
+    let files = at_once.flat_map(move |grids| -> Vec<_> {
+        let grids = grids.par_iter();
+        let files = grids.map(|named| (file(&named.name), grid(&named.grid)));
+        files.collect()
+    });
     files.chain(played)
 }
 

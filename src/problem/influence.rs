@@ -1,10 +1,15 @@
 //! The fields that small motions and forces of a group bring about.
 
+use rayon::prelude::*;
+
 use super::constraints::Constraints;
 use super::groups::shares;
 use super::model::Model;
 use crate::error::SolveFault;
 use crate::solve::{Loading, State, Tangent, compliance, influence};
+
+/// Unknowns up to which every thread has a factor of its own.
+const SIDE_BY_SIDE: usize = 200_000;
 
 impl Model<'_> {
     /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
@@ -26,7 +31,7 @@ impl Model<'_> {
         one.swap_remove(0)
     }
 
-    /// The same at each of some states, whose tangents have one pattern.
+    /// The same at each of some states, whose tangents have one pattern; side by side on the threads there are, where factors are small.
     ///
     /// # Panics
     /// As [`Self::influence`].
@@ -36,10 +41,24 @@ impl Model<'_> {
         name: &str,
         axis: usize,
     ) -> Vec<Result<Vec<f64>, SolveFault>> {
-        let Some(first) = states.first() else {
-            return Vec::new();
+        let unknowns = 2 * self.mesh.nodes.len();
+        let at_once = match self.linear_solver().is_multigrid(unknowns) || unknowns > SIDE_BY_SIDE {
+            true => 1,
+            false => rayon::current_num_threads(),
         };
-        let (potential, held) = (self.potential(first.factor, &[]), self.held());
+        let groups = states.par_chunks(states.len().div_ceil(at_once).max(1));
+        groups
+            .flat_map_iter(|group| self.influences_in_turn(group, name, axis))
+            .collect()
+    }
+
+    fn influences_in_turn(
+        &self,
+        states: &[State],
+        name: &str,
+        axis: usize,
+    ) -> Vec<Result<Vec<f64>, SolveFault>> {
+        let (potential, held) = (self.potential(states[0].factor, &[]), self.held());
         match Tangent::new(&*potential, &held, self.linear_solver()) {
             Err(fault) => vec![Err(fault); states.len()],
             Ok(mut tangent) => {

@@ -56,11 +56,12 @@ pub fn ready(study: Study) -> PreparedStudy {
 fn outcome(study: &Study, results: &Results) -> Outcome {
     let requirements = results.requirements(study);
     let warnings = warnings::warnings(study, results);
-    let figures = match study.output.plots {
+    let figures = || match study.output.plots {
         true => figures::figures(study, results),
         false => Vec::new(),
     };
-    let (mut grids, mut explored) = (vtk::grids(study, results), Vec::new());
+    let (figures, mut grids) = rayon::join(figures, || vtk::grids(study, results));
+    let mut explored = Vec::new();
     if !study.output.vtk {
         std::mem::swap(&mut grids, &mut explored);
     }

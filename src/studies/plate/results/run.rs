@@ -1,5 +1,6 @@
 //! The flow of a study: problem, models, corrector, comparison.
 
+use rayon::prelude::*;
 use web_time::Instant;
 
 use super::{ReferenceMesh, Results};
@@ -73,7 +74,9 @@ pub fn run(study: &Study, progress: Progress) -> Result<Results, Error> {
     };
     Ok(Results {
         reference_on: [lattice, &corrected_mesh].map(|mesh| reference_field.displacements_on(mesh)),
-        comparison: plate.stretches.iter().enumerate().map(compare).collect(),
+        comparison: (plate.stretches.par_iter().enumerate())
+            .map(compare)
+            .collect(),
         remembers: plate.law.softening().is_some(),
         springs,
         corrected_mesh,
