@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::other_files;
 use crate::budget::{Budget, Need};
+use crate::corrector::climb::ClimbSettings;
 use crate::document::{self, Bound, Section, file};
 use crate::error::Error;
 use crate::markers::THICK;
@@ -26,6 +27,21 @@ const SHEET: &str = "sheet";
 
 /// Stretches that a plate may be given.
 const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
+
+/// A card that softens cannot be climbed with, and what helps.
+pub const CLIMB_FORGETS: &str =
+    "this card softens, and the climb has no memory of the largest load";
+/// What to do then.
+pub const CLIMB_REMEDY: &str = "write method = \"direct\", or leave out the card's `[softening]`";
+
+/// How exactly a corrected field climbs.
+pub fn read_climb(section: &Section) -> ClimbSettings {
+    let bound = Bound::Within(1e-6, 1.0);
+    ClimbSettings {
+        tolerance: section.quantity("climb_tolerance", Dimension::Ratio, bound),
+        ..ClimbSettings::default()
+    }
+}
 
 /// The text of a study file.
 ///

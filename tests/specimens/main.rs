@@ -4,6 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
+mod climbs;
 #[path = "../common/mod.rs"]
 mod common;
 mod ends;

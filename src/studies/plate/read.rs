@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use super::problem::{Correction, OutputSettings, Reference, Study};
 use crate::budget::{Budget, Need};
-use crate::corrector::climb::ClimbSettings;
 use crate::corrector::{CorrectorSettings, DifferenceScheme};
 use crate::document::{Bound, Document, Faults, Key, Section, name_of};
 use crate::error::Error;
@@ -18,8 +17,8 @@ use crate::solve::LinearSolver;
 use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
-    MOST_CELLS, Tolerances, affords_cells, check_range, even_cells, read_card, read_newton,
-    read_plate,
+    CLIMB_FORGETS, CLIMB_REMEDY, MOST_CELLS, Tolerances, affords_cells, check_range, even_cells,
+    read_card, read_climb, read_newton, read_plate,
 };
 use crate::units::Dimension;
 
@@ -165,9 +164,8 @@ fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<Corr
             .fault("area_term", message, hint);
     }
     if corrector.is_some_and(|corrector| corrector.climb.is_some()) {
-        let message = "this card softens, and the climb has no memory of the largest load";
-        let hint = "write method = \"direct\", or leave out the card's `[softening]`";
-        root.section("corrector").fault("method", message, hint);
+        root.section("corrector")
+            .fault("method", CLIMB_FORGETS, CLIMB_REMEDY);
     }
 }
 
@@ -182,11 +180,7 @@ fn read_corrector(
     }
     let grading = section.number("grading", GRADINGS);
     let climb = section.choice("method", &[("climb", true), ("direct", false)]);
-    let bound = Bound::Within(1e-6, 1.0);
-    let settings = ClimbSettings {
-        tolerance: section.quantity("climb_tolerance", Dimension::Ratio, bound),
-        ..ClimbSettings::default()
-    };
+    let settings = read_climb(section);
     let direct = CorrectorSettings {
         tolerance: section.number("tolerance", Bound::Within(1e-13, 1e-2)),
         max_steps: section.count("max_steps", 1, 1000),

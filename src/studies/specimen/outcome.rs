@@ -12,7 +12,7 @@ use super::{forces, statement, work};
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::Judgement;
 use crate::problem::Solution;
-use crate::results::{Block, Check, Material, Outcome, Step};
+use crate::results::{Block, Check, Material, Outcome, Step, number};
 
 /// The outcome of models that have reached at least one load factor, or have an equilibrium on the way to it.
 pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
@@ -71,6 +71,8 @@ fn quantities(
     let mut corrected = deviations(deviation.map(|own| own.corrected));
     corrected["displacement_correction_percent"] =
         json!(deviation.and_then(Deviation::correction_percent));
+    let climb = models.on_lattice.climbs.get(step);
+    corrected["discretisation_mm"] = json!(climb.map(|own| own.discretisation_error));
     let own = |which: usize| deviation.map(|own| own.own[which]);
     let mut elements = json!({
         "displacement_discretisation_percent": own(0),
@@ -238,6 +240,35 @@ fn introduction(models: &Models) -> String {
     )
 }
 
+/// The meshes of the climbs, and what these tell of their error.
+fn climbs(models: &Models) -> Option<String> {
+    let climbs = models.on_lattice.climbs.iter();
+    let longest = climbs.clone().max_by_key(|own| own.work.len())?;
+    let nodes: Vec<_> = longest
+        .work
+        .iter()
+        .map(|own| own.nodes.to_string())
+        .collect();
+    let (last, others) = nodes.split_last()?;
+    let most = climbs.max_by(|a, b| a.discretisation_error.total_cmp(&b.discretisation_error))?;
+    let over = match others.is_empty() {
+        true => String::new(),
+        false => format!("{} and ", others.join(", ")),
+    };
+    let error = match most.discretisation_error.is_nan() {
+        true => String::new(),
+        false => format!(
+            ". These tell its discretisation error: {} mm (root mean square over the nodes) at load factor {}, where it is largest",
+            number(most.discretisation_error),
+            most.state.factor
+        ),
+    };
+    Some(format!(
+        "The corrected field has climbed over meshes of {over}{last} nodes from springs on the coarsest, and needs the lattice's own \
+         springs for nothing but the comparison{error}. "
+    ))
+}
+
 /// Where the corrector began elsewhere than at the springs' field.
 fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
     let at = |wanted: Start| {
@@ -247,7 +278,7 @@ fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
         found.join(", ")
     };
     let (alone, steps) = (at(Start::Alone), at(Start::LoadSteps));
-    let mut text = String::new();
+    let mut text = climbs(models).unwrap_or_default();
     if !steps.is_empty() {
         text += &format!(
             "From the springs' field itself the corrector found no way at the load factors {steps}; it began at an \

@@ -1,5 +1,6 @@
 //! What a specimen's study asks for: the problem, its outline and meshes, what is measured.
 
+use crate::corrector::climb::ClimbSettings;
 use crate::error::Error;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
@@ -25,6 +26,38 @@ pub struct Refinement {
     pub most_cells: usize,
 }
 
+/// How the springs' field is corrected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correction {
+    /// Which way.
+    pub method: Method,
+    /// How exactly it climbs.
+    pub climb: ClimbSettings,
+}
+
+/// Which way a field is corrected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// A climb where that is quicker: on lattices of a shape that are large.
+    Automatic,
+    /// Springs on a coarser mesh of the shape, corrected there, from mesh to mesh up to the lattice.
+    Climb,
+    /// From the lattice's own springs by factors.
+    Direct,
+}
+
+impl Method {
+    /// The names that studies use.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("automatic", Self::Automatic),
+        ("climb", Self::Climb),
+        ("direct", Self::Direct),
+    ];
+}
+
+/// Unknowns of a lattice from which on nobody looks at its multipliers one by one, and a climb is quicker than factors.
+pub const LARGE: usize = 20_000;
+
 /// A specimen, its supports and loads, and how finely it is meshed.
 pub struct Specimen {
     /// For file names.
@@ -41,6 +74,8 @@ pub struct Specimen {
     pub tolerances: Tolerances,
     /// How far the finite elements are refined locally; `None` where they have three meshes.
     pub refinement: Option<Refinement>,
+    /// How the springs' field is corrected.
+    pub correction: Correction,
     /// How the systems of the finite elements are solved.
     pub linear_solver: LinearSolver,
     /// What is meshed, and how.
@@ -79,6 +114,10 @@ impl Specimen {
                 correction_percent: 1.0,
             },
             refinement: None,
+            correction: Correction {
+                method: Method::Automatic,
+                climb: ClimbSettings::default(),
+            },
             linear_solver: LinearSolver::Automatic,
             pictures: Pictures::default(),
             outline: Outline::File {
@@ -88,6 +127,18 @@ impl Specimen {
                 halvings: HALVINGS,
             },
         }
+    }
+
+    /// How exactly the corrected field on a lattice with so many unknowns climbs; `None` where it is made from the lattice's own
+    /// springs.
+    pub fn climb(&self, unknowns: usize) -> Option<ClimbSettings> {
+        let able = self.outline.is_shape() && self.problem.law.softening().is_none();
+        let climbs = match self.correction.method {
+            Method::Automatic => unknowns >= LARGE,
+            Method::Climb => true,
+            Method::Direct => false,
+        };
+        (able && climbs).then_some(self.correction.climb)
     }
 
     /// What stresses follow from.

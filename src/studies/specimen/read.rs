@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::problem::{Outline, Refinement, Specimen};
+use super::problem::{Correction, Method, Outline, Refinement, Specimen};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::error::suggestion;
@@ -11,7 +11,9 @@ use crate::mesh::{CellShape, Mesh, import};
 use crate::problem::{BoundaryProblem, Load};
 use crate::solve::LinearSolver;
 use crate::studies::pictures::Pictures;
-use crate::studies::sections::{Tolerances, check_thickness, read_card};
+use crate::studies::sections::{
+    CLIMB_FORGETS, CLIMB_REMEDY, Tolerances, check_thickness, read_card, read_climb,
+};
 use crate::units::Dimension;
 
 mod outline;
@@ -48,6 +50,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let linear_solver = section.choice("method", &LinearSolver::NAMES);
     let refinement = read_refinement(&section, element);
     section.unknown_keys();
+    let correction = read_correction(&root.section("corrector"));
     let specimen = root.section("specimen").requiring(MEASURES);
     let section = &specimen;
     let name = section.choice("shape", &SHAPES.map(|name| (name, name)));
@@ -97,6 +100,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         group,
         tolerances,
         refinement,
+        correction: correction?,
         linear_solver: linear_solver?,
         outline,
         pictures,
@@ -107,7 +111,33 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     given.check(root, &specimen.problem, &mesh);
     warn_of_rest(root, &specimen.problem);
     check_refinement(root, &specimen, &mesh);
+    check_climb(root, &specimen);
     Some(specimen)
+}
+
+fn read_correction(section: &Section) -> Option<Correction> {
+    let method = section.choice("method", &Method::NAMES);
+    let climb = read_climb(section);
+    section.unknown_keys();
+    Some(Correction {
+        method: method?,
+        climb,
+    })
+}
+
+/// A climb needs coarser meshes of the same shape, and has no memory.
+fn check_climb(root: &Section, specimen: &Specimen) {
+    if specimen.correction.method != Method::Climb {
+        return;
+    }
+    let section = root.section("corrector");
+    if !specimen.outline.is_shape() {
+        let message = "the mesh of a file has no coarser meshes of the same shape to climb from";
+        section.fault("method", message, "leave `method` out, or write \"direct\"");
+    }
+    if specimen.problem.law.softening().is_some() {
+        section.fault("method", CLIMB_FORGETS, CLIMB_REMEDY);
+    }
 }
 
 /// Warns of a sheet that nothing loads or moves.

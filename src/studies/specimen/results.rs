@@ -48,12 +48,7 @@ pub fn one_model(
     let solution = match kind {
         ModelKind::MassSpring => lattice::solve_springs(specimen, &mut ends, progress)?.1,
         ModelKind::FiniteElement => refine::finest(specimen, &mut ends, progress)?,
-        ModelKind::Corrected => {
-            let found = OnLattice::solve(specimen, &mut ends, progress)?;
-            // Where the springs end early the correction goes on.
-            ends.retain(|end| !end.is_of("mass-spring"));
-            found.corrected
-        }
+        ModelKind::Corrected => lattice::solve_corrected(specimen, &mut ends, progress)?,
     };
     Ok(OneModel {
         forces: measured_forces(specimen, &solution),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::corrector::climb::ClimbSettings;
 use crate::solve::NewtonSettings;
 
 fn parse(text: &str) -> Result<Study, Error> {

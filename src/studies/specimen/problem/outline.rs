@@ -135,6 +135,26 @@ impl Outline {
         }
     }
 
+    /// The lattice's mesh after coarser ones of the same shape, each with half the cells across, rounded up; that of a file is alone.
+    pub fn lattices(&self) -> Vec<Mesh> {
+        /// Cells across from which on a mesh has a coarser one.
+        const FEWEST: usize = 6;
+        let Self::Shape {
+            shape,
+            cells,
+            lattice,
+            ..
+        } = self
+        else {
+            return vec![self.lattice()];
+        };
+        let coarser = |cells: &usize| (*cells >= FEWEST).then(|| cells.div_ceil(2));
+        let cells = std::iter::successors(Some(*cells), coarser);
+        let mut meshes: Vec<Mesh> = cells.map(|cells| shape.mesh(cells, *lattice)).collect();
+        meshes.reverse();
+        meshes
+    }
+
     /// The mesh of the finite elements of a level: each has cells of half the size of those of the one before. At level 2
     /// they are half as large as the lattice's where they are quadratic, and a quarter where they are linear or the mesh is
     /// that of a file, so that their error is small compared with that of the corrected field.

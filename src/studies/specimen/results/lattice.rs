@@ -1,15 +1,17 @@
 //! Springs and corrected springs on the lattice of a specimen, each as far as its path goes.
 
 use super::end::End;
+use crate::corrector::shape_climb::{Climb, ShapeClimb};
 use crate::corrector::specimen::{correct, correct_without_multipliers};
 use crate::corrector::{CorrectorSettings, Solver};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::MassSpring;
+use crate::mesh::Mesh;
 use crate::problem::{Model, Solution};
 use crate::solve::vector::difference;
-use crate::solve::{Loading, NewtonSettings, PathEnd, State};
+use crate::solve::{Assembly, Loading, NewtonSettings, PathEnd, State};
 use crate::studies::Progress;
-use crate::studies::specimen::problem::Specimen;
+use crate::studies::specimen::problem::{LARGE, Specimen};
 
 const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-10,
@@ -23,12 +25,11 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
     solver: Solver::Automatic,
 };
 
-/// Unknowns of a lattice from which on nobody looks at its multipliers one by one.
-const LARGE: usize = 20_000;
-
 /// Where the corrector began at a load factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
+    /// At springs on a coarser mesh.
+    Climb,
     /// At the springs' field, with what the correction had changed at the load factor before.
     Springs,
     /// At the equilibrium of the lattice's cells, which Newton's method reached from rest in load steps; ū is the
@@ -48,6 +49,8 @@ pub struct OnLattice {
     pub corrected: Solution,
     /// Where the corrector began at each load factor that it reached.
     pub starts: Vec<Start>,
+    /// The climbs to the first of these, or to all.
+    pub climbs: Vec<ShapeClimb>,
 }
 
 /// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
@@ -96,9 +99,11 @@ impl OnLattice {
         let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
         progress.tell("corrector");
         let lattice = &springs.mesh;
+        let climbs = climbs(specimen, lattice)?;
         let energy = specimen.problem.finite_elements(lattice);
         let model = specimen.on(lattice, &energy)?.named("corrector");
-        let (states, starts) = Corrections::new(specimen, &model, progress).all(&uncorrected, ends);
+        let corrections = Corrections::new(specimen, &model, progress);
+        let (states, starts) = corrections.all(&uncorrected, &climbs, ends);
         let corrected = Solution::new(&model, &specimen.groups(), states);
         drop(model);
         Ok(Self {
@@ -106,8 +111,56 @@ impl OnLattice {
             uncorrected,
             corrected,
             starts,
+            climbs,
         })
     }
+}
+
+/// The climbs to the load factors, as far as they lead; none where the study has no climb.
+fn climbs(specimen: &Specimen, lattice: &Mesh) -> Result<Vec<ShapeClimb>, Error> {
+    let Some(settings) = specimen.climb(2 * lattice.nodes.len()) else {
+        return Ok(Vec::new());
+    };
+    let meshes = specimen.outline.lattices();
+    let mut climb = Climb::new(&specimen.problem, &meshes, settings);
+    let mut climbs = Vec::new();
+    match climb.follow(&specimen.factors, &mut |own| climbs.push(own.clone())) {
+        // The rest is left to load steps on the lattice, which tell how far they came.
+        Ok(()) | Err(Error::Solve { .. }) => Ok(climbs),
+        Err(other) => Err(other),
+    }
+}
+
+/// The corrected field alone: where it climbs, the lattice's own springs are not needed.
+pub fn solve_corrected(
+    specimen: &Specimen,
+    ends: &mut Vec<End>,
+    progress: Progress,
+) -> Result<Solution, Error> {
+    progress.tell("corrector");
+    let lattice = specimen.outline.lattice();
+    let climbs = climbs(specimen, &lattice)?;
+    if climbs.len() == specimen.factors.len() {
+        let energy = specimen.problem.finite_elements(&lattice);
+        let model = specimen.on(&lattice, &energy)?;
+        let states = climbs.into_iter().map(|own| climbed(&model, own.state));
+        return Ok(Solution::new(&model, &specimen.groups(), states.collect()));
+    }
+    let found = OnLattice::solve(specimen, ends, progress)?;
+    // Where the springs end early the correction goes on.
+    ends.retain(|end| !end.is_of("mass-spring"));
+    Ok(found.corrected)
+}
+
+/// The state of a climb with its potential, which those between the first and the last do not have.
+fn climbed(model: &Model, mut state: State) -> State {
+    if state.convergence.energy.is_nan() {
+        let potential = model.potential(state.factor, &[]);
+        let mut forces = vec![0.0; state.displacement.len()];
+        let found = Assembly::residual(&*potential, &state.displacement, &mut forces);
+        state.convergence.energy = found.unwrap_or(f64::NAN);
+    }
+    state
 }
 
 /// The corrections at all load factors.
@@ -129,11 +182,21 @@ impl<'a> Corrections<'a> {
         }
     }
 
-    /// Corrects as many load factors as can be.
-    fn all(mut self, uncorrected: &Solution, ends: &mut Vec<End>) -> (Vec<State>, Vec<Start>) {
-        let (mut states, mut starts) = (Vec::new(), Vec::new());
+    /// Corrects as many load factors as can be, beyond those that climbs have led to.
+    fn all(
+        mut self,
+        uncorrected: &Solution,
+        climbs: &[ShapeClimb],
+        ends: &mut Vec<End>,
+    ) -> (Vec<State>, Vec<Start>) {
+        let found = climbs
+            .iter()
+            .map(|own| climbed(self.model, own.state.clone()));
+        let mut states: Vec<State> = found.collect();
+        let mut starts = vec![Start::Climb; states.len()];
         let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
-        for (step, factor) in self.specimen.factors.iter().enumerate() {
+        let factors = self.specimen.factors.iter().enumerate();
+        for (step, factor) in factors.skip(climbs.len()) {
             let springs = uncorrected.displacement(step);
             let history = states.last().map(|before| self.model.remembered(before));
             let at = (step, *factor, &*history.unwrap_or_default());
