@@ -22,6 +22,14 @@ pub enum Motion {
 }
 
 impl Motion {
+    /// How far it turns at load factor 1, in rad.
+    pub fn angle(self) -> f64 {
+        match self {
+            Self::Straight(_) => 0.0,
+            Self::Turn { angle, .. } => angle,
+        }
+    }
+
     pub fn at(self, factor: f64) -> f64 {
         match self {
             Self::Straight(displacement) => factor * displacement,

@@ -310,6 +310,17 @@ impl Loading for Model<'_> {
         Some(field.iter().map(|u| ratio * u).collect())
     }
 
+    fn longest_step(&self, factor: f64) -> f64 {
+        /// A turn beyond a half would lead to the state of the one the other way round; less follows the body.
+        const TURN: f64 = std::f64::consts::PI / 6.0;
+        if self.near.iter().any(|(known, _)| *known == factor) {
+            return f64::INFINITY;
+        }
+        let held = self.constraints.held.values();
+        let most = held.fold(0.0, |most: f64, own| most.max(own.angle().abs()));
+        TURN / most
+    }
+
     fn describe(&self, element: usize) -> String {
         if element < self.energy.elements() {
             (self.describe)(element)

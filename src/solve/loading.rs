@@ -32,6 +32,11 @@ pub trait Loading {
     /// prediction from the state before is the best guess.
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>>;
 
+    /// How far the load factor may go in one step to another one: a turn that is taken at once is one of many.
+    fn longest_step(&self, _factor: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// Names an element of the potential with its place, for messages.
     fn describe(&self, element: usize) -> String;
 

@@ -7,7 +7,7 @@ use super::loading::{Loading, State};
 use super::newton::{Newton, NewtonSettings};
 use super::potential::Potential;
 use super::tangent::Tangent;
-use super::vector::difference;
+use super::vector::{difference, norm};
 use crate::error::SolveFault;
 
 /// The end of a path before its last load factor.
@@ -46,6 +46,9 @@ const SHORTEST: f64 = 1.0 / 1024.0;
 
 /// The shortest step from rest, as a share of the load factor that is wanted.
 const SHORTEST_FROM_REST: f64 = 1.0 / 1_048_576.0;
+
+/// Tolerances from which on an equilibrium is a first guess, whatever its branch.
+const ROUGH: f64 = 1e-2;
 
 /// Iterations up to which a step was easy.
 const EASY: usize = 6;
@@ -141,6 +144,15 @@ pub fn compliance(
     tangent.respond(&*potential, displacement, forces, &describe)
 }
 
+/// An equilibrium at the end of a step.
+struct Found {
+    state: State,
+    /// Whether it is farther from its first guess than that from the state before: the body has snapped to another branch.
+    is_far: bool,
+    /// Whether it is neither, nor was there a tangent on the way that was not positive definite, where there are other branches.
+    is_sure: bool,
+}
+
 struct Path<'a> {
     loading: &'a dyn Loading,
     settings: NewtonSettings,
@@ -181,13 +193,16 @@ impl<'a> Path<'a> {
             let start = previous.map_or(0.0, |state| state.factor);
             let rest = factor - start;
             // A rest that is hardly longer than a step is taken with it.
-            let aim = if rest.abs() <= 1.001 * self.step {
+            let step = self.step.min(self.loading.longest_step(factor));
+            let aim = if rest.abs() <= 1.001 * step {
                 factor
             } else {
-                start + self.step.copysign(rest)
+                start + step.copysign(rest)
             };
+            let shortest = 0.5 * (aim - start).abs() < from_rest.max(SHORTEST * aim.abs());
             match self.solve_at(previous, aim, &history) {
-                Ok(state) => {
+                Ok(found) if found.is_sure || shortest && !found.is_far => {
+                    let state = found.state;
                     load_steps += 1;
                     let log = &state.convergence;
                     let easy = log.iterations() <= EASY && log.cut_steps + log.shifted_steps == 0;
@@ -204,11 +219,13 @@ impl<'a> Path<'a> {
                     }
                     last = Some(Box::new(state));
                 }
-                Err(_) if 0.5 * (aim - start).abs() >= from_rest.max(SHORTEST * aim.abs()) => {
+                _ if !shortest => {
                     self.step = 0.5 * (aim - start).abs();
                     halved = true;
                 }
-                Err(fault) => {
+                found => {
+                    let far = SolveFault::NotPositiveDefinite;
+                    let fault = found.err().unwrap_or(far);
                     let fault = diagnose(
                         &mut self.newton,
                         self.loading,
@@ -227,14 +244,28 @@ impl<'a> Path<'a> {
         previous: Option<&State>,
         factor: f64,
         history: &[f64],
-    ) -> Result<State, SolveFault> {
+    ) -> Result<Found, SolveFault> {
         let potential = self.loading.potential(factor, history);
-        let guess = match self.loading.guess(factor, previous) {
+        let mut guess = match self.loading.guess(factor, previous) {
             Some(guess) => guess,
             None => self.predict(previous, factor, &*potential)?,
         };
         let at = (&*potential, factor, history);
-        equilibrium(self.loading, at, (&mut self.newton, guess), self.settings)
+        let newton = &mut self.newton;
+        let state = equilibrium(self.loading, at, (newton, guess.clone()), self.settings)?;
+        self.loading.impose(factor, &mut guess);
+        let beyond = norm(&difference(&state.displacement, &guess));
+        let step = match previous {
+            Some(previous) => norm(&difference(&guess, &previous.displacement)),
+            None => norm(&guess),
+        };
+        let rough = self.settings.tolerance >= ROUGH;
+        let is_far = !rough && beyond > step;
+        Ok(Found {
+            is_far,
+            is_sure: rough || !is_far && state.convergence.shifted_steps == 0,
+            state,
+        })
     }
 
     /// The linear prediction: the tangent at the state before, for the change of supports and loads.
