@@ -9,6 +9,7 @@ use crate::error::Error;
 
 mod array;
 mod block;
+mod branches;
 mod chart;
 mod check;
 mod curves;
@@ -36,6 +37,7 @@ pub mod wrinkling;
 
 pub use array::{Array, Components};
 pub use block::{Block, Content, Figure};
+pub use branches::{is_one_of_several, one_of_several};
 pub use chart::{Axis, Line, LineChart, PALETTE, Scale, Stroke};
 pub use check::{Check, Wanted, requirements, verdict};
 pub use curves::{comparison_chart, material_chart};

@@ -96,7 +96,7 @@ impl Correction {
             residuals: steps.clone().map(|step| step.residual).collect(),
             energy,
             cut_steps: steps.filter(|step| step.length < 1.0).count(),
-            shifted_steps: 0,
+            ..Convergence::default()
         }
     }
 }

@@ -155,6 +155,12 @@ impl<'a> PlateCorrector<'a> {
             .corrector(stretch, known)
             .correct(data, data)
             .map_err(fault)?;
+        if known == KnownConditions::ALL {
+            let model = self.problem.on(self.mesh, &self.energy);
+            model
+                .check_stability((stretch, self.energy.history()), correction.field())
+                .map_err(fault)?;
+        }
         let convergence = correction.convergence(f64::NAN);
         let corrected = self.corrected(correction.field().to_vec(), stretch, convergence);
         Ok(CorrectedState {

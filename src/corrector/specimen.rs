@@ -69,6 +69,7 @@ pub fn correct(
             }
         })?;
     let convergence = correction.convergence(energy);
+    model.check_stability((factor, history), &displacement)?;
     Ok(CorrectedField {
         state: State {
             factor,

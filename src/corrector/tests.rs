@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::*;
-use crate::error::SolveFault;
+use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::Card;
-use crate::mesh::Mesh;
+use crate::mesh::{CellShape, Mesh};
 use crate::problem::ClampedPlate;
 use crate::solve::vector::{difference, largest};
 use crate::solve::{Inadmissible, Newton, NewtonSettings, SparseRows, State};
@@ -55,6 +55,34 @@ fn noise(size: usize) -> Vec<f64> {
 
 fn plate_corrector<'a>(problem: &'a ClampedPlate, mesh: &'a Mesh) -> PlateCorrector<'a> {
     PlateCorrector::new(problem, mesh, DifferenceScheme::Gauss, SETTINGS)
+}
+
+/// The conditions hold at equilibria that are not stable, too.
+#[test]
+fn a_corrected_field_is_stable() {
+    let plate = ClampedPlate {
+        size: [150.0, 50.0],
+        ..problem()
+    };
+    let mesh = Mesh::plate(plate.size, [24, 8], CellShape::Quad4);
+    let corrector = plate_corrector(&plate, &mesh);
+    let correct = |stretch: f64| {
+        let data = plate.affine(&mesh, stretch);
+        corrector.correct(&data, stretch, KnownConditions::ALL)
+    };
+    assert!(correct(-0.1).is_ok());
+    assert!(correct(0.3).is_ok());
+    let found = correct(-0.4).map(|found| found.measures.force);
+    assert!(
+        matches!(
+            found,
+            Err(Error::Solve {
+                fault: SolveFault::NotPositiveDefinite,
+                ..
+            })
+        ),
+        "{found:?}"
+    );
 }
 
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {

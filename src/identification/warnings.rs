@@ -3,6 +3,7 @@
 use super::recording::Recording;
 use super::smoothing::SignalSpline;
 use super::types::Identification;
+use crate::statistics::Estimate;
 
 /// The warnings of an identification from the splines of extension and force.
 pub fn warnings(
@@ -29,13 +30,17 @@ pub fn warnings(
             .into_iter()
             .map(|x| function.at(x))
             .collect();
-        if estimates.iter().all(|estimate| estimate.interval[0] <= 0.0) {
-            warnings.push(format!("the recording does not tell {name}(·) from zero"));
-        }
-        if estimates.iter().any(|estimate| estimate.interval[1] < 0.0) {
+        let negative = |estimate: &Estimate| estimate.interval[1] < 0.0;
+        if estimates.iter().all(negative) {
+            warnings.push(format!(
+                "{name}(·) is negative: turn the sign of the force or of the extension"
+            ));
+        } else if estimates.iter().any(negative) {
             warnings.push(format!(
                 "{name}(·) is negative somewhere: no passive spring does that"
             ));
+        } else if estimates.iter().all(|estimate| estimate.interval[0] <= 0.0) {
+            warnings.push(format!("the recording does not tell {name}(·) from zero"));
         }
     }
     if recording.mass == 0.0 {

@@ -10,7 +10,7 @@
 //! | softening | `*MULLINS EFFECT` of Abaqus |
 //! | clamp, displacement, roller, symmetry | prescribed on a node set |
 //! | grip with a given force | nodes that follow one of them (`*EQUATION`), which takes the force; not for FEBio |
-//! | rotation | prescribed node by node |
+//! | rotation | prescribed node by node, in steps of 30° at most for Abaqus and CalculiX |
 //! | traction, force (dead) | nodal forces of the finite elements |
 //! | pressure | pressure on the edges, which follows them |
 //! | incompressible sheet | plane stress, or one layer of solids over half the thickness (FEBio) |

@@ -1,4 +1,4 @@
-//! The fields that small motions and forces of a group bring about.
+//! What the tangent at a state tells: the fields that small motions and forces of a group bring about, and stability.
 
 use rayon::prelude::*;
 
@@ -50,6 +50,21 @@ impl Model<'_> {
         groups
             .flat_map_iter(|group| self.influences_in_turn(group, name, axis))
             .collect()
+    }
+
+    /// Looks whether an equilibrium of the body with a history is stable.
+    ///
+    /// # Errors
+    /// [`SolveFault::NotPositiveDefinite`] where it is not.
+    pub fn check_stability(
+        &self,
+        (factor, history): (f64, &[f64]),
+        displacement: &[f64],
+    ) -> Result<(), SolveFault> {
+        let potential = self.potential(factor, history);
+        let mut tangent = Tangent::new(&*potential, &self.held(), self.linear_solver())?;
+        let describe = |element| self.describe(element);
+        tangent.at(&*potential, displacement, &describe).map(|_| ())
     }
 
     fn influences_in_turn(

@@ -5,6 +5,7 @@ use crate::solve::{Convergence, State};
 use crate::units::parse_linear_length;
 use samples::{CLAMP, NEWTON, moved, problem, solved, strip, turned};
 
+mod branches;
 pub mod samples;
 mod softening;
 

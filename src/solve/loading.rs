@@ -37,6 +37,11 @@ pub trait Loading {
         f64::INFINITY
     }
 
+    /// Whether an equilibrium must lie on the branch of those before it; where what lies between is not known, any will do.
+    fn follows_its_branch(&self) -> bool {
+        true
+    }
+
     /// Names an element of the potential with its place, for messages.
     fn describe(&self, element: usize) -> String;
 

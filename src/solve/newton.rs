@@ -38,6 +38,8 @@ pub struct Convergence {
     pub cut_steps: usize,
     /// Iterations in which the tangent was not positive definite and was shifted.
     pub shifted_steps: usize,
+    /// Load steps, as short as they could be, in which the body moved farther than the step foretold: it snapped to another branch.
+    pub snaps: usize,
 }
 
 impl Convergence {

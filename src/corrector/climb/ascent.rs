@@ -111,9 +111,10 @@ impl Climb<'_> {
                 self.step_up_by_load_path(&mut ascent, stretch)?;
             }
         }
+        let turned = ascent.field.is_turned(self.grid());
         let force = match self.force(&ascent.field) {
-            Ok(force) => force,
-            Err(Inverted) => {
+            Ok(force) if !turned => force,
+            _ => {
                 self.replace_by_load_path(&mut ascent, stretch)?;
                 let force = self.force(&ascent.field);
                 force.map_err(|Inverted| at_stretch(stretch)(inverted()))?

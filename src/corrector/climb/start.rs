@@ -83,7 +83,9 @@ impl Climb<'_> {
             }
             Start::LoadPath | Start::AffineStretch | Start::StatesBefore => return None,
         };
-        self.load_steps(guess, steps).ok()
+        let first = self.load_steps(guess, steps).ok()?;
+        let grid = &self.levels[self.start].grid;
+        (!first.field.is_turned(grid)).then_some(first)
     }
 
     /// Corrects on the first grid in equal load steps, each from the field before, scaled with the motion of the grip.

@@ -29,6 +29,25 @@ fn problem(card: &str, size: [f64; 2], stretch: f64) -> ClampedPlate {
     }
 }
 
+/// Under strong compression there are equilibria that pass through themselves; they are no plates.
+#[test]
+fn no_plate_is_turned_over() {
+    for stretch in [-0.45, -0.6] {
+        for card in ["pva-10-yeoh", "pva-10"] {
+            let plate = problem(card, [150.0, 50.0], stretch);
+            let mut climb = Climb::even(
+                &plate,
+                [24, 8],
+                DifferenceScheme::Biquadratic,
+                ClimbSettings::default(),
+            );
+            if let Ok(found) = climb.correct(stretch) {
+                assert!(!found.field.is_turned(climb.grid()), "{card} {stretch}");
+            }
+        }
+    }
+}
+
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     let pairs = a.iter().zip(b);
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

@@ -51,8 +51,10 @@ pub fn write(model: &Model) -> String {
     deck.line(&number(given.problem.thickness));
     let mut before = 0.0;
     for factor in given.factors {
-        step(model, before, *factor, &mut deck);
-        before = *factor;
+        for factor in model.on_the_way(before, *factor) {
+            step(model, before, factor, &mut deck);
+            before = factor;
+        }
     }
     deck.0
 }

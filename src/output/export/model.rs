@@ -134,6 +134,23 @@ impl Constraint {
 }
 
 impl<'a> Model<'a> {
+    /// Load factors on the way from one to another one, and that one: codes that lead every node of a step along a straight line
+    /// would take the chord of a large turn.
+    pub fn on_the_way(&self, before: f64, factor: f64) -> Vec<f64> {
+        const TURN: f64 = std::f64::consts::PI / 6.0;
+        let turns = self.held.iter().map(|held| match held.support {
+            Support::Rotation { angle, .. } => angle.abs(),
+            _ => 0.0,
+        });
+        let turn = (factor - before).abs() * turns.fold(0.0, f64::max);
+        let steps = (turn / TURN * (1.0 - 1e-9)).ceil().max(1.0) as usize;
+        let between = (1..steps).map(|step| {
+            let share = step as f64 / steps as f64;
+            before + share * (factor - before)
+        });
+        between.chain([factor]).collect()
+    }
+
     pub fn new(given: &'a Export<'a>, code: Code) -> Result<Self, Diagnostic> {
         let mesh = given.mesh;
         let all = || (0..mesh.cell_count()).map(|cell| (mesh.shape(cell), mesh.cell(cell)));

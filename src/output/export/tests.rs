@@ -148,3 +148,28 @@ fn linear_displacements_go_out_with_the_value_of_every_node() {
         );
     }
 }
+
+/// Codes that take displacements along straight lines take a large turn in several steps, whose ends lie on the arc.
+#[test]
+fn turns_go_out_in_steps() {
+    let card = Card::load("pva-10-yeoh", Path::new(".")).unwrap();
+    let mesh = Shape::Strip { size: [4.0, 2.0] }.mesh(2, CellShape::Quad4);
+    let mut turned = problem(&card);
+    turned.supports[1].1 = Support::Rotation {
+        centre: [4.0, 1.0],
+        angle: std::f64::consts::PI,
+    };
+    let export = Export {
+        title: "strip",
+        problem: &turned,
+        card: &card,
+        mesh: &mesh,
+        factors: &[0.5, 1.0],
+        bulk_ratio: 1000.0,
+    };
+    for code in [Code::Abaqus, Code::CalculiX] {
+        let text = export.input_file(code).unwrap().text;
+        assert_eq!(text.matches("*STEP,").count(), 6, "{text}");
+        assert!(text.contains("** load factor 0.5\n") && text.contains("** load factor 1\n"));
+    }
+}

@@ -104,6 +104,10 @@ impl Loading for HandMotion<'_> {
         previous.is_none().then(|| self.expected(share))
     }
 
+    fn follows_its_branch(&self) -> bool {
+        false
+    }
+
     fn describe(&self, element: usize) -> String {
         self.model.describe(element)
     }

@@ -7,7 +7,7 @@ use crate::problem::ClampedPlate;
 use crate::studies::plate::problem::Study;
 use crate::studies::plate::results::{MODELS, Results};
 
-use crate::results::{locking, small_strain, wrinkling};
+use crate::results::{is_one_of_several, locking, one_of_several, small_strain, wrinkling};
 
 /// Reactions further from balance than this, relative to the largest, deserve a word.
 const BALANCED: f64 = 1e-9;
@@ -66,18 +66,22 @@ fn instability(results: &Results) -> Option<String> {
             let Some(solution) = results.models(step)[model] else {
                 continue;
             };
-            if solution.convergence.shifted_steps > 0 {
+            if is_one_of_several(solution) {
                 let at = ClampedPlate::describe_step(solution.factor);
                 found.push(format!("{name} at {at}"));
             }
         }
     }
-    (!found.is_empty()).then(|| {
-        format!(
-            "Warning: the tangent was not positive definite on the way to {}: the state may be one of several, or unstable",
-            found.join(", ")
-        )
-    })
+    // Finer meshes begin with the states of coarser ones.
+    let [coarser @ .., _] = &results.reference;
+    for solution in coarser.iter().map(|own| &own.solution) {
+        let states = solution.states.iter();
+        for state in states.filter(|state| is_one_of_several(state)) {
+            let at = ClampedPlate::describe_step(state.factor);
+            found.push(format!("coarser {} at {at}", MODELS[2]));
+        }
+    }
+    one_of_several(&found)
 }
 
 fn imbalance(results: &Results) -> Vec<String> {

@@ -53,7 +53,7 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
 }
 
 /// Balances above this are worth a warning.
-const UNBALANCED: f64 = 1e-9;
+const UNBALANCED: f64 = 1e-5;
 
 /// The worst balance of all models.
 pub fn worst_balance(models: &Models) -> Option<f64> {

@@ -10,7 +10,7 @@ use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::results::{locking, small_strain, wrinkling};
+use crate::results::{is_one_of_several, locking, one_of_several, small_strain, wrinkling};
 
 /// All warnings, each in a sentence.
 pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
@@ -37,9 +37,25 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         .collect();
     all.extend(locking::warning(&*specimen.problem.law, &locking));
     all.extend(small_strain::warning(&*specimen.problem.law, mesh, loads()));
+    all.extend(several(models));
     all.extend(beyond(&specimen.card, &strained));
     all.extend(unstable(&specimen.card, &strained));
     all
+}
+
+/// The warning about states that may be one of several.
+fn several(models: &Models) -> Option<String> {
+    let named = models.named();
+    let solutions = named.iter().map(|model| (model.name, model.solution));
+    // Finer meshes begin with the states of coarser ones.
+    let coarser = models.reference.coarser().iter();
+    let solutions = solutions.chain(coarser.map(|own| ("coarser finite elements", own)));
+    let states = solutions.flat_map(|(name, solution)| {
+        let found = solution.states.iter();
+        let found = found.filter(|state| is_one_of_several(state));
+        found.map(move |state| format!("{name} at load factor {}", state.factor))
+    });
+    one_of_several(&states.collect::<Vec<_>>())
 }
 
 /// The principal stretches of a sheet at the centres of its cells, and whether its material is stable there.

@@ -250,11 +250,14 @@ impl<'a> Corrections<'a> {
                 }
             },
         };
-        let reached = reached.displacement.clone();
+        let (reached, snaps) = (reached.displacement.clone(), reached.convergence.snaps);
         let start = springs.map_or(Start::Alone, |_| Start::LoadSteps);
         let found = self.correct(springs.unwrap_or(&reached), &reached, (factor, history));
         let found = found.map_err(|fault| Box::new(End::at(&model.name, factor, fault)));
-        found.map(|field| (field, start))
+        found.map(|mut field| {
+            field.convergence.snaps = snaps;
+            (field, start)
+        })
     }
 
     fn correct(&self, data: &[f64], start: &[f64], at: (f64, &[f64])) -> Result<State, SolveFault> {

@@ -39,6 +39,11 @@ pub struct Round {
 }
 
 impl Reference {
+    /// The solutions on coarser meshes, from coarse to fine.
+    pub fn coarser(&self) -> &[Solution] {
+        &self.coarser
+    }
+
     /// How many load factors the finest mesh has reached.
     pub fn reached(&self) -> usize {
         self.finest.reached()
