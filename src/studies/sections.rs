@@ -277,7 +277,9 @@ fn check_stretch(
         );
     }
     if !card.covers(1.0 + stretch) {
-        let [low, high] = card.stretch_range.map(|lambda| 100.0 * (lambda - 1.0));
+        // Without the sign of a zero.
+        let percent = |lambda: f64| (100.0 * (lambda - 1.0)).round() + 0.0;
+        let [low, high] = card.stretch_range.map(percent);
         let step = ClampedPlate::describe_step(stretch);
         section.warning(
             key,
