@@ -24,7 +24,7 @@ mod work;
 
 pub use balance::{Balance, Resultant};
 pub use boundary::BoundaryProblem;
-pub use boundary_conditions::{Drive, Load, Support};
+pub use boundary_conditions::{Drive, LONGEST_TURN, Load, Support};
 pub use deformed::{DeformedSheet, PointFault, Stress};
 pub use grip::{Grip, RigidMotion};
 pub(crate) use groups::edge_lengths;

@@ -2,6 +2,10 @@
 
 use crate::units::Linear;
 
+/// The longest turn in rad that is taken in one step: one beyond a half would lead to the state of the turn the other way round, and
+/// codes that lead nodes along straight lines would take its chord.
+pub const LONGEST_TURN: f64 = std::f64::consts::PI / 6.0;
+
 /// What holds a group; everything grows with the load factor and is complete at 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Support {

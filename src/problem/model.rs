@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::boundary_conditions::LONGEST_TURN;
 use super::constraints::{Constraints, Motion};
 use super::loads::Loads;
 use super::rigid::free_motions;
@@ -311,14 +312,12 @@ impl Loading for Model<'_> {
     }
 
     fn longest_step(&self, factor: f64) -> f64 {
-        /// A turn beyond a half would lead to the state of the one the other way round; less follows the body.
-        const TURN: f64 = std::f64::consts::PI / 6.0;
         if self.near.iter().any(|(known, _)| *known == factor) {
             return f64::INFINITY;
         }
         let held = self.constraints.held.values();
         let most = held.fold(0.0, |most: f64, own| most.max(own.angle().abs()));
-        TURN / most
+        LONGEST_TURN / most
     }
 
     fn describe(&self, element: usize) -> String {

@@ -201,43 +201,34 @@ impl<'a> Path<'a> {
                 start + step.copysign(rest)
             };
             let shortest = 0.5 * (aim - start).abs() < from_rest.max(SHORTEST * aim.abs());
-            match self.solve_at(previous, aim, &history) {
-                Ok(found) if found.is_sure || shortest => {
-                    snaps += usize::from(found.is_far);
-                    let mut state = found.state;
-                    state.convergence.snaps = snaps;
-                    load_steps += 1;
-                    let log = &state.convergence;
-                    let easy = log.iterations() <= EASY && log.cut_steps + log.shifted_steps == 0;
-                    if easy && !halved {
-                        self.step *= 2.0;
-                    }
-                    halved = false;
-                    let state = State {
-                        load_steps,
-                        ..state
-                    };
-                    if aim == factor {
-                        return Ok(state);
-                    }
-                    last = Some(Box::new(state));
-                }
-                _ if !shortest => {
-                    self.step = 0.5 * (aim - start).abs();
-                    halved = true;
-                }
-                Ok(_) => unreachable!("the shortest step is taken"),
-                Err(fault) => {
-                    let fault = diagnose(
-                        &mut self.newton,
-                        self.loading,
-                        previous,
-                        (aim, &history),
-                        fault,
-                    );
+            let found = match self.solve_at(previous, aim, &history) {
+                Ok(found) if found.is_sure || shortest => found,
+                Err(fault) if shortest => {
+                    let (newton, at) = (&mut self.newton, (aim, &*history));
+                    let fault = diagnose(newton, self.loading, previous, at, fault);
                     return Err((fault, last));
                 }
+                _ => {
+                    self.step = 0.5 * (aim - start).abs();
+                    halved = true;
+                    continue;
+                }
+            };
+            load_steps += 1;
+            snaps += usize::from(found.is_far);
+            let mut state = found.state;
+            state.load_steps = load_steps;
+            state.convergence.snaps = snaps;
+            let log = &state.convergence;
+            let easy = log.iterations() <= EASY && log.cut_steps + log.shifted_steps == 0;
+            if easy && !halved {
+                self.step *= 2.0;
             }
+            halved = false;
+            if aim == factor {
+                return Ok(state);
+            }
+            last = Some(Box::new(state));
         }
     }
 

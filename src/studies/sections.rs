@@ -28,11 +28,12 @@ const SHEET: &str = "sheet";
 /// Stretches that a plate may be given.
 const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
 
-/// A card that softens cannot be climbed with, and what helps.
-pub const CLIMB_FORGETS: &str =
-    "this card softens, and the climb has no memory of the largest load";
-/// What to do then.
-pub const CLIMB_REMEDY: &str = "write method = \"direct\", or leave out the card's `[softening]`";
+/// Records that a card which softens is to climb.
+pub fn refuse_climb_with_memory(corrector: &Section) {
+    let message = "this card softens, and the climb has no memory of the largest load";
+    let hint = "write method = \"direct\", or leave out the card's `[softening]`";
+    corrector.fault("method", message, hint);
+}
 
 /// How exactly a corrected field climbs.
 pub fn read_climb(section: &Section) -> ClimbSettings {

@@ -70,7 +70,7 @@ fn what_was_reached_before_a_path_ends_is_not_lost() {
     fs::write(folder.path().join("small.toml"), specimen(shape, &pressed)).unwrap();
     let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
     let printed = words(&done.get_output().stdout);
-    assert!(printed.contains("load factor 30 (reached "), "{printed}");
+    assert!(printed.contains("load factor 30 (reached 8."), "{printed}");
     assert!(printed.contains("buckling or wrinkling"), "{printed}");
     let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
     assert!(report.contains("| 0.1 |"), "{report}");

@@ -33,7 +33,7 @@ fn problem(card: &str, size: [f64; 2], stretch: f64) -> ClampedPlate {
 #[test]
 fn no_plate_is_turned_over() {
     for stretch in [-0.45, -0.6] {
-        for card in ["pva-10-yeoh", "pva-10"] {
+        for card in ["pva-10-yeoh", "pva-10", "neo-hooke"] {
             let plate = problem(card, [150.0, 50.0], stretch);
             let mut climb = Climb::even(
                 &plate,

@@ -6,7 +6,7 @@ use super::text::{Names, ascii, number};
 use crate::error::Diagnostic;
 use crate::material::{Card, Code, CodeLaw};
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::{BoundaryProblem, Drive, Load, Support};
+use crate::problem::{BoundaryProblem, Drive, LONGEST_TURN, Load, Support};
 
 /// What is exported.
 #[derive(Clone, Copy)]
@@ -137,13 +137,12 @@ impl<'a> Model<'a> {
     /// Load factors on the way from one to another one, and that one: codes that lead every node of a step along a straight line
     /// would take the chord of a large turn.
     pub fn on_the_way(&self, before: f64, factor: f64) -> Vec<f64> {
-        const TURN: f64 = std::f64::consts::PI / 6.0;
         let turns = self.held.iter().map(|held| match held.support {
             Support::Rotation { angle, .. } => angle.abs(),
             _ => 0.0,
         });
         let turn = (factor - before).abs() * turns.fold(0.0, f64::max);
-        let steps = (turn / TURN * (1.0 - 1e-9)).ceil().max(1.0) as usize;
+        let steps = (turn / LONGEST_TURN * (1.0 - 1e-9)).ceil().max(1.0) as usize;
         let between = (1..steps).map(|step| {
             let share = step as f64 / steps as f64;
             before + share * (factor - before)

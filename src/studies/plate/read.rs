@@ -17,8 +17,8 @@ use crate::solve::LinearSolver;
 use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
-    CLIMB_FORGETS, CLIMB_REMEDY, MOST_CELLS, Tolerances, affords_cells, check_range, even_cells,
-    read_card, read_climb, read_newton, read_plate,
+    MOST_CELLS, Tolerances, affords_cells, check_range, even_cells, read_card, read_climb,
+    read_newton, read_plate, refuse_climb_with_memory,
 };
 use crate::units::Dimension;
 
@@ -164,8 +164,7 @@ fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<Corr
             .fault("area_term", message, hint);
     }
     if corrector.is_some_and(|corrector| corrector.climb.is_some()) {
-        root.section("corrector")
-            .fault("method", CLIMB_FORGETS, CLIMB_REMEDY);
+        refuse_climb_with_memory(&root.section("corrector"));
     }
 }
 

@@ -241,7 +241,7 @@ fn introduction(models: &Models) -> String {
 }
 
 /// The meshes of the climbs, and what these tell of their error.
-fn climbs(models: &Models) -> Option<String> {
+fn climbs(specimen: &Specimen, models: &Models) -> Option<String> {
     let climbs = models.on_lattice.climbs.iter();
     let longest = climbs.clone().max_by_key(|own| own.work.len())?;
     let nodes: Vec<_> = longest
@@ -250,17 +250,18 @@ fn climbs(models: &Models) -> Option<String> {
         .map(|own| own.nodes.to_string())
         .collect();
     let (last, others) = nodes.split_last()?;
-    let most = climbs.max_by(|a, b| a.discretisation_error.total_cmp(&b.discretisation_error))?;
+    let errors = climbs.map(|own| own.discretisation_error);
+    let errors = errors.zip(&specimen.factors);
+    let (most, factor) = errors.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let over = match others.is_empty() {
         true => String::new(),
         false => format!("{} and ", others.join(", ")),
     };
-    let error = match most.discretisation_error.is_nan() {
+    let error = match most.is_nan() {
         true => String::new(),
         false => format!(
-            ". These tell its discretisation error: {} mm (root mean square over the nodes) at load factor {}, where it is largest",
-            number(most.discretisation_error),
-            most.state.factor
+            ". These tell its discretisation error: {} mm (root mean square over the nodes) at load factor {factor}, where it is largest",
+            number(most)
         ),
     };
     Some(format!(
@@ -278,7 +279,7 @@ fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
         found.join(", ")
     };
     let (alone, steps) = (at(Start::Alone), at(Start::LoadSteps));
-    let mut text = climbs(models).unwrap_or_default();
+    let mut text = climbs(specimen, models).unwrap_or_default();
     if !steps.is_empty() {
         text += &format!(
             "From the springs' field itself the corrector found no way at the load factors {steps}; it began at an \

@@ -12,7 +12,7 @@ use crate::problem::{BoundaryProblem, Load};
 use crate::solve::LinearSolver;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
-    CLIMB_FORGETS, CLIMB_REMEDY, Tolerances, check_thickness, read_card, read_climb,
+    Tolerances, check_thickness, read_card, read_climb, refuse_climb_with_memory,
 };
 use crate::units::Dimension;
 
@@ -136,7 +136,7 @@ fn check_climb(root: &Section, specimen: &Specimen) {
         section.fault("method", message, "leave `method` out, or write \"direct\"");
     }
     if specimen.problem.law.softening().is_some() {
-        section.fault("method", CLIMB_FORGETS, CLIMB_REMEDY);
+        refuse_climb_with_memory(&section);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Springs and corrected springs on the lattice of a specimen, each as far as its path goes.
 
 use super::end::End;
-use crate::corrector::shape_climb::{Climb, ShapeClimb};
+use crate::corrector::shape_climb::{Climb, ShapeClimb, ShapeWork};
 use crate::corrector::specimen::{correct, correct_without_multipliers};
 use crate::corrector::{CorrectorSettings, Solver};
 use crate::error::{Error, SolveFault};
@@ -50,7 +50,15 @@ pub struct OnLattice {
     /// Where the corrector began at each load factor that it reached.
     pub starts: Vec<Start>,
     /// The climbs to the first of these, or to all.
-    pub climbs: Vec<ShapeClimb>,
+    pub climbs: Vec<ClimbTold>,
+}
+
+/// What a climb tells besides its state.
+pub struct ClimbTold {
+    /// See [`ShapeClimb::discretisation_error`].
+    pub discretisation_error: f64,
+    /// See [`ShapeClimb::work`].
+    pub work: Vec<ShapeWork>,
 }
 
 /// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
@@ -98,12 +106,30 @@ impl OnLattice {
     ) -> Result<Self, Error> {
         let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
         progress.tell("corrector");
+        let climbs = climbs(specimen, &springs.mesh)?;
+        Self::correct(specimen, (springs, uncorrected), climbs, ends, progress)
+    }
+
+    /// Corrects the springs where climbs do not lead.
+    fn correct(
+        specimen: &Specimen,
+        (springs, uncorrected): (MassSpring, Solution),
+        climbs: Vec<ShapeClimb>,
+        ends: &mut Vec<End>,
+        progress: Progress,
+    ) -> Result<Self, Error> {
         let lattice = &springs.mesh;
-        let climbs = climbs(specimen, lattice)?;
         let energy = specimen.problem.finite_elements(lattice);
         let model = specimen.on(lattice, &energy)?.named("corrector");
+        let told = climbs.iter().map(|own| ClimbTold {
+            discretisation_error: own.discretisation_error,
+            work: own.work.clone(),
+        });
+        let told = told.collect();
+        let climbed = climbs.into_iter().map(|own| climbed(&model, own.state));
+        let climbed = climbed.collect();
         let corrections = Corrections::new(specimen, &model, progress);
-        let (states, starts) = corrections.all(&uncorrected, &climbs, ends);
+        let (states, starts) = corrections.all(&uncorrected, climbed, ends);
         let corrected = Solution::new(&model, &specimen.groups(), states);
         drop(model);
         Ok(Self {
@@ -111,7 +137,7 @@ impl OnLattice {
             uncorrected,
             corrected,
             starts,
-            climbs,
+            climbs: told,
         })
     }
 }
@@ -146,7 +172,8 @@ pub fn solve_corrected(
         let states = climbs.into_iter().map(|own| climbed(&model, own.state));
         return Ok(Solution::new(&model, &specimen.groups(), states.collect()));
     }
-    let found = OnLattice::solve(specimen, ends, progress)?;
+    let springs = solve_springs(specimen, ends, progress)?;
+    let found = OnLattice::correct(specimen, springs, climbs, ends, progress)?;
     // Where the springs end early the correction goes on.
     ends.retain(|end| !end.is_of("mass-spring"));
     Ok(found.corrected)
@@ -182,21 +209,17 @@ impl<'a> Corrections<'a> {
         }
     }
 
-    /// Corrects as many load factors as can be, beyond those that climbs have led to.
+    /// Corrects as many load factors as can be, beyond the states that climbs have led to.
     fn all(
         mut self,
         uncorrected: &Solution,
-        climbs: &[ShapeClimb],
+        mut states: Vec<State>,
         ends: &mut Vec<End>,
     ) -> (Vec<State>, Vec<Start>) {
-        let found = climbs
-            .iter()
-            .map(|own| climbed(self.model, own.state.clone()));
-        let mut states: Vec<State> = found.collect();
         let mut starts = vec![Start::Climb; states.len()];
         let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
         let factors = self.specimen.factors.iter().enumerate();
-        for (step, factor) in factors.skip(climbs.len()) {
+        for (step, factor) in factors.skip(starts.len()) {
             let springs = uncorrected.displacement(step);
             let history = states.last().map(|before| self.model.remembered(before));
             let at = (step, *factor, &*history.unwrap_or_default());
