@@ -111,10 +111,9 @@ impl Climb<'_> {
                 self.step_up_by_load_path(&mut ascent, stretch)?;
             }
         }
-        let turned = ascent.field.is_turned(self.grid());
         let force = match self.force(&ascent.field) {
-            Ok(force) if !turned => force,
-            _ => {
+            Ok(force) => force,
+            Err(Inverted) => {
                 self.replace_by_load_path(&mut ascent, stretch)?;
                 let force = self.force(&ascent.field);
                 force.map_err(|Inverted| at_stretch(stretch)(inverted()))?

@@ -221,21 +221,6 @@ impl Field {
         (self.product(self) / self.components[0].len() as f64).sqrt()
     }
 
-    /// Whether a cell is turned by a right angle or more, which the middle of a clamped plate never is: F₁₁ + F₂₂ ≤ 0 in its middle.
-    pub fn is_turned(&self, grid: &Grid) -> bool {
-        let [x, y] = &self.components;
-        let cells = grid.coordinates.each_ref().map(|places| places.len() - 1);
-        let turned = |column: usize, row: usize| {
-            let at = |u: &[f64], [i, j]: [usize; 2]| u[(column + i) * self.width + row + j];
-            let along = at(x, [1, 0]) + at(x, [1, 1]) - at(x, [0, 0]) - at(x, [0, 1]);
-            let across = at(y, [0, 1]) + at(y, [1, 1]) - at(y, [0, 0]) - at(y, [1, 0]);
-            let [width, height] =
-                [(0, column), (1, row)].map(|(axis, cell)| grid.span(axis, cell, cell + 1));
-            2.0 + 0.5 * (along / width + across / height) <= 0.0
-        };
-        (0..cells[0]).any(|column| (0..cells[1]).any(|row| turned(column, row)))
-    }
-
     /// The root mean square over the nodes of some lines and some places on them.
     pub fn size_at(&self, [lines, nodes]: &[Vec<usize>; 2]) -> f64 {
         let line = |component: &[f64], line: usize| -> f64 {

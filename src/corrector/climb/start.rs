@@ -83,9 +83,7 @@ impl Climb<'_> {
             }
             Start::LoadPath | Start::AffineStretch | Start::StatesBefore => return None,
         };
-        let first = self.load_steps(guess, steps).ok()?;
-        let grid = &self.levels[self.start].grid;
-        (!first.field.is_turned(grid)).then_some(first)
+        self.load_steps(guess, steps).ok()
     }
 
     /// Corrects on the first grid in equal load steps, each from the field before, scaled with the motion of the grip.
