@@ -32,6 +32,7 @@ mod softening;
 mod state;
 mod stress_unit;
 mod surface;
+mod viscous_stress;
 mod work;
 pub mod wrinkling;
 
@@ -52,9 +53,10 @@ pub use relaxation::card_curves;
 pub use report::{claims, pictures};
 pub use series::{Series, csv};
 pub use sheet_arrays::Sheet;
-pub use sheet_figures::{SheetField, sheet_figures};
+pub use sheet_figures::{Deformed, SheetField, sheet_figures};
 pub use state::{LocalState, cell_states, nodal_states};
 pub use surface::Surface;
+pub use viscous_stress::ViscousStress;
 pub use work::work_blocks;
 
 /// What the publication claims, and what came out here.

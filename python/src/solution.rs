@@ -202,6 +202,7 @@ impl Solution {
                 law: &**law,
                 thickness: *thickness,
                 past: &[],
+                viscous: None,
             };
             Grid::sheet(sheet, &self.mesh, displacement)
         })?;

@@ -248,6 +248,7 @@ fn write(
         law: &*compared.law,
         thickness: compared.thickness,
         past: &[],
+        viscous: None,
     };
     for field in &compared.fields {
         let grid = match &compared.imported {

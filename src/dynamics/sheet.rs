@@ -36,20 +36,6 @@ impl<'a> SheetViscosity<'a> {
         }
     }
 
-    /// The stresses Qᵢ of all branches at the end of a step.
-    fn branches(&self, memory: &[f64], now: [f64; 3], elapsed: f64) -> Vec<[f64; 3]> {
-        let before = &memory[..3];
-        let branches = self
-            .material
-            .recursions(elapsed)
-            .zip(memory[3..].chunks_exact(3));
-        branches
-            .map(|(recursion, q)| {
-                [0, 1, 2].map(|i| recursion.keeps * q[i] + recursion.takes * (now[i] - before[i]))
-            })
-            .collect()
-    }
-
     fn point_stress(
         &self,
         kinematics: &Kinematics,
@@ -69,7 +55,7 @@ impl<'a> SheetViscosity<'a> {
                 (law.stress(kinematics).1, by_displacement)
             };
             let now = second_piola_kirchhoff(kinematics, &long);
-            let branches = self.branches(memory, now, elapsed);
+            let branches = material.branches(memory, now, elapsed);
             let q = [0, 1, 2].map(|i| branches.iter().map(|q| q[i]).sum());
             stress += first_piola_kirchhoff(kinematics, q);
             if with_tangents {
@@ -151,7 +137,7 @@ impl Viscosity for SheetViscosity<'_> {
             let (_, long) = self.energy.law().stress(&kinematics);
             let now = second_piola_kirchhoff(&kinematics, &long);
             let part = self.part(motion.memory, index);
-            let branches = self.branches(part, now, motion.elapsed);
+            let branches = self.material.branches(part, now, motion.elapsed);
             let values = now.into_iter().chain(branches.into_iter().flatten());
             let start = index * self.of_point();
             next[start..]

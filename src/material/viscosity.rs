@@ -104,6 +104,18 @@ impl ViscousMaterial {
         })
     }
 
+    /// The stresses Qᵢ of all branches after a step of `elapsed` s that ends at S∞ = `now`, of a memory of S∞ and Qᵢ before it, three
+    /// components each.
+    pub fn branches(&self, memory: &[f64], now: [f64; 3], elapsed: f64) -> Vec<[f64; 3]> {
+        let before = &memory[..3];
+        let branches = self.recursions(elapsed).zip(memory[3..].chunks_exact(3));
+        branches
+            .map(|(recursion, q)| {
+                [0, 1, 2].map(|i| recursion.keeps * q[i] + recursion.takes * (now[i] - before[i]))
+            })
+            .collect()
+    }
+
     /// P_v of the fluid for a rate Ḟ in 1/s.
     pub fn newtonian_stress(&self, kinematics: &Kinematics, rate: &Gradient) -> Gradient {
         let [a, b, c, d] = inverse(&kinematics.deformation_gradient);

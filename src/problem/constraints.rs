@@ -1,6 +1,6 @@
 //! What supports do to the unknowns: how held ones move, which ones are tied, what pulls rigid grips.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::boundary_conditions::{Drive, Support};
 use super::groups::{named, refused};
@@ -78,6 +78,29 @@ pub struct Constraints {
     pub ties: BTreeMap<usize, usize>,
     /// Forces in N on the unknowns that others follow.
     pub forces: Vec<(usize, f64)>,
+    /// What each support holds.
+    holders: Vec<Holder>,
+}
+
+/// The nodes that a support holds along some axes.
+struct Holder {
+    nodes: BTreeSet<usize>,
+    /// Whether it holds edges, and not nodes alone.
+    has_edges: bool,
+    axes: [bool; 2],
+}
+
+impl Holder {
+    /// Of the nodes of a group, those at which the support holds the group itself, and not another edge that ends there.
+    fn on(&self, group: &Group) -> BTreeSet<usize> {
+        let holds = |node: &&usize| self.nodes.contains(node);
+        if !self.has_edges || group.edges.is_empty() {
+            return group.nodes.iter().filter(holds).copied().collect();
+        }
+        let edges = group.edges.iter();
+        let held = edges.filter(|edge| edge.iter().all(|node| self.nodes.contains(node)));
+        held.flatten().copied().collect()
+    }
 }
 
 impl Constraints {
@@ -101,21 +124,55 @@ impl Constraints {
         {
             return Err(SupportMisfit::NodeAtCentre);
         }
+        let mut axes = [false; 2];
         for axis in [0, 1] {
             if let Support::Grip(drives) = support
                 && let Drive::Force(force) = drives[axis]
             {
                 self.tie(group, axis, force)?;
+                axes[axis] = true;
                 continue;
             }
             let slides = *support == Support::Roller && normal(mesh, group)? != axis;
             for node in group.nodes.iter().filter(|_| !slides) {
                 if let Some(motion) = motion(support, mesh.nodes[*node], axis) {
                     self.held.insert(2 * node + axis, motion);
+                    axes[axis] = true;
                 }
             }
         }
+        self.holds(group, axes);
         Ok(())
+    }
+
+    /// Notes that a support holds a group along some axes.
+    pub fn holds(&mut self, group: &Group, axes: [bool; 2]) {
+        self.holders.push(Holder {
+            nodes: group.nodes.iter().copied().collect(),
+            has_edges: !group.edges.is_empty(),
+            axes,
+        });
+    }
+
+    /// The part of the supports' force at each node of a group, along each axis, that acts on this group: at a corner, what supports of
+    /// the other edge do there acts on that edge alone, and what supports of both edges hold is shared between them. Forces of
+    /// groups that meet in corners therefore add up to those of all supports.
+    pub fn parts_on(&self, group: &Group) -> Vec<[f64; 2]> {
+        let own: Vec<_> = self.holders.iter().map(|own| own.on(group)).collect();
+        let part = |node: &usize, axis: usize| {
+            let (mut here, mut all) = (0.0_f64, 0.0_f64);
+            for (holder, on_group) in self.holders.iter().zip(&own) {
+                if holder.axes[axis] && holder.nodes.contains(node) {
+                    all += 1.0;
+                    here += f64::from(u8::from(on_group.contains(node)));
+                }
+            }
+            here / all.max(1.0)
+        };
+        let nodes = group.nodes.iter();
+        nodes
+            .map(|node| [0, 1].map(|axis| part(node, axis)))
+            .collect()
     }
 
     /// Ties the nodes of a group along an axis to the first of them, which takes the force.

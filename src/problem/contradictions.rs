@@ -40,7 +40,9 @@ pub fn contradictions(
     let mut demands: BTreeMap<usize, Vec<(usize, Demand)>> = BTreeMap::new();
     for (number, support) in supports.iter().enumerate() {
         let own = Constraints::of(mesh, std::slice::from_ref(support))?;
-        let Constraints { held, ties, forces } = own;
+        let Constraints {
+            held, ties, forces, ..
+        } = own;
         let held = held.into_iter();
         let held = held.map(|(unknown, motion)| (unknown, Demand::Motion(motion)));
         let tied = ties

@@ -91,17 +91,19 @@ impl Model<'_> {
         name: &str,
         axis: usize,
     ) -> Result<Vec<f64>, SolveFault> {
-        let Constraints { held, ties, forces } = &self.constraints;
-        let nodes = self.mesh.groups()[name].nodes.iter();
-        let mut unknowns = nodes.map(|node| 2 * node + axis);
+        let Constraints {
+            held, ties, forces, ..
+        } = &self.constraints;
+        let group = &self.mesh.groups()[name];
         let pulled = |unknown: &usize| forces.iter().any(|(master, _)| master == unknown);
         let (mut motion, mut force) = (vec![0.0; state.displacement.len()], None);
-        for unknown in unknowns
-            .clone()
-            .filter(|unknown| held.contains_key(unknown))
-        {
-            motion[unknown] = 1.0;
+        for (node, part) in group.nodes.iter().zip(self.constraints.parts_on(group)) {
+            let unknown = 2 * node + axis;
+            if held.contains_key(&unknown) {
+                motion[unknown] = part[axis];
+            }
         }
+        let mut unknowns = group.nodes.iter().map(|node| 2 * node + axis);
         if let Some(master) = unknowns.find(pulled) {
             let mut unit = vec![0.0; motion.len()];
             unit[master] = 1.0;
@@ -110,7 +112,7 @@ impl Model<'_> {
         if force.is_none() && motion.iter().all(|motion| *motion == 0.0) {
             // Nothing holds or pulls the group: a unit of force on it, shared as its mean displacement is.
             let mut unit = vec![0.0; motion.len()];
-            for (node, share) in shares(self.mesh, &self.mesh.groups()[name]) {
+            for (node, share) in shares(self.mesh, group) {
                 unit[2 * node + axis] += share;
             }
             force = Some(unit);

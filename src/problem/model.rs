@@ -144,6 +144,7 @@ impl<'a> Model<'a> {
                 self.constraints.held.insert(2 * node + axis, motion);
             }
         }
+        self.constraints.holds(&self.mesh.groups()[name], [true; 2]);
         self.loads.close(&self.constraints);
     }
 

@@ -9,7 +9,8 @@ use crate::solve::{Assembly, State};
 /// What happens at a group in one state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroupState {
-    /// Force of the supports on the sheet in N, with the signs of the axes; that of a pulled grip included.
+    /// Force of the supports of the group on the sheet in N, with the signs of the axes; that of a pulled grip included. At a corner that
+    /// it shares with another group, supports of the other group have no part in it, and what both groups' supports hold is shared.
     pub force: [f64; 2],
     /// Moment of that force about the mean deformed place of the group's nodes in N·mm, counter-clockwise.
     pub moment: f64,
@@ -36,7 +37,9 @@ impl Model<'_> {
     /// The forces of the supports in a state: the internal forces of its nodes less the loads on them, along the axes along
     /// which supports hold or pull them. Not a number where the state is inverted.
     pub fn reactions<'a>(&'a self, state: &'a State) -> Reactions<'a> {
-        let Constraints { held, ties, forces } = &self.constraints;
+        let Constraints {
+            held, ties, forces, ..
+        } = &self.constraints;
         let mut internal = vec![0.0; state.displacement.len()];
         let loads = self.loads.without_pulls();
         let potential = loads.on(self.energy_after(&state.history), state.factor);
@@ -70,18 +73,25 @@ impl Reactions<'_> {
     /// # Panics
     /// When the mesh has no such group.
     pub fn at_group(&self, name: &str) -> GroupState {
-        let (mesh, forces) = (self.model.mesh, &self.forces);
+        let mesh = self.model.mesh;
         let group = &mesh.groups()[name];
         let (nodes, u) = (&group.nodes, &self.state.displacement);
-        let sum = |axis: usize| nodes.iter().map(|node| forces[2 * node + axis]).sum();
+        let parts = self.model.constraints.parts_on(group);
+        let force = |(node, part): (&usize, &[f64; 2])| {
+            [0, 1].map(|axis| match part[axis] > 0.0 {
+                true => part[axis] * self.forces[2 * node + axis],
+                false => 0.0,
+            })
+        };
+        let forces: Vec<_> = nodes.iter().zip(&parts).map(force).collect();
         let place = |node: usize, axis: usize| mesh.nodes[node][axis] + u[2 * node + axis];
         let middle = [0, 1].map(|axis| {
             let places = nodes.iter().map(|node| place(*node, axis));
             places.sum::<f64>() / nodes.len() as f64
         });
-        let moment = |node: &usize| {
+        let moment = |(node, force): (&usize, &[f64; 2])| {
             let [x, y] = [0, 1].map(|axis| place(*node, axis) - middle[axis]);
-            x * forces[2 * node + 1] - y * forces[2 * node]
+            x * force[1] - y * force[0]
         };
         let shares = shares(mesh, group);
         let mean = |axis: usize| {
@@ -90,13 +100,11 @@ impl Reactions<'_> {
                 .map(|(node, share)| share * u[2 * node + axis]);
             parts.fold(0.0, |sum, part| sum + part)
         };
-        let sizes = nodes.iter();
-        let sizes = sizes.map(|node| forces[2 * node].hypot(forces[2 * node + 1]));
         GroupState {
-            size: sizes.sum(),
+            size: forces.iter().map(|[x, y]| x.hypot(*y)).sum(),
             rounding: self.rounding(),
-            force: [0, 1].map(sum),
-            moment: nodes.iter().map(moment).sum(),
+            force: [0, 1].map(|axis| forces.iter().map(|force| force[axis]).sum()),
+            moment: nodes.iter().zip(&forces).map(moment).sum(),
             displacement: [0, 1].map(mean),
         }
     }

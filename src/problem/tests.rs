@@ -6,6 +6,7 @@ use crate::units::parse_linear_length;
 use samples::{CLAMP, NEWTON, moved, problem, solved, strip, turned};
 
 mod branches;
+mod corners;
 pub mod samples;
 mod softening;
 

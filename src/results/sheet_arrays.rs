@@ -2,6 +2,7 @@
 
 use super::Array;
 use super::state::{LocalState, cell_states, nodal_states};
+use super::viscous_stress::ViscousStress;
 use super::wrinkling::Wrinkling;
 use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
@@ -15,6 +16,8 @@ pub struct Sheet<'a> {
     pub thickness: f64,
     /// The displacement fields before, which a law with a memory remembers.
     pub past: &'a [&'a [f64]],
+    /// The viscous part of the stresses; nothing where the material has none.
+    pub viscous: Option<&'a ViscousStress>,
 }
 
 impl<'a> Sheet<'a> {
@@ -33,7 +36,8 @@ impl<'a> Sheet<'a> {
 
 /// What follows from the mean of the displacement gradients that the cells around each node have there.
 pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
-    let states = nodal_states(sheet.law, mesh, &sheet.fields(displacement));
+    let viscous = sheet.viscous.map_or(&[][..], |own| &own.at_nodes);
+    let states = nodal_states(sheet.law, mesh, &sheet.fields(displacement), viscous);
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states.iter().map(value));
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
         Array::symmetric_tensors(name, states.iter().map(value))
@@ -57,7 +61,8 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
 /// What follows from the displacement gradients in the centres of the cells. The nominal stress is Pᵀ: its first index is the
 /// reference direction. Of a material that softens, what it has left of the stress is one more.
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
-    let states = cell_states(sheet.law, mesh, &sheet.fields(displacement));
+    let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
+    let states = cell_states(sheet.law, mesh, &sheet.fields(displacement), viscous);
     let wrinkling = Wrinkling::of_cells(sheet.law, mesh, &states);
     let states = || states.iter();
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states().map(value));

@@ -52,11 +52,31 @@ impl SheetField {
     }
 }
 
-/// A model: name, mesh and displacement fields.
-pub type Deformed<'a> = (String, &'a Mesh, Vec<&'a [f64]>);
+/// A model with what its stresses follow from.
+pub struct Deformed<'a> {
+    /// Its name.
+    pub label: String,
+    /// Its mesh.
+    pub mesh: &'a Mesh,
+    /// Its displacement fields: the present one last, and before it those that a law with a memory remembers.
+    pub fields: Vec<&'a [f64]>,
+    /// The viscous part of the first Piola–Kirchhoff stress at the nodes in MPa; nothing where there is none.
+    pub viscous: &'a [[f64; 4]],
+}
 
-/// One picture for each field: the models side by side, each with its name, mesh and displacement fields: the present one last, and
-/// before it those that a law with a memory remembers. `file` makes the name of
+impl<'a> Deformed<'a> {
+    /// Of an elastic material.
+    pub fn elastic(label: impl Into<String>, mesh: &'a Mesh, fields: Vec<&'a [f64]>) -> Self {
+        Self {
+            label: label.into(),
+            mesh,
+            fields,
+            viscous: &[],
+        }
+    }
+}
+
+/// One picture for each field: the models side by side. `file` makes the name of
 /// a file from that of a field, and `at` says where on the path they are.
 pub fn sheet_figures(
     fields: &[SheetField],
@@ -67,12 +87,12 @@ pub fn sheet_figures(
 ) -> Vec<Figure> {
     let states: Vec<Vec<LocalState>> = models
         .iter()
-        .map(|(_, mesh, fields)| nodal_states(law, mesh, fields))
+        .map(|own| nodal_states(law, own.mesh, &own.fields, own.viscous))
         .collect();
     let figure = |field: &SheetField| {
-        let panel = |((label, mesh, fields), states): (&Deformed, &Vec<LocalState>)| {
-            let u = fields.last().copied().unwrap_or_default();
-            Panel::at_nodes(label, mesh, u, &|node| field.value(&states[node]))
+        let panel = |(own, states): (&Deformed, &Vec<LocalState>)| {
+            let u = own.fields.last().copied().unwrap_or_default();
+            Panel::at_nodes(&own.label, own.mesh, u, &|node| field.value(&states[node]))
         };
         let (title, quantity) = field.title();
         let panels = models.iter().zip(&states).map(panel);

@@ -29,9 +29,9 @@ pub struct LocalState {
 }
 
 impl LocalState {
-    /// Of displacement gradients H₁₁, H₁₂, H₂₁, H₂₂, the present one last and those that a law with a memory remembers before it; no
-    /// numbers where it turns the sheet inside out.
-    pub fn of(law: &dyn HyperelasticLaw, gradients: &[[f64; 4]]) -> Self {
+    /// Of displacement gradients H₁₁, H₁₂, H₂₁, H₂₂, the present one last and those that a law with a memory remembers before it, with a
+    /// viscous part of the first Piola–Kirchhoff stress in MPa; no numbers where it turns the sheet inside out.
+    pub fn of(law: &dyn HyperelasticLaw, gradients: &[[f64; 4]], viscous: [f64; 4]) -> Self {
         let Some((gradient, past)) = gradients.split_last() else {
             return Self::unknown();
         };
@@ -41,7 +41,7 @@ impl LocalState {
         };
         let past = past.iter().map(|gradient| Vector4::from(*gradient));
         let after = StressAfter::new(law, &kinematics, past);
-        let p = after.stress;
+        let p = after.stress + Vector4::from(viscous);
         let [s11, s12, s22] = law.cauchy_stress(&kinematics, &p);
         let [c11, c12, c22] = kinematics.stretch_change;
         let thickness = law.thickness_stretch(&kinematics);
@@ -106,32 +106,51 @@ fn principal([s11, s12, s22]: [f64; 3]) -> [f64; 2] {
     [mean + radius, mean - radius]
 }
 
-/// The states in the centres of the cells, of displacement fields as [`LocalState::of`] takes gradients.
-pub fn cell_states(law: &dyn HyperelasticLaw, mesh: &Mesh, fields: &[&[f64]]) -> Vec<LocalState> {
-    let state = |cell: usize| {
-        let centre = mesh.shape(cell).centre();
-        let gradient = |field: &&[f64]| mesh.gradient_at(field, cell, centre);
-        let gradients: Vec<[f64; 4]> = fields.iter().map(gradient).collect();
-        LocalState::of(law, &gradients)
-    };
-    (0..mesh.cell_count()).map(state).collect()
+/// The states in the centres of the cells, of displacement fields and viscous stresses as [`LocalState::of`] takes them; without viscous
+/// stresses there are none.
+pub fn cell_states(
+    law: &dyn HyperelasticLaw,
+    mesh: &Mesh,
+    fields: &[&[f64]],
+    viscous: &[[f64; 4]],
+) -> Vec<LocalState> {
+    states(law, fields, viscous, |field| cell_gradients(mesh, field))
 }
 
 /// The states at the nodes: those of the mean of the displacement gradients that the cells around a node have there.
-pub fn nodal_states(law: &dyn HyperelasticLaw, mesh: &Mesh, fields: &[&[f64]]) -> Vec<LocalState> {
-    let gradients: Vec<Vec<[f64; 4]>> = fields
-        .iter()
-        .map(|field| nodal_gradients(mesh, field))
-        .collect();
-    let state = |node: usize| {
-        let own: Vec<[f64; 4]> = gradients.iter().map(|field| field[node]).collect();
-        LocalState::of(law, &own)
+pub fn nodal_states(
+    law: &dyn HyperelasticLaw,
+    mesh: &Mesh,
+    fields: &[&[f64]],
+    viscous: &[[f64; 4]],
+) -> Vec<LocalState> {
+    states(law, fields, viscous, |field| nodal_gradients(mesh, field))
+}
+
+fn states(
+    law: &dyn HyperelasticLaw,
+    fields: &[&[f64]],
+    viscous: &[[f64; 4]],
+    gradients: impl Fn(&[f64]) -> Vec<[f64; 4]>,
+) -> Vec<LocalState> {
+    let gradients: Vec<_> = fields.iter().map(|field| gradients(field)).collect();
+    let state = |place: usize| {
+        let own: Vec<[f64; 4]> = gradients.iter().map(|field| field[place]).collect();
+        let viscous = viscous.get(place).copied().unwrap_or_default();
+        LocalState::of(law, &own, viscous)
     };
-    (0..mesh.nodes.len()).map(state).collect()
+    let places = gradients.last().map_or(0, Vec::len);
+    (0..places).map(state).collect()
+}
+
+/// The displacement gradients in the centres of the cells.
+pub fn cell_gradients(mesh: &Mesh, displacement: &[f64]) -> Vec<[f64; 4]> {
+    let gradient = |cell| mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
+    (0..mesh.cell_count()).map(gradient).collect()
 }
 
 /// The mean of the displacement gradients that the cells around each node have there.
-fn nodal_gradients(mesh: &Mesh, displacement: &[f64]) -> Vec<[f64; 4]> {
+pub fn nodal_gradients(mesh: &Mesh, displacement: &[f64]) -> Vec<[f64; 4]> {
     let mut sums = vec![([0.0; 4], 0.0); mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
         let locals = mesh.shape(cell).natural_nodes();
@@ -162,6 +181,7 @@ mod tests {
     use crate::mesh::{CellShape, Shape};
 
     const LAW: NeoHooke = NeoHooke { c10: 0.5 };
+    const NONE: [f64; 4] = [0.0; 4];
 
     #[test]
     fn softening_takes_its_factor_from_all_stresses() {
@@ -172,7 +192,8 @@ mod tests {
         };
         let law = SoftenedLaw::unloaded(Arc::new(LAW), softening);
         let [small, large] = [[0.2, 0.1, 0.0, -0.1], [0.6, 0.1, 0.0, -0.2]];
-        let [virgin, soft] = [&[small][..], &[large, small]].map(|past| LocalState::of(&law, past));
+        let [virgin, soft] =
+            [&[small][..], &[large, small]].map(|past| LocalState::of(&law, past, NONE));
         assert_eq!(virgin.softening_factor, 1.0);
         assert!((0.5..0.9).contains(&soft.softening_factor));
         for (soft_stress, stress) in soft.cauchy.iter().zip(virgin.cauchy) {
@@ -191,7 +212,7 @@ mod tests {
             let u: Vec<f64> = moved
                 .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
                 .collect();
-            let [nodal, cells] = [nodal_states, cell_states].map(|of| of(&LAW, &mesh, &[&u]));
+            let [nodal, cells] = [nodal_states, cell_states].map(|of| of(&LAW, &mesh, &[&u], &[]));
             assert_eq!(
                 (nodal.len(), cells.len()),
                 (mesh.nodes.len(), mesh.cell_count())
@@ -230,7 +251,7 @@ mod tests {
                 plane,
             };
             let law = Arc::new(NeoHooke { c10 }).with_volume(volume).unwrap();
-            let state = LocalState::of(&*law, &[[0.25, 0.15, 0.1, -0.08]]);
+            let state = LocalState::of(&*law, &[[0.25, 0.15, 0.1, -0.08]], NONE);
             let squares: f64 = state
                 .stretches
                 .iter()
@@ -255,7 +276,7 @@ mod tests {
     #[test]
     fn simple_shear_has_its_equivalent_stress() {
         // σ₁₁ = μ γ², σ₁₂ = μ γ with μ = 2 C₁₀.
-        let state = LocalState::of(&LAW, &[[0.0, 0.4, 0.0, 0.0]]);
+        let state = LocalState::of(&LAW, &[[0.0, 0.4, 0.0, 0.0]], NONE);
         let expected = (0.16_f64.powi(2) + 3.0 * 0.16).sqrt();
         assert!((state.von_mises() - expected).abs() < 1e-12, "{state:?}");
         let [larger, smaller] = state.principal_cauchy();
@@ -270,7 +291,7 @@ mod tests {
             .iter()
             .flat_map(|[x, _]| [0.02 * x * x, 0.0])
             .collect();
-        let states = nodal_states(&LAW, &mesh, &[&u]);
+        let states = nodal_states(&LAW, &mesh, &[&u], &[]);
         let inside = mesh.nodes.iter().zip(&states);
         for ([x, _], state) in inside.filter(|([x, _], _)| *x > 0.5 && *x < 3.5) {
             let stretch = 1.0 + 0.04 * x;
@@ -280,7 +301,7 @@ mod tests {
 
     #[test]
     fn what_is_inside_out_has_no_numbers() {
-        let state = LocalState::of(&LAW, &[[-2.0, 0.0, 0.0, 0.0]]);
+        let state = LocalState::of(&LAW, &[[-2.0, 0.0, 0.0, 0.0]], NONE);
         assert!(state.von_mises().is_nan() && state.largest_principal_strain().is_nan());
     }
 }

@@ -25,7 +25,7 @@ pub struct Wrinkling {
 impl Wrinkling {
     /// The compression of a displacement field.
     pub fn new(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Self {
-        Self::of_cells(law, mesh, &cell_states(law, mesh, &[displacement]))
+        Self::of_cells(law, mesh, &cell_states(law, mesh, &[displacement], &[]))
     }
 
     /// The compression of the states in the cells; a cell that is folded at its centre has no stress and no say.

@@ -60,6 +60,9 @@ pub struct Newton {
 /// a body that moves without strain has rounding alone.
 const NEGLIGIBLE: f64 = 1e-4;
 
+/// The share of the relative residual before a step that may be left after it for its tangent to serve for another one.
+const SERVES: f64 = 0.05;
+
 /// Relative residual below which the tangent no longer changes its kind.
 const SMALL: f64 = 1e-3;
 
@@ -191,13 +194,49 @@ impl Newton {
                 .search(potential, u, residual, now.energy, &step)
                 .map_err(|fault| inverted(fault, describe))?;
             log.cut_steps += usize::from(length < 1.0);
-            // A last small step needs no tangent of its own: the one before it was positive definite.
-            let after = self.relative_residual(residual, now.negligible * largest(u));
-            if !now.shifted && now.relative <= SMALL && after <= settings.tolerance {
-                log.residuals.push(after);
-                log.energy = energy;
+            if now.shifted || now.relative > SMALL {
+                continue;
+            }
+            let near = Iterate { energy, ..now };
+            if self.hold_tangent(potential, (u, residual), near, settings, &mut log) {
                 return Ok(log);
             }
+        }
+    }
+
+    /// Steps with the tangent taken last, which was positive definite close by, while each leaves little of the residual before
+    /// it: such steps cost a fraction of a factor. Whether the residual has come below the tolerance.
+    fn hold_tangent(
+        &mut self,
+        potential: &dyn Potential,
+        (u, residual): (&mut [f64], &mut [f64]),
+        near: Iterate,
+        settings: NewtonSettings,
+        log: &mut Convergence,
+    ) -> bool {
+        let (mut before, mut energy) = (near.relative, near.energy);
+        loop {
+            let after = self.relative_residual(residual, near.negligible * largest(u));
+            if after <= settings.tolerance {
+                log.residuals.push(after);
+                log.energy = energy;
+                return true;
+            }
+            let serves = after <= SERVES * before && log.iterations() + 1 < settings.max_iterations;
+            let Some(step) = serves.then(|| self.tangent.step(residual).ok()).flatten() else {
+                return false;
+            };
+            let (start, forces) = (u.to_vec(), residual.to_vec());
+            match self.search(potential, u, residual, energy, &step) {
+                Ok((1.0, lower)) => energy = lower,
+                _ => {
+                    u.copy_from_slice(&start);
+                    residual.copy_from_slice(&forces);
+                    return false;
+                }
+            }
+            log.residuals.push(after);
+            before = after;
         }
     }
 

@@ -157,7 +157,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The same, or a word that leaves the choice to the program: nothing then.
+    /// A quantity, or a word that leaves it to the program: `None`.
     pub fn quantity_or(
         &self,
         word: &str,
@@ -165,11 +165,23 @@ impl<'a> Section<'a> {
         dimension: Dimension,
         bound: Bound,
     ) -> Option<f64> {
-        self.asks(key, Some(Takes::Choice(vec![word.to_owned()])));
-        let is_word = |value: Value<'a>| text(value.get_ref()).is_some_and(|text| text == word);
-        let leaves = self.value(key).is_some_and(is_word);
+        let leaves = self.says(word, key);
         self.asks(key, Some(Takes::Quantity(dimension, bound)));
         (!leaves).then(|| self.quantity(key, dimension, bound))
+    }
+
+    /// A number without a dimension, or a word that leaves it to the program: `None`.
+    pub fn number_or(&self, word: &str, key: &'static str, bound: Bound) -> Option<f64> {
+        let leaves = self.says(word, key);
+        self.asks(key, Some(Takes::Number(bound)));
+        (!leaves).then(|| self.number(key, bound))
+    }
+
+    /// Whether a key that takes a word has it.
+    fn says(&self, word: &str, key: &'static str) -> bool {
+        self.asks(key, Some(Takes::Choice(vec![word.to_owned()])));
+        let is_word = |value: Value<'a>| text(value.get_ref()).is_some_and(|text| text == word);
+        self.value(key).is_some_and(is_word)
     }
 
     /// A list of quantities, or one of some words.

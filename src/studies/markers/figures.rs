@@ -4,7 +4,7 @@ use crate::corrector::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::mesh::Mesh;
 use crate::results::{
-    Drawing, FieldFigure, Figure, Panel, SheetField, mesh_outlines, sheet_figures,
+    Deformed, Drawing, FieldFigure, Figure, Panel, SheetField, mesh_outlines, sheet_figures,
 };
 use crate::studies::markers::MarkerStudy;
 
@@ -25,11 +25,8 @@ pub fn figures(
     let stress = pictures.in_cells("Nominal stress", "largest component [MPa]", &stress);
     let thickness = |cell: usize| estimate.cells[cell].thickness;
     let thickness = pictures.in_cells("Thickness", "thickness [mm]", &thickness);
-    let deformed = [(
-        pictures.at.clone(),
-        &field.mesh,
-        vec![&estimate.displacement[..]],
-    )];
+    let fields = vec![&estimate.displacement[..]];
+    let deformed = [Deformed::elastic(&*pictures.at, &field.mesh, fields)];
     let law = field.law(estimate);
     let file = |name: &str| format!("{name}.png");
     let states = sheet_figures(sheet, &*law, &deformed, &pictures.at, &file);

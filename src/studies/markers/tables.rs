@@ -65,7 +65,7 @@ pub fn cells(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
     }
     text.push('\n');
     let law = field.law(estimate);
-    let states = cell_states(&*law, &field.mesh, &[&estimate.displacement]);
+    let states = cell_states(&*law, &field.mesh, &[&estimate.displacement], &[]);
     for (index, (cell, state)) in estimate.cells.iter().zip(states).enumerate() {
         let mut values = field.mesh.centre(index).to_vec();
         values.extend(nominal_stress(cell));

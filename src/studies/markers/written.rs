@@ -166,6 +166,7 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
         law: &*law,
         thickness: field.thickness,
         past: &[],
+        viscous: None,
     };
     let nodal = |name, values: &Vec<f64>| Array::vectors(name, values.iter().copied());
     let mut grid = Grid::sheet(sheet, &field.mesh, &estimate.displacement).with([

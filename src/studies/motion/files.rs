@@ -7,8 +7,9 @@ use super::solution::ModelMotion;
 use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::Mesh;
 use crate::results::{
-    Animation, Array, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
-    LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number, sheet_figures,
+    Animation, Array, Axis, Content, Deformed, Drawing, FieldFigure, Figure, Frame, Grid,
+    GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, ViscousStress, csv, number,
+    sheet_figures,
 };
 
 /// How a model's lines are drawn.
@@ -112,10 +113,17 @@ fn stress_figures(
 ) -> Vec<Figure> {
     let plates = shown(models, corrected);
     let times = models[0].history.times();
+    let viscous: Vec<_> = plates
+        .iter()
+        .map(|own| own.viscous(plate, &times))
+        .collect();
     let at_instant = |instant: usize| {
-        let deformed = plates.iter().filter_map(|plate| {
+        let deformed = plates.iter().zip(&viscous).filter_map(|(plate, viscous)| {
             let [displacement, _] = *plate.motion.get(instant)?;
-            Some((plate.name.to_owned(), plate.mesh, vec![displacement]))
+            Some(Deformed {
+                viscous: &viscous[instant].at_nodes,
+                ..Deformed::elastic(plate.name, plate.mesh, vec![displacement])
+            })
         });
         let deformed: Vec<_> = deformed.collect();
         let at = format!("t = {} s", brief(times[instant]));
@@ -231,6 +239,14 @@ struct PlateMotion<'a> {
     motion: Vec<[&'a [f64]; 2]>,
 }
 
+impl PlateMotion<'_> {
+    /// The viscous stresses at the instants.
+    fn viscous(&self, plate: &MovingPlate, times: &[f64]) -> Vec<ViscousStress> {
+        let material = (&*plate.problem.law, &plate.viscosity);
+        ViscousStress::over_time(material, self.mesh, times, &self.motion)
+    }
+}
+
 /// All plates; the corrected one between the models, where there is one.
 fn shown<'a>(models: &'a [ModelMotion; 2], corrected: &'a CorrectedMotion) -> Vec<PlateMotion<'a>> {
     let model = |model: &'a ModelMotion| {
@@ -309,19 +325,23 @@ pub fn grids(
         law: &*plate.problem.law,
         thickness: plate.problem.thickness,
         past: &[],
+        viscous: None,
     };
     let times = springs.history.times();
-    let series = |plate: &PlateMotion| {
-        let instants = plate.motion.iter().zip(&times).zip(expected);
-        let grid =
-            |(([displacement, velocity], time), expected): ((&[&[f64]; 2], &f64), &Vec<f64>)| {
-                let velocity = Array::vectors("velocity_mm_per_s", velocity.iter().copied());
-                let difference = (plate.file != elements.file)
-                    .then(|| Array::to_finite_elements(displacement, expected));
-                let grid = Grid::sheet(sheet, plate.mesh, displacement);
-                (*time, grid.with([velocity]).with(difference))
+    let series = |own: &PlateMotion| {
+        let viscous = own.viscous(plate, &times);
+        let grid = |(instant, [displacement, velocity]): (usize, &[&[f64]; 2])| {
+            let velocity = Array::vectors("velocity_mm_per_s", velocity.iter().copied());
+            let difference = (own.file != elements.file)
+                .then(|| Array::to_finite_elements(displacement, &expected[instant]));
+            let sheet = Sheet {
+                viscous: Some(&viscous[instant]),
+                ..sheet
             };
-        GridSeries::instants(plate.file, instants.map(grid))
+            let grid = Grid::sheet(sheet, own.mesh, displacement);
+            (times[instant], grid.with([velocity]).with(difference))
+        };
+        GridSeries::instants(own.file, own.motion.iter().enumerate().map(grid))
     };
     shown(models, corrected).iter().map(series).collect()
 }

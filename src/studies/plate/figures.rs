@@ -6,8 +6,8 @@ use crate::compare::{Deviation, StepComparison};
 use crate::mesh::Mesh;
 use crate::problem::ClampedPlate;
 use crate::results::{
-    Axis, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke, material_chart,
-    sheet_figures,
+    Axis, Deformed, Drawing, FieldFigure, Figure, Line, LineChart, PALETTE, Panel, Stroke,
+    material_chart, sheet_figures,
 };
 
 const CORRECTED: [u8; 3] = PALETTE[0];
@@ -85,7 +85,7 @@ fn stress_figures(study: &Study, results: &Results) -> Vec<Figure> {
             let (label, mesh, u) = deformed_model(results, step, model)?;
             let mut fields = results.past(model, step);
             fields.push(u);
-            Some((label, mesh, fields))
+            Some(Deformed::elastic(label, mesh, fields))
         });
         let models: Vec<_> = models.collect();
         let file = |name: &str| format!("{name}_{:03}.png", step + 1);

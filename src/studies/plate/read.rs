@@ -177,7 +177,7 @@ fn read_corrector(
     if let Some(scheme) = scheme {
         check_pairs(plate, scheme, lattice);
     }
-    let grading = section.number("grading", GRADINGS);
+    let grading = section.number_or("automatic", "grading", GRADINGS);
     let climb = section.choice("method", &[("climb", true), ("direct", false)]);
     let settings = read_climb(section);
     let direct = CorrectorSettings {
@@ -188,7 +188,7 @@ fn read_corrector(
     section.unknown_keys();
     Some(Correction {
         scheme: scheme?,
-        grading,
+        grading: grading.unwrap_or(scheme?.grading()),
         climb: climb?.then_some(settings),
         direct,
     })
@@ -250,13 +250,13 @@ fn read_reference_cells(
 ///
 /// so that it is 1/100 and less of the lattice's on plates of 1:1 to 20:1 with 4 to 80 cells across. Between the grips a
 /// long plate is nearly in uniaxial tension: over the longer side the cells need not be square. On graded cells the corrected field's
-/// error falls with the third power too: n = 2 m there, up to [`MOST_ACROSS`].
+/// error falls with the third power too: n = 2.4 m there, up to [`MOST_ACROSS`].
 fn reference_cells(size: [f64; 2], (lattice, is_graded): ([usize; 2], bool)) -> [usize; 2] {
     let short = if size[0] < size[1] { 0 } else { 1 };
     let m = lattice[short] as f64;
     let equal = (40.0 * m).sqrt().max(40.0_f64.min(2.0 * (20.0 * m).sqrt()));
     let n = match is_graded {
-        true => equal.max(MOST_ACROSS.min(2.0 * m)),
+        true => equal.max(MOST_ACROSS.min(2.4 * m)),
         false => equal,
     };
     let over = |axis: usize| (n * (size[axis] / size[short]).sqrt()).ceil() as usize;

@@ -13,6 +13,7 @@ pub fn grids(study: &Study, results: &Results) -> Vec<GridSeries> {
         law: &*study.problem.law,
         thickness: study.problem.thickness,
         past: &[],
+        viscous: None,
     };
     let finest = results.finest();
     let meshes = results.meshes();

@@ -5,8 +5,8 @@ use super::results::models::Models;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::{
-    Array, Axis, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, PALETTE, Panel,
-    Stroke, mesh_outlines, sheet_figures,
+    Array, Axis, Deformed, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart,
+    PALETTE, Panel, Stroke, mesh_outlines, sheet_figures,
 };
 use crate::studies::pictures::Shown;
 
@@ -78,7 +78,7 @@ fn stress_figures(specimen: &Specimen, models: &Models, last: usize) -> Vec<Figu
             let u = model.solution.displacement(step)?;
             let mut fields = model.solution.past(step);
             fields.push(u);
-            Some((model.name.to_owned(), &model.solution.mesh, fields))
+            Some(Deformed::elastic(model.name, &model.solution.mesh, fields))
         });
         let deformed: Vec<_> = deformed.collect();
         let number = match pictures.shown {

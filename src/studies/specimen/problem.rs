@@ -147,6 +147,7 @@ impl Specimen {
             law: &*self.problem.law,
             thickness: self.problem.thickness,
             past: &[],
+            viscous: None,
         }
     }
 

@@ -174,7 +174,7 @@ impl Engine {
 
 /// What colours the nodes.
 fn values(body: &Body, sheet: &bodies::Sheet, colour: Colour) -> Vec<f64> {
-    let states = || nodal_states(&*sheet.law, &body.mesh, &[&body.displacement]).into_iter();
+    let states = || nodal_states(&*sheet.law, &body.mesh, &[&body.displacement], &[]).into_iter();
     match colour {
         Colour::Displacement => {
             let vectors = body.displacement.chunks_exact(2);

@@ -310,7 +310,7 @@ fn preview(study: &MarkerStudy) -> Preview {
 fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> CorrectedFrame {
     let (mesh, u) = (&study.mesh, &estimate.displacement[..]);
     let law = study.law(estimate);
-    let states = nodal_states(&*law, mesh, &[u]);
+    let states = nodal_states(&*law, mesh, &[u], &[]);
     let at_nodes = |name: &str, value: &dyn Fn(usize) -> f64| {
         (name.to_owned(), Panel::at_nodes(name, mesh, u, value))
     };

@@ -177,6 +177,7 @@ fn grids(mut bodies: Bodies, fields: &[ShownField]) -> Result<Vec<NamedFile>, Er
             law: &*bodies.sheet.law,
             thickness: bodies.sheet.thickness,
             past: &[],
+            viscous: None,
         };
         let body = bodies.made(*model);
         let grid = Grid::sheet(sheet, &body.mesh, displacement);

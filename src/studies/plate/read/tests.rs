@@ -20,8 +20,11 @@ fn an_empty_study_is_the_default_one() {
     assert_eq!(empty.problem.thickness, 2.0);
     assert_eq!(empty.problem.stretches, [0.15, 0.3, 0.5, 0.75, 1.0]);
     assert_eq!(empty.cells, [60, 20]);
-    assert_eq!(empty.reference.meshes(), [[18, 10], [36, 20], [72, 40]]);
+    assert_eq!(empty.reference.meshes(), [[21, 12], [42, 24], [84, 48]]);
     assert_eq!(empty.reference.grading, 2.0);
+    assert_eq!(empty.corrector.grading, 2.0);
+    let gauss = parse("[corrector]\nscheme = \"gauss\"\n").unwrap();
+    assert_eq!(gauss.corrector.grading, 1.5);
     assert_eq!(empty.output.folder, Path::new("output/plate"));
     assert_eq!(empty.tolerances, full.tolerances);
     assert!(full.warnings.is_empty());
@@ -91,6 +94,7 @@ fn settings_that_contradict_each_other_are_refused() {
     assert!(faults("[finite_element]\ncells = [121, 40]\n")[0].contains("[124, 40]"));
     assert!(faults("[finite_element]\ngrading = 0.5\n")[0].contains("must be"));
     assert!(faults("[corrector]\ngrading = 0.5\n")[0].contains("must be"));
+    assert!(faults("[corrector]\ngrading = \"auto\"\n")[0].contains("must be a number"));
     assert!(faults("[load]\nstretches = []\n")[0].contains("at least one"));
     assert!(faults("[load]\nstretches = [0.5, 0.3]\n")[0].contains("from small to large"));
     assert!(faults("[load]\nstretches = [-0.1, 0.3]\n")[0].contains("one sign"));
@@ -112,19 +116,20 @@ fn a_plate_that_is_compared_with_itself_is_told_so() {
     let study = parse("[plate]\ncells = [240, 80]\n").unwrap();
     assert!(study.reference.cells[1] >= 40 && study.reference.grading > 1.0);
     let own = "[plate]\ncells = [48, 16]\n[finite_element]\ncells = [24, 8]\ngrading = 1\n";
-    let study = parse(own).unwrap();
+    let equal = "[corrector]\ngrading = 1\n";
+    let study = parse(&format!("{own}{equal}")).unwrap();
     assert!(study.is_its_own_reference());
     assert!(study.warnings[0].to_string().contains("own equations"));
-    let gauss = "[corrector]\nscheme = \"gauss\"\n";
+    let gauss = "[corrector]\ngrading = 1\nscheme = \"gauss\"\n";
     assert!(
         !parse(&format!("{own}{gauss}"))
             .unwrap()
             .is_its_own_reference()
     );
     let graded = own.replace("grading = 1", "grading = 2");
-    assert!(!parse(&graded).unwrap().is_its_own_reference());
-    let both = format!("{graded}[corrector]\ngrading = 2\n");
-    assert!(parse(&both).unwrap().is_its_own_reference());
+    let unlike = format!("{graded}{equal}");
+    assert!(!parse(&unlike).unwrap().is_its_own_reference());
+    assert!(parse(&graded).unwrap().is_its_own_reference());
     let q1 = own.replace("[24, 8]", "[48, 16]\nelement = \"Q1\"");
     assert!(
         parse(&format!("{q1}{gauss}"))

@@ -1,0 +1,77 @@
+//! Forces and moments of groups that meet in a corner.
+
+use super::samples::{CLAMP, problem, strip};
+use crate::mesh::CellShape;
+use crate::problem::{GroupState, Load, Support};
+use crate::solve::NewtonSettings;
+
+const TIGHT: NewtonSettings = NewtonSettings {
+    tolerance: 1e-12,
+    max_iterations: 40,
+};
+
+const GROUPS: [&str; 4] = ["left", "bottom", "right", "top"];
+
+fn at_groups(
+    cells: CellShape,
+    supports: &[(&str, Support)],
+    loads: &[(&str, Load)],
+) -> [GroupState; 4] {
+    let (mesh, problem) = (strip(cells), problem(supports, loads));
+    let energy = problem.finite_elements(&mesh);
+    let model = problem.on(&mesh, &energy).unwrap();
+    let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
+    let reactions = model.reactions(&state);
+    GROUPS.map(|group| reactions.at_group(group))
+}
+
+/// A traction of 0.02 MPa on 10 × 2 mm against two axes of symmetry: uniaxial tension, in which one axis pulls with 0.4 N and no moment
+/// and the other one does nothing.
+#[test]
+fn axes_of_symmetry_share_no_force_at_their_corner() {
+    let supports = [("left", Support::Roller), ("bottom", Support::Roller)];
+    let traction = [("right", Load::Traction([0.02, 0.0]))];
+    for (name, cells) in CellShape::NAMES {
+        let [left, others @ ..] = at_groups(cells, &supports, &traction);
+        assert!((left.force[0] + 0.4).abs() < 1e-10, "{name}: {left:?}");
+        assert!(
+            left.force[1].abs() + left.moment.abs() < 1e-9,
+            "{name}: {left:?}"
+        );
+        for own in others {
+            let parts = [own.force[0], own.force[1], own.moment, own.size];
+            assert!(
+                parts.iter().all(|part| part.abs() < 1e-9),
+                "{name}: {own:?}"
+            );
+        }
+    }
+}
+
+/// Sides that hold the same unknowns of a corner share what is there, and those of a part of a side have all of it.
+#[test]
+fn forces_of_sides_that_meet_add_up_to_those_of_all_supports() {
+    let pull = Support::Displacement([Some(3.0), Some(1.0)]);
+    for (_, cells) in CellShape::NAMES {
+        let supports = [
+            ("left", CLAMP),
+            ("bottom", Support::Displacement([None, Some(0.0)])),
+            ("top", Support::Displacement([Some(0.0), None])),
+        ];
+        let load = [("right", Load::Traction([0.01, 0.004]))];
+        let all = at_groups(cells, &supports, &load);
+        let sum = |axis: usize| all.iter().map(|own| own.force[axis]).sum::<f64>();
+        assert!((sum(0) + 0.2).abs() < 1e-10 && (sum(1) + 0.08).abs() < 1e-10);
+        assert_eq!((all[1].force[0], all[3].force[1]), (0.0, 0.0));
+        assert!(
+            all[2].size == 0.0,
+            "nothing holds the loaded side: {:?}",
+            all[2]
+        );
+
+        let grips = [("left", CLAMP), ("right", pull)];
+        let [left, bottom, right, _] = at_groups(cells, &grips, &[]);
+        assert!((left.force[0] + right.force[0]).abs() < 1e-10 && right.force[0] > 0.1);
+        assert_eq!(bottom.size, 0.0);
+    }
+}
