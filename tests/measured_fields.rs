@@ -382,6 +382,7 @@ fn a_coarse_field_is_brought_onto_a_finer_mesh() {
         law: &*Card::load("pva-10", root()).unwrap().law,
         thickness: 2.0,
         past: &[],
+        viscous: None,
     };
     let finer = Mesh::plate([150.0, 50.0], [30, 10], CellShape::Quad9);
     let write = |name: &str, mesh: &Mesh, field: &[f64]| {

@@ -17,6 +17,7 @@ mod corrected;
 mod files;
 mod functions;
 mod outcome;
+mod plates;
 mod problem;
 mod read;
 mod solution;

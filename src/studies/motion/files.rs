@@ -2,14 +2,13 @@
 
 use super::between::{PARTS, with_cubics};
 use super::corrected::CorrectedMotion;
+use super::plates::PlateMotion;
 use super::problem::{MovingPlate, Probe};
 use super::solution::ModelMotion;
 use crate::dynamics::{EnergyBalance, Instant};
-use crate::mesh::Mesh;
 use crate::results::{
     Animation, Array, Axis, Content, Deformed, Drawing, FieldFigure, Figure, Frame, Grid,
-    GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, ViscousStress, csv, number,
-    sheet_figures,
+    GridSeries, Line, LineChart, PALETTE, Panel, Series, Sheet, Stroke, csv, number, sheet_figures,
 };
 
 /// How a model's lines are drawn.
@@ -63,11 +62,11 @@ impl ModelMotion {
 pub fn figures(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
-    corrected: &CorrectedMotion,
+    (corrected, shown): (&CorrectedMotion, &[PlateMotion]),
 ) -> Vec<Figure> {
     let [springs, elements] = models;
     let last = springs.history.instants.len() - 1;
-    let plates = displaced(&shown(models, corrected), last);
+    let plates = displaced(shown, last);
     let plates = FieldFigure::new("Plates at the last instant", ALONG, plates);
     let mut figures = vec![
         Figure::new(
@@ -86,7 +85,7 @@ pub fn figures(
             plates,
         ),
     ];
-    figures.extend(stress_figures(plate, models, corrected));
+    figures.extend(stress_figures(plate, &springs.history.times(), shown));
     if plate.release != Some(0.0) {
         let over_time = force(models, "time [s]", |_, now| now.time);
         let over_place = force(models, "displacement of the right side [mm]", right_side);
@@ -106,22 +105,12 @@ pub fn figures(
 }
 
 /// Stresses and strains at the instants that the study chooses, else at the last one.
-fn stress_figures(
-    plate: &MovingPlate,
-    models: &[ModelMotion; 2],
-    corrected: &CorrectedMotion,
-) -> Vec<Figure> {
-    let plates = shown(models, corrected);
-    let times = models[0].history.times();
-    let viscous: Vec<_> = plates
-        .iter()
-        .map(|own| own.viscous(plate, &times))
-        .collect();
+fn stress_figures(plate: &MovingPlate, times: &[f64], shown: &[PlateMotion]) -> Vec<Figure> {
     let at_instant = |instant: usize| {
-        let deformed = plates.iter().zip(&viscous).filter_map(|(plate, viscous)| {
+        let deformed = shown.iter().filter_map(|plate| {
             let [displacement, _] = *plate.motion.get(instant)?;
             Some(Deformed {
-                viscous: &viscous[instant].at_nodes,
+                viscous: &plate.viscous[instant].at_nodes,
                 ..Deformed::elastic(plate.name, plate.mesh, vec![displacement])
             })
         });
@@ -131,7 +120,7 @@ fn stress_figures(
         let fields = &plate.pictures.fields;
         sheet_figures(fields, &*plate.problem.law, &deformed, &at, &file)
     };
-    let instants = plate.pictures.shown.instants(&times);
+    let instants = plate.pictures.shown.instants(times);
     instants.into_iter().flat_map(at_instant).collect()
 }
 
@@ -230,49 +219,6 @@ fn force(models: &[ModelMotion; 2], axis: &str, x: fn(&ModelMotion, &Instant) ->
     chart("Force of the right grip", axis, "force [N]", lines)
 }
 
-/// A plate whose motion is shown.
-struct PlateMotion<'a> {
-    name: &'static str,
-    file: &'static str,
-    mesh: &'a Mesh,
-    /// Displacement and velocity at the first instants.
-    motion: Vec<[&'a [f64]; 2]>,
-}
-
-impl PlateMotion<'_> {
-    /// The viscous stresses at the instants.
-    fn viscous(&self, plate: &MovingPlate, times: &[f64]) -> Vec<ViscousStress> {
-        let material = (&*plate.problem.law, &plate.viscosity);
-        ViscousStress::over_time(material, self.mesh, times, &self.motion)
-    }
-}
-
-/// All plates; the corrected one between the models, where there is one.
-fn shown<'a>(models: &'a [ModelMotion; 2], corrected: &'a CorrectedMotion) -> Vec<PlateMotion<'a>> {
-    let model = |model: &'a ModelMotion| {
-        let instants = model.history.instants.iter();
-        PlateMotion {
-            name: model.name,
-            file: model.file,
-            mesh: &model.mesh,
-            motion: instants
-                .map(|now| [&now.displacement[..], &now.velocity])
-                .collect(),
-        }
-    };
-    let [springs, elements] = models;
-    let fields = corrected.displacement.iter().zip(&corrected.velocity);
-    let between = PlateMotion {
-        name: "corrected",
-        file: "corrected",
-        mesh: &springs.mesh,
-        motion: fields.map(|(u, v)| [&u[..], &v[..]]).collect(),
-    };
-    let mut all = vec![model(springs), between, model(elements)];
-    all.retain(|plate| !plate.motion.is_empty());
-    all
-}
-
 /// What the pictures of the plates show.
 const ALONG: &str = "displacement along the plate [mm]";
 
@@ -292,17 +238,15 @@ fn displaced(plates: &[PlateMotion], instant: usize) -> Vec<Panel> {
 }
 
 /// The plates in motion: a picture that plays in every browser.
-pub fn animation(models: &[ModelMotion; 2], corrected: &CorrectedMotion) -> Animation {
+pub fn animation(times: &[f64], plates: &[PlateMotion]) -> Animation {
     const FRAMES: usize = 60;
     const MILLISECONDS: u16 = 80;
-    let times = models[0].history.times();
     let every = times.len().div_ceil(FRAMES).max(1);
-    let plates = shown(models, corrected);
     let count = plates.iter().map(|plate| plate.motion.len()).min();
     let instants = (0..count.unwrap_or(0)).step_by(every);
     let frame = |instant: usize| Frame {
         time: times[instant],
-        panels: displaced(&plates, instant),
+        panels: displaced(plates, instant),
     };
     Animation {
         title: "Plates in motion".into(),
@@ -316,34 +260,27 @@ pub fn animation(models: &[ModelMotion; 2], corrected: &CorrectedMotion) -> Anim
 /// displacements.
 pub fn grids(
     plate: &MovingPlate,
-    models: &[ModelMotion; 2],
-    corrected: &CorrectedMotion,
+    times: &[f64],
+    plates: &[PlateMotion],
     expected: &[Vec<f64>],
 ) -> Vec<GridSeries> {
-    let [springs, elements] = models;
-    let sheet = Sheet {
-        law: &*plate.problem.law,
-        thickness: plate.problem.thickness,
-        past: &[],
-        viscous: None,
-    };
-    let times = springs.history.times();
     let series = |own: &PlateMotion| {
-        let viscous = own.viscous(plate, &times);
         let grid = |(instant, [displacement, velocity]): (usize, &[&[f64]; 2])| {
             let velocity = Array::vectors("velocity_mm_per_s", velocity.iter().copied());
-            let difference = (own.file != elements.file)
+            let difference = (!own.is_reference)
                 .then(|| Array::to_finite_elements(displacement, &expected[instant]));
             let sheet = Sheet {
-                viscous: Some(&viscous[instant]),
-                ..sheet
+                law: &*plate.problem.law,
+                thickness: plate.problem.thickness,
+                past: &[],
+                viscous: Some(&own.viscous[instant]),
             };
             let grid = Grid::sheet(sheet, own.mesh, displacement);
             (times[instant], grid.with([velocity]).with(difference))
         };
         GridSeries::instants(own.file, own.motion.iter().enumerate().map(grid))
     };
-    shown(models, corrected).iter().map(series).collect()
+    plates.iter().map(series).collect()
 }
 
 /// Probes, energies and the grip's force over time, one table for each model.

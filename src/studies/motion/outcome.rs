@@ -4,6 +4,7 @@ use serde_json::json;
 
 use super::corrected::CorrectedMotion;
 use super::files::{animation, figures, grids, tables};
+use super::plates::{compression, shown};
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use super::statement;
@@ -88,7 +89,8 @@ pub fn outcome(
         ];
     blocks.extend(statement::blocks(plate));
     let mut files = tables(plate, models, corrected);
-    let animation = Drawing::Animation(animation(models, corrected));
+    let (plates, instants) = (shown(plate, models, corrected), springs.history.times());
+    let animation = Drawing::Animation(animation(&instants, &plates));
     files.push(("motion.png".into(), Content::Picture(animation)));
     Outcome {
         checks: checks(plate, models, &deviations),
@@ -97,9 +99,10 @@ pub fn outcome(
         material: Some(Material::from(&plate.card)),
         along: "time",
         steps: steps(models, &deviations),
-        figures: figures(plate, models, corrected),
+        figures: figures(plate, models, (corrected, &plates)),
         style: plate.pictures.style.clone(),
-        grids: grids(plate, models, corrected, &expected),
+        grids: grids(plate, &instants, &plates, &expected),
+        warnings: compression(plate, &instants, &plates).into_iter().collect(),
         files,
         times: times.collect(),
         ..Outcome::default()
