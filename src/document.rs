@@ -4,7 +4,7 @@
 //! hands out a placeholder, so that reading goes on; [`Faults::finish`] then refuses the whole
 //! document, and no placeholder is ever computed with.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
 use toml::de::DeTable;
@@ -56,6 +56,9 @@ pub struct Document<'a> {
 /// Faults of syntax that are told of one document: the first ones usually make the others.
 const MOST_SYNTAX_TOLD: usize = 5;
 
+/// How messages about TOML's syntax begin.
+const SYNTAX: &str = "TOML syntax";
+
 /// Findings that are told of one document.
 const MOST_TOLD: usize = 50;
 
@@ -66,6 +69,8 @@ pub struct Faults {
     found: RefCell<Vec<Diagnostic>>,
     defaulted: RefCell<Vec<String>>,
     keys: RefCell<Vec<Key>>,
+    /// Whether the text falls apart, so that only its first fault of syntax says what is wrong.
+    is_broken: Cell<bool>,
 }
 
 impl Faults {
@@ -115,6 +120,9 @@ impl Faults {
     pub fn finish(self) -> Result<Vec<Diagnostic>, Error> {
         let ok = self.none();
         let mut all = self.found.into_inner();
+        if self.is_broken.get() {
+            all.retain(|fault| fault.message.starts_with(SYNTAX));
+        }
         all.sort_by_key(|fault| fault.place.as_ref().map_or(0, |(_, span)| span.start));
         if all.len() > MOST_TOLD {
             let more = all.len() - MOST_TOLD;
@@ -141,17 +149,28 @@ impl<'a> Document<'a> {
             text: text.to_owned(),
         });
         let (spanned, syntax_faults) = DeTable::parse_recoverable(text);
-        for fault in syntax_faults.iter().take(MOST_SYNTAX_TOLD) {
+        let mut told = 0;
+        for fault in &syntax_faults {
             let (message, span) = (fault.message().trim(), fault.span().unwrap_or(0..0));
-            let diagnostic = Diagnostic {
-                hint: syntax::remedy(text, &span, message),
-                ..Diagnostic::error("", format!("TOML syntax: {message}"))
-            };
-            faults.push(diagnostic.at(&source, span));
+            let hint = syntax::remedy(text, &span, message);
+            // Where it is not known what was meant, what follows is a consequence.
+            let is_broken = hint.is_none();
+            if is_broken || told < MOST_SYNTAX_TOLD {
+                let diagnostic = Diagnostic {
+                    hint,
+                    ..Diagnostic::error("", format!("{SYNTAX}: {message}"))
+                };
+                faults.push(diagnostic.at(&source, syntax::visible(text, span)));
+                told += 1;
+            }
+            if is_broken {
+                faults.is_broken.set(true);
+                break;
+            }
         }
-        let more = syntax_faults.len().saturating_sub(MOST_SYNTAX_TOLD);
+        let more = syntax_faults.len() - told;
         if more > 0 {
-            let message = format!("and {more} more faults of syntax");
+            let message = format!("{SYNTAX}: and {more} more faults of syntax");
             faults.push(Diagnostic::error("", message).at(&source, text.len()..text.len()));
         }
         Self {

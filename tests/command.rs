@@ -197,6 +197,7 @@ fn judgements(report: &Value) -> Vec<&str> {
 fn a_plate_compared_with_itself_is_not_judged() {
     let own = SMALL.replace("cells = [24, 8]", "cells = [12, 4]\ngrading = 1.0");
     let own = own.replacen("cells = [12, 4]", "cells = [24, 8]", 1);
+    let own = format!("{own}[corrector]\ngrading = 1.0\n");
     let folder = folder_with(&own);
     let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);
     let printed = words(&done.get_output().stdout);

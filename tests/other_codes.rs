@@ -130,7 +130,7 @@ fn a_field_of_ones_own_deviates_by_nothing() {
     let two = [
         "compare",
         "small.toml",
-        "compared/vtk/corrected.vtu",
+        "compared/vtk/finite_elements.vtu",
         "--factor",
         "0.2",
     ];

@@ -26,6 +26,21 @@ pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<
     usable.then(|| format!("write texts and quantities with units in quotes: {key}\"{value}\""))
 }
 
+/// A place that can be shown: at least one character of the text, the one before an empty place at the end of a line.
+pub(super) fn visible(text: &str, place: Range<usize>) -> Range<usize> {
+    let Some(before) = text.get(..place.start).filter(|_| place.is_empty()) else {
+        return place;
+    };
+    let here = text[place.start..].chars().next();
+    match here.filter(|letter| !letter.is_whitespace()) {
+        Some(letter) => place.start..place.start + letter.len_utf8(),
+        None => {
+            let start = before.trim_end().char_indices().next_back();
+            start.map_or(place, |(start, letter)| start..start + letter.len_utf8())
+        }
+    }
+}
+
 /// The value without quotes that holds a place, and the key before it with its equals sign.
 fn unquoted(text: &str, at: usize) -> Option<(String, &str)> {
     let start = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
@@ -83,6 +98,34 @@ mod tests {
         ] {
             let told = told(text);
             assert!(told.contains(expected), "{text}: {told}");
+        }
+    }
+
+    #[test]
+    fn what_follows_from_an_open_bracket_or_quote_is_not_told() {
+        for (text, line) in [
+            (
+                "[load]\nstretches = [\"15 %\", \"30 %\"\n[plate]\ncells = [60, 20]\n",
+                "a.toml:2:",
+            ),
+            (
+                "[load]\nstretches = [\"15 %\", \"30 %]\n[plate]\ncells = [60, 20]\n",
+                "a.toml:2:",
+            ),
+            ("[load\nstretches = [\"15 %\"]\n[plate]\n", "a.toml:1:"),
+        ] {
+            let faults = Faults::default();
+            let document = Document::parse("a.toml", text, &faults);
+            document.root(None, &faults).unknown_keys();
+            let told = faults.finish().expect_err(text).to_string();
+            assert!(
+                told.contains(line) && told.contains("TOML syntax"),
+                "{told}"
+            );
+            assert!(
+                told.lines().count() <= 3 && !told.contains("unknown"),
+                "{told}"
+            );
         }
     }
 

@@ -88,13 +88,17 @@ impl Network {
             }
         }
         let thermal = GAS_CONSTANT * temperature;
-        let modulus = match parameters.states("strand_density") {
-            true => {
-                share
-                    * thermal
-                    * parameters.condition("strand_density", Dimension::Concentration, f64::NAN)
+        let modulus = match ["strand_density", "modulus"].map(|key| parameters.states(key)) {
+            [true, given] => {
+                if given {
+                    parameters.remark("modulus");
+                    let message = "and `modulus` are both given; one of them is enough";
+                    parameters.fault("strand_density", message, "each follows from the other");
+                }
+                let strands = Dimension::Concentration;
+                share * thermal * parameters.condition("strand_density", strands, f64::NAN)
             }
-            false => parameters.stress("modulus", Bound::Positive),
+            [false, _] => parameters.stress("modulus", Bound::Positive),
         };
         let network = Self {
             modulus,

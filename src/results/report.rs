@@ -58,7 +58,9 @@ impl Results {
             .iter()
             .map(|(what, seconds)| (&**what, *seconds));
         let all = [("whole study", self.seconds)].into_iter().chain(parts);
-        let rows = all.map(|(what, seconds)| vec![what.to_owned(), format!("{seconds:.3}")]);
+        let digits = |seconds: f64| if seconds < 0.1 { 5 } else { 3 };
+        let time = |seconds: f64| format!("{seconds:.*}", digits(seconds));
+        let rows = all.map(|(what, seconds)| vec![what.to_owned(), time(seconds)]);
         [
             Block::heading("Times"),
             Block::paragraph("Wall-clock times. They differ from run to run."),
