@@ -157,7 +157,7 @@ impl<'a> Document<'a> {
             let is_broken = hint.is_none();
             if is_broken || told < MOST_SYNTAX_TOLD {
                 let diagnostic = Diagnostic {
-                    hint,
+                    hint: hint.or_else(|| syntax::advice(message)),
                     ..Diagnostic::error("", format!("{SYNTAX}: {message}"))
                 };
                 faults.push(diagnostic.at(&source, syntax::visible(text, span)));

@@ -26,6 +26,19 @@ pub(super) fn remedy(text: &str, place: &Range<usize>, message: &str) -> Option<
     usable.then(|| format!("write texts and quantities with units in quotes: {key}\"{value}\""))
 }
 
+/// Where to look when the text about a fault does not tell what was meant.
+pub(super) fn advice(message: &str) -> Option<String> {
+    let closing = match message {
+        _ if message.contains("array") => "a list that is opened by [ or a text in quotes",
+        _ if message.contains("table") => "a heading that is opened by [",
+        _ if message.contains("string") => "a text in quotes",
+        _ => return None,
+    };
+    Some(format!(
+        "{closing} has to be closed: look here and in the lines before"
+    ))
+}
+
 /// A place that can be shown: at least one character of the text, the one before an empty place at the end of a line.
 pub(super) fn visible(text: &str, place: Range<usize>) -> Range<usize> {
     let Some(before) = text.get(..place.start).filter(|_| place.is_empty()) else {
@@ -106,11 +119,11 @@ mod tests {
         for (text, line) in [
             (
                 "[load]\nstretches = [\"15 %\", \"30 %\"\n[plate]\ncells = [60, 20]\n",
-                "a.toml:2:",
+                "a.toml:3:",
             ),
             (
                 "[load]\nstretches = [\"15 %\", \"30 %]\n[plate]\ncells = [60, 20]\n",
-                "a.toml:2:",
+                "a.toml:3:",
             ),
             ("[load\nstretches = [\"15 %\"]\n[plate]\n", "a.toml:1:"),
         ] {
