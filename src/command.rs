@@ -346,6 +346,9 @@ fn cases_json(cases: &[Results]) -> Value {
     })
 }
 
+/// The exit code of a study of which a model has no solution.
+const NO_SOLUTION: u8 = 3;
+
 /// Prints warnings, headline figures, checks and where the results are, and decides on the exit code.
 fn conclude(results: &[Results], written: &str) -> Outcome {
     let outcomes = || results.iter().map(|results| &results.outcome);
@@ -362,8 +365,13 @@ fn conclude(results: &[Results], written: &str) -> Outcome {
     let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
     let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
     ends.iter().for_each(|end| complain_of_end(end));
-    let passed = results.iter().all(Results::passed);
-    Ok(ends.first().map_or(u8::from(!passed), |end| end.exit_code))
+    if let Some(end) = ends.first() {
+        return Ok(end.exit_code);
+    }
+    if outcomes().any(|outcome| outcome.checks.iter().any(Check::is_end)) {
+        return Ok(NO_SOLUTION);
+    }
+    Ok(u8::from(!results.iter().all(Results::passed)))
 }
 
 fn check(path: &Path, budget: Budget) -> Outcome {

@@ -68,6 +68,31 @@ impl BoundaryProblem {
         }
     }
 
+    /// The groups whose loads act along held unknowns alone: they change the supports' forces, and nothing else.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] when a support or a load does not suit a group of the mesh.
+    pub fn idle_loads(&self, mesh: &Mesh) -> Result<Vec<&str>, Diagnostic> {
+        let held = Constraints::of(mesh, &self.supports)?.held;
+        let mut idle = Vec::new();
+        for own in &self.loads {
+            let forces = dead_forces(mesh, own, self.thickness)?;
+            let acts = |unknown: &usize| match own.1 {
+                Load::Pressure(_) => true,
+                Load::Traction(_) | Load::Force(_) => forces[*unknown] != 0.0,
+            };
+            let nodes = mesh.groups()[&own.0].nodes.iter();
+            let unknowns = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
+            if unknowns
+                .filter(acts)
+                .all(|unknown| held.contains_key(&unknown))
+            {
+                idle.push(&*own.0);
+            }
+        }
+        Ok(idle)
+    }
+
     /// The unknowns of a mesh that are held, each with the number of the support that holds it: the first of
     /// several, which agree.
     ///

@@ -32,6 +32,23 @@ fn a_sheet_that_nothing_moves_is_told_and_passes() {
 }
 
 #[test]
+fn a_load_on_a_clamp_is_told_to_have_no_effect() {
+    let at = |group: &str| {
+        let rest = format!(
+            "[path]\nfactors = [1.0]\nmeasured_group = \"left\"\n\
+             [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
+             [[load]]\ngroup = \"{group}\"\nkind = \"traction\"\nx = \"5 kPa\"\n\
+             [[load]]\ngroup = \"right\"\nkind = \"traction\"\nx = \"5 kPa\"\n"
+        );
+        let folder = folder_with(&specimen(STRIP, &rest));
+        let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
+        words(&done.get_output().stderr)
+    };
+    assert!(at("left").contains("the load on left has no effect on the field"));
+    assert!(!at("top").contains("no effect"));
+}
+
+#[test]
 fn a_rigid_motion_has_no_force_no_compression_and_is_in_balance() {
     let moved = "kind = \"displacement\"\nx = \"3 mm\"\ny = \"1 mm\"\n";
     let rest = format!(

@@ -37,10 +37,23 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         .collect();
     all.extend(locking::warning(&*specimen.problem.law, &locking));
     all.extend(small_strain::warning(&*specimen.problem.law, mesh, loads()));
+    all.extend(idle_loads(specimen, mesh));
     all.extend(several(models));
     all.extend(beyond(&specimen.card, &strained));
     all.extend(unstable(&specimen.card, &strained));
     all
+}
+
+/// The warning about loads that supports take up at once.
+fn idle_loads(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
+    let idle = specimen.problem.idle_loads(mesh).unwrap_or_default();
+    (!idle.is_empty()).then(|| {
+        format!(
+            "Warning: the load on {} has no effect on the field: supports hold these nodes along it, and take it up at once. Hold another \
+             group, or take a support that leaves the load's direction free, such as a grip with a force.",
+            idle.join(", ")
+        )
+    })
 }
 
 /// The warning about states that may be one of several.
