@@ -117,6 +117,14 @@ pub enum SolveFault {
     /// The tangent has a direction of no or negative stiffness.
     #[error("the tangent stiffness is not positive definite: a loss of stability")]
     NotPositiveDefinite,
+    /// A body that has a direction of negative stiffness before anything is done to it.
+    #[error(
+        "not stable at rest: a mode that moves most at {place} has a negative stiffness before any load acts"
+    )]
+    UnstableAtRest {
+        /// Where the mode is largest.
+        place: String,
+    },
     /// A material whose stress falls with strain.
     #[error("material unstable in {element} at {state}")]
     MaterialUnstable {
@@ -215,6 +223,9 @@ impl SolveFault {
             }
             Self::NotPositiveDefinite => {
                 "look at the card's stable range with `gelbench materials show`, or take smaller load steps"
+            }
+            Self::UnstableAtRest { .. } => {
+                "take cells of better shape: springs of skewed cells may need negative constants to have the material's stiffness"
             }
             Self::MaterialUnstable { .. } => {
                 "look at the card's stable range with `gelbench materials show`, or take a law that is stable there"

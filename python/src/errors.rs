@@ -55,7 +55,9 @@ fn place(fault: &SolveFault) -> Option<&str> {
         SolveFault::Inverted { element } | SolveFault::MaterialUnstable { element, .. } => {
             Some(element)
         }
-        SolveFault::LoadMaximum { place, .. } | SolveFault::Buckling { place } => Some(place),
+        SolveFault::LoadMaximum { place, .. }
+        | SolveFault::Buckling { place }
+        | SolveFault::UnstableAtRest { place } => Some(place),
         _ => None,
     }
 }

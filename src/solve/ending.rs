@@ -58,11 +58,23 @@ pub fn diagnose(
         // The modes of its symmetric part alone are no modes of the body.
         return fault;
     }
+    let place_of = |mode: &[f64]| {
+        let most = (0..mode.len()).max_by(|a, b| mode[*a].abs().total_cmp(&mode[*b].abs()));
+        most.map_or_else(String::new, |unknown| loading.describe_unknown(unknown))
+    };
+    let at_rest = previous
+        .is_none()
+        .then(|| newton.tangent.softest_mode(&*potential, &rest));
+    if let Some((least, mode)) = at_rest.flatten()
+        && least < 0.0
+    {
+        let place = place_of(&mode);
+        return SolveFault::UnstableAtRest { place };
+    }
     let Some((_, mode)) = newton.tangent.softest_mode(&*potential, &u) else {
         return fault;
     };
-    let most = (0..mode.len()).max_by(|a, b| mode[*a].abs().total_cmp(&mode[*b].abs()));
-    let place = most.map_or_else(String::new, |unknown| loading.describe_unknown(unknown));
+    let place = place_of(&mode);
     if !is_driven(newton, loading, (factor, history), &u, &mode) {
         return SolveFault::Buckling { place };
     }

@@ -158,3 +158,13 @@ fn a_path_comes_near_to_the_maximum_of_its_load_and_names_it() {
         }
     );
 }
+
+/// A spring of negative stiffness, −½ u², has no stable equilibrium whatever the load: that is no buckling under it.
+#[test]
+fn a_body_that_is_not_stable_at_rest_is_told_so() {
+    let negative = |u: f64, _: f64| Some([-0.5 * u * u, -u, -1.0]);
+    let point = Point { energy: negative };
+    let end = follow(&point, &[0.1], NEWTON, Attendance::told(&|_| ())).unwrap_err();
+    let place = "its place".to_owned();
+    assert_eq!(end.fault, SolveFault::UnstableAtRest { place });
+}
