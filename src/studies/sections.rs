@@ -155,7 +155,8 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, 
     let size = [length("length"), length("width")];
     let thickness = length("thickness");
     let cells = section.count_pair("cells", 2, MOST_CELLS);
-    let cells = cells.filter(|cells| affords_cells(section, *cells, 2.0, 1));
+    let cells =
+        cells.filter(|cells| section.affords("cells", need_of_cells(*cells, 2.0, 1), "take fewer"));
     if let Some(cells) = cells {
         check_aspect(section, size, cells);
     }
@@ -187,16 +188,10 @@ pub fn check_thickness(section: &Section<'_>, thickness: f64, size: [f64; 2], ca
     }
 }
 
-/// Whether so many states on the mesh of `cells`, with so many unknowns a cell, are not too much; that they are is recorded.
-pub fn affords_cells(
-    section: &Section<'_>,
-    cells: [usize; 2],
-    unknowns: f64,
-    states: usize,
-) -> bool {
+/// What so many states on the mesh of `cells` need, with so many unknowns a cell.
+pub fn need_of_cells(cells: [usize; 2], unknowns: f64, states: usize) -> Need {
     let all = cells[0] as f64 * cells[1] as f64;
-    let need = Need::of_states(unknowns * all, states as f64).on_cells(all);
-    section.affords("cells", need, "take fewer")
+    Need::of_states(unknowns * all, states as f64).on_cells(all)
 }
 
 /// Springs cannot make a lattice of long cells isotropic.

@@ -17,7 +17,7 @@ use crate::solve::LinearSolver;
 use crate::studies::name;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
-    MOST_CELLS, Tolerances, affords_cells, check_range, even_cells, read_card, read_climb,
+    MOST_CELLS, Tolerances, check_range, even_cells, need_of_cells, read_card, read_climb,
     read_newton, read_plate, refuse_climb_with_memory,
 };
 use crate::units::Dimension;
@@ -200,12 +200,21 @@ fn read_reference(
     judged: ([usize; 2], bool),
 ) -> Option<Reference> {
     let element = section.choice("element", &Element::NAMES);
-    let cells = read_reference_cells(section, plate.size, judged);
     let unknowns = match element {
         Some(Element::Q1) => 2.0,
         _ => 8.0,
     };
-    affords_cells(section, cells, unknowns, plate.stretches.len());
+    let states = plate.stretches.len();
+    let need = |cells| need_of_cells(cells, unknowns, states);
+    let cells = read_reference_cells(section, judged, |judged| {
+        let wanted = reference_cells(plate.size, judged);
+        match section.excess(need(wanted)) {
+            // Finite elements that cannot judge the field in all are better than none.
+            Some(_) => reference_cells(plate.size, (judged.0, false)),
+            None => wanted,
+        }
+    });
+    section.affords("cells", need(cells), "take fewer");
     let grading = section.number("grading", GRADINGS);
     let newton = read_newton(section);
     let linear_solver = section.choice("method", &LinearSolver::NAMES);
@@ -222,13 +231,13 @@ fn read_reference(
 /// The cells that a study gives, or those that suit its lattice.
 fn read_reference_cells(
     section: &Section<'_>,
-    size: [f64; 2],
     judged: ([usize; 2], bool),
+    automatic: impl Fn(([usize; 2], bool)) -> [usize; 2],
 ) -> [usize; 2] {
     const KEY: &str = "cells";
     let given = section.count_pair_or("automatic", KEY, [4, MOST_CELLS]);
     let Some(cells) = given.flatten() else {
-        return reference_cells(size, judged);
+        return automatic(judged);
     };
     if cells.iter().any(|cells| cells % 4 != 0) {
         let [x, y] = cells.map(|cells| cells.next_multiple_of(4));

@@ -220,3 +220,21 @@ fn a_study_without_a_title_is_called_after_its_material() {
     );
     assert_eq!(title("title = \"Mine\""), "Mine");
 }
+
+/// Finite elements that judge a graded field on a fine lattice at ninety-nine stretches would not fit into memory.
+#[test]
+fn automatic_finite_elements_are_as_fine_as_can_be_afforded() {
+    let stretches: Vec<String> = (1..100)
+        .map(|n| (0.01 * f64::from(n)).to_string())
+        .collect();
+    let many = format!("[load]\nstretches = [{}]\n", stretches.join(", "));
+    let fine = "[plate]\ncells = [300, 100]\n";
+    let few = parse(fine).unwrap().reference.cells;
+    let all = parse(&format!("{fine}{many}")).unwrap().reference.cells;
+    assert!(
+        few[1] == 160 && all[1] < 100 && all[1] >= 60,
+        "{few:?} {all:?}"
+    );
+    let own = format!("{fine}{many}[finite_element]\ncells = [280, 160]\n");
+    assert!(faults(&own)[0].contains("bytes of memory"));
+}
