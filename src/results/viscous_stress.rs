@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 pub struct ViscousStress {
     /// In the centres of the cells.
     pub in_cells: Vec<[f64; 4]>,
-    /// At the nodes, of the gradients of [`nodal_gradients`].
+    /// At the nodes, of the mean of the displacement gradients that the cells around each have there.
     pub at_nodes: Vec<[f64; 4]>,
 }
 
