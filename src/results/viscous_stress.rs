@@ -31,10 +31,10 @@ impl ViscousStress {
         }
         let places = [cell_gradients, nodal_gradients];
         let mut memories = places.map(|_| Vec::new());
-        let mut last = None;
+        let mut last = times.first().copied().unwrap_or_default();
         let at_instant = |(time, fields): (&f64, &[&[f64]; 2])| {
-            let elapsed = last.map(|last| time - last);
-            last = Some(*time);
+            let elapsed = time - last;
+            last = *time;
             let mut places = places.iter().zip(&mut memories).map(|(gradients, memory)| {
                 let [now, rate] = fields.map(|field| gradients(mesh, field));
                 memory.resize_with(now.len(), Vec::new);
@@ -55,22 +55,22 @@ impl ViscousStress {
     }
 }
 
-/// The viscous stress at a place, of what it remembers of S∞ and Qᵢ some time in s ago; `None` where it has rested for long. No numbers where
-/// the sheet is turned inside out.
+/// The viscous stress at a place, of what it remembers of S∞ and Qᵢ some time in s ago; of nothing where it has rested for long. No numbers
+/// where the sheet is turned inside out.
 fn stress(
     (law, material): (&dyn HyperelasticLaw, &ViscousMaterial),
     [gradient, rate]: [&[f64; 4]; 2],
     memory: &mut Vec<f64>,
-    elapsed: Option<f64>,
+    elapsed: f64,
 ) -> [f64; 4] {
     let Ok(kinematics) = Kinematics::new(&Vector4::from(*gradient)) else {
         return [f64::NAN; 4];
     };
     let (_, long) = law.stress(&kinematics);
     let now = second_piola_kirchhoff(&kinematics, &long);
-    let branches = match elapsed {
-        Some(elapsed) if !memory.is_empty() => material.branches(memory, now, elapsed),
-        _ => vec![[0.0; 3]; material.relaxation.len()],
+    let branches = match memory.is_empty() {
+        true => vec![[0.0; 3]; material.relaxation.len()],
+        false => material.branches(memory, now, elapsed),
     };
     let q = [0, 1, 2].map(|i| branches.iter().map(|q| q[i]).sum());
     *memory = now

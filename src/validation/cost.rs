@@ -218,11 +218,11 @@ mod tests {
 
     #[test]
     fn the_verdict_follows_from_what_was_measured() {
-        for (departure, words, passed) in [(0.3, "as", true), (0.31, "less", false)] {
-            let than = if passed { "as" } else { "than" };
-            let expected = format!(
-                "corrected: {words} accurate {than} Q1; corrected: as accurate as Q1. {TIMES}"
-            );
+        for (departure, words, passed) in [
+            (0.3, "as accurate as", true),
+            (0.31, "less accurate than", false),
+        ] {
+            let expected = format!("corrected: {words} Q1; corrected: as accurate as Q1. {TIMES}");
             assert_eq!(said(departure, 0.3), (expected, passed));
         }
     }

@@ -4,7 +4,7 @@ use super::corrected::CorrectedMotion;
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use crate::mesh::Mesh;
-use crate::results::wrinkling::Wrinkling;
+use crate::results::wrinkling::{Wrinkling, of_parts};
 use crate::results::{ViscousStress, cell_states, number};
 
 /// A plate whose motion is shown.
@@ -70,11 +70,6 @@ pub fn compression(plate: &MovingPlate, times: &[f64], plates: &[PlateMotion]) -
         (share, *time)
     });
     let (share, time) = shares.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    (share > 0.0).then(|| {
-        format!(
-            "Warning: part of the sheet is under compression, where a thin sheet wrinkles and the plane solution carries stress \
-             that it would lose: up to {share:.1} % of the area, at {} s (array `wrinkling` of the finite elements' VTK files).",
-            number(time)
-        )
-    })
+    let most = || format!("up to {share:.1} % of the area, at {} s", number(time));
+    (share > 0.0).then(|| of_parts(&most()))
 }

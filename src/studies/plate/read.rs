@@ -206,7 +206,7 @@ fn read_reference(
     };
     let states = plate.stretches.len();
     let need = |cells| need_of_cells(cells, unknowns, states);
-    let cells = read_reference_cells(section, judged, |judged| {
+    let cells = read_reference_cells(section, || {
         let wanted = reference_cells(plate.size, judged);
         match section.excess(need(wanted)) {
             // Finite elements that cannot judge the field in all are better than none.
@@ -229,15 +229,11 @@ fn read_reference(
 }
 
 /// The cells that a study gives, or those that suit its lattice.
-fn read_reference_cells(
-    section: &Section<'_>,
-    judged: ([usize; 2], bool),
-    automatic: impl Fn(([usize; 2], bool)) -> [usize; 2],
-) -> [usize; 2] {
+fn read_reference_cells(section: &Section<'_>, automatic: impl Fn() -> [usize; 2]) -> [usize; 2] {
     const KEY: &str = "cells";
     let given = section.count_pair_or("automatic", KEY, [4, MOST_CELLS]);
     let Some(cells) = given.flatten() else {
-        return automatic(judged);
+        return automatic();
     };
     if cells.iter().any(|cells| cells % 4 != 0) {
         let [x, y] = cells.map(|cells| cells.next_multiple_of(4));
