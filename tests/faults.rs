@@ -130,7 +130,7 @@ fn an_interrupt_ends_with_130_and_leaves_nothing_of_the_run() {
     let interrupted = |arguments: &str, ready: &dyn Fn() -> bool| {
         let child = start(folder, arguments);
         wait_for(ready);
-        shell(folder, &format!("kill -INT {}", child.id()));
+        send(&child, Signal::SIGINT);
         child.wait_with_output().unwrap()
     };
     let ended = interrupted("run b.toml --output o", &|| partial(output));

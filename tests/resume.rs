@@ -4,6 +4,8 @@
 use std::cell::{Cell, RefCell};
 use std::fs;
 use std::path::Path;
+use std::thread;
+use std::time::Duration;
 
 use gelbench::budget::Budget;
 use gelbench::solve::{Journal, Milestone};
@@ -102,9 +104,9 @@ fn a_computation_goes_on_from_any_equilibrium_to_the_same_bits() {
     }
 }
 
-/// A plate whose finite elements take a second or more.
+/// A plate whose finite elements take some seconds.
 const LONG: &str = "[plate]\nlength = \"30 mm\"\nwidth = \"10 mm\"\ncells = [6, 2]\n[material]\ncard = \"pva-10\"\n[load]\n\
-    stretches = [\"3 %\", \"6 %\", \"9 %\", \"12 %\", \"15 %\", \"18 %\", \"21 %\", \"24 %\", \"27 %\", \"30 %\"]\n[finite_element]\ncells = [40, 40]\n\
+    stretches = [\"3 %\", \"6 %\", \"9 %\", \"12 %\", \"15 %\", \"18 %\", \"21 %\", \"24 %\", \"27 %\", \"30 %\"]\n[finite_element]\ncells = [80, 40]\n\
     [output]\nplots = false\n";
 
 #[test]
@@ -120,19 +122,17 @@ fn a_run_goes_on_where_it_was_broken_off() {
     // A run keeps nothing within its first two seconds: it sleeps through them.
     let started = || {
         let child = start(folder, command);
-        let id = child.id();
         wait_for(|| partial(output));
-        shell(
-            folder,
-            &format!("kill -STOP {id}; sleep 2; kill -CONT {id}"),
-        );
+        send(&child, Signal::SIGSTOP);
+        thread::sleep(Duration::from_secs(2));
+        send(&child, Signal::SIGCONT);
         wait_for(kept);
         child
     };
     for interrupt in [true, false] {
         let mut child = started();
         if interrupt {
-            shell(folder, &format!("kill -INT {}", child.id()));
+            send(&child, Signal::SIGINT);
             let ended = child.wait_with_output().unwrap();
             assert_ends(&ended, 130, "the same command goes on from here");
         } else {
@@ -195,7 +195,7 @@ fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
 
     let child = start(folder, &CORRECT.replace("c.csv", "m.csv"));
     wait_for(|| is_done("1"));
-    shell(folder, &format!("kill -INT {}", child.id()));
+    send(&child, Signal::SIGINT);
     assert_ends(
         &child.wait_with_output().unwrap(),
         130,

@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+pub use nix::sys::signal::Signal;
+use nix::sys::signal::kill;
+use nix::unistd::Pid;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -62,6 +65,12 @@ pub fn start(folder: &Path, arguments: &str) -> Child {
     let mut command = command(folder, arguments);
     let silent = command.stdout(Stdio::null()).stderr(Stdio::piped());
     silent.spawn().unwrap()
+}
+
+/// Sends a signal at once: a shell that sends it may be so late that the process has ended.
+pub fn send(child: &Child, signal: Signal) {
+    let id = i32::try_from(child.id()).unwrap();
+    kill(Pid::from_raw(id), signal).unwrap();
 }
 
 /// Runs a script in which `$G` is the program.
