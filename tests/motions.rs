@@ -137,3 +137,33 @@ fn the_report_of_a_motion_says_plate_material_and_grips() {
     assert_eq!(material["parameters"]["amplitude"]["value"], 0.0611);
     assert_eq!(json["problem"]["thickness_mm"], 1.0);
 }
+
+/// Where nothing moves, forces at free nodes are rounding, and the corrector measures what is left by those at the grips.
+#[test]
+fn a_plate_that_is_held_and_one_that_comes_to_rest_are_corrected() {
+    let held = "[start]\nstretch = \"5 %\"\n[grip]\nmotion = \"hold\"\n";
+    let ramp = "[start]\nstretch = \"0 %\"\n[grip]\nmotion = \"ramp\"\nbegin = \"0 s\"\nend = \"0.1 s\"\nto = \"10 %\"\n";
+    let material = "[material]\ncard = \"neo-hooke\"\ndensity = \"1 g/cm^3\"\n";
+    let viscous = format!("{material}[material.viscosity]\nshear = \"50 Pa·s\"\n");
+    let long = "[time]\nduration = \"0.4 s\"\ninterval = \"20 ms\"\nintegrator = \"generalised-alpha\"\nstep = \"10 ms\"\n";
+    for study in [
+        format!("{material}{held}{TIME}"),
+        format!("{viscous}{ramp}{long}"),
+    ] {
+        let folder = folder_with(&motion(&study));
+        gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+        let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+        assert!(report.contains("Newton steps"), "{report}");
+    }
+}
+
+#[test]
+fn a_viscous_plate_at_rest_is_set_in_motion_by_a_force() {
+    let rest = "[material]\ncard = \"neo-hooke\"\ndensity = \"1 g/cm^3\"\n\
+        [material.viscosity]\nshear = \"0.01 Pa·s\"\n\
+        [start]\nstretch = \"0 %\"\n[grip]\nmotion = \"hold\"\n\
+        [[force]]\nat = [\"15 mm\", \"10 mm\"]\nx = \"0 N\"\ny = \"5 mN\"\nbegin = \"2 ms\"\nend = \"10 ms\"\n";
+    let time = format!("{TIME}integrator = \"velocity-verlet\"\n");
+    let folder = folder_with(&motion(&format!("{rest}{time}")));
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
+}

@@ -54,6 +54,7 @@ mod robust;
 mod rows;
 mod search;
 mod shares;
+mod smoothed_away;
 mod start;
 mod task;
 mod transfer;

@@ -27,7 +27,7 @@ use rayon::prelude::*;
 use super::{Condition, Corrector, CorrectorSettings, Linearisation};
 use crate::dynamics::{Memory, Motion, StepForces, Viscosity};
 use crate::error::SolveFault;
-use crate::solve::vector::{add_scaled, gather};
+use crate::solve::vector::{add_scaled, gather, largest};
 use crate::solve::{Assembly, Inadmissible, SparseRows};
 
 mod window;
@@ -52,6 +52,8 @@ pub struct EquationOfMotion<'a> {
 struct Frame {
     force: Vec<f64>,
     stiffness: Vec<f64>,
+    /// The largest force in N, where unknowns are held too: at rest those at free unknowns are rounding.
+    size: f64,
 }
 
 /// Viscous forces of a step and their tangents by its two ends.
@@ -217,6 +219,7 @@ impl<'a> EquationOfMotion<'a> {
         let external = self.motion.external_forces(self.time(instant));
         let free = self.assembly.free().iter();
         Ok(Frame {
+            size: largest(&residual),
             force: free.map(|i| residual[*i] - external[*i]).collect(),
             stiffness,
         })

@@ -133,8 +133,11 @@ impl DampedEnd<'_> {
             };
             let defect: Vec<f64> = free.iter().map(|i| -defect(*i)).collect();
             let most = largest(&defect);
-            let impulse =
-                |i: &usize| (motion.mass[*i] * start[*i]).abs() + half * forces.elastic[*i].abs();
+            let impulse = |i: &usize| {
+                let forces =
+                    [&forces.external, &forces.elastic, &forces.viscous].map(|all| all[*i].abs());
+                (motion.mass[*i] * start[*i]).abs() + half * forces.iter().sum::<f64>()
+            };
             scale = free.iter().map(impulse).fold(scale, f64::max);
             if most <= TOLERANCE * scale {
                 return Ok(());

@@ -20,7 +20,8 @@ pub fn warnings(
     if excess > 4.0 {
         warnings.push(format!(
             "force and motion do not fit together: what is left is {:.2} times the noise; the mass, the length at rest or \
-             the forms are wrong, or there is more than one spring and one dashpot",
+             the forms are wrong, the noise correlates, or there is more than one spring and one dashpot; intervals hold white \
+             noise alone and are too narrow",
             found.misfit.sqrt()
         ));
     }

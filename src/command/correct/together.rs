@@ -15,7 +15,9 @@ use crate::error::Error;
 use crate::material::Card;
 use crate::material::softened_law::check_memory;
 use crate::output::{self, ResultFolder};
-use crate::studies::markers::joint::{CorrectedSpecimen, JointStudy, NamedSpecimen, results};
+use crate::studies::markers::joint::{
+    CorrectedSpecimen, JointStudy, NamedSpecimen, given_the_law, results,
+};
 use crate::studies::markers::{Conditions, MarkerStudy, Request, worst_answer};
 use crate::studies::name;
 
@@ -54,6 +56,7 @@ pub fn run(options: Options) -> Outcome {
             estimates,
         });
     }
+    warn(&[given_the_law()]);
     interrupt::guard(&results_folder);
     let seconds = start.elapsed().as_secs_f64();
     let results = results(&study, &found, &corrected, seconds);

@@ -94,10 +94,29 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
             row[column] * unit
         })
     };
+    let all = rows.iter().map(|row| [pair(row, 0), pair(row, 2)]);
+    check_unique(&table.source.name, all.clone().collect())?;
     Ok(Points {
-        places: rows.iter().map(|row| pair(row, 0)).collect(),
-        displacement: rows.iter().flat_map(|row| pair(row, 2)).collect(),
+        places: all.clone().map(|[place, _]| place).collect(),
+        displacement: all.flat_map(|[_, displacement]| displacement).collect(),
     })
+}
+
+/// One place has one displacement; rows that say the same twice do no harm.
+fn check_unique(file: &str, mut all: Vec<[[f64; 2]; 2]>) -> Result<(), Error> {
+    all.sort_by(|[a, _], [b, _]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let mut pairs = all.windows(2);
+    match pairs.find(|pair| pair[0][0] == pair[1][0] && pair[0][1] != pair[1][1]) {
+        Some(pair) => {
+            let ([[x, y], [ux, uy]], [_, [vx, vy]]) = (pair[0], pair[1]);
+            let message = format!(
+                "{file} has two displacements at ({x}, {y}) mm: ({ux}, {uy}) and ({vx}, {vy}) mm"
+            );
+            let hint = "leave the rows of one load factor and of one measurement, or add a column `load_factor` or `time`";
+            Err(Error::input(message, hint))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The columns that choose rows.

@@ -235,6 +235,11 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
             "no rows for the time 0.5 (choose one that it has with --time: 0.7",
         ),
         (
+            ".csv",
+            format!("{head}3,2,1,1\n4,2,1,1\n3,2,1,1\n4,2,1,0.9\n"),
+            "two displacements at (4, 2) mm: (1, 1) and (1, 0.9) mm (leave the rows of one load factor",
+        ),
+        (
             ".txt",
             String::new(),
             "is no .vtu, .vtk, .pvd, .msh, .frd or .csv file",
@@ -314,6 +319,44 @@ fn displacements_of_another_load_factor_are_told() {
         assert_eq!(difference.is_scaled(), scaled, "{difference:?}");
         if scaled {
             assert!((difference.factor - 2.0).abs() < 1e-10 && difference.scaled_percent < 1e-10);
+        }
+    }
+}
+
+#[test]
+fn a_motion_of_the_whole_body_is_told_from_a_strain() {
+    let model = model([6, 2]);
+    let (turn, offset) = (0.02, [0.3, -0.2]);
+    let row = |[x, y]: [f64; 2], moved: bool| {
+        let [ux, uy] = field([x, y]);
+        let (x_now, y_now) = (x + ux, y + uy);
+        let [dx, dy] = match moved {
+            true => [offset[0] - turn * y_now, offset[1] + turn * x_now],
+            false => [0.02 * x, -0.02 * y],
+        };
+        format!("{x},{y},{},{}\n", ux - dx, uy - dy)
+    };
+    let places = [
+        [3.0, 2.0],
+        [10.0, 5.0],
+        [20.0, 5.0],
+        [25.0, 2.0],
+        [12.0, 9.0],
+    ];
+    for moved in [true, false] {
+        let rows = places.map(|place| row(place, moved)).concat();
+        let table = format!("X_mm,Y_mm,ux_mm,uy_mm\n{rows}");
+        let imported = ExternalField::read(&written(".csv", &table), &SETTINGS).unwrap();
+        let sites = imported.sites(&model.mesh).unwrap();
+        let difference = sites.difference(&model).unwrap();
+        assert!(difference.percent > 2.0);
+        assert_eq!(difference.is_shifted(), moved, "{difference:?}");
+        if moved {
+            assert!(
+                (difference.shift.rotation / turn - 1.0).abs() < 1e-3,
+                "{difference:?}"
+            );
+            assert!(difference.shifted_percent < 0.1, "{difference:?}");
         }
     }
 }

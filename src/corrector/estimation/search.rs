@@ -79,9 +79,8 @@ impl<'a> Equations<'a> {
             let close = self.close(&trade, &place.field);
             let scale = largest(&place.field);
             (moved, wanted) = (largest(&change) / scale, close / scale);
-            // Steps that do not become shorter swing about the nearest field.
-            if steps > trading && fit.length > 0.5 * last && share > SHORTEST {
-                share *= 0.5;
+            if steps > trading {
+                share = next_share(share, fit.length / last);
             }
             last = fit.length;
             let near = fit.length <= NEAR && largest(&linear.still) <= close;
@@ -241,6 +240,18 @@ impl<'a> Equations<'a> {
                 Err(_) => length *= 0.5,
             }
         }
+    }
+}
+
+/// The share of the next step, of the last one, and the ratio of their lengths: 1 − share where the regression is linear. Steps that
+/// do not become as much shorter swing about the nearest field.
+fn next_share(share: f64, ratio: f64) -> f64 {
+    if ratio > 1.0 - 0.5 * share {
+        (0.5 * share).max(SHORTEST)
+    } else if ratio < 1.0 - 0.75 * share {
+        (2.0 * share).min(1.0)
+    } else {
+        share
     }
 }
 

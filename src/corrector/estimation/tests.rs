@@ -7,9 +7,10 @@ use crate::problem::{BoundaryProblem, Support};
 use crate::solve::NewtonSettings;
 
 mod pads;
+mod places;
 mod truth;
 
-use truth::{C10, THICKNESS, estimate_mesh};
+use truth::{C10, THICKNESS, estimate_mesh, noisy};
 pub(super) use truth::{SIZE, STRETCH, Truth, law, specimen, with_grips};
 
 #[test]

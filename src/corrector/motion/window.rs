@@ -186,9 +186,9 @@ impl EquationOfMotion<'_> {
         values
     }
 
-    /// The largest force in N: elastic, or that of inertia.
+    /// The largest force in N: elastic, reactions included, or that of inertia.
     fn scale(&self, interval: &Interval, window: &Window) -> f64 {
-        let forces = interval.frames.iter().map(|frame| largest(&frame.force));
+        let forces = interval.frames.iter().map(|frame| frame.size);
         let second = window.states.windows(3).map(|three| {
             let free = self.assembly.free().iter().enumerate();
             free.fold(0.0, |most: f64, (i, unknown)| {

@@ -160,7 +160,9 @@ fn names(text: &str) -> Result<Names, Unreadable> {
     Ok(names)
 }
 
+/// The name of a group; Gmsh negates the tag where a group takes an entity the other way round.
 fn group(names: &Names, dimension: i64, tag: i64) -> String {
+    let tag = tag.abs();
     names
         .get(&(dimension, tag))
         .cloned()

@@ -37,6 +37,8 @@ fn both_versions_of_gmsh_are_read_with_their_groups() {
     for (text, cells) in [
         (VERSION_2, 2),
         (VERSION_4, 1),
+        // A curve that the group takes the other way round.
+        (&VERSION_4.replace("1 7 2 1 -2", "1 -7 2 1 -2"), 1),
         (&VERSION_2.replace('\n', "\r\n"), 2),
     ] {
         let mesh = read("a.msh", text).unwrap();

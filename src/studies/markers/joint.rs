@@ -178,8 +178,15 @@ impl MarkerStudy {
         };
         other.conditions.fit.clear();
         other.conditions.forces_are_checks = true;
+        other.warnings.push(given_the_law());
         other
     }
+}
+
+/// What intervals of a field hold whose law was found with other fields.
+pub fn given_the_law() -> Diagnostic {
+    let message = "intervals of displacements, stresses and forces hold for the parameters that were found: the uncertainty of these is not in them";
+    Diagnostic::warning("", message).hint("where a parameter scales the stress, add its relative interval to that of forces and stresses")
 }
 
 impl Conditions {

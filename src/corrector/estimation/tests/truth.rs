@@ -83,17 +83,13 @@ impl Truth {
 
     /// 21 × 11 markers with normal noise.
     pub(in super::super) fn markers(&self, noise: f64, seed: u64) -> Vec<Marker> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
-        let places =
+        let grid =
             (0..21).flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
-        let marker = |(number, place): (usize, [f64; 2])| Marker {
-            number,
-            place,
-            displacement: self.at(place).map(|u| u + noise * draw()),
-            standard_deviation: None,
-        };
-        places.enumerate().map(marker).collect()
+        noisy(
+            &grid.collect::<Vec<_>>(),
+            &|place| self.at(place),
+            (noise, seed),
+        )
     }
 
     pub(super) fn error(&self, mesh: &Mesh, field: &[f64]) -> f64 {
@@ -101,6 +97,23 @@ impl Truth {
         let sum: f64 = exact.iter().zip(field).map(|(a, b)| (a - b).powi(2)).sum();
         (sum / field.len() as f64).sqrt()
     }
+}
+
+/// Markers of a field with normal noise.
+pub(super) fn noisy(
+    places: &[[f64; 2]],
+    field: &dyn Fn([f64; 2]) -> [f64; 2],
+    (noise, seed): (f64, u64),
+) -> Vec<Marker> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+    let marker = |(number, place): (usize, &[f64; 2])| Marker {
+        number,
+        place: *place,
+        displacement: field(*place).map(|u| u + noise * draw()),
+        standard_deviation: None,
+    };
+    places.iter().enumerate().map(marker).collect()
 }
 
 pub(super) fn estimate_mesh() -> Mesh {

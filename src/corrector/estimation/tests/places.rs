@@ -1,0 +1,66 @@
+//! Intervals place by place, where coverage on the average over a specimen says nothing.
+
+use super::*;
+use crate::material::sheet::{Gradient, Kinematics};
+use crate::mesh::{CellShape, Mesh, Shape};
+
+const WHOLE: [f64; 2] = [100.0, 60.0];
+const WINDOW: [f64; 2] = [40.0, 36.0];
+const SPACING: f64 = 1.5;
+const NOISE: f64 = 0.05;
+const SEEDS: u64 = 6;
+
+fn strip(size: [f64; 2], across: usize) -> Mesh {
+    let radius = 5.0;
+    Shape::StripWithHole { size, radius }.mesh(across, CellShape::Quad9)
+}
+
+/// From the window, which lies around the hole, to the whole strip.
+fn there(place: [f64; 2]) -> [f64; 2] {
+    [place[0] + 0.5 * (WHOLE[0] - WINDOW[0]), place[1]]
+}
+
+/// Markers half a spacing inside of the window.
+fn places(window: &Mesh) -> Vec<[f64; 2]> {
+    let counts = WINDOW.map(|side| (side / SPACING).round());
+    let at = |axis: usize, index: f64| (index + 0.5) / counts[axis] * WINDOW[axis];
+    let grid = (0..counts[0] as u32).flat_map(|i| (0..counts[1] as u32).map(move |j| [i, j]));
+    grid.map(|[i, j]| [at(0, i.into()), at(1, j.into()) - 0.5 * WINDOW[1]])
+        .filter(|place| window.outside(*place) < 1e-6)
+        .collect()
+}
+
+/// The edges of a window in a sheet, of which nothing is known, bend most where the hole is near.
+#[test]
+fn stresses_are_as_near_as_stated_in_every_cell_of_a_window() {
+    let (whole, window) = (Truth::on(strip(WHOLE, 24)), strip(WINDOW, 12));
+    let exact = |cell: usize| -> [f64; 4] {
+        let place = there(window.place(cell, window.shape(cell).centre()));
+        let (cell, local) = whole.mesh.locate(place);
+        let gradient = whole.mesh.gradient_at(whole.field(), cell, local);
+        let kinematics = Kinematics::new(&Gradient::from(gradient)).unwrap();
+        law().stress(&kinematics).1.into()
+    };
+    let knowledge = Knowledge {
+        unnamed: Unnamed::Loaded,
+        ..Knowledge::default()
+    };
+    let places = places(&window);
+    let mut squares = vec![[[0.0; 2]; 4]; window.cell_count()];
+    for seed in 0..SEEDS {
+        let markers = noisy(&places, &|place| whole.at(there(place)), (NOISE, seed));
+        let found = estimate(&specimen(&window), &markers, &knowledge).unwrap();
+        for (cell, (own, sums)) in found.cells.iter().zip(&mut squares).enumerate() {
+            let exact = exact(cell);
+            for (component, sum) in sums.iter_mut().enumerate() {
+                let off = own.first_piola_kirchhoff_stress[component] - exact[component];
+                sum[0] += off * off;
+                sum[1] += own.stress_error[component].powi(2);
+            }
+        }
+    }
+    let ratio = |[error, stated]: [f64; 2]| (error / stated).sqrt();
+    let far = squares.iter().flatten().filter(|sums| ratio(**sums) > 2.0);
+    let share = far.count() as f64 / (4 * squares.len()) as f64;
+    assert!(share < 0.012, "{share}");
+}
