@@ -27,7 +27,7 @@ pub struct ReadingArguments {
     /// Axis of the stress: 1 as the strain, 2 across
     #[arg(long, allow_hyphen_values = true)]
     direction: Option<String>,
-    /// ε₂/ε₁ of a biaxial test
+    /// ε₂/ε₁ of a biaxial test: of nominal strains, whatever the column holds
     #[arg(long, allow_hyphen_values = true)]
     strain_ratio: Option<String>,
     /// Cross-section of the specimen, where the file has forces

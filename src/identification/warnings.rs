@@ -5,6 +5,27 @@ use super::smoothing::SignalSpline;
 use super::types::Identification;
 use crate::statistics::Estimate;
 
+/// A longest interval of so many usual ones, and of such a part of the duration, is a gap.
+const INTERVALS: f64 = 20.0;
+const PART: f64 = 0.05;
+
+/// The warning about a gap in the rows: a spline has only as many parts as the gap leaves it, and what they miss is taken for noise.
+fn gap(times: &[f64]) -> Option<String> {
+    let mut intervals: Vec<[f64; 2]> = times.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    let length = |[from, to]: &[f64; 2]| to - from;
+    intervals.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    let usual = length(intervals.get(intervals.len() / 2)?);
+    let longest = intervals.last()?;
+    let duration = times.last()? - times.first()?;
+    (length(longest) > (INTERVALS * usual).max(PART * duration)).then(|| {
+        format!(
+            "there are no rows between {} and {} s: the motion may be told with less detail than it has, and the rest be taken for noise; \
+             identify what lies before and after it by itself",
+            longest[0], longest[1]
+        )
+    })
+}
+
 /// The warnings of an identification from the splines of extension and force.
 pub fn warnings(
     found: &Identification,
@@ -25,6 +46,7 @@ pub fn warnings(
             found.misfit.sqrt()
         ));
     }
+    warnings.extend(gap(&recording.times));
     for (name, _, function) in found.functions() {
         let estimates: Vec<_> = function
             .places(41)

@@ -83,10 +83,8 @@ impl BoundaryProblem {
             };
             let nodes = mesh.groups()[&own.0].nodes.iter();
             let unknowns = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
-            if unknowns
-                .filter(acts)
-                .all(|unknown| held.contains_key(&unknown))
-            {
+            let mut loaded = unknowns.filter(acts).peekable();
+            if loaded.peek().is_some() && loaded.all(|unknown| held.contains_key(&unknown)) {
                 idle.push(&*own.0);
             }
         }

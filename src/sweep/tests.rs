@@ -204,6 +204,12 @@ fn paths_and_names_are_values_too() {
 }
 
 #[test]
+fn a_unit_behind_the_last_value_is_that_of_all() {
+    let values = |text: &str| Variable::parse(text).unwrap();
+    assert_eq!(values("a=1, 2.5,3 mm"), values("a=1 mm,2.5 mm,3 mm"));
+}
+
+#[test]
 fn faults_name_what_to_write() {
     for (text, expected) in [
         ("material.c10", "there is no `=`"),
@@ -212,6 +218,7 @@ fn faults_name_what_to_write() {
         ("a=1..2:one", "`one` is not a number of values"),
         ("a=1 mm..2 MPa", "two units"),
         ("a=1 mm,2 cm", "several units"),
+        ("a=1 mm,2", "several units"),
         ("a=1+-0", "has to be positive"),
         ("a=x..2", "`x` is not a number"),
     ] {

@@ -148,17 +148,25 @@ impl Values {
     }
 
     fn listed<'a>(texts: impl Iterator<Item = &'a str>) -> Result<Self, String> {
-        let listed: Vec<Setting> = texts.map(Setting::of).collect();
-        let Some(first) = listed.first() else {
+        let mut listed: Vec<Setting> = texts.map(Setting::of).collect();
+        let Some(last) = listed.last() else {
             return Err("there are no values".to_owned());
         };
+        let unit = last.unit().to_owned();
         if listed
             .iter()
             .any(|one| *one == Setting::Text(String::new()))
         {
             return Err("a value is empty".to_owned());
         }
-        let unit = first.unit();
+        // A unit behind the last number is that of all.
+        for one in &mut listed {
+            if let (Some(value), "") = (one.value(), one.unit())
+                && !unit.is_empty()
+            {
+                *one = Setting::Number(value, unit.clone());
+            }
+        }
         match listed.iter().all(|one| one.unit() == unit) {
             true => Ok(Self::Listed(listed)),
             false => Err("the values have several units".to_owned()),

@@ -356,7 +356,8 @@ fn a_motion_of_the_whole_body_is_told_from_a_strain() {
                 (difference.shift.rotation / turn - 1.0).abs() < 1e-3,
                 "{difference:?}"
             );
-            assert!(difference.shifted_percent < 0.1, "{difference:?}");
+            // What is left is of the second order in the turn.
+            assert!(difference.shifted_percent < 0.3, "{difference:?}");
         }
     }
 }

@@ -55,7 +55,12 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
             format!("worst near ({x:.4}, {y:.4}) mm: markers there lie ({ux:.5}, {uy:.5}) mm off\n")
         });
         if found.verdict.mends.is_empty() {
-            text += "no edge, force, stiffness, law or finer mesh that was tried mends it\n";
+            text += match found.holds_mesh_error {
+                true => "no edge, force, stiffness, law or finer mesh that was tried mends it\n",
+                false => {
+                    "no edge, force, stiffness or law that was tried mends it; a finer mesh could not be tried: take smaller cells\n"
+                }
+            };
         }
         for mend in found.verdict.mends.iter().take(TOLD) {
             text += &format!("one linearised step with {}\n", words(mend));
