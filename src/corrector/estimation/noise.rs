@@ -53,8 +53,17 @@ impl NearestField<'_> {
         design.tr_mul(&pull)
     }
 
-    /// Takes the covariance under the noise that was found; the degrees of freedom of its size where it correlates.
+    /// Takes the covariance under the noise that was found, and with what smoothing takes away; the degrees of freedom of the noise's
+    /// size where it correlates.
     pub(super) fn widen(&mut self, judged: &Judgement) -> Option<f64> {
+        let smoothed_away = self.smoothed_away();
+        let freedom = self.take_noise(judged);
+        self.fit.covariance += smoothed_away;
+        freedom
+    }
+
+    /// The covariance under the noise that was found; the degrees of freedom of its size where it correlates.
+    fn take_noise(&mut self, judged: &Judgement) -> Option<f64> {
         const LEAST: f64 = 3.0;
         let noise = judged.noise?;
         let observations = self.observations();

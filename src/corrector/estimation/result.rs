@@ -37,9 +37,7 @@ impl NearestField<'_> {
         // Where the data are not explained, what is left would hide a wrong force if it were taken for noise.
         let is_explained = judged.verdict.answer != Answer::NotExplained;
         let before = self.force_checks(own)?;
-        let smoothed_away = self.smoothed_away();
         let freedom = self.widen(&judged).unwrap_or(white);
-        self.fit.covariance += smoothed_away;
         let reach = match known_noise && robust == Robust::No && judged.noise.is_none() {
             true => normal_reach(),
             false => student_reach(freedom),
