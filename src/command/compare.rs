@@ -130,28 +130,25 @@ fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
     });
     let shifted = differences
         .last()
-        .filter(|_| doubt.is_none())
-        .and_then(shift_doubt);
-    doubt.into_iter().chain(shifted).collect()
+        .filter(|last| doubt.is_none() && last.is_shifted());
+    doubt.into_iter().chain(shifted.map(shift_doubt)).collect()
 }
 
-/// Finite elements that a small motion of the whole body brings near: it says nothing of the material.
-fn shift_doubt(finite_elements: &Difference) -> Option<Diagnostic> {
+/// Finite elements that a motion of the whole body brings near: it says nothing of the material.
+fn shift_doubt(finite_elements: &Difference) -> Diagnostic {
     let Difference {
         shift,
         percent,
         shifted_percent,
         ..
     } = finite_elements;
-    let [x, y] = shift.translation;
+    let [x, y] = shift.displacement;
     let message = format!(
         "most of the finite elements' difference is a motion of the whole body, by ({x:.4}, {y:.4}) mm and {:.4} degrees: without it {shifted_percent:.4} instead of {percent:.4} % are left",
-        shift.rotation.to_degrees()
+        shift.angle.to_degrees()
     );
-    let hint = "take it out of the file, or mend the axes or the supports of the study";
-    finite_elements
-        .is_shifted()
-        .then(|| Diagnostic::warning("", message).hint(hint))
+    Diagnostic::warning("", message)
+        .hint("take it out of the file, or mend the axes or the supports of the study")
 }
 
 /// Computes what is compared.

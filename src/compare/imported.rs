@@ -15,6 +15,7 @@ use crate::error::Error;
 use crate::markers::unit_ratio;
 use crate::mesh::geometry::bounding_box;
 use crate::mesh::{ImportedField, Mesh, NodalField, import_field};
+use crate::problem::RigidMotion;
 
 mod table;
 
@@ -63,19 +64,10 @@ pub struct Difference {
     pub factor: f64,
     /// What is left in relative L2 in % when they are multiplied by it.
     pub scaled_percent: f64,
-    /// The small motion of the whole body by which the imported field comes nearest to the model's.
-    pub shift: Shift,
+    /// The motion of the whole body by which the imported field comes nearest to the model's, about the middle of all places.
+    pub shift: RigidMotion,
     /// What is left in relative L2 in % when they are moved by it.
     pub shifted_percent: f64,
-}
-
-/// A small rigid motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shift {
-    /// Of the middle of all places, in mm.
-    pub translation: [f64; 2],
-    /// In radians.
-    pub rotation: f64,
 }
 
 impl Difference {
@@ -91,7 +83,7 @@ impl Difference {
         self.percent > LARGE && self.scaled_percent < self.percent / 3.0
     }
 
-    /// Whether a small motion of the whole body, as of a camera or of other axes, makes most of the difference.
+    /// Whether a motion of the whole body, as of a camera or of other axes, makes most of the difference.
     pub fn is_shifted(&self) -> bool {
         const LARGE: f64 = 0.5;
         self.percent > LARGE && self.shifted_percent < self.percent / 3.0
@@ -259,37 +251,22 @@ impl Sites {
         })
     }
 
-    /// The small motion of the whole body by which the imported field comes nearest to another one by least squares, and the field
-    /// so moved.
-    fn shifted_to(&self, found: &[f64]) -> (Shift, Vec<f64>) {
-        let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
-            let all = self.weights.iter().enumerate();
-            all.map(|(index, weight)| weight * of(index)).sum()
+    /// The motion of the whole body by which the imported field comes nearest to another one by least squares, and the field so
+    /// moved.
+    fn shifted_to(&self, found: &[f64]) -> (RigidMotion, Vec<f64>) {
+        let now = |u: &[f64], site: usize| {
+            [0, 1].map(|axis| self.places[site][axis] + u[2 * site + axis])
         };
-        let whole = sum(&|_| 1.0);
-        let now =
-            |index: usize, axis: usize| self.places[index][axis] + self.expected[2 * index + axis];
-        let middle = [0, 1].map(|axis| sum(&|index| now(index, axis)) / whole);
-        let arm = |index: usize| [0, 1].map(|axis| now(index, axis) - middle[axis]);
-        let off = |index: usize| {
-            [0, 1].map(|axis| found[2 * index + axis] - self.expected[2 * index + axis])
-        };
-        let turned = sum(&|index| {
-            let ([x, y], [dx, dy]) = (arm(index), off(index));
-            x * dy - y * dx
+        let pairs = self.weights.iter().enumerate();
+        let pairs =
+            pairs.map(|(site, weight)| (*weight, now(&self.expected, site), now(found, site)));
+        let (middle, motion) = RigidMotion::nearest(&pairs.collect::<Vec<_>>());
+        let moved = (0..self.places.len()).flat_map(|site| {
+            let place = now(&self.expected, site);
+            let more = motion.at([0, 1].map(|axis| place[axis] - middle[axis]));
+            [0, 1].map(|axis| self.expected[2 * site + axis] + more[axis])
         });
-        let inertia = sum(&|index| arm(index).iter().map(|r| r * r).sum());
-        let shift = Shift {
-            translation: [0, 1].map(|axis| sum(&|index| off(index)[axis]) / whole),
-            rotation: if inertia > 0.0 { turned / inertia } else { 0.0 },
-        };
-        let moved = (0..self.places.len()).flat_map(|index| {
-            let [x, y] = arm(index);
-            let turn = [-shift.rotation * y, shift.rotation * x];
-            [0, 1]
-                .map(|axis| self.expected[2 * index + axis] + shift.translation[axis] + turn[axis])
-        });
-        (shift, moved.collect())
+        (motion, moved.collect())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::recording::Recording;
 use super::smoothing::SignalSpline;
 use super::types::Identification;
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, median};
 
 /// A longest interval of so many usual ones, and of such a part of the duration, is a gap.
 const INTERVALS: f64 = 20.0;
@@ -11,11 +11,11 @@ const PART: f64 = 0.05;
 
 /// The warning about a gap in the rows: a spline has only as many parts as the gap leaves it, and what they miss is taken for noise.
 fn gap(times: &[f64]) -> Option<String> {
-    let mut intervals: Vec<[f64; 2]> = times.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-    let length = |[from, to]: &[f64; 2]| to - from;
-    intervals.sort_by(|a, b| length(a).total_cmp(&length(b)));
-    let usual = length(intervals.get(intervals.len() / 2)?);
-    let longest = intervals.last()?;
+    let length = |pair: &[f64]| pair[1] - pair[0];
+    let usual = median(times.windows(2).map(length));
+    let longest = times
+        .windows(2)
+        .max_by(|a, b| length(a).total_cmp(&length(b)))?;
     let duration = times.last()? - times.first()?;
     (length(longest) > (INTERVALS * usual).max(PART * duration)).then(|| {
         format!(

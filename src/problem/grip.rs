@@ -14,6 +14,31 @@ pub struct RigidMotion {
 }
 
 impl RigidMotion {
+    /// The motion that brings points nearest to others, in the sense of weighted least squares, and the middle of the points, about
+    /// which it turns; each pair is a weight, from where and to where.
+    pub fn nearest(pairs: &[(f64, [f64; 2], [f64; 2])]) -> ([f64; 2], Self) {
+        let whole: f64 = pairs.iter().map(|(weight, ..)| weight).sum();
+        let (mut rest, mut end) = ([0.0; 2], [0.0; 2]);
+        for (weight, from, to) in pairs {
+            for axis in 0..2 {
+                rest[axis] += weight / whole * from[axis];
+                end[axis] += weight / whole * to[axis];
+            }
+        }
+        let (mut cosine, mut sine) = (0.0, 0.0);
+        for (weight, from, to) in pairs {
+            let [a, b] = [from[0] - rest[0], from[1] - rest[1]];
+            let [c, d] = [to[0] - end[0], to[1] - end[1]];
+            cosine += weight * (a * c + b * d);
+            sine += weight * (a * d - b * c);
+        }
+        let motion = Self {
+            displacement: [0, 1].map(|axis| end[axis] - rest[axis]),
+            angle: sine.atan2(cosine),
+        };
+        (rest, motion)
+    }
+
     /// The displacement of a point at rest in mm from the grip's middle.
     pub fn at(self, [along, across]: [f64; 2]) -> [f64; 2] {
         let (sine, cosine) = self.angle.sin_cos();

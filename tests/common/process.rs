@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+#[cfg(unix)]
 pub use nix::sys::signal::Signal;
-use nix::sys::signal::kill;
-use nix::unistd::Pid;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -68,9 +67,10 @@ pub fn start(folder: &Path, arguments: &str) -> Child {
 }
 
 /// Sends a signal at once: a shell that sends it may be so late that the process has ended.
+#[cfg(unix)]
 pub fn send(child: &Child, signal: Signal) {
     let id = i32::try_from(child.id()).unwrap();
-    kill(Pid::from_raw(id), signal).unwrap();
+    nix::sys::signal::kill(nix::unistd::Pid::from_raw(id), signal).unwrap();
 }
 
 /// Runs a script in which `$G` is the program.

@@ -94,11 +94,17 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
             row[column] * unit
         })
     };
-    let all = rows.iter().map(|row| [pair(row, 0), pair(row, 2)]);
-    check_unique(&table.source.name, all.clone().collect())?;
+    let all: Vec<_> = rows
+        .iter()
+        .map(|row| [pair(row, 0), pair(row, 2)])
+        .collect();
+    check_unique(&table.source.name, all.clone())?;
     Ok(Points {
-        places: all.clone().map(|[place, _]| place).collect(),
-        displacement: all.flat_map(|[_, displacement]| displacement).collect(),
+        places: all.iter().map(|[place, _]| *place).collect(),
+        displacement: all
+            .iter()
+            .flat_map(|[_, displacement]| *displacement)
+            .collect(),
     })
 }
 

@@ -353,7 +353,7 @@ fn a_motion_of_the_whole_body_is_told_from_a_strain() {
         assert_eq!(difference.is_shifted(), moved, "{difference:?}");
         if moved {
             assert!(
-                (difference.shift.rotation / turn - 1.0).abs() < 1e-3,
+                (difference.shift.angle / turn - 1.0).abs() < 1e-3,
                 "{difference:?}"
             );
             // What is left is of the second order in the turn.

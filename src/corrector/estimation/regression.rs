@@ -269,16 +269,16 @@ pub fn weighted_square(residual: &DVector<f64>, weights: &[f64], trust: &[f64]) 
 }
 
 /// ‖ρ + Bδ‖² of a prior.
-struct Form {
+pub(super) struct Form {
     /// BᵀB.
-    square: DMatrix<f64>,
+    pub square: DMatrix<f64>,
     /// Bᵀρ.
-    slope: DVector<f64>,
+    pub slope: DVector<f64>,
     rank: f64,
 }
 
 impl Form {
-    fn new(prior: &Roughness) -> Self {
+    pub fn new(prior: &Roughness) -> Self {
         let transposed = prior.slopes.transpose();
         Self {
             square: &transposed * &prior.slopes,

@@ -14,7 +14,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::regression::Roughness;
+use super::regression::Form;
 use super::search::NearestField;
 
 /// ε.
@@ -25,19 +25,18 @@ impl NearestField<'_> {
     pub(super) fn smoothed_away(&self) -> DMatrix<f64> {
         let size = self.parameters.len();
         let priors = self.equations.priors(&self.parameters);
-        let eased = priors.iter().zip(&self.trade.smoothing);
-        let changes = eased.filter_map(|(prior, weight)| self.eased(prior, (1.0 - EASED) * weight));
+        let eased = priors.iter().map(Form::new).zip(&self.trade.smoothing);
+        let changes = eased.filter_map(|(form, weight)| self.eased(&form, (1.0 - EASED) * weight));
         changes.fold(DMatrix::zeros(size, size), |sum, change| {
             sum + &change * change.transpose()
         })
     }
 
     /// The change of the parameters where a prior loses so much of its weight.
-    fn eased(&self, prior: &Roughness, lost: f64) -> Option<DVector<f64>> {
+    fn eased(&self, form: &Form, lost: f64) -> Option<DVector<f64>> {
         let covariance = &self.fit.covariance;
-        let values = DVector::from_column_slice(&prior.values);
-        let pull = covariance * prior.slopes.tr_mul(&values) * lost;
-        let square = covariance * prior.slopes.tr_mul(&prior.slopes) * lost;
+        let pull = covariance * &form.slope * lost;
+        let square = covariance * &form.square * lost;
         let size = self.parameters.len();
         (DMatrix::identity(size, size) - square).lu().solve(&pull)
     }

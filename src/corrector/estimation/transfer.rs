@@ -23,6 +23,7 @@ use super::task::Edge;
 use crate::error::{Error, SolveFault};
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::Mesh;
+use crate::problem::RigidMotion;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{Newton, NewtonSettings};
 use crate::statistics::Estimate;
@@ -155,30 +156,17 @@ fn imposed(mesh: &Mesh, edges: &[(Segment, EdgeCondition)], start: &[f64]) -> Ve
 
 /// The rigid motion of nodes that is nearest to a field, in the sense of least squares.
 fn rigid(mesh: &Mesh, nodes: &[usize], field: &[f64]) -> Vec<[f64; 2]> {
-    let count = nodes.len() as f64;
-    let moved = |node: usize| [0, 1].map(|axis| mesh.nodes[node][axis] + field[2 * node + axis]);
-    let mean = |place: &dyn Fn(usize) -> [f64; 2]| {
-        [0, 1].map(|axis| nodes.iter().map(|node| place(*node)[axis]).sum::<f64>() / count)
-    };
-    let (rest, end) = (mean(&|node| mesh.nodes[node]), mean(&moved));
-    let (mut cosine, mut sine) = (0.0, 0.0);
-    for node in nodes {
-        let (from, to) = (mesh.nodes[*node], moved(*node));
-        let [a, b] = [from[0] - rest[0], from[1] - rest[1]];
-        let [c, d] = [to[0] - end[0], to[1] - end[1]];
-        cosine += a * c + b * d;
-        sine += a * d - b * c;
-    }
-    let (sine, cosine) = sine.atan2(cosine).sin_cos();
-    let turned = |node: &usize| {
-        let [x, y] = mesh.nodes[*node];
-        let [a, b] = [x - rest[0], y - rest[1]];
-        [
-            end[0] + cosine * a - sine * b - x,
-            end[1] + sine * a + cosine * b - y,
-        ]
-    };
-    nodes.iter().map(turned).collect()
+    let pairs = nodes.iter().map(|node| {
+        let rest = mesh.nodes[*node];
+        (
+            1.0,
+            rest,
+            [0, 1].map(|axis| rest[axis] + field[2 * node + axis]),
+        )
+    });
+    let (middle, motion) = RigidMotion::nearest(&pairs.collect::<Vec<_>>());
+    let arm = |node: &usize| [0, 1].map(|axis| mesh.nodes[*node][axis] - middle[axis]);
+    nodes.iter().map(|node| motion.at(arm(node))).collect()
 }
 
 /// The equilibrium with the imposed values, its residual, and how many parts it took.
