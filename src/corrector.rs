@@ -8,7 +8,7 @@
 //!
 //! The conditions are linearised about the current field and the [projection](factor) of ū onto the
 //! linearised conditions is repeated until they hold. ζ and η are the derivatives of the smallest ½ ‖u − ū‖²_W with
-//! respect to the right-hand sides, with the sign reversed where a condition reads c(u) = b: ∂(minimum)/∂b = −ψ.
+//! respect to the right-hand sides, with the sign reversed where a condition reads c(u) = b: ∂(minimum)/∂b = −ψ, ψ being ζ or η.
 //!
 //! Where F and T together give as many conditions as there are unknowns, ū has no say in the result: each
 //! step is then a Newton step that starts at ū, whatever W is, and the multipliers show how far ū was

@@ -218,11 +218,9 @@ impl SolveFault {
     /// What a user can try.
     pub fn advice(&self) -> &'static str {
         match self {
-            Self::Inverted { .. } => {
-                "refine the mesh there, or end the path before this load factor"
-            }
+            Self::Inverted { .. } => "refine the mesh there, or end the path or motion before it",
             Self::NotPositiveDefinite => {
-                "look at the card's stable range with `gelbench materials show`, or take smaller load steps"
+                "look at the card's stable range with `gelbench materials show`, or take smaller steps of load or time"
             }
             Self::UnstableAtRest { .. } => {
                 "take cells of better shape: springs of skewed cells may need negative constants to have the material's stiffness"
@@ -239,7 +237,7 @@ impl SolveFault {
             Self::OutOfMemory => "take fewer cells, or a machine with more memory",
             Self::Singular => "look at the supports and the corrector's conditions",
             Self::Stalled { .. } => {
-                "add smaller stretches or load factors before this one, or raise the iteration limit"
+                "take smaller steps before it (stretches, load factors, or the interval of a motion), or raise the iteration limit"
             }
             Self::Explodes { .. } => {
                 "look at the supports and loads at that time; take shorter steps or generalised-α"

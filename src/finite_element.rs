@@ -1,7 +1,8 @@
-//! The built-in hyperelastic reference: quadrilateral elements of an incompressible sheet in plane stress.
+//! The built-in hyperelastic reference: quadrilateral elements of a plate, of any law of the library.
 
 use std::sync::Arc;
 
+use crate::document::name_of;
 use crate::error::{Error, SolveFault};
 use crate::mesh::{CellShape, Grid, Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
@@ -31,10 +32,7 @@ impl Element {
 
     /// The element's name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Q1 => "Q1",
-            Self::Q2 => "Q2",
-        }
+        name_of(&Self::NAMES, self)
     }
 
     fn shape(self) -> CellShape {

@@ -142,6 +142,19 @@ pub struct Outcome {
     pub summary: String,
 }
 
+impl Outcome {
+    /// Adds the end of a model that the study requires to go all the way: a requirement that is not met.
+    pub fn ended(&mut self, error: &Error) {
+        let end = End::from(error);
+        let advice = end
+            .advice
+            .map_or_else(String::new, |advice| format!(" ({advice})"));
+        self.checks
+            .push(Check::end(format!("{}{advice}", end.message)));
+        self.ends.push(end);
+    }
+}
+
 /// The results of a study.
 #[derive(Clone, Debug)]
 pub struct Results {

@@ -167,3 +167,27 @@ fn a_viscous_plate_at_rest_is_set_in_motion_by_a_force() {
     let folder = folder_with(&motion(&format!("{rest}{time}")));
     gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
 }
+
+/// A force of 10 N tears the middle node through its cells: what came before is kept, and the end is told.
+#[test]
+fn a_motion_that_ends_before_its_time_keeps_its_instants() {
+    let rest = "[start]\nstretch = \"0 %\"\n[grip]\nmotion = \"hold\"\n\
+        [[force]]\nat = [\"15 mm\", \"5 mm\"]\nx = \"10 N\"\ny = \"3 N\"\nbegin = \"2 ms\"\nend = \"20 ms\"\n\
+        [time]\nduration = \"20 ms\"\ninterval = \"0.5 ms\"\n";
+    let folder = folder_with(&motion(rest));
+    let run = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(3);
+    let told = words(&run.get_output().stdout);
+    assert!(
+        told.contains("FAIL motion: mass-spring (6 × 2 cells) at time 0.007 s"),
+        "{told}"
+    );
+    assert!(told.contains("end the path or motion before it"), "{told}");
+    let instants = |model: &str| {
+        let table = folder.path().join(format!("out/motion_{model}.csv"));
+        fs::read_to_string(table).unwrap().lines().count() - 1
+    };
+    assert_eq!(instants("mass_spring"), 15);
+    assert!(instants("finite_element") > 1);
+    let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
+    assert!(report.contains("at time 0.007 s"), "{report}");
+}

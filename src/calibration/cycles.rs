@@ -56,7 +56,7 @@ pub struct Branches {
     pub loading: Vec<Range<usize>>,
     /// The strain at the end of each.
     pub ends: Vec<f64>,
-    /// Whether the strain turns back or holds anywhere.
+    /// Whether the strain neither turns back nor rests.
     pub is_one_pull: bool,
     rows: usize,
 }
@@ -91,7 +91,7 @@ impl Branches {
     pub fn rows(&self, cycle: Cycle) -> Option<Range<usize>> {
         match cycle {
             Cycle::All => Some(0..self.rows),
-            _ if self.is_one_pull && cycle != Cycle::All => Some(0..self.rows),
+            _ if self.is_one_pull => Some(0..self.rows),
             Cycle::First => self.loading.first().cloned(),
             Cycle::Last => self.loading.last().cloned(),
             Cycle::Number(number) => self.loading.get(number - 1).cloned(),

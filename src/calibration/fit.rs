@@ -88,9 +88,6 @@ impl Fit {
         let bounded = self.quality.at_bound.contains(&true);
         let noise = self.quality.noise.as_ref();
         let known = noise.filter(|_| self.quality.has_intervals() && !bounded);
-        let Some(noise) = known else {
-            return vec![f64::NAN; at.len()];
-        };
         let values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
         let curve = Curve {
             fit: self,
@@ -98,6 +95,9 @@ impl Fit {
             at,
         };
         let gradients = least_squares::jacobian(&curve, &values, &vec![false; values.len()]);
+        let Some((noise, gradients)) = known.zip(gradients) else {
+            return vec![f64::NAN; at.len()];
+        };
         let half = |point: usize| noise.half_width(&gradients.row(point).transpose());
         (0..at.len()).map(half).collect()
     }

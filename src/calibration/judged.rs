@@ -49,13 +49,16 @@ impl Judged {
             .collect();
         let mut residual = DVector::zeros(misfit.count());
         misfit.evaluate(values, residual.as_mut_slice());
-        let left_over = LeftOver {
-            curves,
-            design: &jacobian.select_columns(&free),
-            residual: &residual,
-            rounded: rounded.map(|mean| mean * residual.len() as f64),
-        };
-        let (verdict, noise) = left_over.judge().unzip();
+        let judged = jacobian.and_then(|jacobian| {
+            let left_over = LeftOver {
+                curves,
+                design: &jacobian.select_columns(&free),
+                residual: &residual,
+                rounded: rounded.map(|mean| mean * residual.len() as f64),
+            };
+            left_over.judge()
+        });
+        let (verdict, noise) = judged.unzip();
         Self {
             at_bound,
             verdict,

@@ -107,25 +107,36 @@ pub fn minimise(
     (sum_of_squares(model, &found) <= begin).then_some(found)
 }
 
-/// ∂rᵢ/∂pⱼ by central differences, scaled to second-order accuracy; columns of `fixed` parameters are zero.
-pub fn jacobian(model: &dyn Residuals, at: &[f64], fixed: &[bool]) -> DMatrix<f64> {
+/// ∂rᵢ/∂pⱼ by central differences, of second order in the step, or by a one-sided one where the model has no value on the other
+/// side; columns of `fixed` parameters are zero. `None` where it has a value on neither side.
+pub fn jacobian(model: &dyn Residuals, at: &[f64], fixed: &[bool]) -> Option<DMatrix<f64>> {
+    let residuals = |parameters: &[f64]| {
+        let mut residuals = vec![0.0; model.count()];
+        let has_value = model.evaluate(parameters, &mut residuals);
+        has_value.then_some(residuals)
+    };
     let mut jacobian = DMatrix::zeros(model.count(), at.len());
-    let (mut above, mut below) = (vec![0.0; model.count()], vec![0.0; model.count()]);
     for (column, value) in at.iter().enumerate() {
         if fixed[column] {
             continue;
         }
         let step = 6e-6 * value.abs().max(1e-9);
-        let mut moved = at.to_vec();
-        moved[column] = value + step;
-        model.evaluate(&moved, &mut above);
-        moved[column] = value - step;
-        model.evaluate(&moved, &mut below);
-        for (row, (a, b)) in above.iter().zip(&below).enumerate() {
-            jacobian[(row, column)] = (a - b) / (2.0 * step);
+        let moved = |step: f64| {
+            let mut moved = at.to_vec();
+            moved[column] = value + step;
+            residuals(&moved)
+        };
+        let (below, above, width) = match (moved(-step), moved(step)) {
+            (Some(below), Some(above)) => (below, above, 2.0 * step),
+            (Some(below), None) => (below, residuals(at)?, step),
+            (None, Some(above)) => (residuals(at)?, above, step),
+            (None, None) => return None,
+        };
+        for (row, (above, below)) in above.iter().zip(&below).enumerate() {
+            jacobian[(row, column)] = (above - below) / width;
         }
     }
-    jacobian
+    Some(jacobian)
 }
 
 /// The coefficients of columns that come nearest to a target; `None` where a column is not finite.

@@ -73,7 +73,7 @@ impl<'a> Misfit<'a> {
         }
     }
 
-    /// Every so manyth point, so that about `count` are left.
+    /// Every n-th point, so that about `count` are left.
     pub fn thinned(&self, count: usize) -> Self {
         let stride = self.points.len().div_ceil(count);
         Self {

@@ -4,7 +4,7 @@
 //! u(s) ≈ Σ uₖ Lₖ(s),   Lₖ(s) = Π (s − sⱼ)/(sₖ − sⱼ)   over all j ≠ k
 //! ```
 //!
-//! Where less than [`HISTORY`] states are known, the state of rest at s = 0 is one more.
+//! Where fewer than [`HISTORY`] states are known, the state of rest at s = 0 is one more.
 
 /// States that the next one is extrapolated from.
 const HISTORY: usize = 3;

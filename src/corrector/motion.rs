@@ -32,7 +32,7 @@ use crate::solve::{Assembly, Inadmissible, SparseRows};
 
 mod window;
 
-pub use window::{CorrectedMotion, WindowSettings};
+pub use window::{CorrectedMotion, CorrectionEnd, WindowSettings};
 
 #[cfg(test)]
 mod tests;

@@ -51,7 +51,7 @@ pub(super) fn is_utf16(bytes: &[u8]) -> bool {
     marks.iter().any(|mark| bytes.starts_with(*mark)) || zeros_at(bytes, 0) || zeros_at(bytes, 1)
 }
 
-/// Whether the bytes at one side of each pair are zero at the begin of a file, and the others are not.
+/// Whether the bytes at one side of each pair are zero at the beginning of a file, and the others are not.
 fn zeros_at(bytes: &[u8], side: usize) -> bool {
     let every_other = |from: usize| bytes.iter().skip(from).step_by(2).take(20);
     bytes.len() >= 4

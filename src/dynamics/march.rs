@@ -247,7 +247,7 @@ impl<'a> March<'a> {
 
     /// Takes equal steps to a time.
     fn reach(&mut self, mut at: BodyState, end: f64) -> Result<BodyState, SolveFault> {
-        while end - at.time > 1e-9 * (end - at.time).max(end) {
+        while end - at.time > 1e-9 * end {
             let rest = end - at.time;
             let longest = self.longest(&at)?.min(rest);
             let count = (rest / longest * (1.0 - 1e-9)).ceil().max(1.0);

@@ -22,7 +22,8 @@ pub struct Richardson {
     pub order: Option<f64>,
     /// Extrapolated value f*; that of the finest mesh where there is no order or one below ½.
     pub extrapolated: f64,
-    /// |fₕ − f*| / |f*| in percent; see [`of_distances`] where there is no order or one above 4.
+    /// The error of fₕ over |f*| in percent: |fₕ − f*| where the order is believed; see [`of_distances`] where there is none,
+    /// or one below ½ or above 4.
     pub error_percent: f64,
 }
 

@@ -72,7 +72,7 @@ fn remark(text: &str, key: &str) -> Option<f64> {
     value.split_whitespace().find_map(|word| word.parse().ok())
 }
 
-/// The number at the begin of a text.
+/// The number that a text begins with.
 fn number(text: &str) -> Option<f64> {
     let text = text.trim_start();
     let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.');

@@ -20,8 +20,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::spring::{CrossSections, Spring, polygon_area};
+use super::spring::{CrossSections, Spring};
 use crate::mesh::Mesh;
+use crate::mesh::geometry::polygon_area;
 
 /// The springs of a mesh: edges, and both diagonals of quadrilaterals.
 pub fn springs(mesh: &Mesh, thickness: f64) -> Vec<Spring> {

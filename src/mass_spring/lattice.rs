@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use super::spring::{Spring, SpringPose, polygon_area};
+use super::spring::{Spring, SpringPose};
 use super::spring_law::SpringLaw;
 use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::Mesh;
+use crate::mesh::geometry::polygon_area;
 use crate::solve::vector::gather;
 use crate::solve::{Connectivity, Inadmissible, Local, Potential};
 
@@ -129,19 +130,18 @@ impl Lattice {
         let count = corners.len();
         let next = |i: usize| (i + 1) % count;
         let before = |i: usize| (i + count - 1) % count;
-        if self.area_stiffness == 0.0 {
-            return (deformed_area(corners, u) > 0.0).then_some(0.0);
-        }
         // Places relative to the first corner, so that no digit is lost far from the origin.
-        let place = |i: usize| {
-            let at = |axis: usize| corners[i][axis] - corners[0][axis] + u[2 * i + axis] - u[axis];
-            [at(0), at(1)]
-        };
-        let rest = polygon_area(corners);
-        let places: Vec<[f64; 2]> = (0..count).map(place).collect();
-        let current = polygon_area(&places);
+        let (mut own, mut places) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
+        for (i, axis) in (0..count).flat_map(|i| [(i, 0), (i, 1)]) {
+            own[i][axis] = corners[i][axis] - corners[0][axis];
+            places[i][axis] = own[i][axis] + u[2 * i + axis] - u[axis];
+        }
+        let [rest, current] = [&own, &places].map(|places| polygon_area(&places[..count]));
         if current.is_nan() || current <= 0.0 {
             return None;
+        }
+        if self.area_stiffness == 0.0 {
+            return Some(0.0);
         }
         let change = current / rest - 1.0;
         let slope: Vec<f64> = (0..count)
@@ -169,19 +169,6 @@ impl Lattice {
         }
         Some(0.5 * self.area_stiffness * rest * change * change)
     }
-}
-
-/// Area of a cell with the displacements `u` of its corners, relative to the first of them.
-fn deformed_area(corners: &[[f64; 2]], u: &[f64]) -> f64 {
-    let side = |i: usize| {
-        let along = |axis: usize| corners[i][axis] - corners[0][axis] + u[2 * i + axis] - u[axis];
-        [along(0), along(1)]
-    };
-    let triangles = (2..corners.len()).map(|i| {
-        let ([ax, ay], [bx, by]) = (side(i - 1), side(i));
-        0.5 * (ax * by - bx * ay)
-    });
-    triangles.sum()
 }
 
 impl Potential for Lattice {

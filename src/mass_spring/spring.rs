@@ -72,9 +72,3 @@ impl SpringPose {
         }
     }
 }
-
-/// Area of a polygon with its corners counter-clockwise.
-pub(super) fn polygon_area(corners: &[[f64; 2]]) -> f64 {
-    let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
-    0.5 * pairs.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>()
-}

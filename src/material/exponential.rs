@@ -6,8 +6,8 @@
 //!
 //! ln 2 is split into two parts, the first of which has few enough digits that k times it is exact.
 
-const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;
-const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+pub(super) const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;
+pub(super) const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
 /// 1.5 · 2⁵²: a number to which this is added is rounded to an integer, which is found in the lowest bits.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;

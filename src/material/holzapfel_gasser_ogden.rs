@@ -158,7 +158,7 @@ impl HyperelasticLaw for HolzapfelGasserOgden {
     }
 
     fn is_isotropic(&self) -> bool {
-        self.k1 == 0.0
+        self.k1 == 0.0 || 3.0 * self.kappa == 1.0
     }
 
     /// FEBio has two families at ±γ always: one goes out as two of half the stiffness at γ = 0 in turned axes.

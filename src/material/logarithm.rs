@@ -6,8 +6,7 @@
 //!
 //! What 1 + y loses of y by rounding is added to the first order.
 
-const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;
-const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+use super::exponential::{LN_2_HIGH, LN_2_LOW};
 
 /// The bits of √½.
 const ROOT_OF_HALF: u64 = 0x3fe6_a09e_667f_3bcd;

@@ -80,6 +80,8 @@ impl Softening {
 
     /// η and ∂η/∂W₀ at the energy W₀ of a point whose largest one so far was `most`, both in mJ/mm³.
     pub fn factor(&self, energy: f64, most: f64) -> [f64; 2] {
+        // Rounding takes the energy of a turned point below zero, where a point that was never loaded has no width.
+        let energy = energy.max(0.0);
         if energy >= most {
             return [1.0, 0.0];
         }
@@ -91,6 +93,7 @@ impl Softening {
 
     /// Ψ: the work that was done on a point, in mJ/mm³.
     pub fn energy(&self, energy: f64, most: f64) -> f64 {
+        let energy = energy.max(0.0);
         if energy >= most {
             return energy;
         }
@@ -124,4 +127,24 @@ impl Softening {
 /// G(x) = ∫₀ˣ erf, without cancellation where x is small.
 fn integral(x: f64) -> f64 {
     x * erf(x) + (-x * x).exp_m1() / PI.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding takes the energy of a rotated point below zero.
+    #[test]
+    fn a_point_that_was_never_loaded_has_no_softening_without_a_width() {
+        let softening = Softening {
+            r: 2.0,
+            m: 0.0,
+            beta: 0.1,
+        };
+        for energy in [-1e-32, 0.0, 1e-32] {
+            assert_eq!(softening.factor(energy, 0.0), [1.0, 0.0]);
+            assert_eq!(softening.energy(energy, 0.0), energy.max(0.0));
+        }
+        assert!(softening.factor(-1e-32, 1e-3)[0] < 1.0);
+    }
 }

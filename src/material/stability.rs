@@ -7,9 +7,9 @@
 //! dτ = (𝔸 : (dε F)) Fᵀ + P (dε F)ᵀ = D : dε,   𝔸 = ∂P/∂F                              [MPa]
 //! ```
 //!
-//! D is the plane-stress tangent of the Kirchhoff stress without spin, the thickness following from
-//! incompressibility; where the axes of strain are fixed, it is ∂τᵢ/∂εⱼ with εᵢ = ln λᵢ. It has to be positive
-//! definite, which says more than a rising curve in one test.
+//! D is the tangent of the sheet's Kirchhoff stress without spin, the thickness following from the law; where the axes of
+//! strain are fixed, it is ∂τᵢ/∂εⱼ with εᵢ = ln λᵢ. It has to be positive definite, which says more than a rising curve in
+//! one test.
 //!
 //! # References
 //! D. C. Drucker, J. Appl. Mech. 26, 101 (1959), doi:10.1115/1.4011929

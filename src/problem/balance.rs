@@ -108,7 +108,7 @@ impl Body {
         Resultant::of_nodes(&self.places, forces, self.centre)
     }
 
-    /// The balance of supports and loads about the centre; forces below `negligible` in N are rounding.
+    /// The balance of supports and loads about the centre, relative to forces of `negligible` in N at least.
     pub fn balance(&self, supports: Resultant, loads: Resultant, negligible: f64) -> Balance {
         let sum = supports.plus(loads);
         let largest_force = supports.size.max(loads.size).max(negligible);

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::boundary_conditions::{Drive, Support};
+use super::grip::RigidMotion;
 use super::groups::{named, refused};
 use crate::error::Diagnostic;
 use crate::mesh::{Group, Mesh};
@@ -34,12 +35,11 @@ impl Motion {
         match self {
             Self::Straight(displacement) => factor * displacement,
             Self::Turn { place, axis, angle } => {
-                let (sine, cosine) = (factor * angle).sin_cos();
-                // 1 − cos without cancellation.
-                let lost = 2.0 * (0.5 * factor * angle).sin().powi(2);
-                debug_assert!((lost - (1.0 - cosine)).abs() < 1e-14);
-                let across = [-sine * place[1], sine * place[0]];
-                across[axis] - lost * place[axis]
+                let turn = RigidMotion {
+                    displacement: [0.0; 2],
+                    angle: factor * angle,
+                };
+                turn.at(place)[axis]
             }
         }
     }

@@ -41,11 +41,13 @@ impl RigidMotion {
 
     /// The displacement of a point at rest in mm from the grip's middle.
     pub fn at(self, [along, across]: [f64; 2]) -> [f64; 2] {
-        let (sine, cosine) = self.angle.sin_cos();
+        let sine = self.angle.sin();
+        // 1 − cos without cancellation.
+        let lost = 2.0 * (0.5 * self.angle).sin().powi(2);
         let [x, y] = self.displacement;
         [
-            x + along * (cosine - 1.0) - across * sine,
-            y + along * sine + across * (cosine - 1.0),
+            x - across * sine - lost * along,
+            y + along * sine - lost * across,
         ]
     }
 

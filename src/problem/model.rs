@@ -290,6 +290,8 @@ impl Loading for Model<'_> {
     }
 
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
+        // Rest cannot be scaled.
+        let previous = previous.filter(|own| own.factor != 0.0);
         let near = |factor: f64| {
             let mut known = self.near.iter();
             known.find(|(at, _)| *at == factor).map(|(_, field)| field)

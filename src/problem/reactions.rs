@@ -119,8 +119,9 @@ impl Reactions<'_> {
 
     /// The balance of all forces of supports and loads, and of their moments, on the deformed body.
     pub fn balance(&self) -> Balance {
-        /// Rounding of a body that moves without strain, relative to E t times its largest displacement.
-        const NEGLIGIBLE: f64 = 1e-4;
+        /// Of smaller forces rounding may leave more than this share, which would say nothing of their balance: they count as large
+        /// as that.
+        const JUDGED: f64 = 1e-7;
         let (model, u) = (self.model, &self.state.displacement);
         let body = Body::new(model.mesh, u);
         let supports = body.resultant(&self.forces);
@@ -130,7 +131,7 @@ impl Reactions<'_> {
             let none = Resultant::default();
             return body.balance(none, none, rounding);
         }
-        body.balance(supports, loads, NEGLIGIBLE / ROUNDING * rounding)
+        body.balance(supports, loads, rounding / JUDGED)
     }
 
     /// What rounding may leave of forces in N.

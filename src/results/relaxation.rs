@@ -164,7 +164,7 @@ pub(super) fn relaxation_picture(fit: &Fit, relaxed: &Relaxed, tests: &[TestData
     Drawing::Charts(charts)
 }
 
-/// Every so manyth point.
+/// Every n-th point.
 fn markers_in_order(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let stride = points.len().div_ceil(MOST_MARKERS).max(1);
     points.into_iter().step_by(stride).collect()

@@ -13,8 +13,8 @@ pub fn irregular(size: usize, seed: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The largest eigenvalue of a symmetric operator by Lanczos' method: the largest Ritz value with its error bound, not
-/// below the eigenvalue; not a number where the operator is not finite, and zero where it has no rows.
+/// The largest size of an eigenvalue of a symmetric operator by Lanczos' method: that of the largest Ritz value with its error
+/// bound, not below the eigenvalue's; not a number where the operator is not finite, and zero where it has no rows.
 ///
 /// # References
 /// B. N. Parlett, The Symmetric Eigenvalue Problem, SIAM (1998), § 13.2, doi:10.1137/1.9781611971163

@@ -53,6 +53,8 @@ impl Convergence {
 pub struct Newton {
     /// The tangent factorised last.
     pub tangent: Tangent,
+    /// Whether a tangent that is not positive definite is shifted until it is, or ends the iteration at once. Default: shifted.
+    pub shifts: bool,
     indefinite: Option<Vec<f64>>,
 }
 
@@ -104,6 +106,7 @@ impl Newton {
     ) -> Result<Self, SolveFault> {
         Ok(Self {
             tangent: Tangent::new(potential, fixed, solver)?,
+            shifts: true,
             indefinite: None,
         })
     }
@@ -166,7 +169,11 @@ impl Newton {
             let energy = linearised.map_err(|fault| inverted(fault, describe))?;
             let stiffest = self.tangent.assembly.stiffest(&stiffness);
             let mut now = self.measure(u, residual, energy, stiffest, &mut log)?;
-            now.shifted = self.tangent.factorise(&mut stiffness)?;
+            if self.shifts {
+                now.shifted = self.tangent.factorise(&mut stiffness)?;
+            } else {
+                self.tangent.factorise_unshifted(&stiffness)?;
+            }
             if now.shifted && self.indefinite.is_none() {
                 self.indefinite = Some(u.to_vec());
             }

@@ -44,7 +44,7 @@ impl PathEnd {
 /// The shortest step, as a share of the load factor that it leads to; how near a path comes to its end.
 const SHORTEST: f64 = 1.0 / 1024.0;
 
-/// The shortest step from rest, as a share of the load factor that is wanted.
+/// The shortest step from or to rest, as a share of the load factor that is wanted or left.
 const SHORTEST_FROM_REST: f64 = 1.0 / 1_048_576.0;
 
 /// Tolerances from which on an equilibrium is a first guess, whatever its branch.
@@ -185,7 +185,8 @@ impl<'a> Path<'a> {
         from: Option<&State>,
         factor: f64,
     ) -> Result<State, (SolveFault, Option<Box<State>>)> {
-        let from_rest = SHORTEST_FROM_REST * factor.abs();
+        let begin = from.map_or(0.0, |state| state.factor);
+        let at_rest = SHORTEST_FROM_REST * factor.abs().max(begin.abs());
         let history = from.map_or_else(Vec::new, |state| self.loading.remembered(state));
         let (mut last, mut load_steps, mut halved) = (None::<Box<State>>, 0, false);
         let mut snaps = 0;
@@ -200,7 +201,9 @@ impl<'a> Path<'a> {
             } else {
                 start + step.copysign(rest)
             };
-            let shortest = 0.5 * (aim - start).abs() < from_rest.max(SHORTEST * aim.abs());
+            let shortest = 0.5 * (aim - start).abs() <= at_rest.max(SHORTEST * aim.abs());
+            // A step that would be halved after a shift anyhow is given up there.
+            self.newton.shifts = shortest || self.is_rough();
             let found = match self.solve_at(previous, aim, &history) {
                 Ok(found) if found.is_sure || shortest => found,
                 Err(fault) if shortest => {
@@ -232,6 +235,11 @@ impl<'a> Path<'a> {
         }
     }
 
+    /// Whether an equilibrium of any branch will do.
+    fn is_rough(&self) -> bool {
+        self.settings.tolerance >= ROUGH || !self.loading.follows_its_branch()
+    }
+
     fn solve_at(
         &mut self,
         previous: Option<&State>,
@@ -252,7 +260,7 @@ impl<'a> Path<'a> {
             Some(previous) => norm(&difference(&guess, &previous.displacement)),
             None => norm(&guess),
         };
-        let rough = self.settings.tolerance >= ROUGH || !self.loading.follows_its_branch();
+        let rough = self.is_rough();
         let is_far = !rough && beyond > step;
         Ok(Found {
             is_far,

@@ -245,6 +245,16 @@ impl Tangent {
         }
     }
 
+    /// Factorises the stiffness as it is.
+    ///
+    /// # Errors
+    /// [`SolveFault::NotPositiveDefinite`] where it is not.
+    pub(super) fn factorise_unshifted(&mut self, stiffness: &[f64]) -> Result<(), SolveFault> {
+        self.factorised = true;
+        let factorised = self.analysed()?.factorise(stiffness);
+        factorised.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))
+    }
+
     /// Factorises the stiffness, shifted along its diagonal where it is not positive definite; says
     /// whether it had to be shifted.
     pub(super) fn factorise(&mut self, stiffness: &mut [f64]) -> Result<bool, SolveFault> {

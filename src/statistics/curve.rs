@@ -55,7 +55,7 @@ pub struct NoiseAlong<'a> {
 /// A step of the filter: the value of this row, the last prediction's weight, and the scale of what is new.
 struct Step {
     row: usize,
-    /// e^(−gap/ℓ) from the row before; 0 at the begin of a curve.
+    /// e^(−gap/ℓ) from the row before; 0 at the beginning of a curve.
     decay: f64,
     gain: f64,
     variance: f64,

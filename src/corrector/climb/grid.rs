@@ -128,7 +128,7 @@ impl Grid {
         })
     }
 
-    /// The nodes along both axes that a coarser grid has too, where these are a third of its nodes at least.
+    /// The nodes along both axes that a coarser grid has too, where they are at least a third of the coarser grid's nodes.
     pub fn shared_with(&self, coarser: &Self) -> Option<[Vec<usize>; 2]> {
         let shared = [0, 1].map(|axis| -> Vec<usize> {
             let (own, others) = (&self.coordinates[axis], &coarser.coordinates[axis]);

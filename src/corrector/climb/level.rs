@@ -246,8 +246,8 @@ impl Level {
         }
     }
 
-    /// x with K x = b at the free nodes and nothing at the grips but −K x + b, where K is the Jacobian of F at `u`,
-    /// by the same iteration as [`Self::iterate`], and what it took; nothing where K is not positive definite.
+    /// Solves K x = b at the free nodes with x = 0 at the grips, K being the Jacobian of F at `u`, by the same iteration as
+    /// [`Self::iterate`]: x, which holds b − K x at the grips, and what it took; nothing where K is not positive definite.
     ///
     /// # Errors
     /// [`Inverted`] when `u` is not admissible.

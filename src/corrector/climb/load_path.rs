@@ -1,6 +1,6 @@
 //! One grid alone, slowly and safely: Newton's method with a sparse factor along a path of load steps.
 //!
-//! The equation is that of [`forces`](super::forces) down down to the last term: the same energy, sampled at the same points. What
+//! The equation is that of [`forces`](super::forces) down to the last term: the same energy, sampled at the same points. What
 //! the climb's iteration lacks is here: a line search by the energy that keeps J > 0 everywhere, tangents that are
 //! shifted where they are not positive definite, load steps that are halved where they fail, and a diagnosis of why a
 //! path ends.
@@ -80,7 +80,8 @@ impl Loading for GridLoading<'_> {
 
     /// The state before, scaled with the grip's motion, or the contracted stretch.
     fn guess(&self, factor: f64, previous: Option<&State>) -> Option<Vec<f64>> {
-        Some(match previous {
+        // Rest cannot be scaled.
+        Some(match previous.filter(|own| own.factor != 0.0) {
             Some(previous) => {
                 let ratio = factor / previous.factor;
                 previous.displacement.iter().map(|u| ratio * u).collect()

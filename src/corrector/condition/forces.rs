@@ -3,6 +3,7 @@
 use super::{Condition, Linearisation};
 use crate::solve::vector::{largest, moved};
 use crate::solve::{Assembly, Inadmissible, Potential, SkewCoupling, SparseRows};
+use crate::statistics::extremes;
 
 /// Balance of forces ∂Π/∂uᵢ − fᵢ = 0 at the chosen unknowns, in N.
 ///
@@ -188,6 +189,16 @@ fn internal_forces(
     Ok((residual, rows))
 }
 
+/// The longer side of a box around the free unknowns in mm; 1 where their places are not known.
+fn extent(assembly: &Assembly) -> f64 {
+    let places = assembly.places().unwrap_or(&[[0.0; 2], [1.0; 2]]);
+    let side = |axis: usize| {
+        let [low, high] = extremes(places.iter().map(|place| place[axis]));
+        high - low
+    };
+    side(0).max(side(1))
+}
+
 /// ∂K/∂u · d by central differences: the curvature of the residual, weighted by d, which is given as
 /// (unknown, weight).
 fn stiffness_change<'a>(
@@ -197,13 +208,15 @@ fn stiffness_change<'a>(
     weights: impl Iterator<Item = (&'a usize, &'a f64)>,
 ) -> Result<SparseRows, Inadmissible> {
     const SHARE: f64 = 1e-5;
+    /// Of the body's length: the least size of u that gives the step, as near rest.
+    const LEAST: f64 = 1e-3;
     let mut direction = vec![0.0; u.len()];
     for (unknown, weight) in weights {
         direction[*unknown] += weight;
     }
     let most = largest(&direction);
     let step = match most > 0.0 {
-        true => SHARE * largest(u) / most,
+        true => SHARE * largest(u).max(LEAST * extent(assembly)) / most,
         false => 1.0,
     };
     let at = |step: f64| internal_forces(potential, assembly, &moved(u, step, &direction));

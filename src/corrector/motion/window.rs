@@ -33,6 +33,16 @@ pub struct CorrectedMotion {
     pub windows: usize,
 }
 
+/// The end of a correction before the last instant.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{fault}")]
+pub struct CorrectionEnd {
+    /// Why.
+    pub fault: SolveFault,
+    /// The instants before it.
+    pub corrected: Box<CorrectedMotion>,
+}
+
 /// Consecutive instants on the way.
 struct Window {
     /// The number of the first instant, which is known.
@@ -59,19 +69,13 @@ impl EquationOfMotion<'_> {
     /// Corrects a motion that is given at instants from time 0 on, with a known start.
     ///
     /// # Errors
-    /// A [`SolveFault`] when a window of a single step fails.
+    /// [`CorrectionEnd`] with the instants before it when a window of a single step fails.
     pub fn correct(
         &self,
         data: &[Vec<f64>],
         start: &Start,
         settings: WindowSettings,
-    ) -> Result<CorrectedMotion, SolveFault> {
-        let cholesky = self.assembly.analyse().map_err(SolveFault::from)?;
-        let mut retained = RetainedFactor {
-            cholesky,
-            fresh: false,
-            made: 0,
-        };
+    ) -> Result<CorrectedMotion, CorrectionEnd> {
         let size = self.motion.energy.unknowns();
         let mut corrected = CorrectedMotion {
             displacement: vec![self.whole(0, &self.free(&start.displacement))],
@@ -80,6 +84,28 @@ impl EquationOfMotion<'_> {
             factorisations: 0,
             windows: 0,
         };
+        match self.correct_onwards(data, start, settings, &mut corrected) {
+            Ok(()) => Ok(corrected),
+            Err(fault) => Err(CorrectionEnd {
+                fault,
+                corrected: Box::new(corrected),
+            }),
+        }
+    }
+
+    /// Corrects the instants after those that are, window after window.
+    fn correct_onwards(
+        &self,
+        data: &[Vec<f64>],
+        start: &Start,
+        settings: WindowSettings,
+        corrected: &mut CorrectedMotion,
+    ) -> Result<(), SolveFault> {
+        let mut retained = RetainedFactor {
+            cholesky: self.assembly.analyse()?,
+            fresh: false,
+            made: 0,
+        };
         let velocity = self.free(&start.velocity);
         let mut steps = settings.steps.max(1);
         while corrected.displacement.len() < data.len() {
@@ -87,9 +113,10 @@ impl EquationOfMotion<'_> {
             let count = steps.min(data.len() - done);
             let mut window = self.window(&corrected.displacement, data, count);
             let solved = self.solve(&mut window, &velocity, &mut retained, settings);
+            corrected.factorisations = retained.made;
             match solved {
                 Ok((interval, iterations)) => {
-                    self.append(&window, data, &interval, &mut retained, &mut corrected)?;
+                    self.append(&window, data, &interval, &mut retained, corrected)?;
                     corrected.iterations += iterations;
                     corrected.windows += 1;
                     steps = (2 * steps).min(settings.steps.max(1));
@@ -98,8 +125,7 @@ impl EquationOfMotion<'_> {
                 Err(_) => steps = count / 2,
             }
         }
-        corrected.factorisations = retained.made;
-        Ok(corrected)
+        Ok(())
     }
 
     /// The next instants: those of ū, moved on by what its last known instants were corrected by.

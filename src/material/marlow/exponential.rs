@@ -159,16 +159,36 @@ const GAUSS_LEGENDRE: [(f64, f64); 10] = {
 mod tests {
     use super::*;
 
+    /// ½ ln 2 is where the quotients of the exponential change their form.
     #[test]
-    fn the_quotients_join_without_a_step() {
-        for z in [1.0 - 1e-12, 1.0 + 1e-12] {
+    fn the_quotients_are_those_of_their_formulas_on_both_sides_of_a_change_of_form() {
+        let join = 0.5 * std::f64::consts::LN_2;
+        for z in [
+            -join - 1e-9,
+            -join + 1e-9,
+            join - 1e-9,
+            join + 1e-9,
+            1.0,
+            -3.0,
+        ] {
             let (phi, dphi, phi2) = exponential_quotients(z);
-            assert!((phi - 1.718_281_828_459_045).abs() < 3e-12);
-            assert!((dphi - 1.0).abs() < 3e-12);
-            assert!((phi2 - 0.718_281_828_459_045).abs() < 3e-12);
+            let expected = [z.exp_m1() / z, (z.exp_m1() - z) / (z * z)];
+            assert!((phi - expected[0]).abs() < 1e-14, "{z}");
+            assert!((phi2 - expected[1]).abs() < 1e-14, "{z}");
+            assert!((dphi - (expected[0] - expected[1])).abs() < 2e-14, "{z}");
         }
-        let (q, dq) = logarithm_quotient(0.049_999_999);
-        let (next_q, next_dq) = logarithm_quotient(0.050_000_001);
-        assert!((q - next_q).abs() < 1e-8 && (dq - next_dq).abs() < 1e-8);
+        for x in [
+            -0.3,
+            -0.05 - 1e-9,
+            -0.05 + 1e-9,
+            0.05 - 1e-9,
+            0.05 + 1e-9,
+            2.0,
+        ] {
+            let (q, dq) = logarithm_quotient(x);
+            let expected = x.ln_1p() / x;
+            assert!((q - expected).abs() < 1e-15 * (1.0 + expected), "{x}");
+            assert!((dq - (1.0 / (1.0 + x) - expected) / x).abs() < 2e-14, "{x}");
+        }
     }
 }

@@ -168,3 +168,20 @@ fn a_body_that_is_not_stable_at_rest_is_told_so() {
     let place = "its place".to_owned();
     assert_eq!(end.fault, SolveFault::UnstableAtRest { place });
 }
+
+#[test]
+fn a_path_may_lead_back_to_rest_and_on_or_end_there() {
+    let point = Point { energy: cautious };
+    let states = follow(&point, &[0.4, 0.0, 0.3], NEWTON, Attendance::told(&|_| ())).unwrap();
+    let places = states.iter().map(|state| state.displacement[0]);
+    for (place, expected) in places.zip([0.4, 0.0, 0.3]) {
+        assert!((place - expected).abs() < 1e-12, "{place} {expected}");
+    }
+    let never = Point {
+        energy: |u, s| (s > 0.2).then_some([0.5 * u * u, u, 1.0]),
+    };
+    let end = follow(&never, &[0.0], NEWTON, Attendance::told(&|_| ())).unwrap_err();
+    assert_eq!(end.reached(), 0.0);
+    let end = follow(&never, &[0.5, 0.0], NEWTON, Attendance::told(&|_| ())).unwrap_err();
+    assert!(end.reached() > 0.2 && end.reached() < 0.21, "{end}");
+}

@@ -6,6 +6,7 @@ use crate::corrector::DifferenceScheme;
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::dynamics::{Instant, SheetViscosity, Viscosity};
 use crate::error::Error;
+use crate::results::number;
 
 /// The corrected motion at the instants that are written.
 pub struct CorrectedMotion {
@@ -15,6 +16,8 @@ pub struct CorrectedMotion {
     pub velocity: Vec<Vec<f64>>,
     /// What was done, or why nothing was.
     pub note: String,
+    /// Why it ended before the springs' motion did, where it did.
+    pub end: Option<Error>,
 }
 
 /// Steps in a period of the first longitudinal vibration at least.
@@ -48,17 +51,15 @@ impl MovingPlate {
                     displacement: Vec::new(),
                     velocity: Vec::new(),
                     note: format!("The motion of the springs is not corrected: {reason}."),
+                    end: None,
                 });
             }
         };
         let data = between(&springs.history.instants, within);
-        let found = equation
-            .correct(&data, &motion.start, WINDOWS)
-            .map_err(|fault| Error::Solve {
-                model: model.name.clone(),
-                step: "the motion of the springs".into(),
-                fault,
-            })?;
+        let (found, fault) = match equation.correct(&data, &motion.start, WINDOWS) {
+            Ok(found) => (found, None),
+            Err(end) => (*end.corrected, Some(end.fault)),
+        };
         let note = format!(
             "The corrector brings the springs' motion to the nearest one that satisfies the equation of motion of the \
              sheet at every three consecutive instants, {within} steps in an interval: {} Newton steps, {} \
@@ -66,7 +67,15 @@ impl MovingPlate {
             found.iterations, found.factorisations
         );
         let fine = found.displacement;
-        let instants = (0..fine.len()).step_by(within);
+        let reached = step * (fine.len() - 1) as f64;
+        let end = fault.map(|fault| Error::Solve {
+            model: model.name.clone(),
+            step: format!("time {} s", number(reached)),
+            fault,
+        });
+        // The start alone is no motion.
+        let count = if fine.len() > within { fine.len() } else { 0 };
+        let instants = (0..count).step_by(within);
         Ok(CorrectedMotion {
             velocity: instants
                 .clone()
@@ -74,6 +83,7 @@ impl MovingPlate {
                 .collect(),
             displacement: instants.map(|i| fine[i].clone()).collect(),
             note,
+            end,
         })
     }
 

@@ -65,9 +65,12 @@ pub fn figures(
     (corrected, shown): (&CorrectedMotion, &[PlateMotion]),
 ) -> Vec<Figure> {
     let [springs, elements] = models;
-    let last = springs.history.instants.len() - 1;
-    let plates = displaced(shown, last);
-    let plates = FieldFigure::new("Plates at the last instant", ALONG, plates);
+    // The instants of all plates.
+    let count = shown.iter().map(|own| own.motion.len()).min().unwrap_or(0);
+    let instants = &springs.history.times()[..count];
+    let plates = displaced(shown, count.saturating_sub(1));
+    let until = brief(instants.last().copied().unwrap_or_default());
+    let plates = FieldFigure::new(format!("Plates at t = {until} s"), ALONG, plates);
     let mut figures = vec![
         Figure::new(
             "motion_probes.png",
@@ -81,11 +84,11 @@ pub fn figures(
         ),
         Figure::new(
             "motion_plates.png",
-            "The plates at the last instant, with their displacement along the plate.",
+            "The plates at the last instant of all models, with their displacement along the plate.",
             plates,
         ),
     ];
-    figures.extend(stress_figures(plate, &springs.history.times(), shown));
+    figures.extend(stress_figures(plate, instants, shown));
     if plate.release != Some(0.0) {
         let over_time = force(models, "time [s]", |_, now| now.time);
         let over_place = force(models, "displacement of the right side [mm]", right_side);
@@ -267,8 +270,9 @@ pub fn grids(
     let series = |own: &PlateMotion| {
         let grid = |(instant, [displacement, velocity]): (usize, &[&[f64]; 2])| {
             let velocity = Array::vectors("velocity_mm_per_s", velocity.iter().copied());
-            let difference = (!own.is_reference)
-                .then(|| Array::to_finite_elements(displacement, &expected[instant]));
+            let expected = expected.get(instant).filter(|_| !own.is_reference);
+            let difference =
+                expected.map(|expected| Array::to_finite_elements(displacement, expected));
             let sheet = Sheet {
                 law: &*plate.problem.law,
                 thickness: plate.problem.thickness,

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::corrected::CorrectedMotion;
 use super::files::{animation, figures, grids, tables};
-use super::plates::{compression, shown};
+use super::plates::{compression, shown, times};
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use super::statement;
@@ -73,7 +73,7 @@ pub fn outcome(
         Deviations::new(&springs.mesh, of_springs, &expected),
         Deviations::new(&springs.mesh, of_corrected, &expected),
     ];
-    let times = models
+    let seconds = models
         .iter()
         .map(|model| (model.name.to_owned(), model.seconds));
     let mut blocks = vec![
@@ -89,10 +89,10 @@ pub fn outcome(
         ];
     blocks.extend(statement::blocks(plate));
     let mut files = tables(plate, models, corrected);
-    let (plates, instants) = (shown(plate, models, corrected), springs.history.times());
+    let (plates, instants) = (shown(plate, models, corrected), times(models));
     let animation = Drawing::Animation(animation(&instants, &plates));
     files.push(("motion.png".into(), Content::Picture(animation)));
-    Outcome {
+    let mut outcome = Outcome {
         checks: checks(plate, models, &deviations),
         blocks,
         problem: statement::json(plate),
@@ -104,9 +104,14 @@ pub fn outcome(
         grids: grids(plate, &instants, &plates, &expected),
         warnings: compression(plate, &instants, &plates).into_iter().collect(),
         files,
-        times: times.collect(),
+        times: seconds.collect(),
         ..Outcome::default()
+    };
+    let ends = models.iter().map(|model| &model.end);
+    for end in ends.chain([&corrected.end]).flatten() {
+        outcome.ended(end);
     }
+    outcome
 }
 
 /// The figures of every instant for machines.
@@ -250,10 +255,10 @@ fn checks(
             100.0 * model.history.energy_error(),
         )
     };
-    let [springs, corrected] = deviations;
-    let (name, last) = match corrected.displacement.is_empty() {
-        true => ("mass-spring", springs),
-        false => ("corrected", corrected),
+    let [of_springs, of_corrected] = deviations;
+    let (name, last) = match of_corrected.displacement.is_empty() {
+        true => ("mass-spring", of_springs),
+        false => ("corrected", of_corrected),
     };
     let deviation = check(
         format!("{name}: displacement over all instants"),

@@ -23,13 +23,22 @@ pub struct PlateMotion<'a> {
     pub is_reference: bool,
 }
 
+/// The instants of the model that has more of them: all, unless both ended before.
+pub fn times(models: &[ModelMotion; 2]) -> Vec<f64> {
+    let [springs, elements] = models.each_ref().map(|model| model.history.times());
+    match springs.len() < elements.len() {
+        true => elements,
+        false => springs,
+    }
+}
+
 /// All plates; the corrected one between the models, where there is one, and the finite elements last.
 pub fn shown<'a>(
     plate: &MovingPlate,
     models: &'a [ModelMotion; 2],
     corrected: &'a CorrectedMotion,
 ) -> Vec<PlateMotion<'a>> {
-    let times = models[0].history.times();
+    let times = times(models);
     let material = (&*plate.problem.law, &plate.viscosity);
     let shown = |[name, file]: [&'static str; 2], mesh: &'a Mesh, motion: Vec<[&'a [f64]; 2]>| {
         PlateMotion {

@@ -19,6 +19,8 @@ pub struct ModelMotion {
     pub mesh: Mesh,
     /// Its instants.
     pub history: History,
+    /// Why it ended before its time, where it did.
+    pub end: Option<Error>,
     /// The first longitudinal vibration about the undeformed plate, with the right grip as at the end, in Hz.
     pub frequency: f64,
     /// Computing time in s.
@@ -40,8 +42,17 @@ impl MovingPlate {
             step: time,
             fault,
         };
-        let history =
-            follow(&motion, self.time, &|_| ()).map_err(|end| fault(end.describe(), end.fault))?;
+        let (history, end) = match follow(&motion, self.time, &|_| ()) {
+            Ok(history) => (history, None),
+            Err(end) => {
+                let error = fault(end.describe(), end.fault);
+                // The start alone is no motion.
+                if end.history.instants.len() < 2 {
+                    return Err(error);
+                }
+                (end.history, Some(error))
+            }
+        };
         let held = motion.held(self.time.duration);
         let rest = vec![0.0; motion.mass.len()];
         let modes = slowest(&motion, &held, &rest, 6);
@@ -51,6 +62,7 @@ impl MovingPlate {
             file,
             mesh: model.mesh.clone(),
             history,
+            end,
             frequency: strongest(modes, &motion.mass, 0).map_or(f64::NAN, |mode| mode.frequency),
             seconds: start.elapsed().as_secs_f64(),
         })

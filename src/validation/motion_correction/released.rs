@@ -89,7 +89,7 @@ impl Release {
         };
         let found = bodies.equation(step)?;
         let found = found.correct(&springs, &bodies.scheme.motion.start, windows);
-        let found = found.map_err(fault)?;
+        let found = found.map_err(|end| fault(end.fault))?;
         let compared = |fields: &[Vec<f64>]| fields.iter().step_by(STRIDE).cloned().collect();
         let work = format!(
             "{} windows of up to {} steps, {} Newton steps, {} factorisations",

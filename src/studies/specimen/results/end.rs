@@ -4,7 +4,7 @@ use super::measured::Measured;
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::problem::{GroupState, Model};
-use crate::results::{Block, Check, Grid, GridSeries, Outcome};
+use crate::results::{Block, Grid, GridSeries, Outcome};
 use crate::solve::{PathEnd, State};
 use crate::studies::specimen::problem::Specimen;
 
@@ -95,10 +95,7 @@ pub fn last_groups(ends: &[End]) -> Option<(&Mesh, &[GroupState])> {
 pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &mut Outcome) {
     let mut rows = Vec::new();
     for end in ends {
-        let error = end.error();
-        let quantity = format!("{error} ({})", end.fault.advice());
-        outcome.checks.push(Check::end(quantity));
-        outcome.ends.push((&error).into());
+        outcome.ended(&end.error());
         let Some(last) = end.last else { continue };
         let file = match last.between {
             true => format!("{}.vtu", last.file),
