@@ -29,7 +29,7 @@ use crate::material::stability::in_plane_poisson_ratio;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{ClampedPlate, Model};
 use crate::solve::vector::gather;
-use crate::solve::{NewtonSettings, Potential, State};
+use crate::solve::{NewtonSettings, Potential, Remembering, State};
 
 pub mod calibration;
 mod lattice;
@@ -200,7 +200,7 @@ impl MassSpring {
     }
 
     /// The lattice's energy as a potential of the nodal displacements.
-    pub fn potential(&self) -> &dyn Potential {
+    pub fn potential(&self) -> &dyn Remembering {
         &self.lattice
     }
 

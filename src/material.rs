@@ -21,6 +21,7 @@ mod linear_elastic;
 mod logarithm;
 pub mod marlow;
 mod measures;
+mod monotone_cubic;
 mod mooney_rivlin;
 mod neo_hooke;
 pub mod network;

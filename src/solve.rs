@@ -33,12 +33,14 @@ pub use connectivity::Connectivity;
 pub use equilibrium::equilibrium;
 pub use iterative::{LinearSolver, WORTH_MULTIGRID};
 pub use journal::{Attendance, Journal, Milestone};
-pub use loading::{Loading, State};
+pub use loading::{Loading, Stage, State};
 pub use nested::{Carry, Ladder};
 pub use newton::{Convergence, Newton, NewtonSettings};
 pub use path::{PathEnd, compliance, follow, influence};
 pub use pattern::SymmetricPattern;
-pub use potential::{Inadmissible, Local, Potential, SkewCoupling, Take, evaluate_by_elements};
+pub use potential::{
+    Inadmissible, Local, Potential, Remembering, SkewCoupling, Take, evaluate_by_elements,
+};
 pub use rows::SparseRows;
 pub use sparse::{Cholesky, FactorFault, SparseLu};
 pub use tangent::Tangent;

@@ -10,7 +10,7 @@ use gelbench::corrector::specimen::{correct, correct_without_multipliers};
 use gelbench::material::{Card, HyperelasticLaw, NeoHooke};
 use gelbench::mesh::{CellShape, Mesh, Shape};
 use gelbench::problem::{BoundaryProblem, Drive, Load, Support};
-use gelbench::solve::{LinearSolver, NewtonSettings};
+use gelbench::solve::{LinearSolver, NewtonSettings, Stage};
 
 mod common;
 
@@ -114,7 +114,7 @@ fn what_the_climb_leaves_is_a_small_share_of_the_discretisation_error() {
             let exact = correct_without_multipliers(
                 &model,
                 &climbed.state.displacement,
-                (1.0, &[]),
+                Stage::first(1.0),
                 SETTINGS,
             )
             .unwrap();
@@ -175,14 +175,14 @@ fn the_field_without_multipliers_is_that_with_them() {
             &model,
             &start,
             &start,
-            (1.0, &[]),
+            Stage::first(1.0),
             CorrectorSettings::default(),
         )
         .unwrap();
         for solver in [LinearSolver::Direct, LinearSolver::Multigrid] {
             let model = case.problem.on(&mesh, &energy).unwrap().solved_by(solver);
             let without =
-                correct_without_multipliers(&model, &start, (1.0, &[]), SETTINGS).unwrap();
+                correct_without_multipliers(&model, &start, Stage::first(1.0), SETTINGS).unwrap();
             let apart = root_mean_square(&with.state.displacement, &without.displacement);
             assert!(apart < 1e-7, "{}: {apart} mm", case.name);
         }

@@ -11,7 +11,7 @@ use gelbench::mesh::{Interpolation, Mesh};
 use gelbench::problem::{BoundaryProblem, Model};
 use gelbench::solve::{
     Assembly, Cholesky, Convergence, Ladder, LinearSolver, Loading, Newton, NewtonSettings,
-    Potential, State,
+    Remembering, State,
 };
 
 /// Where load steps are needed.
@@ -39,7 +39,7 @@ pub struct Found {
 fn on<'a>(
     problem: &BoundaryProblem,
     mesh: &'a Mesh,
-    energy: &'a dyn Potential,
+    energy: &'a dyn Remembering,
 ) -> Result<Model<'a>, Error> {
     let model = problem.on(mesh, energy);
     model.map_err(|fault| Error::Input(vec![fault]))

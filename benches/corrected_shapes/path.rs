@@ -136,7 +136,7 @@ fn direct(
 fn model<'a>(
     family: &Family,
     mesh: &'a Mesh,
-    energy: &'a dyn gelbench::solve::Potential,
+    energy: &'a dyn gelbench::solve::Remembering,
 ) -> Result<Model<'a>, Error> {
     let found = family.case.problem.on(mesh, energy);
     found.map_err(|fault| Error::Input(vec![fault]))

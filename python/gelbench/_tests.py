@@ -145,7 +145,7 @@ def _image(png: bytes) -> str:
 
 def fit(
     data: Data,
-    law: str | None = "yeoh",
+    law: str | None,
     *,
     name: str = "fitted",
     test: str | None = None,
@@ -160,6 +160,7 @@ def fit(
     softening: bool = False,
     columns: tuple[str, str] = ("stretch [-]", "stress [MPa]"),
     progress: Progress | None = None,
+    **reading: str,
 ) -> Fit:
     """Fits a law to test data.
 
@@ -196,6 +197,10 @@ def fit(
         Heads of an array's columns.
     progress : callable or tqdm bar, optional
         Is told what is being done.
+    **reading : str
+        What else the data do not say, by the keys of ``gelbench materials fit`` with ``_``: ``direction``, ``strain_ratio``, ``area``,
+        ``length``, ``width``, ``thickness``, ``time_unit``, ``cycle``, ``zero``, ``ramp``; such as ``cycle="last"`` or
+        ``area="8 mm^2"``.
 
     Returns
     -------
@@ -218,6 +223,7 @@ def fit(
         "strain unit": strain_unit,
     }
     said = {key: value for key, value in given.items() if value is not None}
+    said |= {key.replace("_", " "): value for key, value in reading.items()}
     if softening and relaxation is not False:
         raise fault("softening", "relaxation and softening are fitted apart", "leave one of them out")
     if law is None and (softening or relaxation is not False):

@@ -49,6 +49,13 @@ pub fn fit(
 ) -> PyResult<Fitted> {
     run(py, progress, |watch| {
         let mut reading: Statements = said.into_iter().collect();
+        if let Some(key) = reading
+            .keys()
+            .find(|key| !calibration::KEYS.contains(&key.as_str()))
+        {
+            let hint = suggestion(key, &calibration::KEYS, "one of");
+            return Err(input(format!("`{key}` says nothing of test data"), &hint));
+        }
         if history.is_some() {
             // What relaxes or softens is the whole record.
             reading.entry("cycle".into()).or_insert("all".into());

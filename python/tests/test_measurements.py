@@ -139,6 +139,22 @@ def test_what_depends_on_the_history_has_the_commands_figures_to_the_bit(command
     assert fit.parameters["c10"].interval is not None
 
 
+def test_what_data_do_not_say_is_said_by_keywords(command, root, tmp_path):
+    data = root / "examples/cyclic_loading.csv"
+    arguments = ["--law", "yeoh", "--cycle", "last", "--name", "gel", "--output", tmp_path]
+    code, _, told = command("materials", "fit", data, *arguments, cwd=root)
+    assert code == 0, told
+    theirs = json.loads((tmp_path / "gel.json").read_text())
+    fit = gb.fit(data, "yeoh", name="gel", cycle="last")
+    own = dict(fit.json)
+    own.pop("data"), theirs.pop("data")
+    assert own == theirs
+    with pytest.raises(gb.InputError, match="strain ratio"):
+        gb.fit(data, "yeoh", strain_ration="1")
+    with pytest.raises(TypeError):
+        gb.fit(data)
+
+
 def test_a_history_needs_a_law_and_is_of_one_kind(root):
     data = root / "examples/cyclic_loading.csv"
     with pytest.raises(gb.InputError, match="name it"):

@@ -85,10 +85,10 @@ pub enum MotionFault {
     #[error("a support lets go: begin at the release")]
     LettingGo,
     /// Stresses depend on the whole past.
-    #[error("three instants do not tell the stresses of a Prony series")]
+    #[error("three instants do not tell the stresses of a Prony series: leave out its terms")]
     Relaxing,
     /// A free unknown has no mass.
-    #[error("a free unknown has no mass")]
+    #[error("a free unknown has no mass: hold it, or give it a mass")]
     Massless,
 }
 

@@ -13,9 +13,8 @@ use crate::error::Error;
 use crate::mesh::{Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{ClampedPlate, Measures, Work};
-use crate::solve::State;
 use crate::solve::vector::largest;
-use crate::solve::{Assembly, Convergence, Potential, SparseRows};
+use crate::solve::{Assembly, Convergence, Remembering, SparseRows, Stage, State};
 
 /// Name of the condition F.
 pub const EQUILIBRIUM: &str = "equilibrium";
@@ -157,9 +156,12 @@ impl<'a> PlateCorrector<'a> {
             .map_err(fault)?;
         if known == KnownConditions::ALL {
             let model = self.problem.on(self.mesh, &self.energy);
-            model
-                .check_stability((stretch, self.energy.history()), correction.field())
-                .map_err(fault)?;
+            let stage = Stage {
+                factor: stretch,
+                history: self.energy.history(),
+            };
+            let stable = model.check_stability(stage, correction.field());
+            stable.map_err(fault)?;
         }
         let convergence = correction.convergence(f64::NAN);
         let corrected = self.corrected(correction.field().to_vec(), stretch, convergence);

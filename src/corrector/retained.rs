@@ -19,7 +19,7 @@ const VERSION: u32 = 1;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RetainedFault {
     /// The bytes do not begin as a kept factor does.
-    #[error("this is no kept factor")]
+    #[error("this is no kept factor: factorise again")]
     NoFactor,
     /// The file was written by another version of gelbench.
     #[error(
@@ -27,7 +27,7 @@ pub enum RetainedFault {
     )]
     Version(u32),
     /// The checksum is wrong.
-    #[error("the kept factor is damaged: its checksum is wrong")]
+    #[error("the kept factor is damaged, its checksum is wrong: factorise again")]
     Damaged,
     /// The factor is one of other conditions.
     #[error("the kept factor does not fit the problem: {0}")]

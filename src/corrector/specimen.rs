@@ -2,11 +2,14 @@
 //! and follows the supports.
 
 use super::condition::{Condition, Equilibrium, Linear};
-use super::plate::{EQUILIBRIUM, GRIPS};
+use super::plate::EQUILIBRIUM;
 use super::{Correction, Corrector, CorrectorSettings, Describe};
 use crate::error::SolveFault;
 use crate::problem::Model;
-use crate::solve::{Assembly, Loading, Newton, NewtonSettings, State, equilibrium};
+use crate::solve::{Assembly, Loading, Newton, NewtonSettings, Stage, State, equilibrium};
+
+/// The condition's name: what the supports hold.
+const SUPPORTS: &str = "supports";
 
 /// Cells and nodes of a mesh by their places.
 struct Names<'a>(&'a Model<'a>);
@@ -30,7 +33,7 @@ pub struct CorrectedField {
     pub correction: Correction,
 }
 
-/// Corrects a displacement field on the nodes of a model at a load factor, of a body with a history; the iteration begins at `start`.
+/// Corrects a displacement field on the nodes of a model at a stage; the iteration begins at `start`.
 ///
 /// # Errors
 /// A [`SolveFault`] when no corrected field was found.
@@ -38,29 +41,29 @@ pub fn correct(
     model: &Model,
     data: &[f64],
     start: &[f64],
-    (factor, history): (f64, &[f64]),
+    stage: Stage<'_>,
     settings: CorrectorSettings,
 ) -> Result<CorrectedField, SolveFault> {
-    let potential = model.potential(factor, history);
+    let potential = model.potential(stage.factor, stage.history);
     let size = potential.unknowns();
     let assembly = Assembly::new(&*potential, &vec![false; size]);
     let held = model.held();
     let free: Vec<usize> = (0..size).filter(|unknown| !held[*unknown]).collect();
     let mut imposed = data.to_vec();
-    model.impose(factor, &mut imposed);
+    model.impose(stage.factor, &mut imposed);
     let supports = (0..size)
         .filter(|unknown| held[*unknown])
         .map(|unknown| (unknown, imposed[unknown]));
     let conditions: Vec<Box<dyn Condition + '_>> = vec![
         Box::new(Equilibrium::new(EQUILIBRIUM, &*potential, &assembly, free)),
-        Box::new(Linear::prescribed(GRIPS, size, supports)),
+        Box::new(Linear::prescribed(SUPPORTS, size, supports)),
     ];
     let names = Names(model);
     let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(&names);
     let correction = corrector.correct(data, start)?;
     let mut displacement = correction.field().to_vec();
     // Tied unknowns, on which no condition depends, follow.
-    model.impose(factor, &mut displacement);
+    model.impose(stage.factor, &mut displacement);
     let mut residual = vec![0.0; size];
     let energy =
         Assembly::residual(&*potential, &displacement, &mut residual).map_err(|fault| {
@@ -69,13 +72,13 @@ pub fn correct(
             }
         })?;
     let convergence = correction.convergence(energy);
-    model.check_stability((factor, history), &displacement)?;
+    model.check_stability(stage, &displacement)?;
     Ok(CorrectedField {
         state: State {
-            factor,
+            factor: stage.factor,
             displacement,
             residual,
-            history: history.to_vec(),
+            history: stage.history.to_vec(),
             load_steps: 1,
             convergence,
         },
@@ -92,11 +95,11 @@ pub fn correct(
 pub fn correct_without_multipliers(
     model: &Model,
     start: &[f64],
-    (factor, history): (f64, &[f64]),
+    stage: Stage<'_>,
     settings: NewtonSettings,
 ) -> Result<State, SolveFault> {
-    let potential = model.potential(factor, history);
+    let potential = model.potential(stage.factor, stage.history);
     let mut newton = Newton::with_solver(&*potential, &model.held(), model.linear_solver())?;
     let from = (&mut newton, start.to_vec());
-    equilibrium(model, (&*potential, factor, history), from, settings)
+    equilibrium(model, &*potential, stage, from, settings)
 }

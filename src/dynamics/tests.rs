@@ -10,7 +10,7 @@ use crate::mass_spring::{LatticeSettings, MassSpring};
 use crate::material::Card;
 use crate::mesh::{Mesh, Side};
 use crate::problem::ClampedPlate;
-use crate::solve::{NewtonSettings, Potential};
+use crate::solve::{NewtonSettings, Remembering};
 
 fn motion(spring: &Spring, start: f64) -> Motion<'_> {
     Motion {
@@ -245,7 +245,7 @@ fn dead_forces_push() {
 pub fn solved(
     problem: &ClampedPlate,
     mesh: &Mesh,
-    potential: &dyn Potential,
+    potential: &dyn Remembering,
     stretch: f64,
 ) -> Vec<f64> {
     let newton = NewtonSettings {

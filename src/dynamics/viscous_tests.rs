@@ -12,7 +12,7 @@ use crate::material::Card;
 use crate::material::scalar_function::ScalarFunction;
 use crate::material::viscosity::{Relaxation, ViscousMaterial};
 use crate::mesh::{Mesh, Side};
-use crate::solve::Potential;
+use crate::solve::Remembering;
 
 fn prony(share: f64, time: f64) -> ViscousMaterial {
     ViscousMaterial {
@@ -40,7 +40,7 @@ fn elements() -> FiniteElements {
 /// Both models with a viscous material each.
 fn with_both(
     material: &ViscousMaterial,
-    test: impl Fn(&str, &Mesh, &dyn Potential, &dyn Viscosity),
+    test: impl Fn(&str, &Mesh, &dyn Remembering, &dyn Viscosity),
 ) {
     let (springs, elements) = (lattice(), elements());
     let law = DashpotLaw::Material(material.clone());
@@ -53,7 +53,7 @@ fn with_both(
 /// Largest difference of the tangents to central differences of an element's forces, over the largest entry; those by
 /// the displacement at rest only, where they are complete.
 fn tangent_errors(
-    potential: &dyn Potential,
+    potential: &dyn Remembering,
     viscosity: &dyn Viscosity,
     element: usize,
 ) -> [f64; 2] {
@@ -203,7 +203,7 @@ fn a_plate_that_is_stretched_at_once_relaxes_as_in_closed_form() {
 /// Energy lost in the third cycle of a strip with free edges, and the displacement amplitude in mm and the volume in mm³.
 fn loss(
     mesh: &Mesh,
-    energy: &dyn Potential,
+    energy: &dyn Remembering,
     viscosity: &dyn Viscosity,
     frequency: f64,
 ) -> (f64, f64) {

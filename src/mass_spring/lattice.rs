@@ -8,7 +8,7 @@ use crate::material::law::{HyperelasticLaw, TensionResponse};
 use crate::mesh::Mesh;
 use crate::mesh::geometry::polygon_area;
 use crate::solve::vector::gather;
-use crate::solve::{Connectivity, Inadmissible, Local, Potential};
+use crate::solve::{Connectivity, Inadmissible, Local, Potential, Remembering};
 
 /// The energy of a lattice: springs, then cells.
 #[derive(Clone, Debug)]
@@ -185,6 +185,16 @@ impl Potential for Lattice {
         self.evaluate_after(element, u, local, &[])
     }
 
+    /// A spring whose force falls while it grows.
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        let direction = *self.directions.get(element)?;
+        let strain = strain(direction, [u[2] - u[0], u[3] - u[1]]);
+        let falls = self.tension(element, strain).slope < 0.0;
+        falls.then(|| format!("stretch {:.2}", 1.0 + strain))
+    }
+}
+
+impl Remembering for Lattice {
     fn evaluate_after(
         &self,
         element: usize,
@@ -221,13 +231,5 @@ impl Potential for Lattice {
         let parts = springs
             .map(|(spring, most)| spring.area * spring.rest_length * softening.dissipated(*most));
         parts.sum()
-    }
-
-    /// A spring whose force falls while it grows.
-    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        let direction = *self.directions.get(element)?;
-        let strain = strain(direction, [u[2] - u[0], u[3] - u[1]]);
-        let falls = self.tension(element, strain).slope < 0.0;
-        falls.then(|| format!("stretch {:.2}", 1.0 + strain))
     }
 }

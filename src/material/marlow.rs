@@ -34,7 +34,6 @@ mod exponential;
 mod table;
 
 pub use exponential::ExponentialCurve;
-pub(super) use table::slopes;
 pub use table::{CurveFault, TableCurve};
 
 /// A tension curve P(x) of the strain x = λ − 1 ≥ 0, with P(0) = 0.

@@ -1,6 +1,6 @@
 //! A function of one number, for the stiffness K(·) of springs and the damping D(·) of dashpots.
 
-use super::marlow::slopes;
+use super::monotone_cubic::{Cubic, slopes};
 
 /// A function f(x).
 #[derive(Clone, Debug, PartialEq)]
@@ -121,16 +121,10 @@ impl Table {
             return [last[1], 0.0];
         }
         let piece = self.piece(x);
-        let ([from, low], [to, high]) = (self.points[piece - 1], self.points[piece]);
-        let (begin, end) = (self.slopes[piece - 1], self.slopes[piece]);
-        let (h, s) = (to - from, x - from);
-        let mean = (high - low) / h;
-        let c2 = (3.0 * mean - 2.0 * begin - end) / h;
-        let c3 = (begin + end - 2.0 * mean) / (h * h);
-        [
-            low + s * (begin + s * (c2 + s * c3)),
-            begin + s * (2.0 * c2 + 3.0 * s * c3),
-        ]
+        let points = [self.points[piece - 1], self.points[piece]];
+        let cubic = Cubic::new(points, [self.slopes[piece - 1], self.slopes[piece]]);
+        let s = x - points[0][0];
+        [cubic.value(s), cubic.slope(s)]
     }
 
     /// ∫ f x dx within one piece.

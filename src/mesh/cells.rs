@@ -8,7 +8,7 @@ use super::cell_shape::CellShape;
 use super::geometry::bounding_box;
 use super::grid::Grid;
 
-/// A named part of the boundary, or a set of nodes.
+/// A named part of the boundary or of the sheet, or a set of nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Group {
     /// Its nodes, ascending.
@@ -16,6 +16,17 @@ pub struct Group {
     /// Its edges, if it is a part of the boundary: both ends, then the middle where there is one, with the
     /// specimen to the left.
     pub edges: Vec<Vec<usize>>,
+    /// Its lines on the sheet: sides of cells that are no part of the boundary, both ends, then the middle where there is one.
+    pub lines: Vec<Vec<usize>>,
+    /// Its cells, if it is a part of the sheet, ascending.
+    pub cells: Vec<usize>,
+}
+
+impl Group {
+    /// Whether it is more than its nodes.
+    pub fn has_parts(&self) -> bool {
+        !(self.edges.is_empty() && self.lines.is_empty() && self.cells.is_empty())
+    }
 }
 
 /// An edge of a cell.
@@ -105,11 +116,24 @@ impl Mesh {
         &self.groups
     }
 
-    /// Names a group of nodes; the boundary edges that lie within it belong to it.
+    /// Names a group of nodes; the boundary edges that lie within it belong to it, and the cells and their sides too where not all of
+    /// its nodes are on the boundary.
     pub fn name_nodes(&mut self, name: &str, nodes: &BTreeSet<usize>) {
-        let within = |edge: &&Vec<usize>| edge.iter().all(|node| nodes.contains(node));
-        let edges = self.boundary().iter().filter(within).cloned().collect();
-        self.put_group(name, nodes.iter().copied().collect(), edges);
+        let within = |part: &[usize]| part.iter().all(|node| nodes.contains(node));
+        let outer: BTreeSet<usize> = self.boundary().iter().flatten().copied().collect();
+        let mut group = Group {
+            nodes: nodes.iter().copied().collect(),
+            edges: self.boundary().to_vec(),
+            ..Group::default()
+        };
+        group.edges.retain(|edge| within(edge));
+        if !nodes.is_subset(&outer) {
+            group.lines = self.inner_sides();
+            group.lines.retain(|side| within(side));
+            group.cells = (0..self.cell_count()).collect();
+            group.cells.retain(|cell| within(self.cell(*cell)));
+        }
+        self.put_group(name, group);
     }
 
     /// Names the part of the boundary whose edges have all nodes where `inside` holds.
@@ -121,14 +145,21 @@ impl Mesh {
 
     /// Names a group of boundary edges.
     pub fn name_edges(&mut self, name: &str, edges: Vec<Vec<usize>>) {
-        self.put_group(name, edges.iter().flatten().copied().collect(), edges);
+        let group = Group {
+            edges,
+            ..Group::default()
+        };
+        self.put_group(name, group);
     }
 
-    /// Names a group of nodes and edges as they are.
-    pub(super) fn put_group(&mut self, name: &str, mut nodes: Vec<usize>, edges: Vec<Vec<usize>>) {
-        nodes.sort_unstable();
-        nodes.dedup();
-        self.groups.insert(name.to_owned(), Group { nodes, edges });
+    /// Names a group, to which the nodes of its edges, lines and cells belong.
+    pub(super) fn put_group(&mut self, name: &str, mut group: Group) {
+        let of_cells = group.cells.iter().flat_map(|cell| self.cell(*cell));
+        let of_sides = group.edges.iter().chain(&group.lines).flatten();
+        group.nodes.extend(of_cells.chain(of_sides));
+        group.nodes.sort_unstable();
+        group.nodes.dedup();
+        self.groups.insert(name.to_owned(), group);
     }
 
     /// The edges that belong to one cell alone, each with the specimen to its left.
@@ -141,6 +172,14 @@ impl Mesh {
         let alone = edges.chunk_by(|one, other| one.ends == other.ends);
         let alone = alone.filter(|cells| cells.len() == 1);
         alone.map(|cells| self.edge_nodes(cells[0])).collect()
+    }
+
+    /// The sides that two cells share.
+    pub(super) fn inner_sides(&self) -> Vec<Vec<usize>> {
+        let edges = self.edges();
+        let shared = edges.chunk_by(|one, other| one.ends == other.ends);
+        let shared = shared.filter(|cells| cells.len() > 1);
+        shared.map(|cells| self.edge_nodes(cells[0])).collect()
     }
 
     /// The edges of all cells by their ends, those of cells side by side one after the other.

@@ -16,12 +16,14 @@ mod given;
 mod gmsh;
 mod pvd;
 mod raw;
+mod sides;
 mod unreadable;
 mod unstructured;
 mod vtk;
 mod vtu;
 
 use raw::{Raw, read_text};
+use sides::doubtful_sides;
 use unreadable::Unreadable;
 
 pub use field::{
@@ -80,12 +82,15 @@ fn sound(
         raw.merge_nodes(tolerance / reading.unit);
     }
     let lost = raw.lines.clone();
+    let areas: Vec<String> = raw.areas.keys().cloned().collect();
     let mesh = raw.mesh(reading.unit);
     let mesh = mesh.map_err(|reason| unreadable(name, reason))?;
     let mut told = mesh.faults(reading.allowed);
     let wrong = told.iter().any(|fault| fault.severity == Severity::Error);
     if !wrong {
         told.extend(lost_groups(&lost, &mesh));
+        let is_named = |side: &str| lost.contains_key(side) || areas.iter().any(|own| own == side);
+        told.extend(doubtful_sides(&mesh, is_named));
         if !reading.allowed.polygons {
             told.extend(mesh.polygons().iter().map(|polygon| polygon.warning(&mesh)));
         }
@@ -116,27 +121,29 @@ fn read(path: &Path) -> Result<Raw, Unreadable> {
 fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Diagnostic> {
     let told = |(name, lines): (&String, &Vec<[u64; 2]>)| {
         let lines: BTreeSet<[u64; 2]> = lines.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
-        let kept = mesh.groups().get(name).map_or(0, |group| group.edges.len());
+        let group = mesh.groups().get(name);
+        let kept = group.map_or(0, |group| group.edges.len());
+        let inner = group.map_or(0, |group| group.lines.len());
         let message = match lines.len().saturating_sub(kept) {
             0 => return None,
-            _ if mesh
-                .groups()
-                .get(name)
-                .is_some_and(|group| group.edges.is_empty()) =>
-            {
-                format!(
-                    "no line of the group `{name}` is an edge of the boundary: it is kept as nodes on the sheet, which `correct` can hold"
-                )
-            }
-            _ if kept == 0 => format!(
-                "no line of the group `{name}` is an edge of the boundary; the group is left out"
+            lost if lost == inner => format!(
+                "{} of the group `{name}` are sides of cells on the sheet, and no edges of the boundary: supports hold them, tractions \
+                 and pressures do not act there",
+                match kept {
+                    0 => "the lines".to_owned(),
+                    _ => format!("{inner} of {} lines", lines.len()),
+                }
             ),
+            _ if kept + inner == 0 => {
+                format!("no line of the group `{name}` is a side of a cell; the group is left out")
+            }
             lost => format!(
-                "{lost} of {} lines of the group `{name}` are no edges of the boundary and left out",
+                "{} of {} lines of the group `{name}` are no sides of cells and left out",
+                lost - inner,
                 lines.len()
             ),
         };
-        let hint = "a group's lines must be sides of one cell alone, with its nodes";
+        let hint = "edges of the boundary are sides of one cell alone, with its nodes";
         Some(Diagnostic::warning("", message).hint(hint))
     };
     groups.iter().filter_map(told).collect()

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use super::cell_shape::CellShape;
-use super::cells::Mesh;
+use super::cells::{Group, Mesh};
 
 impl Mesh {
     /// The mesh of the corners alone.
@@ -32,13 +32,19 @@ impl Mesh {
             .collect();
         let mut mesh = Self::new(nodes, cells);
         for (name, group) in self.groups() {
-            let edges = group.edges.iter();
-            let edges: Vec<_> = edges
-                .map(|edge| vec![names[edge[0]], names[edge[1]]])
-                .collect();
+            let straight = |sides: &[Vec<usize>]| -> Vec<Vec<usize>> {
+                let ends = sides.iter().map(|side| [side[0], side[1]]);
+                ends.map(|ends| ends.map(|node| names[node]).to_vec())
+                    .collect()
+            };
             let kept = group.nodes.iter().map(|node| names[*node]);
-            let nodes = kept.filter(|node| *node != usize::MAX).collect();
-            mesh.put_group(name, nodes, edges);
+            let group = Group {
+                nodes: kept.filter(|node| *node != usize::MAX).collect(),
+                edges: straight(&group.edges),
+                lines: straight(&group.lines),
+                cells: group.cells.clone(),
+            };
+            mesh.put_group(name, group);
         }
         mesh
     }
@@ -105,6 +111,8 @@ pub(super) struct Subdivision<'a> {
     mesh: &'a Mesh,
     pub nodes: Vec<[f64; 2]>,
     cells: Vec<(CellShape, Vec<usize>)>,
+    /// The cell that each one is a piece of.
+    parents: Vec<usize>,
     /// The nodes half way between two others along a line of a cell.
     made: HashMap<[usize; 2], usize>,
 }
@@ -125,6 +133,7 @@ impl<'a> Subdivision<'a> {
             mesh,
             nodes: mesh.nodes.clone(),
             cells: Vec::new(),
+            parents: Vec::new(),
             made,
         }
     }
@@ -192,12 +201,14 @@ impl<'a> Subdivision<'a> {
             nodes.push(self.centre(cell, corners).node);
         }
         self.cells.push((shape, nodes));
+        self.parents.push(cell);
     }
 
     /// Adds a cell as it is.
     pub fn keep(&mut self, cell: usize) {
         let nodes = self.mesh.cell(cell).to_vec();
         self.cells.push((self.mesh.shape(cell), nodes));
+        self.parents.push(cell);
     }
 
     /// An edge with its middle.
@@ -219,26 +230,36 @@ impl<'a> Subdivision<'a> {
 
     /// The mesh, with the groups of the one that was cut; `edges` makes an edge into those of the new mesh.
     pub fn finish(self, edges: impl Fn(&Self, &[usize]) -> Vec<Vec<usize>>) -> Mesh {
-        let mut groups = Vec::new();
-        for (name, group) in self.mesh.groups() {
-            let own: Vec<_> = group
-                .edges
-                .iter()
-                .flat_map(|edge| edges(&self, edge))
-                .collect();
-            let nodes = group.nodes.iter().chain(own.iter().flatten());
-            groups.push((name, nodes.copied().collect(), own));
-        }
+        let made = |sides: &[Vec<usize>]| -> Vec<Vec<usize>> {
+            sides.iter().flat_map(|side| edges(&self, side)).collect()
+        };
+        let pieces = |cells: &[usize]| -> Vec<usize> {
+            let own = |piece: &usize| cells.binary_search(&self.parents[*piece]).is_ok();
+            match cells.is_empty() {
+                true => Vec::new(),
+                false => (0..self.parents.len()).filter(own).collect(),
+            }
+        };
+        let groups = self.mesh.groups().iter().map(|(name, group)| {
+            let group = Group {
+                nodes: group.nodes.clone(),
+                edges: made(&group.edges),
+                lines: made(&group.lines),
+                cells: pieces(&group.cells),
+            };
+            (name, group)
+        });
+        let groups: Vec<_> = groups.collect();
         let mut mesh = Mesh::new(self.nodes, self.cells);
-        for (name, nodes, edges) in groups {
-            mesh.put_group(name, nodes, edges);
+        for (name, group) in groups {
+            mesh.put_group(name, group);
         }
         mesh
     }
 }
 
 /// An edge by its ends, the smaller first.
-pub(super) fn key(a: usize, b: usize) -> [usize; 2] {
+pub fn key(a: usize, b: usize) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 

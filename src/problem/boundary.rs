@@ -14,7 +14,7 @@ use super::sheet_energy::SheetEnergy;
 use crate::error::Diagnostic;
 use crate::material::HyperelasticLaw;
 use crate::mesh::Mesh;
-use crate::solve::{Potential, State};
+use crate::solve::{Remembering, State};
 
 /// A sheet between its supports under its loads.
 #[derive(Clone, Debug)]
@@ -139,7 +139,7 @@ impl BoundaryProblem {
     pub fn on<'a>(
         &self,
         mesh: &'a Mesh,
-        energy: &'a dyn Potential,
+        energy: &'a dyn Remembering,
     ) -> Result<Model<'a>, Diagnostic> {
         let constraints = agreeing(&self.supports, mesh)?;
         let loads = Loads::of(mesh, &self.loads, self.thickness)?;

@@ -85,20 +85,21 @@ pub struct Constraints {
 /// The nodes that a support holds along some axes.
 struct Holder {
     nodes: BTreeSet<usize>,
-    /// Whether it holds edges, and not nodes alone.
-    has_edges: bool,
+    /// Whether it holds edges, lines or cells, and not nodes alone.
+    has_parts: bool,
     axes: [bool; 2],
 }
 
 impl Holder {
-    /// Of the nodes of a group, those at which the support holds the group itself, and not another edge that ends there.
-    fn on(&self, group: &Group) -> BTreeSet<usize> {
-        let holds = |node: &&usize| self.nodes.contains(node);
-        if !self.has_edges || group.edges.is_empty() {
-            return group.nodes.iter().filter(holds).copied().collect();
+    /// Of the nodes of a group, those at which the support holds the group itself, and not another part that ends there.
+    fn on(&self, mesh: &Mesh, group: &Group) -> BTreeSet<usize> {
+        if !self.has_parts || !group.has_parts() {
+            let nodes = group.nodes.iter().copied();
+            return nodes.filter(|node| self.nodes.contains(node)).collect();
         }
-        let edges = group.edges.iter();
-        let held = edges.filter(|edge| edge.iter().all(|node| self.nodes.contains(node)));
+        let sides = group.edges.iter().chain(&group.lines).map(Vec::as_slice);
+        let parts = sides.chain(group.cells.iter().map(|cell| mesh.cell(*cell)));
+        let held = parts.filter(|part| part.iter().all(|node| self.nodes.contains(node)));
         held.flatten().copied().collect()
     }
 }
@@ -149,7 +150,7 @@ impl Constraints {
     pub fn holds(&mut self, group: &Group, axes: [bool; 2]) {
         self.holders.push(Holder {
             nodes: group.nodes.iter().copied().collect(),
-            has_edges: !group.edges.is_empty(),
+            has_parts: group.has_parts(),
             axes,
         });
     }
@@ -157,8 +158,9 @@ impl Constraints {
     /// The part of the supports' force at each node of a group, along each axis, that acts on this group: at a corner, what supports of
     /// the other edge do there acts on that edge alone, and what supports of both edges hold is shared between them. Forces of
     /// groups that meet in corners therefore add up to those of all supports.
-    pub fn parts_on(&self, group: &Group) -> Vec<[f64; 2]> {
-        let own: Vec<_> = self.holders.iter().map(|own| own.on(group)).collect();
+    pub fn parts_on(&self, mesh: &Mesh, group: &Group) -> Vec<[f64; 2]> {
+        let own = self.holders.iter().map(|own| own.on(mesh, group));
+        let own: Vec<_> = own.collect();
         let part = |node: &usize, axis: usize| {
             let (mut here, mut all) = (0.0_f64, 0.0_f64);
             for (holder, on_group) in self.holders.iter().zip(&own) {

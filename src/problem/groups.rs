@@ -1,7 +1,7 @@
 //! Groups of a mesh: found by their names, and means over them.
 
 use crate::error::Diagnostic;
-use crate::mesh::{Group, Mesh};
+use crate::mesh::{GAUSS_3, Group, Mesh};
 
 /// The group of a name.
 ///
@@ -21,25 +21,53 @@ pub fn refused(what: &str, group: &str, reason: &str) -> Diagnostic {
     Diagnostic::error(what, format!("the group `{group}` {reason}"))
 }
 
-/// The share of each node in the mean of a group: over the length of its edges, or over its nodes where it has none.
+/// The share of each node in the mean of a group: over the length of its edges, else over its cells, else over its lines, and over
+/// its nodes where it has none of these.
 ///
 /// ```text
-/// ⟨u⟩ = Σ sᵢ uᵢ,   sᵢ = ∫ Nᵢ ds / ∫ ds
+/// ⟨u⟩ = Σ sᵢ uᵢ,   sᵢ = ∫ Nᵢ ds / ∫ ds   or   ∫ Nᵢ dA / ∫ dA
 /// ```
 ///
 /// A mean over nodes would depend on where they lie.
 pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
-    if group.edges.is_empty() {
-        let share = 1.0 / group.nodes.len() as f64;
-        return group.nodes.iter().map(|node| (*node, share)).collect();
-    }
-    let edges = group.edges.iter();
-    let lengths: Vec<_> = edges.flat_map(|edge| edge_lengths(mesh, edge)).collect();
-    let whole: f64 = lengths.iter().map(|(_, length)| length).sum();
-    let shares = lengths.into_iter();
+    let Group {
+        nodes,
+        edges,
+        lines,
+        cells,
+    } = group;
+    let along = |sides: &[Vec<usize>]| -> Vec<(usize, f64)> {
+        let sides = sides.iter();
+        sides.flat_map(|side| edge_lengths(mesh, side)).collect()
+    };
+    let measures: Vec<(usize, f64)> = match [edges.is_empty(), cells.is_empty(), lines.is_empty()] {
+        [false, ..] => along(edges),
+        [_, false, _] => {
+            let cells = cells.iter();
+            cells.flat_map(|cell| cell_areas(mesh, *cell)).collect()
+        }
+        [_, _, false] => along(lines),
+        _ => nodes.iter().map(|node| (*node, 1.0)).collect(),
+    };
+    let whole: f64 = measures.iter().map(|(_, measure)| measure).sum();
+    let shares = measures.into_iter();
     shares
-        .map(|(node, length)| (node, length / whole))
+        .map(|(node, measure)| (node, measure / whole))
         .collect()
+}
+
+/// The share of a cell's area that belongs to each of its nodes, in mm².
+fn cell_areas(mesh: &Mesh, cell: usize) -> Vec<(usize, f64)> {
+    let nodes = mesh.cell(cell).iter();
+    let mut shares: Vec<(usize, f64)> = nodes.map(|node| (*node, 0.0)).collect();
+    for (point, weight) in mesh.shape(cell).product_quadrature(&GAUSS_3) {
+        let area = weight * mesh.gradients(cell, point).1;
+        let values = mesh.shape(cell).values(point);
+        for (share, value) in shares.iter_mut().zip(values) {
+            share.1 += value * area;
+        }
+    }
+    shares
 }
 
 /// The share of an edge's length that belongs to each of its nodes, in mm.

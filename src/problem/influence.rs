@@ -6,7 +6,7 @@ use super::constraints::Constraints;
 use super::groups::shares;
 use super::model::Model;
 use crate::error::SolveFault;
-use crate::solve::{Loading, State, Tangent, compliance, influence};
+use crate::solve::{Loading, Stage, State, Tangent, compliance, influence};
 
 /// Unknowns up to which every thread has a factor of its own.
 const SIDE_BY_SIDE: usize = 200_000;
@@ -52,16 +52,16 @@ impl Model<'_> {
             .collect()
     }
 
-    /// Looks whether an equilibrium of the body with a history is stable.
+    /// Looks whether an equilibrium at a stage is stable.
     ///
     /// # Errors
     /// [`SolveFault::NotPositiveDefinite`] where it is not.
     pub fn check_stability(
         &self,
-        (factor, history): (f64, &[f64]),
+        stage: Stage<'_>,
         displacement: &[f64],
     ) -> Result<(), SolveFault> {
-        let potential = self.potential(factor, history);
+        let potential = self.potential(stage.factor, stage.history);
         let mut tangent = Tangent::new(&*potential, &self.held(), self.linear_solver())?;
         let describe = |element| self.describe(element);
         tangent.at(&*potential, displacement, &describe).map(|_| ())
@@ -97,7 +97,11 @@ impl Model<'_> {
         let group = &self.mesh.groups()[name];
         let pulled = |unknown: &usize| forces.iter().any(|(master, _)| master == unknown);
         let (mut motion, mut force) = (vec![0.0; state.displacement.len()], None);
-        for (node, part) in group.nodes.iter().zip(self.constraints.parts_on(group)) {
+        for (node, part) in group
+            .nodes
+            .iter()
+            .zip(self.constraints.parts_on(self.mesh, group))
+        {
             let unknown = 2 * node + axis;
             if held.contains_key(&unknown) {
                 motion[unknown] = part[axis];
@@ -117,10 +121,10 @@ impl Model<'_> {
             }
             force = Some(unit);
         }
-        let at = (state.factor, &*state.displacement, &*state.history);
+        let (stage, u) = (state.stage(), &state.displacement);
         let mut field = match force {
-            Some(force) => compliance(tangent, self, at, &force)?,
-            None => influence(tangent, self, at, &motion)?,
+            Some(force) => compliance(tangent, self, stage, u, &force)?,
+            None => influence(tangent, self, stage, u, &motion)?,
         };
         for (unknown, master) in ties {
             field[*unknown] = field[*master];

@@ -12,8 +12,8 @@ use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::solve::vector::add_scaled;
 use crate::solve::{
-    After, Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State,
-    follow,
+    After, Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential,
+    Remembering, State, follow,
 };
 
 /// Names an element or the end of a path.
@@ -26,7 +26,7 @@ pub struct Model<'a> {
     /// Its mesh.
     pub mesh: &'a Mesh,
     /// Its strain energy.
-    pub energy: &'a dyn Potential,
+    pub energy: &'a dyn Remembering,
     /// Names an element of the energy with its place, for messages.
     pub describe: Name<'a, usize>,
     pub(super) constraints: Constraints,
@@ -45,7 +45,7 @@ pub struct Model<'a> {
 impl<'a> Model<'a> {
     pub(super) fn new(
         mesh: &'a Mesh,
-        energy: &'a dyn Potential,
+        energy: &'a dyn Remembering,
         constraints: Constraints,
         mut loads: Loads,
         stiffness: f64,
@@ -327,7 +327,7 @@ impl Loading for Model<'_> {
         if element < self.energy.elements() {
             (self.describe)(element)
         } else {
-            "a loads edge".to_owned()
+            "an edge under a pressure or traction".to_owned()
         }
     }
 

@@ -8,7 +8,7 @@ use super::deformed::DeformedSheet;
 use super::model::Model;
 use crate::material::HyperelasticLaw;
 use crate::mesh::{Mesh, Side};
-use crate::solve::{PathEnd, Potential, State};
+use crate::solve::{PathEnd, Remembering, State};
 
 /// A rectangular plate between two rigid grips that clamp its short sides.
 ///
@@ -47,7 +47,7 @@ impl ClampedPlate {
     ///
     /// # Panics
     /// When the mesh is none of the plate.
-    pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Potential) -> Model<'a> {
+    pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Remembering) -> Model<'a> {
         let model = self.boundary_problem().on(mesh, energy);
         let model = model.expect("the sides of a plate are groups of its mesh");
         model

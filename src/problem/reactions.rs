@@ -76,7 +76,7 @@ impl Reactions<'_> {
         let mesh = self.model.mesh;
         let group = &mesh.groups()[name];
         let (nodes, u) = (&group.nodes, &self.state.displacement);
-        let parts = self.model.constraints.parts_on(group);
+        let parts = self.model.constraints.parts_on(mesh, group);
         let force = |(node, part): (&usize, &[f64; 2])| {
             [0, 1].map(|axis| match part[axis] > 0.0 {
                 true => part[axis] * self.forces[2 * node + axis],

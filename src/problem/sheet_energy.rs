@@ -8,7 +8,9 @@ use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::stability::is_stable;
 use crate::mesh::{CellShape, Mesh};
 use crate::solve::vector::gather;
-use crate::solve::{Connectivity, Inadmissible, Local, Potential, Take, evaluate_by_elements};
+use crate::solve::{
+    Connectivity, Inadmissible, Local, Potential, Remembering, Take, evaluate_by_elements,
+};
 
 /// Where the energy is sampled: the displacement gradient there as a combination of nodal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -177,6 +179,31 @@ impl Potential for SheetEnergy {
         self.evaluate_after(element, u, local, &self.history)
     }
 
+    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
+        match self.history.is_empty() {
+            true => self.add_virgin_forces(u, forces),
+            false => evaluate_by_elements(self, u, forces, None).map(|_| ()),
+        }
+    }
+
+    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
+        match self.history.is_empty() {
+            true => self.evaluate_virgin(u, forces, take),
+            false => evaluate_by_elements(self, u, forces, take),
+        }
+    }
+
+    /// The first sampling point at which the law is not stable after Drucker.
+    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
+        self.cell_points(element).find_map(|point| {
+            let kinematics = point.kinematics(u).ok()?;
+            let unstable = !is_stable(&*self.law, &kinematics);
+            unstable.then(|| format!("I₁ = {:.2}", 3.0 + kinematics.invariants.i1_minus_3))
+        })
+    }
+}
+
+impl Remembering for SheetEnergy {
     fn evaluate_after(
         &self,
         element: usize,
@@ -213,20 +240,7 @@ impl Potential for SheetEnergy {
         }
     }
 
-    fn add_forces(&self, u: &[f64], forces: &mut [f64]) -> Result<(), Inadmissible> {
-        match self.history.is_empty() {
-            true => self.add_virgin_forces(u, forces),
-            false => evaluate_by_elements(self, u, forces, None).map(|_| ()),
-        }
-    }
-
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Result<f64, Inadmissible> {
-        match self.history.is_empty() {
-            true => self.evaluate_virgin(u, forces, take),
-            false => evaluate_by_elements(self, u, forces, take),
-        }
-    }
-
+    /// The largest energy of each sampling point.
     fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
         if self.law.softening().is_none() {
             return;
@@ -250,15 +264,6 @@ impl Potential for SheetEnergy {
         let points = self.volumes.iter().zip(history);
         let parts = points.map(|(volume, most)| volume * softening.dissipated(*most));
         parts.sum()
-    }
-
-    /// The first sampling point at which the law is not stable after Drucker.
-    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        self.cell_points(element).find_map(|point| {
-            let kinematics = point.kinematics(u).ok()?;
-            let unstable = !is_stable(&*self.law, &kinematics);
-            unstable.then(|| format!("I₁ = {:.2}", 3.0 + kinematics.invariants.i1_minus_3))
-        })
     }
 }
 

@@ -1,17 +1,19 @@
 //! Potentials made of others: of a body with a history, sums, and dead forces.
 
 use super::connectivity::Connectivity;
-use super::potential::{Inadmissible, Local, Potential, SkewCoupling, Take, evaluate_by_elements};
+use super::potential::{
+    Inadmissible, Local, Potential, Remembering, SkewCoupling, Take, evaluate_by_elements,
+};
 
 /// An energy of a body with a history, which is empty where the body was never loaded or has no memory.
 pub struct After<'a> {
-    energy: &'a dyn Potential,
+    energy: &'a dyn Remembering,
     history: &'a [f64],
 }
 
 impl<'a> After<'a> {
-    /// Π of a body that remembers what [`Potential::remember`] has taken into its history.
-    pub fn new(energy: &'a dyn Potential, history: &'a [f64]) -> Self {
+    /// Π of a body that remembers what [`Remembering::remember`] has taken into its history.
+    pub fn new(energy: &'a dyn Remembering, history: &'a [f64]) -> Self {
         Self { energy, history }
     }
 }

@@ -8,7 +8,7 @@
 //! P. Wriggers, Nonlinear Finite Element Methods, Springer (2008), § 7.1, doi:10.1007/978-3-540-71001-1
 
 use super::assembly::Assembly;
-use super::loading::{Loading, State};
+use super::loading::{Loading, Stage, State};
 use super::newton::Newton;
 use super::potential::Potential;
 use super::vector::{difference, dot, gather, largest, norm};
@@ -25,19 +25,19 @@ const SOFT: f64 = 0.1;
 /// keeps from the load has rounding alone, about 1e-10; the stretching of a bar some 0.1.
 const DRIVEN: f64 = 1e-3;
 
-/// The reason behind a fault at a load factor, with a history, after the equilibrium `previous`: a material that lost its
+/// The reason behind a fault at a stage after the equilibrium `previous`: a material that lost its
 /// stability, a load that has its maximum, a mode of buckling; the fault itself where it is none of these.
 pub fn diagnose(
     newton: &mut Newton,
     loading: &dyn Loading,
     previous: Option<&State>,
-    (factor, history): (f64, &[f64]),
+    stage: Stage<'_>,
     fault: SolveFault,
 ) -> SolveFault {
     if matches!(fault, SolveFault::NotFinite(_)) {
         return fault;
     }
-    let potential = loading.potential(factor, history);
+    let potential = loading.potential(stage.factor, stage.history);
     let unstable = |u: &[f64]| {
         let (element, state) = unstable_element(&*potential, u)?;
         let element = loading.describe(element);
@@ -75,7 +75,7 @@ pub fn diagnose(
         return fault;
     };
     let place = place_of(&mode);
-    if !is_driven(newton, loading, (factor, history), &u, &mode) {
+    if !is_driven(newton, loading, stage, &u, &mode) {
         return SolveFault::Buckling { place };
     }
     let factor = previous.map_or(0.0, |state| state.factor);
@@ -119,15 +119,16 @@ fn unstable_element(potential: &dyn Potential, u: &[f64]) -> Option<(usize, Stri
 fn is_driven(
     newton: &Newton,
     loading: &dyn Loading,
-    (factor, history): (f64, &[f64]),
+    stage: Stage<'_>,
     u: &[f64],
     mode: &[f64],
 ) -> bool {
     let residual = |factor: f64| {
         let mut residual = vec![0.0; u.len()];
-        Assembly::residual(&*loading.potential(factor, history), u, &mut residual).map(|_| residual)
+        let potential = loading.potential(factor, stage.history);
+        Assembly::residual(&*potential, u, &mut residual).map(|_| residual)
     };
-    let (Ok(loaded), Ok(unloaded)) = (residual(factor), residual(0.0)) else {
+    let (Ok(loaded), Ok(unloaded)) = (residual(stage.factor), residual(0.0)) else {
         return false;
     };
     let load = gather(newton.free(), &difference(&loaded, &unloaded));

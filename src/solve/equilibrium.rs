@@ -1,21 +1,22 @@
 //! One equilibrium of a loaded body.
 
-use super::loading::{Loading, State};
+use super::loading::{Loading, Stage, State};
 use super::newton::{Newton, NewtonSettings};
 use super::potential::Potential;
 use crate::error::SolveFault;
 
-/// The equilibrium at a load factor, with its potential, which belongs to a history, from a guess: held unknowns are imposed on it.
+/// The equilibrium at a stage, with the potential there, from a guess: held unknowns are imposed on it.
 ///
 /// # Errors
 /// As [`Newton::solve`].
 pub fn equilibrium(
     loading: &dyn Loading,
-    (potential, factor, history): (&dyn Potential, f64, &[f64]),
+    potential: &dyn Potential,
+    stage: Stage<'_>,
     (newton, mut displacement): (&mut Newton, Vec<f64>),
     settings: NewtonSettings,
 ) -> Result<State, SolveFault> {
-    loading.impose(factor, &mut displacement);
+    loading.impose(stage.factor, &mut displacement);
     let mut residual = vec![0.0; displacement.len()];
     let convergence = newton.solve(
         potential,
@@ -24,12 +25,12 @@ pub fn equilibrium(
         settings,
         &|element| loading.describe(element),
     )?;
-    loading.impose(factor, &mut displacement);
+    loading.impose(stage.factor, &mut displacement);
     Ok(State {
-        factor,
+        factor: stage.factor,
         displacement,
         residual,
-        history: history.to_vec(),
+        history: stage.history.to_vec(),
         load_steps: 1,
         convergence,
     })

@@ -6,6 +6,25 @@ use super::iterative::LinearSolver;
 use super::newton::Convergence;
 use super::potential::Potential;
 
+/// Where on its path a body is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stage<'a> {
+    /// The load factor.
+    pub factor: f64,
+    /// What the body remembers of the load factors before; empty where it was never loaded, or has no memory.
+    pub history: &'a [f64],
+}
+
+impl Stage<'static> {
+    /// Of a body that was never loaded before, or has no memory.
+    pub fn first(factor: f64) -> Self {
+        Self {
+            factor,
+            history: &[],
+        }
+    }
+}
+
 /// A system whose supports and loads follow one load factor.
 pub trait Loading {
     /// Marks the unknowns that supports hold.
@@ -64,4 +83,14 @@ pub struct State {
     pub load_steps: usize,
     /// How the last of them was reached.
     pub convergence: Convergence,
+}
+
+impl State {
+    /// Where on its path it is.
+    pub fn stage(&self) -> Stage<'_> {
+        Stage {
+            factor: self.factor,
+            history: &self.history,
+        }
+    }
 }

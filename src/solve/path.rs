@@ -3,7 +3,7 @@
 use super::ending::diagnose;
 use super::equilibrium::equilibrium;
 use super::journal::{Attendance, Journal, Milestone};
-use super::loading::{Loading, State};
+use super::loading::{Loading, Stage, State};
 use super::newton::{Newton, NewtonSettings};
 use super::potential::Potential;
 use super::tangent::Tangent;
@@ -119,10 +119,11 @@ pub fn follow(
 pub fn influence(
     tangent: &mut Tangent,
     loading: &dyn Loading,
-    (factor, displacement, history): (f64, &[f64], &[f64]),
+    stage: Stage<'_>,
+    displacement: &[f64],
     motion: &[f64],
 ) -> Result<Vec<f64>, SolveFault> {
-    let potential = loading.potential(factor, history);
+    let potential = loading.potential(stage.factor, stage.history);
     let describe = |element| loading.describe(element);
     tangent.influence(&*potential, displacement, motion, &describe)
 }
@@ -136,10 +137,11 @@ pub fn influence(
 pub fn compliance(
     tangent: &mut Tangent,
     loading: &dyn Loading,
-    (factor, displacement, history): (f64, &[f64], &[f64]),
+    stage: Stage<'_>,
+    displacement: &[f64],
     forces: &[f64],
 ) -> Result<Vec<f64>, SolveFault> {
-    let potential = loading.potential(factor, history);
+    let potential = loading.potential(stage.factor, stage.history);
     let describe = |element| loading.describe(element);
     tangent.respond(&*potential, displacement, forces, &describe)
 }
@@ -207,8 +209,12 @@ impl<'a> Path<'a> {
             let found = match self.solve_at(previous, aim, &history) {
                 Ok(found) if found.is_sure || shortest => found,
                 Err(fault) if shortest => {
-                    let (newton, at) = (&mut self.newton, (aim, &*history));
-                    let fault = diagnose(newton, self.loading, previous, at, fault);
+                    let stage = Stage {
+                        factor: aim,
+                        history: &history,
+                    };
+                    let newton = &mut self.newton;
+                    let fault = diagnose(newton, self.loading, previous, stage, fault);
                     return Err((fault, last));
                 }
                 _ => {
@@ -251,9 +257,9 @@ impl<'a> Path<'a> {
             Some(guess) => guess,
             None => self.predict(previous, factor, &*potential)?,
         };
-        let at = (&*potential, factor, history);
-        let newton = &mut self.newton;
-        let state = equilibrium(self.loading, at, (newton, guess.clone()), self.settings)?;
+        let (newton, stage) = (&mut self.newton, Stage { factor, history });
+        let begin = (newton, guess.clone());
+        let state = equilibrium(self.loading, &*potential, stage, begin, self.settings)?;
         self.loading.impose(factor, &mut guess);
         let beyond = norm(&difference(&state.displacement, &guess));
         let step = match previous {

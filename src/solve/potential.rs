@@ -81,28 +81,6 @@ pub trait Potential: Sync {
         None
     }
 
-    /// [`evaluate_element`](Self::evaluate_element) of a body with a history; a body without memory has none.
-    ///
-    /// # Errors
-    /// As [`evaluate_element`](Self::evaluate_element).
-    fn evaluate_after(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-        _history: &[f64],
-    ) -> Result<f64, Inadmissible> {
-        self.evaluate_element(element, u, local)
-    }
-
-    /// Takes the state `u` into a history; a body without memory leaves it empty.
-    fn remember(&self, _history: &mut Vec<f64>, _u: &[f64]) {}
-
-    /// What a body with a history has dissipated, in mJ.
-    fn dissipated(&self, _history: &[f64]) -> f64 {
-        0.0
-    }
-
     /// Length of u.
     fn unknowns(&self) -> usize {
         self.connectivity().unknowns()
@@ -117,6 +95,28 @@ pub trait Potential: Sync {
     fn element_unknowns(&self, element: usize) -> &[usize] {
         self.connectivity().of(element)
     }
+}
+
+/// The potential of a body that may remember what it went through, such as a material that softens. Potentials made of others do not
+/// remember: [`After`](super::After) is what a body with a history has.
+pub trait Remembering: Potential {
+    /// [`Potential::evaluate_element`] of the body with a history.
+    ///
+    /// # Errors
+    /// As [`Potential::evaluate_element`].
+    fn evaluate_after(
+        &self,
+        element: usize,
+        u: &[f64],
+        local: Local<'_>,
+        history: &[f64],
+    ) -> Result<f64, Inadmissible>;
+
+    /// Takes the state `u` into a history, which stays empty where the material has no memory.
+    fn remember(&self, history: &mut Vec<f64>, u: &[f64]);
+
+    /// What the body has dissipated on its way, in mJ.
+    fn dissipated(&self, history: &[f64]) -> f64;
 }
 
 /// [`Potential::evaluate`], element by element.
@@ -212,23 +212,5 @@ impl<P: Potential + ?Sized> Potential for &P {
 
     fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
         (**self).instability(element, u)
-    }
-
-    fn evaluate_after(
-        &self,
-        element: usize,
-        u: &[f64],
-        local: Local<'_>,
-        history: &[f64],
-    ) -> Result<f64, Inadmissible> {
-        (**self).evaluate_after(element, u, local, history)
-    }
-
-    fn remember(&self, history: &mut Vec<f64>, u: &[f64]) {
-        (**self).remember(history, u);
-    }
-
-    fn dissipated(&self, history: &[f64]) -> f64 {
-        (**self).dissipated(history)
     }
 }

@@ -12,7 +12,7 @@ use crate::error::{Error, SolveFault};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{
-    Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, State,
+    Assembly, Attendance, LinearSolver, Loading, NewtonSettings, PathEnd, Potential, Stage, State,
     Tangent, compliance, follow,
 };
 
@@ -174,7 +174,7 @@ impl Climb<'_> {
         };
         let (u, b) = (u.to_nodes(), b.to_nodes());
         let mut tangent = Tangent::new(&energy, &loading.held(), LinearSolver::Direct)?;
-        let mut x = compliance(&mut tangent, &loading, (1.0, &u, &[]), &b)?;
+        let mut x = compliance(&mut tangent, &loading, Stage::first(1.0), &u, &b)?;
         let mut image = vec![0.0; x.len()];
         let product = Assembly::add_product(&energy, &u, &x, &mut image);
         product.map_err(|fault| SolveFault::Inverted {

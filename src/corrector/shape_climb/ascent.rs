@@ -13,7 +13,7 @@ use crate::problem::Model;
 use crate::solve::vector::{add_scaled, difference, norm};
 use crate::solve::{
     Approach, Assembly, FirstTangent, Ladder, LinearSolver, Loading, Nearness, Newton,
-    NewtonSettings, Potential, State,
+    NewtonSettings, Potential, Stage, State,
 };
 
 /// What the iteration may leave on all meshes but the finest, relative to what it may leave there.
@@ -112,7 +112,7 @@ impl Ascent {
                 0 => ALONE,
                 _ => COARSEST,
             };
-            correct_without_multipliers(&model, &data, (factor, &[]), settings).ok()
+            correct_without_multipliers(&model, &data, Stage::first(factor), settings).ok()
         };
         let by_springs = by_springs.reach(&[factor], SPRINGS).ok();
         let state = match by_springs.and_then(corrected) {

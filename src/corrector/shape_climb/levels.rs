@@ -6,7 +6,7 @@ use crate::error::{Diagnostic, Error};
 use crate::mesh::{Interpolation, Mesh};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{BoundaryProblem, Model};
-use crate::solve::{Assembly, Ladder, Loading, Newton, Potential};
+use crate::solve::{Assembly, Ladder, Loading, Newton, Remembering};
 
 /// Meshes from coarse to fine.
 pub struct Levels<'a> {
@@ -103,7 +103,7 @@ impl<'a> Levels<'a> {
 pub fn on<'a>(
     problem: &BoundaryProblem,
     mesh: &'a Mesh,
-    energy: &'a dyn Potential,
+    energy: &'a dyn Remembering,
 ) -> Result<Model<'a>, Error> {
     let found = problem.on(mesh, energy);
     found.map_err(|fault: Diagnostic| Error::Input(vec![fault]))

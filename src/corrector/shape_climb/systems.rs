@@ -5,7 +5,8 @@ use super::levels::{Levels, carrying};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::solve::{
-    Approach, FirstTangent, LinearSolver, Loading, Nearness, Newton, Potential, State, equilibrium,
+    Approach, FirstTangent, LinearSolver, Loading, Nearness, Newton, Potential, Stage, State,
+    equilibrium,
 };
 
 /// Cycles that the tangent of the finest mesh costs, about, with a look at its stability.
@@ -219,9 +220,9 @@ impl Systems {
             });
         }
         self.anew = Anew::All;
-        let at = (&*potential, aim.factor, &[][..]);
-        let state = equilibrium(loading, at, (&mut self.newton, aim.start), NEWTON).ok()?;
-        Some(self.of_factors(levels, state))
+        let (stage, begin) = (Stage::first(aim.factor), (&mut self.newton, aim.start));
+        let state = equilibrium(loading, &*potential, stage, begin, NEWTON);
+        Some(self.of_factors(levels, state.ok()?))
     }
 
     /// A state that was found with factors.

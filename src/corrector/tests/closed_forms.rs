@@ -9,7 +9,7 @@ use crate::material::sheet::{Gradient, Kinematics};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{CellShape, Shape};
 use crate::problem::{BoundaryProblem, Drive, Load, Measures, Support};
-use crate::solve::{Assembly, Loading};
+use crate::solve::{Assembly, Loading, Stage};
 
 const TIGHT: NewtonSettings = NewtonSettings {
     tolerance: 1e-12,
@@ -212,7 +212,13 @@ fn a_corrected_specimen_is_in_equilibrium_with_loads_supports_and_ties() {
         .zip(&state.displacement)
         .map(|(n, u)| u + 0.05 * n)
         .collect();
-    let found = specimen::correct(&model, &data, &state.displacement, (1.0, &[]), SETTINGS);
+    let found = specimen::correct(
+        &model,
+        &data,
+        &state.displacement,
+        Stage::first(1.0),
+        SETTINGS,
+    );
     let found = found.unwrap();
     assert!(largest_difference(&found.state.displacement, &state.displacement) < 1e-8);
     // Stationary in every unknown: W (u − ū) + Bᵀ ψ = 0.

@@ -2,6 +2,7 @@
 
 use super::{Marlow, TensionCurve};
 use crate::material::law::HyperelasticLaw;
+use crate::material::monotone_cubic::{Cubic, slopes};
 use crate::material::parameters::{Parameters, StrainMeasure, StressMeasure};
 
 /// A measured tension curve, interpolated by cubics that rise wherever the points rise.
@@ -148,20 +149,22 @@ impl TableCurve {
             return ([stress, last.slope, energy], stress / x);
         }
         let next = self.knots.partition_point(|knot| knot.x < x).max(1);
-        let (from, to) = (self.knots[next - 1], self.knots[next]);
-        let h = to.x - from.x;
-        let s = x - from.x;
-        // P = P₀ + s (d₀ + s (c₂ + s c₃))
-        let mean = (to.stress - from.stress) / h;
-        let c2 = (3.0 * mean - 2.0 * from.slope - to.slope) / h;
-        let c3 = (from.slope + to.slope - 2.0 * mean) / (h * h);
-        let rise = from.slope + s * (c2 + s * c3);
-        let stress = from.stress + s * rise;
-        let slope = from.slope + s * (2.0 * c2 + 3.0 * s * c3);
-        let energy = from.energy
-            + s * (from.stress + s * (from.slope / 2.0 + s * (c2 / 3.0 + s * c3 / 4.0)));
-        let secant = if next == 1 { rise } else { stress / x };
-        ([stress, slope, energy], secant)
+        let from = self.knots[next - 1];
+        let (piece, s) = (self.piece(next), x - from.x);
+        let stress = piece.value(s);
+        let energy = from.energy + piece.integral(s);
+        let secant = match next {
+            1 => piece.secant(s),
+            _ => stress / x,
+        };
+        ([stress, piece.slope(s), energy], secant)
+    }
+
+    /// The cubic that ends at a knot.
+    fn piece(&self, end: usize) -> Cubic {
+        let knots = [self.knots[end - 1], self.knots[end]];
+        let points = knots.map(|knot| [knot.x, knot.stress]);
+        Cubic::new(points, knots.map(|knot| knot.slope))
     }
 }
 
@@ -182,13 +185,7 @@ impl TensionCurve for TableCurve {
         if x > 0.0 && x >= self.knots[1].x {
             return (secant, (slope - secant) / x);
         }
-        // In the first interval R = d₀ + x (c₂ + x c₃).
-        let (from, to) = (self.knots[0], self.knots[1]);
-        let h = to.x;
-        let mean = to.stress / h;
-        let c2 = (3.0 * mean - 2.0 * from.slope - to.slope) / h;
-        let c3 = (from.slope + to.slope - 2.0 * mean) / (h * h);
-        (secant, c2 + 2.0 * c3 * x)
+        (secant, self.piece(1).secant_slope(x))
     }
 
     fn energy(&self, x: f64) -> f64 {
@@ -207,49 +204,6 @@ pub fn nominal_points(
         [x, stress_measure.to_nominal(*stress, x)]
     };
     points.iter().map(convert).collect()
-}
-
-/// Slopes at the points: a weighted harmonic mean of the neighbours', zero at extrema.
-pub fn slopes(points: &[[f64; 2]]) -> Vec<f64> {
-    let widths: Vec<f64> = points.windows(2).map(|p| p[1][0] - p[0][0]).collect();
-    let means: Vec<f64> = points
-        .windows(2)
-        .zip(&widths)
-        .map(|(p, h)| (p[1][1] - p[0][1]) / h)
-        .collect();
-    let last = means.len() - 1;
-    if last == 0 {
-        return vec![means[0]; 2];
-    }
-    let mut slopes = vec![end_slope(widths[0], widths[1], means[0], means[1])];
-    for i in 1..=last {
-        let (before, after) = (means[i - 1], means[i]);
-        slopes.push(if before * after <= 0.0 {
-            0.0
-        } else {
-            let (w1, w2) = (
-                2.0 * widths[i] + widths[i - 1],
-                widths[i] + 2.0 * widths[i - 1],
-            );
-            (w1 + w2) / (w1 / before + w2 / after)
-        });
-    }
-    let end = end_slope(widths[last], widths[last - 1], means[last], means[last - 1]);
-    slopes.push(end);
-    slopes
-}
-
-/// Three-point slope at an end, kept within what leaves the curve monotone.
-fn end_slope(h: f64, next_h: f64, mean: f64, next_mean: f64) -> f64 {
-    let slope = ((2.0 * h + next_h) * mean - h * next_mean) / (h + next_h);
-    if slope * mean <= 0.0 {
-        // A curve that would begin flat has no modulus: the secant stands in.
-        mean
-    } else if mean * next_mean < 0.0 && slope.abs() > 3.0 * mean.abs() {
-        3.0 * mean
-    } else {
-        slope
-    }
 }
 
 #[cfg(test)]

@@ -3,11 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
+use super::sides::name_sides;
 use super::unreadable::Unreadable;
 use crate::document::file;
 use crate::mesh::cell_shape::CellShape;
-use crate::mesh::cells::Mesh;
+use crate::mesh::cells::{Group, Mesh};
 use crate::mesh::geometry::{check_size, polygon_area};
+use crate::mesh::refine::key;
 
 /// Displacements by the file's own number of the node.
 pub type Displacements = HashMap<u64, [f64; 2]>;
@@ -137,27 +139,33 @@ impl Raw {
             let nodes = ends.iter().filter_map(|node| names.get(node).copied());
             let nodes: Vec<usize> = nodes.collect();
             if !nodes.is_empty() {
-                mesh.put_group(name, nodes, Vec::new());
+                let group = Group {
+                    nodes,
+                    ..Group::default()
+                };
+                mesh.put_group(name, group);
             }
         }
     }
 
     fn name_lines(&self, mesh: &mut Mesh, names: &Numbers) {
-        let edges: HashMap<[usize; 2], Vec<usize>> = mesh
-            .boundary()
-            .iter()
-            .map(|edge| ([edge[0].min(edge[1]), edge[0].max(edge[1])], edge.clone()))
-            .collect();
+        let inner = mesh.inner_sides();
         for (name, lines) in &self.lines {
             let ends = lines
                 .iter()
                 .filter_map(|[a, b]| Some([*names.get(a)?, *names.get(b)?]));
-            let ends: BTreeSet<[usize; 2]> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-            let own = ends.iter().filter_map(|ends| edges.get(ends).cloned());
-            let own: Vec<Vec<usize>> = own.collect();
-            match own.is_empty() {
-                false => mesh.name_edges(name, own),
-                true => name_inner_lines(mesh, name, &ends),
+            let ends: BTreeSet<[usize; 2]> = ends.map(|[a, b]| key(a, b)).collect();
+            let own = |sides: &[Vec<usize>]| -> Vec<Vec<usize>> {
+                let named = |side: &&Vec<usize>| ends.contains(&key(side[0], side[1]));
+                sides.iter().filter(named).cloned().collect()
+            };
+            let group = Group {
+                edges: own(mesh.boundary()),
+                lines: own(&inner),
+                ..Group::default()
+            };
+            if !(group.edges.is_empty() && group.lines.is_empty()) {
+                mesh.put_group(name, group);
             }
         }
     }
@@ -174,45 +182,27 @@ impl Raw {
         Ok(())
     }
 
+    /// Names parts of the sheet; what the file calls lines, points or sets of the same name belongs to them, a side of the box does not.
     fn name_areas(&self, mesh: &mut Mesh) {
         for (name, cells) in &self.areas {
-            let is_part = cells.len() < mesh.cell_count();
-            let is_edge = mesh
-                .groups()
-                .get(name)
-                .is_some_and(|group| !group.edges.is_empty());
-            if is_part && !is_edge {
-                let nodes = cells.iter().flat_map(|cell| mesh.cell(*cell));
-                let nodes = nodes.copied().collect();
-                mesh.put_group(name, nodes, Vec::new());
+            if cells.len() == mesh.cell_count() {
+                continue;
             }
+            let has_more = self.lines.contains_key(name)
+                || self.points.contains_key(name)
+                || self.sets.contains_key(name);
+            let own = mesh.groups().get(name).filter(|_| has_more);
+            let mut group = own.cloned().unwrap_or_default();
+            group.cells.extend(cells);
+            group.cells.sort_unstable();
+            group.cells.dedup();
+            mesh.put_group(name, group);
         }
     }
 }
 
 /// The numbers of nodes in the mesh by those of the file.
 type Numbers = HashMap<u64, usize>;
-
-/// Names the nodes of lines on the sheet, with the middle ones: sides of cells that are no part of the boundary.
-fn name_inner_lines(mesh: &mut Mesh, name: &str, ends: &BTreeSet<[usize; 2]>) {
-    let sides = (0..mesh.cell_count()).flat_map(|cell| {
-        let own = mesh.cell(cell);
-        let sides = mesh.shape(cell).edges().into_iter();
-        sides.map(move |side| {
-            side.into_iter()
-                .map(|node| own[node])
-                .collect::<Vec<usize>>()
-        })
-    });
-    let named = sides.filter(|side| {
-        let [a, b] = [side[0], side[1]];
-        ends.contains(&[a.min(b), a.max(b)])
-    });
-    let nodes: Vec<usize> = named.flatten().collect();
-    if !nodes.is_empty() {
-        mesh.put_group(name, nodes, Vec::new());
-    }
-}
 
 /// The nodes of a cell in the order that leaves its area to the left.
 pub fn counter_clockwise(shape: CellShape, nodes: Vec<usize>, places: &[[f64; 2]]) -> Vec<usize> {
@@ -227,19 +217,4 @@ pub fn counter_clockwise(shape: CellShape, nodes: Vec<usize>, places: &[[f64; 2]
     turned.extend(nodes[corners..].iter().take(corners).rev());
     turned.extend(nodes.iter().skip(2 * corners));
     turned
-}
-
-/// Names the boundary and its parts on the four sides of the mesh's box.
-fn name_sides(mesh: &mut Mesh) {
-    let [low, high] = mesh.bounding_box();
-    let near = 1e-9 * (high[0] - low[0]).max(high[1] - low[1]);
-    for (name, axis, value) in [
-        ("left", 0, low[0]),
-        ("right", 0, high[0]),
-        ("bottom", 1, low[1]),
-        ("top", 1, high[1]),
-    ] {
-        mesh.name_boundary(name, |place| (place[axis] - value).abs() <= near);
-    }
-    mesh.name_boundary("boundary", |_| true);
 }

@@ -223,11 +223,25 @@ fn groups_of_cells_and_of_lines_on_the_sheet_are_kept_as_nodes() {
         assert_eq!(group.nodes, [5, 6, 9, 10], "{name}");
         assert!(group.edges.is_empty());
     }
+    assert_eq!(mesh.groups()["ring"].lines.len(), 4);
+    assert_eq!(mesh.groups()["pad"].cells.len(), 1);
     assert_eq!(mesh.groups()["sheet"].nodes.len(), 16);
     assert!(
-        told[0].to_string().contains("kept as nodes on the sheet"),
+        told[0].to_string().contains("supports hold them"),
         "{told:?}"
     );
+    let finer = mesh.refined();
+    assert_eq!(finer.groups()["pad"].nodes.len(), 9);
+    assert_eq!(finer.groups()["pad"].cells.len(), 4);
+    assert_eq!(finer.groups()["ring"].nodes.len(), 8);
+    // A surface of the name of a side of the box, or of a curve: the file's own names count, all of them.
+    let text = text.replace("\"pad\"", "\"left\"");
+    let sides = read("a.msh", &text).unwrap();
+    assert_eq!(sides.groups()["left"].nodes, [5, 6, 9, 10]);
+    let text = text.replace("\"left\"", "\"ring\"");
+    let both = read("a.msh", &text).unwrap();
+    let ring = &both.groups()["ring"];
+    assert_eq!([ring.lines.len(), ring.cells.len()], [4, 1]);
     // What holds all cells says nothing.
     let whole = read("a.msh", &text.replace("3 2 8 1", "3 2 9 1")).unwrap();
     assert!(!whole.groups().contains_key("sheet"));

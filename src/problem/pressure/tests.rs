@@ -3,7 +3,7 @@ use super::super::tests::samples::{CLAMP, problem, solved, strip, turned};
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::solve::assembly::derivative_errors;
 use crate::solve::vector::{largest, norm};
-use crate::solve::{Assembly, Connectivity, Loading, Potential};
+use crate::solve::{Assembly, Connectivity, Inadmissible, Loading, Local, Potential, Remembering};
 
 /// A smooth field of a tenth of the strip's size.
 fn bent(mesh: &Mesh) -> Vec<f64> {
@@ -31,6 +31,24 @@ impl Potential for Nothing {
         _: crate::solve::Local<'_>,
     ) -> Result<f64, crate::solve::Inadmissible> {
         Err(crate::solve::Inadmissible { element })
+    }
+}
+
+impl Remembering for Nothing {
+    fn evaluate_after(
+        &self,
+        _: usize,
+        _: &[f64],
+        _: Local<'_>,
+        _: &[f64],
+    ) -> Result<f64, Inadmissible> {
+        Ok(0.0)
+    }
+
+    fn remember(&self, _: &mut Vec<f64>, _: &[f64]) {}
+
+    fn dissipated(&self, _: &[f64]) -> f64 {
+        0.0
     }
 }
 

@@ -6,7 +6,7 @@ use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Model};
 use crate::results::Sheet;
-use crate::solve::{LinearSolver, Potential};
+use crate::solve::{LinearSolver, Remembering};
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::Tolerances;
 
@@ -152,7 +152,7 @@ impl Specimen {
     }
 
     /// The problem on a mesh; groups were checked when the study was read.
-    pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Potential) -> Result<Model<'a>, Error> {
+    pub fn on<'a>(&self, mesh: &'a Mesh, energy: &'a dyn Remembering) -> Result<Model<'a>, Error> {
         let found = self.problem.on(mesh, energy);
         found.map_err(|fault| Error::Input(vec![fault]))
     }

@@ -259,12 +259,11 @@ fn check_refinement(root: &Section, specimen: &Specimen, mesh: &Mesh) {
     let mut forces = loads.filter(|(_, load)| matches!(load, Load::Force(_)));
     let on_nodes = |(group, _): &(String, Load)| {
         let group = mesh.groups().get(group);
-        group.is_some_and(|group| group.edges.is_empty())
+        group.is_some_and(|group| !group.has_parts())
     };
     if specimen.refinement.is_some() && forces.any(on_nodes) {
-        let message =
-            "a force on nodes without edges is shared by them, which local refinement changes";
-        let hint = "put it on a group with edges, or leave out `adaptive`";
+        let message = "a force on single nodes has no limit on finer meshes, and local refinement goes on around them";
+        let hint = "put it on a group with edges, lines or an area, or leave out `adaptive`";
         root.fault("load", message, hint);
     }
 }

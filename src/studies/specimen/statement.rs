@@ -120,7 +120,7 @@ fn load(load: &Load) -> String {
             "a pressure of {pressure} MPa that stays normal to the deformed edges, on the thickness at rest"
         ),
         Load::Force([x, y]) => {
-            format!("a force of ({x}, {y}) N, spread evenly over the edges, of constant direction")
+            format!("a force of ({x}, {y}) N, spread evenly over the group, of constant direction")
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::material::Card;
 use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
-use crate::problem::Solution;
+use crate::problem::{Load, Solution};
 use crate::results::{is_one_of_several, locking, one_of_several, small_strain, wrinkling};
 
 /// All warnings, each in a sentence.
@@ -38,6 +38,7 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
     all.extend(locking::warning(&*specimen.problem.law, &locking));
     all.extend(small_strain::warning(&*specimen.problem.law, mesh, loads()));
     all.extend(idle_loads(specimen, mesh));
+    all.extend(loads_on_points(specimen, mesh));
     all.extend(several(models));
     all.extend(beyond(&specimen.card, &strained));
     all.extend(unstable(&specimen.card, &strained));
@@ -52,6 +53,23 @@ fn idle_loads(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
             "Warning: the load on {} has no effect on the field: supports hold these nodes along it, and take it up at once. Hold another \
              group, or take a support that leaves the load's direction free, such as a grip with a force.",
             idle.join(", ")
+        )
+    })
+}
+
+/// The warning about forces on single points, under which displacements have no limit.
+fn loads_on_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
+    let loads = specimen.problem.loads.iter();
+    let on_points = loads.filter(|(name, load)| {
+        let group = mesh.groups().get(name);
+        matches!(load, Load::Force(_)) && group.is_some_and(|group| !group.has_parts())
+    });
+    let named: Vec<String> = on_points.map(|(name, _)| format!("`{name}`")).collect();
+    (!named.is_empty()).then(|| {
+        format!(
+            "Warning: the force on {} acts on single points, under which displacement and stress grow with every finer mesh, without \
+             limit: neither they nor their own errors there say anything. Put it on edges, on a line or on an area.",
+            named.join(", ")
         )
     })
 }

@@ -9,7 +9,7 @@ use web_time::Instant;
 
 use gelbench::error::Error;
 use gelbench::results::nodal_states;
-use gelbench::solve::{LinearSolver, Loading, Tangent, compliance};
+use gelbench::solve::{LinearSolver, Loading, Stage, Tangent, compliance};
 
 use super::background::Worker;
 use super::scene::{Colour, Grip, Known, Model, Scene};
@@ -205,8 +205,9 @@ fn multipliers(
         &model.held(),
         LinearSolver::Direct,
     );
-    let found = tangent
-        .and_then(|mut tangent| compliance(&mut tangent, &model, (1.0, corrected, &[]), &change));
+    let found = tangent.and_then(|mut tangent| {
+        compliance(&mut tangent, &model, Stage::first(1.0), corrected, &change)
+    });
     found.map_err(|fault| Error::Solve {
         model: "multipliers".into(),
         step: grip.describe(),

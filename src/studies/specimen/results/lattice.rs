@@ -9,7 +9,7 @@ use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
 use crate::problem::{Model, Solution};
 use crate::solve::vector::difference;
-use crate::solve::{Assembly, Loading, NewtonSettings, PathEnd, State};
+use crate::solve::{Assembly, Loading, NewtonSettings, PathEnd, Stage, State};
 use crate::studies::Progress;
 use crate::studies::specimen::problem::{LARGE, Specimen};
 
@@ -222,8 +222,10 @@ impl<'a> Corrections<'a> {
         for (step, factor) in factors.skip(starts.len()) {
             let springs = uncorrected.displacement(step);
             let history = states.last().map(|before| self.model.remembered(before));
-            let at = (step, *factor, &*history.unwrap_or_default());
-            match self.at(at, springs, &change) {
+            let history = history.unwrap_or_default();
+            let (factor, history) = (*factor, &*history);
+            let stage = Stage { factor, history };
+            match self.at(step, stage, springs, &change) {
                 Ok((state, start)) => {
                     if let Some(data) = springs {
                         change = difference(&state.displacement, data);
@@ -243,7 +245,8 @@ impl<'a> Corrections<'a> {
     /// Corrects the springs' field at a load factor; where there is none, or no way from it, load steps lead there.
     fn at(
         &mut self,
-        (step, factor, history): (usize, f64, &[f64]),
+        step: usize,
+        stage: Stage<'_>,
         springs: Option<&[f64]>,
         change: &[f64],
     ) -> Result<(State, Start), Box<End>> {
@@ -254,7 +257,7 @@ impl<'a> Corrections<'a> {
                 .zip(change)
                 .map(|(u, change)| u + change)
                 .collect();
-            if let Ok(field) = self.correct(data, &near, (factor, history)) {
+            if let Ok(field) = self.correct(data, &near, stage) {
                 return Ok((field, Start::Springs));
             }
         }
@@ -275,18 +278,18 @@ impl<'a> Corrections<'a> {
         };
         let (reached, snaps) = (reached.displacement.clone(), reached.convergence.snaps);
         let start = springs.map_or(Start::Alone, |_| Start::LoadSteps);
-        let found = self.correct(springs.unwrap_or(&reached), &reached, (factor, history));
-        let found = found.map_err(|fault| Box::new(End::at(&model.name, factor, fault)));
+        let found = self.correct(springs.unwrap_or(&reached), &reached, stage);
+        let found = found.map_err(|fault| Box::new(End::at(&model.name, stage.factor, fault)));
         found.map(|mut field| {
             field.convergence.snaps = snaps;
             (field, start)
         })
     }
 
-    fn correct(&self, data: &[f64], start: &[f64], at: (f64, &[f64])) -> Result<State, SolveFault> {
+    fn correct(&self, data: &[f64], start: &[f64], stage: Stage) -> Result<State, SolveFault> {
         if data.len() >= LARGE {
-            return correct_without_multipliers(self.model, start, at, NEWTON);
+            return correct_without_multipliers(self.model, start, stage, NEWTON);
         }
-        Ok(correct(self.model, data, start, at, CORRECTOR)?.state)
+        Ok(correct(self.model, data, start, stage, CORRECTOR)?.state)
     }
 }

@@ -12,7 +12,7 @@ use gelbench::material::{Card, HyperelasticLaw};
 use gelbench::mesh::{CellShape, Mesh, Side};
 use gelbench::problem::sheet_energy::SheetEnergy;
 use gelbench::problem::{BoundaryProblem, ClampedPlate, Model as Problem, Support};
-use gelbench::solve::{Assembly, Potential};
+use gelbench::solve::{Assembly, Remembering};
 use gelbench::studies::{plate, specimen};
 use gelbench::validation::CASES;
 
@@ -225,7 +225,7 @@ impl Body {
         }
     }
 
-    pub(super) fn potential(&self) -> &dyn Potential {
+    pub(super) fn potential(&self) -> &dyn Remembering {
         match &self.energy {
             Energy::Springs(springs) => springs.potential(),
             Energy::Sheet(sheet) => &**sheet,
