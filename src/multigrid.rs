@@ -15,6 +15,7 @@
 //!
 //! All sums run in an order that does not depend on the number of threads.
 
+mod blocks;
 mod coarsest;
 mod cycle;
 mod line;

@@ -19,7 +19,13 @@ fn fitted() -> TempDir {
     let arguments: Vec<&str> = fit.split(' ').collect();
     let done = gelbench(folder.path(), &arguments).code(0);
     let told = words(&done.get_output().stdout);
-    for part in ["eta_r", "eta_m", "eta_beta", "cycle 4", "closed form"] {
+    for part in [
+        "softening.r",
+        "softening.m",
+        "softening.beta",
+        "cycle 4",
+        "closed form",
+    ] {
         assert!(told.contains(part), "{told}");
     }
     folder
@@ -32,9 +38,9 @@ fn a_record_becomes_a_card_that_is_shown_drawn_and_fitted_again() {
     let figures: Value = serde_json::from_str(&figures).unwrap();
     for (key, truth) in [
         ("c10", 0.12),
-        ("eta_r", 1.9),
-        ("eta_m", 0.006),
-        ("eta_beta", 0.12),
+        ("softening.r", 1.9),
+        ("softening.m", 0.006),
+        ("softening.beta", 0.12),
     ] {
         let all = figures["parameters"].as_array().unwrap();
         let found = all.iter().find(|one| one["key"] == key).unwrap();

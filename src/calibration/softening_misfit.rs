@@ -14,7 +14,7 @@ use crate::material::{Card, HyperelasticLaw, Softening};
 use crate::units::Dimension;
 
 /// The keys of the parameters.
-pub const SOFTENING: [&str; 3] = ["eta_r", "eta_m", "eta_beta"];
+pub const SOFTENING: [&str; 3] = ["softening.r", "softening.m", "softening.beta"];
 
 /// Where the law of the first loading comes from.
 #[derive(Clone, Copy, Debug)]

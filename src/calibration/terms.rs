@@ -15,12 +15,24 @@ pub enum Terms {
     Exactly(usize),
 }
 
-/// Keys of shares.
+/// Keys of shares, as the card's.
 pub const SHARES: [&str; Terms::MOST] = [
-    "share_1", "share_2", "share_3", "share_4", "share_5", "share_6",
+    "relaxation.1.share",
+    "relaxation.2.share",
+    "relaxation.3.share",
+    "relaxation.4.share",
+    "relaxation.5.share",
+    "relaxation.6.share",
 ];
-/// Keys of times.
-pub const TIMES: [&str; Terms::MOST] = ["time_1", "time_2", "time_3", "time_4", "time_5", "time_6"];
+/// Keys of times, as the card's.
+pub const TIMES: [&str; Terms::MOST] = [
+    "relaxation.1.time",
+    "relaxation.2.time",
+    "relaxation.3.time",
+    "relaxation.4.time",
+    "relaxation.5.time",
+    "relaxation.6.time",
+];
 
 impl Terms {
     /// The most terms of a series.

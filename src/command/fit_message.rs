@@ -105,15 +105,17 @@ fn parameters(fit: &Fit) -> String {
     if let Some(verdict) = &quality.verdict {
         text += &format!("  left over    {}\n", verdict.sentence());
     }
+    let keys = fit.parameters.iter().map(|parameter| parameter.key.len());
+    let width = keys.max().unwrap_or(0).max(12);
     let estimates = fit.quality.estimates.iter().zip(&fit.quality.at_bound);
     for (parameter, (estimate, at_bound)) in fit.parameters.iter().zip(estimates) {
         let (key, unit, value) = (parameter.key, parameter.unit(), digits(parameter.value, 6));
         let [low, high] = estimate.interval.map(|end| digits(end, 5));
         let error = digits(estimate.standard_error, 2);
         text += &match (at_bound, quality.has_intervals()) {
-            (true, _) => format!("  {key:<12} {value} {unit}   held by a bound\n"),
-            (_, false) => format!("  {key:<12} {value} {unit}   no interval\n"),
-            _ => format!("  {key:<12} {value} ± {error} {unit}   95 % {low} … {high}\n"),
+            (true, _) => format!("  {key:<width$} {value} {unit}   held by a bound\n"),
+            (_, false) => format!("  {key:<width$} {value} {unit}   no interval\n"),
+            _ => format!("  {key:<width$} {value} ± {error} {unit}   95 % {low} … {high}\n"),
         };
     }
     text

@@ -2,13 +2,13 @@
 
 use pulp::{NullaryFnOnce, Simd, WithSimd};
 
+use super::blocks::{EAST, INVERSE, ITSELF, NORTH, NORTH_EAST, SOUTH_EAST, transposed};
 use super::vector::{Pair, VECTOR};
 
-/// Coefficients kept for a node: the blocks, and the inverse of its own block.
+/// Coefficients kept for a node, see [`blocks`](super::blocks).
 pub const COEFFICIENTS: usize = 20;
 
-/// P₁₁, P₁₂, P₂₂, Q₁₁, Q₁₂, Q₂₂, R₁₁, R₁₂, R₂₁, R₂₂ of the cells of one column, with a cell of no stiffness at
-/// either end.
+/// P₁₁, P₁₂, P₂₂, Q₁₁, Q₁₂, Q₂₂, R₁₁, R₁₂, R₂₁, R₂₂ of the cells of one column, with a cell of no stiffness at either end.
 #[derive(Clone, Debug)]
 pub struct CellStiffness(pub [Vec<f32>; 10]);
 
@@ -19,7 +19,7 @@ impl CellStiffness {
     }
 }
 
-/// The coefficients of one line: own block 0–2, N 3–6, E 7–10, NE 11–13, SE 14–16, inverse of the own block 17–19.
+/// The coefficients of one line.
 #[derive(Clone, Copy)]
 pub struct LineStencil<'a> {
     pub coefficients: &'a [f32],
@@ -179,7 +179,7 @@ impl<'a> Beside<'a> {
 /// The inverse of the own block of each node, behind the blocks.
 #[inline(always)]
 fn invert(target: &mut [f32], stride: usize, nodes: usize) {
-    let (blocks, inverses) = target.split_at_mut(17 * stride);
+    let (blocks, inverses) = target.split_at_mut(INVERSE[0] * stride);
     let own = |k: usize| &blocks[k * stride + 1..][..nodes];
     let (a, b, c) = (own(0), own(1), own(2));
     let mut arrays = inverses.chunks_exact_mut(stride);
@@ -244,37 +244,37 @@ fn subtract_beside<S: Simd>(
     let r = subtract(
         simd,
         r,
-        own.block::<S>([7, 8, 9, 10], middle),
+        own.block::<S>(EAST, middle),
         load_pair::<S>(right, middle),
     );
     let r = subtract(
         simd,
         r,
-        own.block::<S>([11, 12, 12, 13], middle),
+        own.block::<S>(NORTH_EAST, middle),
         load_pair::<S>(right, place + 2),
     );
     let r = subtract(
         simd,
         r,
-        own.block::<S>([14, 15, 15, 16], middle),
+        own.block::<S>(SOUTH_EAST, middle),
         load_pair::<S>(right, place),
     );
     let r = subtract(
         simd,
         r,
-        before.block::<S>([7, 9, 8, 10], middle),
+        before.block::<S>(transposed(EAST), middle),
         load_pair::<S>(left, middle),
     );
     let r = subtract(
         simd,
         r,
-        before.block::<S>([11, 12, 12, 13], place),
+        before.block::<S>(NORTH_EAST, place),
         load_pair::<S>(left, place),
     );
     subtract(
         simd,
         r,
-        before.block::<S>([14, 15, 15, 16], place + 2),
+        before.block::<S>(SOUTH_EAST, place + 2),
         load_pair::<S>(left, place + 2),
     )
 }
@@ -291,13 +291,13 @@ fn subtract_along<S: Simd>(
     let r = subtract(
         simd,
         r,
-        own.block::<S>([3, 4, 5, 6], place + 1),
+        own.block::<S>(NORTH, place + 1),
         load_pair::<S>(x, place + 2),
     );
     subtract(
         simd,
         r,
-        own.block::<S>([3, 5, 4, 6], place),
+        own.block::<S>(transposed(NORTH), place),
         load_pair::<S>(x, place),
     )
 }
@@ -314,7 +314,7 @@ pub fn residual<S: Simd>(
     let b = load_pair::<S>(b, place + 1);
     let r = subtract_beside(simd, b, [before, own], [left, right], place);
     let r = subtract_along(simd, r, own, middle, place);
-    let block = own.block::<S>([0, 1, 1, 2], place + 1);
+    let block = own.block::<S>(ITSELF, place + 1);
     subtract(simd, r, block, load_pair::<S>(middle, place + 1))
 }
 
@@ -388,7 +388,7 @@ impl WithSimd for SmoothLine<'_> {
             for place in (0..nodes).step_by(S::F32_LANES) {
                 let g = [load::<S>(g_x, place), load::<S>(g_y, place)];
                 let r = subtract_along(simd, g, self.own, [self.x_x, self.x_y], place);
-                let [a, b, c, d] = self.own.block::<S>([17, 18, 18, 19], place + 1);
+                let [a, b, c, d] = self.own.block::<S>(INVERSE, place + 1);
                 let [x, y] = load_pair::<S>([self.x_x, self.x_y], place + 1);
                 let x = combine(simd, [own, other], [combine(simd, [a, b], r), x]);
                 let y = combine(simd, [own, other], [combine(simd, [c, d], r), y]);

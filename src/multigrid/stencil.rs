@@ -16,6 +16,7 @@ use std::cell::RefCell;
 use pulp::Arch;
 use rayon::prelude::*;
 
+use super::blocks::{EAST, ITSELF, NORTH, NORTH_EAST, SOUTH_EAST};
 use super::line::{
     AssembleLine, COEFFICIENTS, CellStiffness, LineResidual, LineStencil, SmoothLine,
 };
@@ -148,14 +149,16 @@ impl Stencil {
             to[0] as isize - from[0] as isize,
             to[1] as isize - from[1] as isize,
         ];
-        match step {
-            [0, 0] => Some([[c(0), c(1)], [c(1), c(2)]]),
-            [0, 1] => Some([[c(3), c(4)], [c(5), c(6)]]),
-            [1, 0] => Some([[c(7), c(8)], [c(9), c(10)]]),
-            [1, 1] => Some([[c(11), c(12)], [c(12), c(13)]]),
-            [1, -1] => Some([[c(14), c(15)], [c(15), c(16)]]),
-            _ => None,
-        }
+        let block = match step {
+            [0, 0] => ITSELF,
+            [0, 1] => NORTH,
+            [1, 0] => EAST,
+            [1, 1] => NORTH_EAST,
+            [1, -1] => SOUTH_EAST,
+            _ => return None,
+        };
+        let [a, b, d, e] = block.map(c);
+        Some([[a, b], [d, e]])
     }
 }
 
