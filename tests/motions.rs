@@ -182,6 +182,10 @@ fn a_motion_that_ends_before_its_time_keeps_its_instants() {
         "{told}"
     );
     assert!(told.contains("end the path or motion before it"), "{told}");
+    assert!(
+        told.contains("corrected: displacement up to 0.0070000 s"),
+        "{told}"
+    );
     let instants = |model: &str| {
         let table = folder.path().join(format!("out/motion_{model}.csv"));
         fs::read_to_string(table).unwrap().lines().count() - 1

@@ -161,16 +161,26 @@ fn correlation(fit: &Fit) -> String {
         return String::new();
     }
     let keys = fit.parameters.iter().map(|parameter| parameter.key);
-    let head: String = keys.clone().map(|key| format!("{key:>9}")).collect();
-    let mut text = format!("  correlation  {head}\n");
-    for (i, key) in keys.enumerate() {
+    // Names that are wider than a column stand as numbers above.
+    let is_wide = keys.clone().any(|key| key.len() > 8);
+    let label = |(i, key): (usize, &str)| match is_wide {
+        true => [i.to_string(), format!("{i} {key}")],
+        false => [key.to_owned(), key.to_owned()],
+    };
+    let labels: Vec<[String; 2]> = (1..).zip(keys).map(label).collect();
+    let names = labels.iter().map(|[_, name]| name.len());
+    let width = names.max().unwrap_or(0).max(10);
+    let mut text = format!("  {:<1$}", "correlation", width + 3);
+    text.extend(labels.iter().map(|[head, _]| format!("{head:>9}")));
+    text += "\n";
+    for (i, [_, name]) in labels.iter().enumerate() {
         let row: String = (0..=i)
             .map(|j| match matrix[(i, j)] {
                 known if known.is_finite() => format!("{known:>9.4}"),
                 _ => format!("{:>9}", "–"),
             })
             .collect();
-        text += &format!("    {key:<10} {row}\n");
+        text += &format!("    {name:<width$} {row}\n");
     }
     text
 }

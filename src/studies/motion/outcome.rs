@@ -260,8 +260,15 @@ fn checks(
         true => ("mass-spring", of_springs),
         false => ("corrected", of_corrected),
     };
+    let compared = last.displacement.len();
+    let until = times(models)[..compared].last().copied();
+    let until = until.unwrap_or_default();
+    let over = match until < plate.time.duration * (1.0 - 1e-9) {
+        true => format!("up to {} s", number(until)),
+        false => "over all instants".to_owned(),
+    };
     let deviation = check(
-        format!("{name}: displacement over all instants"),
+        format!("{name}: displacement {over}"),
         limits.deviation_percent,
         last.whole,
     );
