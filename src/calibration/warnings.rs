@@ -35,7 +35,13 @@ fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
     for (index, estimate) in quality.estimates.iter().enumerate() {
         let (key, value) = (parameters[index].key, estimate.value);
         if quality.at_bound[index] {
-            warnings.push(format!("{key} = {value:.4e} is held by a bound"));
+            let others = match quality.has_intervals() {
+                true => {
+                    ": the intervals of the others hold where it is there, and are too narrow where it is not"
+                }
+                false => "",
+            };
+            warnings.push(format!("{key} = {value:.4e} is held by a bound{others}"));
         } else if !knows_sign(estimate) {
             vague.push(key);
         }
