@@ -87,7 +87,10 @@ impl Fit {
     pub fn half_widths(&self, data: &TestData, at: &[Observation]) -> Vec<f64> {
         let bounded = self.quality.at_bound.contains(&true);
         let noise = self.quality.noise.as_ref();
-        let known = noise.filter(|_| self.quality.has_intervals() && !bounded);
+        let unknown = || vec![f64::NAN; at.len()];
+        let Some(noise) = noise.filter(|_| self.quality.has_intervals() && !bounded) else {
+            return unknown();
+        };
         let values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
         let curve = Curve {
             fit: self,
@@ -95,8 +98,8 @@ impl Fit {
             at,
         };
         let gradients = least_squares::jacobian(&curve, &values, &vec![false; values.len()]);
-        let Some((noise, gradients)) = known.zip(gradients) else {
-            return vec![f64::NAN; at.len()];
+        let Some(gradients) = gradients else {
+            return unknown();
         };
         let half = |point: usize| noise.half_width(&gradients.row(point).transpose());
         (0..at.len()).map(half).collect()

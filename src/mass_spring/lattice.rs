@@ -136,13 +136,14 @@ impl Lattice {
             own[i][axis] = corners[i][axis] - corners[0][axis];
             places[i][axis] = own[i][axis] + u[2 * i + axis] - u[axis];
         }
-        let [rest, current] = [&own, &places].map(|places| polygon_area(&places[..count]));
+        let current = polygon_area(&places[..count]);
         if current.is_nan() || current <= 0.0 {
             return None;
         }
         if self.area_stiffness == 0.0 {
             return Some(0.0);
         }
+        let rest = polygon_area(&own[..count]);
         let change = current / rest - 1.0;
         let slope: Vec<f64> = (0..count)
             .flat_map(|i| {

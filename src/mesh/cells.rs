@@ -121,17 +121,17 @@ impl Mesh {
     pub fn name_nodes(&mut self, name: &str, nodes: &BTreeSet<usize>) {
         let within = |part: &[usize]| part.iter().all(|node| nodes.contains(node));
         let outer: BTreeSet<usize> = self.boundary().iter().flatten().copied().collect();
+        let edges = self.boundary().iter().filter(|edge| within(edge));
         let mut group = Group {
             nodes: nodes.iter().copied().collect(),
-            edges: self.boundary().to_vec(),
+            edges: edges.cloned().collect(),
             ..Group::default()
         };
-        group.edges.retain(|edge| within(edge));
         if !nodes.is_subset(&outer) {
             group.lines = self.inner_sides();
             group.lines.retain(|side| within(side));
-            group.cells = (0..self.cell_count()).collect();
-            group.cells.retain(|cell| within(self.cell(*cell)));
+            let cells = 0..self.cell_count();
+            group.cells = cells.filter(|cell| within(self.cell(*cell))).collect();
         }
         self.put_group(name, group);
     }
@@ -168,18 +168,20 @@ impl Mesh {
     }
 
     fn lonely_edges(&self) -> Vec<Vec<usize>> {
-        let edges = self.edges();
-        let alone = edges.chunk_by(|one, other| one.ends == other.ends);
-        let alone = alone.filter(|cells| cells.len() == 1);
-        alone.map(|cells| self.edge_nodes(cells[0])).collect()
+        self.sides_of(|cells| cells == 1)
     }
 
-    /// The sides that two cells share.
+    /// The sides that cells share.
     pub(super) fn inner_sides(&self) -> Vec<Vec<usize>> {
+        self.sides_of(|cells| cells > 1)
+    }
+
+    /// The sides of as many cells as are wanted, each with the first of them to its left.
+    fn sides_of(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
         let edges = self.edges();
-        let shared = edges.chunk_by(|one, other| one.ends == other.ends);
-        let shared = shared.filter(|cells| cells.len() > 1);
-        shared.map(|cells| self.edge_nodes(cells[0])).collect()
+        let sides = edges.chunk_by(|one, other| one.ends == other.ends);
+        let wanted = sides.filter(|cells| is_wanted(cells.len()));
+        wanted.map(|cells| self.edge_nodes(cells[0])).collect()
     }
 
     /// The edges of all cells by their ends, those of cells side by side one after the other.

@@ -49,6 +49,17 @@ impl Mesh {
         parts.sum()
     }
 
+    /// What nodes of a cell have of its area in mm², ∫ Nᵢ dA, point by point of its quadrature.
+    pub fn area_parts(&self, cell: usize) -> Vec<(usize, f64)> {
+        let (shape, mut parts) = (self.shape(cell), Vec::new());
+        for (point, weight) in shape.quadrature() {
+            let area = weight * self.gradients(cell, point).1;
+            let nodes = self.cell(cell).iter().zip(shape.values(point));
+            parts.extend(nodes.map(|(node, value)| (*node, area * value)));
+        }
+        parts
+    }
+
     /// The area in mm² that belongs to each node: that of a cell to its corners in equal parts.
     pub fn corner_areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];

@@ -68,6 +68,19 @@ impl BoundaryProblem {
         }
     }
 
+    /// The groups of single nodes on which forces act: on finer meshes displacements there have no limit.
+    pub fn forces_on_points(&self, mesh: &Mesh) -> Vec<&str> {
+        let is_of_points = |name: &str| {
+            let group = mesh.groups().get(name);
+            group.is_some_and(|group| !group.has_parts())
+        };
+        let forces = self
+            .loads
+            .iter()
+            .filter(|(name, load)| matches!(load, Load::Force(_)) && is_of_points(name));
+        forces.map(|(name, _)| &**name).collect()
+    }
+
     /// The groups whose loads act along held unknowns alone: they change the supports' forces, and nothing else.
     ///
     /// # Errors

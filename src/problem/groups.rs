@@ -1,7 +1,7 @@
 //! Groups of a mesh: found by their names, and means over them.
 
 use crate::error::Diagnostic;
-use crate::mesh::{GAUSS_3, Group, Mesh};
+use crate::mesh::{Group, Mesh};
 
 /// The group of a name.
 ///
@@ -44,7 +44,7 @@ pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
         [false, ..] => along(edges),
         [_, false, _] => {
             let cells = cells.iter();
-            cells.flat_map(|cell| cell_areas(mesh, *cell)).collect()
+            cells.flat_map(|cell| mesh.area_parts(*cell)).collect()
         }
         [_, _, false] => along(lines),
         _ => nodes.iter().map(|node| (*node, 1.0)).collect(),
@@ -54,20 +54,6 @@ pub fn shares(mesh: &Mesh, group: &Group) -> Vec<(usize, f64)> {
     shares
         .map(|(node, measure)| (node, measure / whole))
         .collect()
-}
-
-/// The share of a cell's area that belongs to each of its nodes, in mm².
-fn cell_areas(mesh: &Mesh, cell: usize) -> Vec<(usize, f64)> {
-    let nodes = mesh.cell(cell).iter();
-    let mut shares: Vec<(usize, f64)> = nodes.map(|node| (*node, 0.0)).collect();
-    for (point, weight) in mesh.shape(cell).product_quadrature(&GAUSS_3) {
-        let area = weight * mesh.gradients(cell, point).1;
-        let values = mesh.shape(cell).values(point);
-        for (share, value) in shares.iter_mut().zip(values) {
-            share.1 += value * area;
-        }
-    }
-    shares
 }
 
 /// The share of an edge's length that belongs to each of its nodes, in mm.

@@ -1,9 +1,9 @@
 //! Conditions on the internal forces of a potential.
 
 use super::{Condition, Linearisation};
+use crate::mesh::geometry::bounding_box;
 use crate::solve::vector::{largest, moved};
 use crate::solve::{Assembly, Inadmissible, Potential, SkewCoupling, SparseRows};
-use crate::statistics::extremes;
 
 /// Balance of forces ∂Π/∂uᵢ − fᵢ = 0 at the chosen unknowns, in N.
 ///
@@ -192,11 +192,8 @@ fn internal_forces(
 /// The longer side of a box around the free unknowns in mm; 1 where their places are not known.
 fn extent(assembly: &Assembly) -> f64 {
     let places = assembly.places().unwrap_or(&[[0.0; 2], [1.0; 2]]);
-    let side = |axis: usize| {
-        let [low, high] = extremes(places.iter().map(|place| place[axis]));
-        high - low
-    };
-    side(0).max(side(1))
+    let [low, high] = bounding_box(places.iter().copied());
+    (high[0] - low[0]).max(high[1] - low[1])
 }
 
 /// ∂K/∂u · d by central differences: the curvature of the residual, weighted by d, which is given as

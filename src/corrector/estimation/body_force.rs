@@ -94,12 +94,8 @@ impl BodyForce {
 pub fn nodal_areas(mesh: &Mesh) -> Vec<f64> {
     let mut areas = vec![0.0; mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
-        let shape = mesh.shape(cell);
-        for (local, weight) in shape.quadrature() {
-            let (_, jacobian) = mesh.gradients(cell, local);
-            for (node, value) in mesh.cell(cell).iter().zip(shape.values(local)) {
-                areas[*node] += weight * jacobian * value;
-            }
+        for (node, part) in mesh.area_parts(cell) {
+            areas[node] += part;
         }
     }
     areas

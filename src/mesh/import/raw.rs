@@ -149,6 +149,9 @@ impl Raw {
     }
 
     fn name_lines(&self, mesh: &mut Mesh, names: &Numbers) {
+        if self.lines.is_empty() {
+            return;
+        }
         let inner = mesh.inner_sides();
         for (name, lines) in &self.lines {
             let ends = lines

@@ -19,23 +19,25 @@ const SIDES: [(&str, usize, usize); 4] = [
 
 /// Names the boundary and its parts on the four sides of the mesh's box.
 pub fn name_sides(mesh: &mut Mesh) {
+    let bounds = mesh.bounding_box();
+    let near = NEAR * longer_side(bounds);
     for (name, axis, end) in SIDES {
-        let (value, near) = (mesh.bounding_box()[end][axis], NEAR * longer_side(mesh));
+        let value = bounds[end][axis];
         mesh.name_boundary(name, |place| (place[axis] - value).abs() <= near);
     }
     mesh.name_boundary("boundary", |_| true);
 }
 
-fn longer_side(mesh: &Mesh) -> f64 {
-    let [low, high] = mesh.bounding_box();
+fn longer_side([low, high]: [[f64; 2]; 2]) -> f64 {
     (high[0] - low[0]).max(high[1] - low[1])
 }
 
 /// Warnings of sides with a part of the edges that lie close to them, but for those that the file names itself.
 pub fn doubtful_sides(mesh: &Mesh, is_named: impl Fn(&str) -> bool) -> Vec<Diagnostic> {
+    let bounds = mesh.bounding_box();
     let doubtful = |(name, axis, end): (&str, usize, usize)| {
         let own = mesh.groups()[name].edges.len();
-        let (value, size) = (mesh.bounding_box()[end][axis], longer_side(mesh));
+        let (value, size) = (bounds[end][axis], longer_side(bounds));
         let away = |edge: &Vec<usize>| {
             let distances = edge
                 .iter()

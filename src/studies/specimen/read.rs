@@ -8,7 +8,7 @@ use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::error::suggestion;
 use crate::mesh::{CellShape, Mesh, import};
-use crate::problem::{BoundaryProblem, Load};
+use crate::problem::BoundaryProblem;
 use crate::solve::LinearSolver;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections::{
@@ -255,13 +255,7 @@ fn check_refinement(root: &Section, specimen: &Specimen, mesh: &Mesh) {
         root.section("finite_element")
             .fault("adaptive", message, hint);
     }
-    let loads = specimen.problem.loads.iter();
-    let mut forces = loads.filter(|(_, load)| matches!(load, Load::Force(_)));
-    let on_nodes = |(group, _): &(String, Load)| {
-        let group = mesh.groups().get(group);
-        group.is_some_and(|group| !group.has_parts())
-    };
-    if specimen.refinement.is_some() && forces.any(on_nodes) {
+    if specimen.refinement.is_some() && !specimen.problem.forces_on_points(mesh).is_empty() {
         let message = "a force on single nodes has no limit on finer meshes, and local refinement goes on around them";
         let hint = "put it on a group with edges, lines or an area, or leave out `adaptive`";
         root.fault("load", message, hint);

@@ -9,7 +9,7 @@ use crate::material::Card;
 use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
-use crate::problem::{Load, Solution};
+use crate::problem::Solution;
 use crate::results::{is_one_of_several, locking, one_of_several, small_strain, wrinkling};
 
 /// All warnings, each in a sentence.
@@ -59,12 +59,8 @@ fn idle_loads(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
 
 /// The warning about forces on single points, under which displacements have no limit.
 fn loads_on_points(specimen: &Specimen, mesh: &Mesh) -> Option<String> {
-    let loads = specimen.problem.loads.iter();
-    let on_points = loads.filter(|(name, load)| {
-        let group = mesh.groups().get(name);
-        matches!(load, Load::Force(_)) && group.is_some_and(|group| !group.has_parts())
-    });
-    let named: Vec<String> = on_points.map(|(name, _)| format!("`{name}`")).collect();
+    let on_points = specimen.problem.forces_on_points(mesh).into_iter();
+    let named: Vec<String> = on_points.map(|name| format!("`{name}`")).collect();
     (!named.is_empty()).then(|| {
         format!(
             "Warning: the force on {} acts on single points, under which displacement and stress grow with every finer mesh, without \
