@@ -19,6 +19,7 @@ mod prony;
 mod quality;
 mod reading;
 mod record;
+mod refined_zero;
 mod relaxation;
 mod reweighed;
 mod roles;
@@ -39,13 +40,14 @@ pub use conversion::Conversion;
 pub use fit::{Fit, Relaxed, fit, rank};
 pub use quality::{Quality, StableRange};
 pub use reading::KEYS;
+pub use refined_zero::MovedZero;
 pub use relaxation::fit_relaxation;
 pub use settings::{Bounds, FitSettings, Weighting};
 pub use softened::{Softened, SofteningCycle};
 pub use softening::fit_softening;
 pub use softening_misfit::Base;
 pub use terms::Terms;
-pub use test_data::{Observation, StrainColumn, Test, TestData, Times};
+pub use test_data::{FoundZero, Observation, StrainColumn, Test, TestData, Times};
 pub use verdict::{Answer, Verdict};
 
 #[cfg(test)]
@@ -56,6 +58,8 @@ mod relaxation_tests;
 mod softening_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod uncertainty_tests;
 #[cfg(test)]
 mod verdict_tests;
 #[cfg(test)]

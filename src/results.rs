@@ -31,6 +31,7 @@ pub mod small_strain;
 mod softening;
 mod state;
 mod stress_unit;
+mod stretches;
 mod surface;
 mod viscous_stress;
 mod work;
@@ -55,6 +56,7 @@ pub use series::{Series, csv};
 pub use sheet_arrays::Sheet;
 pub use sheet_figures::{Deformed, SheetField, sheet_figures};
 pub use state::{LocalState, cell_states, nodal_states};
+pub use stretches::Stretches;
 pub use surface::Surface;
 pub use viscous_stress::ViscousStress;
 pub use work::work_blocks;
@@ -177,6 +179,11 @@ pub struct Results {
 }
 
 impl Results {
+    /// What deserves attention in the study, and in what was found.
+    pub fn warnings(&self) -> impl Iterator<Item = &String> {
+        self.read_warnings.iter().chain(&self.outcome.warnings)
+    }
+
     /// Whether all requirements are met, by models that did not end early, and without a doubt.
     pub fn passed(&self) -> bool {
         let Outcome {

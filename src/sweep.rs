@@ -39,7 +39,7 @@ pub use figures::Row;
 pub use folder::{Shard, Share, SweepFolder, join};
 pub use plan::{FittedParameters, Method, Run, Sampling};
 pub use points::Points;
-pub use results::{Statistics, blocks, figures, json, statistics};
+pub use results::{Statistics, blocks, cautions, figures, json, statistics};
 pub use table::{names, read, write};
 pub use variable::{Setting, Values, Variable, headed};
 
@@ -161,9 +161,11 @@ impl Sweep {
 
     fn row(&self, run: &Run, attend: &dyn Fn()) -> Result<Row, Error> {
         attend();
-        match self.ready(run)?.compute(Progress::to(&|_| attend())) {
-            Ok(results) => Ok(Row::of(run, &results.outcome, results.passed())),
-            Err(fault @ Error::Solve { .. }) => Ok(Row::failed(run, fault.to_string())),
+        let study = self.ready(run)?;
+        let warnings = study.warnings.iter().map(ToString::to_string).collect();
+        match study.compute(Progress::to(&|_| attend())) {
+            Ok(results) => Ok(Row::of(run, &results)),
+            Err(fault @ Error::Solve { .. }) => Ok(Row::failed(run, fault.to_string(), warnings)),
             Err(other) => Err(other),
         }
     }

@@ -114,9 +114,7 @@ impl Results {
 
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        let outcome = &self.results.outcome;
-        let all = self.results.read_warnings.iter();
-        all.chain(&outcome.warnings).cloned().collect()
+        self.results.warnings().cloned().collect()
     }
 
     #[getter]

@@ -277,7 +277,8 @@ impl SweepTable {
 
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        let cautions = sweep::cautions(&self.rows);
+        self.warnings.iter().cloned().chain(cautions).collect()
     }
 
     fn __len__(&self) -> usize {

@@ -86,6 +86,7 @@ pub fn fit(
             reading,
             ..Provenance::default()
         };
+        let tests_read = fit.fitted_tests(&tests_read);
         let text = calibration::card_text(&fit, &tests_read, &provenance);
         let card = Card::parse(&name, &format!("{name}.toml"), &text)?;
         let json = fit_json(&fit, &tests_read).to_string();

@@ -1,7 +1,7 @@
 //! How far a law that was fitted can be trusted.
 
-use super::judged::{Judged, at_bound};
-use super::least_squares::Residuals;
+use super::judged::{Judged, Values, at_bound};
+use super::least_squares::{LEAST_SIZE, Residuals};
 use super::misfit::Misfit;
 use super::quality::{Deviations, Quality, aicc, estimates, rounded};
 use super::settings::Weighting;
@@ -17,6 +17,8 @@ pub struct Assessment<'a> {
     pub values: &'a [f64],
     /// Lower and upper limit of each value.
     pub bounds: &'a [[f64; 2]],
+    /// The least size of each parameter of the law that counts.
+    pub least: &'a [f64],
 }
 
 impl Assessment<'_> {
@@ -29,11 +31,12 @@ impl Assessment<'_> {
             data.stress_of(self.law, &data.observations[row])
         });
         let judged = self.judge(points);
-        let estimates = estimates(values, &judged.at_bound, judged.noise.as_ref());
+        let estimates = estimates(values, &judged);
         let n = points as f64;
         let counted = [n, judged.effective(n)];
         let aicc = aicc(deviations.weighted, counted, (values.len() + 1) as f64);
-        judged.quality((self.law, self.tests), &deviations, estimates, aicc)
+        let quality = judged.quality((self.law, self.tests), &deviations, estimates, aicc);
+        quality.with_zeros(self.misfit.zeros())
     }
 
     /// Whether the residuals are noise.
@@ -41,12 +44,21 @@ impl Assessment<'_> {
         self.judged().is_noise()
     }
 
-    /// What the residuals are, and what the values are worth that no bound holds.
+    /// What the residuals are, and what the values are worth. A value that a bound holds may lie elsewhere, as far as the data say:
+    /// the others are as uncertain as if it were free. Only what bounds leave no room is known.
     fn judged(&self) -> Judged {
         let at_bound = at_bound(self.values, self.bounds, [1e-9, 1e-300]);
         let rounded = rounded(self.tests, self.law, self.weighting);
         let left = (self.misfit as &dyn Residuals, self.misfit.curves());
-        Judged::of(left, self.values, at_bound, rounded)
+        let mut least = self.least.to_vec();
+        least.resize(self.values.len(), LEAST_SIZE);
+        let found = Values {
+            values: self.values,
+            at_bound,
+            fixed: self.bounds.iter().map(|[low, high]| low == high).collect(),
+            least,
+        };
+        Judged::of(left, found, rounded)
     }
 
     /// The same with all points counted, where they were gathered.

@@ -16,9 +16,10 @@
 use rayon::prelude::*;
 
 use super::assessment::Assessment;
-use super::least_squares::{self, Residuals};
+use super::least_squares::{self, LEAST_SIZE, Residuals};
 use super::misfit::Misfit;
 use super::quality::Quality;
+use super::refined_zero::{self, Found};
 use super::reweighed::settled;
 use super::search::Search;
 use super::settings::{FitSettings, MEASURE, limits};
@@ -82,25 +83,36 @@ impl Fit {
         self.stress_measure
     }
 
+    /// The tests as they were fitted: with the zeros that were found again with the law.
+    pub fn fitted_tests(&self, tests: &[TestData]) -> Vec<TestData> {
+        refined_zero::with_zeros(tests, &self.quality.zeros)
+    }
+
     /// Half the widths of the 95 % intervals of the fitted curve at some observations, in MPa; NaN where there are none, since
-    /// the residuals are no noise, or a bound holds a parameter.
+    /// the residuals are no noise.
     pub fn half_widths(&self, data: &TestData, at: &[Observation]) -> Vec<f64> {
-        let bounded = self.quality.at_bound.contains(&true);
+        let fixed = &self.quality.fixed;
         let noise = self.quality.noise.as_ref();
         let unknown = || vec![f64::NAN; at.len()];
-        let Some(noise) = noise.filter(|_| self.quality.has_intervals() && !bounded) else {
+        let Some(noise) = noise.filter(|_| self.quality.has_intervals()) else {
             return unknown();
         };
-        let values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
+        // Zeros have no part in the law's curve.
+        let mut values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();
+        values.resize(fixed.len(), 1.0);
+        let least = vec![LEAST_SIZE; values.len()];
         let curve = Curve {
             fit: self,
             data,
             at,
         };
-        let gradients = least_squares::jacobian(&curve, &values, &vec![false; values.len()]);
+        let gradients = least_squares::jacobian(&curve, &values, fixed, &least);
+        let estimated = (0..fixed.len()).filter(|index| !fixed[*index]);
+        let estimated: Vec<usize> = estimated.collect();
         let Some(gradients) = gradients else {
             return unknown();
         };
+        let gradients = gradients.select_columns(&estimated);
         let half = |point: usize| noise.half_width(&gradients.row(point).transpose());
         (0..at.len()).map(half).collect()
     }
@@ -178,9 +190,11 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         );
         Error::input(message, "widen the bounds, or choose another law")
     })?;
-    let is_noise = |misfit: &Misfit, values: &[f64]| {
+    let stiffness = misfit.stiffness();
+    let least: Vec<f64> = parameters.iter().map(|one| size(one, stiffness)).collect();
+    let is_noise = |misfit: &Misfit, values: &[f64], bounds: &[[f64; 2]]| {
         let (law, _) = misfit.build(values);
-        let (weighting, law, bounds) = (settings.weighting, &*law, &bounds);
+        let (weighting, law, least) = (settings.weighting, &*law, &*least);
         Assessment {
             misfit,
             weighting,
@@ -188,18 +202,31 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
             law,
             values,
             bounds,
+            least,
         }
         .is_noise()
     };
-    let (misfit, values) = settled(&misfit, minimum.values, &bounds, is_noise);
+    let of_law = |misfit: &Misfit, values: &[f64]| is_noise(misfit, values, &bounds);
+    let (misfit, values) = settled(&misfit, minimum.values, &bounds, of_law);
+    let found = Found {
+        misfit,
+        values,
+        bounds: bounds.clone(),
+    };
+    let Found {
+        misfit,
+        values,
+        bounds,
+    } = found.with_zeros(&is_noise);
     let (fitted, built) = misfit.build(&values);
     let assessment = Assessment {
         misfit: &misfit,
         weighting: settings.weighting,
-        tests,
+        tests: &misfit.moved_tests(&values),
         law: &*fitted,
         values: &values,
         bounds: &bounds,
+        least: &least,
     };
     let mut quality = assessment.quality();
     quality.warnings = warnings(&quality, &built.parameters, minimum.other.as_deref());
@@ -215,6 +242,15 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         relaxed: None,
         softened: None,
     })
+}
+
+/// The least size of a parameter that counts: a thousandth of a usual one.
+fn size(parameter: &Parameter, stiffness: f64) -> f64 {
+    let [low, high] = parameter.usual.map(f64::abs);
+    1e-3 * match parameter.is_stress() {
+        true => stiffness,
+        false => low.max(high),
+    }
 }
 
 /// Tests of one fit have one stress measure.
@@ -272,6 +308,7 @@ fn take_curve(
         law: &*fitted,
         values: &[],
         bounds: &[],
+        least: &[],
     };
     let mut quality = assessment.quality();
     quality.warnings = warnings(&quality, &[], None);

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::{self, Residuals};
+use super::least_squares::{self, LEAST_SIZE, Residuals};
 use super::misfit::Rows;
 use super::quality::{Deviations, Quality, stable_ranges, stretch_range, untested};
 use super::test_data::TestData;
@@ -22,13 +22,38 @@ pub fn at_bound(values: &[f64], bounds: &[[f64; 2]], [share, least]: [f64; 2]) -
     values.iter().zip(bounds).map(held).collect()
 }
 
+/// The values of a fit.
+pub struct Values<'a> {
+    pub values: &'a [f64],
+    /// Which of them a bound holds.
+    pub at_bound: Vec<bool>,
+    /// Which of them are not estimated at all.
+    pub fixed: Vec<bool>,
+    /// The least size of each that counts.
+    pub least: Vec<f64>,
+}
+
+impl<'a> Values<'a> {
+    /// Values of which those at bounds are not estimated.
+    pub fn held(values: &'a [f64], at_bound: Vec<bool>) -> Self {
+        Self {
+            values,
+            fixed: at_bound.clone(),
+            at_bound,
+            least: vec![LEAST_SIZE; values.len()],
+        }
+    }
+}
+
 /// What the residuals of a fit are.
 pub struct Judged {
     /// Which values a bound holds.
     pub at_bound: Vec<bool>,
+    /// Which values are not estimated at all.
+    pub fixed: Vec<bool>,
     /// `None` where nothing is estimated, or no freedom is left.
     pub verdict: Option<Verdict>,
-    /// What the values are worth that no bound holds; `None` likewise.
+    /// What the values are worth that are estimated; `None` likewise.
     pub noise: Option<CurveNoise>,
     /// The sum of squares of the residuals.
     pub sum_of_squares: f64,
@@ -39,14 +64,17 @@ impl Judged {
     /// rounding alone leaves, see [`LeftOver`].
     pub fn of(
         (misfit, curves): (&dyn Residuals, Vec<Rows>),
-        values: &[f64],
-        at_bound: Vec<bool>,
+        found: Values,
         rounded: [f64; 2],
     ) -> Self {
-        let jacobian = least_squares::jacobian(misfit, values, &at_bound);
-        let free: Vec<usize> = (0..values.len())
-            .filter(|index| !at_bound[*index])
-            .collect();
+        let Values {
+            values,
+            at_bound,
+            fixed,
+            least,
+        } = found;
+        let jacobian = least_squares::jacobian(misfit, values, &fixed, &least);
+        let free: Vec<usize> = (0..values.len()).filter(|index| !fixed[*index]).collect();
         let mut residual = DVector::zeros(misfit.count());
         misfit.evaluate(values, residual.as_mut_slice());
         let judged = jacobian.and_then(|jacobian| {
@@ -61,6 +89,7 @@ impl Judged {
         let (verdict, noise) = judged.unzip();
         Self {
             at_bound,
+            fixed,
             verdict,
             noise,
             sum_of_squares: residual.norm_squared(),
@@ -101,6 +130,8 @@ impl Judged {
             estimates,
             correlation,
             at_bound: self.at_bound,
+            fixed: self.fixed,
+            zeros: Vec::new(),
             noise: self.noise,
             stable: stable_ranges(law, tests),
             stretch_range: stretch_range(tests.iter()),

@@ -119,6 +119,7 @@ impl Layout {
             times: self.times(table, &part),
             rise: head.quantity("ramp", Dimension::Time)?.unwrap_or(0.0),
             left_out,
+            found_zero: part.found_zero,
             remarks: part.remarks,
             head: head.written(),
             warnings: turns.warning(head).into_iter().collect(),

@@ -65,6 +65,9 @@ pub enum Precision {
     Full,
 }
 
+/// The least size of a parameter that counts, where no better one is known.
+pub const LEAST_SIZE: f64 = 1e-9;
+
 /// Improves `start` within `bounds`; `None` where the method finds no way from there.
 pub fn minimise(
     model: &dyn Residuals,
@@ -108,8 +111,14 @@ pub fn minimise(
 }
 
 /// ∂rᵢ/∂pⱼ by central differences, of second order in the step, or by a one-sided one where the model has no value on the other
-/// side; columns of `fixed` parameters are zero. `None` where it has a value on neither side.
-pub fn jacobian(model: &dyn Residuals, at: &[f64], fixed: &[bool]) -> Option<DMatrix<f64>> {
+/// side; columns of `fixed` parameters are zero. Steps are shares of the parameters, or of their `least` sizes that count. `None` where it
+/// has a value on neither side.
+pub fn jacobian(
+    model: &dyn Residuals,
+    at: &[f64],
+    fixed: &[bool],
+    least: &[f64],
+) -> Option<DMatrix<f64>> {
     let residuals = |parameters: &[f64]| {
         let mut residuals = vec![0.0; model.count()];
         let has_value = model.evaluate(parameters, &mut residuals);
@@ -120,7 +129,7 @@ pub fn jacobian(model: &dyn Residuals, at: &[f64], fixed: &[bool]) -> Option<DMa
         if fixed[column] {
             continue;
         }
-        let step = 6e-6 * value.abs().max(1e-9);
+        let step = 6e-6 * value.abs().max(least[column]);
         let moved = |step: f64| {
             let mut moved = at.to_vec();
             moved[column] = value + step;

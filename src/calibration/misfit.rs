@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::least_squares::{self, Residuals};
 use super::reweighed::Reweighed;
 use super::settings::{MEASURE, Weighting};
-use super::test_data::{Observation, TestData};
+use super::test_data::{FoundZero, Observation, TestData};
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::CardEntries;
 use crate::material::registry::Law;
@@ -19,6 +19,25 @@ pub struct Misfit<'a> {
     tests: &'a [TestData],
     weighting: Weighting,
     points: Vec<Point>,
+    /// How many values are the law's.
+    law_values: usize,
+    /// Zeros that are found with the law.
+    zeros: Vec<Zero>,
+}
+
+/// The zero of a test that is found with the law: its value, behind those of the law, is 1 + by/scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Zero {
+    pub test: usize,
+    /// The largest strain, or stress in MPa.
+    pub scale: f64,
+}
+
+impl Zero {
+    /// By how much a value moves it: strain, or stress in MPa.
+    pub fn by(self, value: f64) -> f64 {
+        self.scale * (value - 1.0)
+    }
 }
 
 /// An observation of a test with its weight.
@@ -44,7 +63,7 @@ impl<'a> Misfit<'a> {
         law: &'static Law,
         tests: &'a [TestData],
         weighting: Weighting,
-        stress: &dyn Fn(&TestData, &Observation) -> f64,
+        stress: &dyn Fn(usize, &Observation) -> f64,
     ) -> Self {
         let mut points = Vec::new();
         for (test, data) in tests.iter().enumerate() {
@@ -54,7 +73,7 @@ impl<'a> Misfit<'a> {
                     .map(|observation| Point {
                         test,
                         observation: *observation,
-                        weight: weighting.weight_of(data, stress(data, observation)),
+                        weight: weighting.weight_of(data, stress(test, observation)),
                     })
                     .collect();
                 if own.len() > BINS {
@@ -65,12 +84,54 @@ impl<'a> Misfit<'a> {
                 points.extend(own);
             }
         }
+        let measure = tests[0].stress_measure;
+        let (_, entries) = law.with_values(&[], measure, MEASURE);
         Self {
             law,
             tests,
             weighting,
             points,
+            law_values: entries.parameters.len(),
+            zeros: Vec::new(),
         }
+    }
+
+    /// The same with the zeros as values that were found in the records.
+    pub fn with_zeros(&self) -> Self {
+        let zero = |(test, data): (usize, &TestData)| {
+            let strains = data.observations.iter().map(|one| data.drawn_strain(one));
+            let scale = match data.found_zero? {
+                FoundZero::Strain { .. } => strains.fold(0.0, |most: f64, x| most.max(x.abs())),
+                FoundZero::Stress { .. } => data.largest_stress,
+            };
+            Some(Zero { test, scale })
+        };
+        Self {
+            points: self.points.clone(),
+            zeros: self.tests.iter().enumerate().filter_map(zero).collect(),
+            ..*self
+        }
+    }
+
+    /// The zeros whose values stand behind those of the law.
+    pub fn zeros(&self) -> &[Zero] {
+        &self.zeros
+    }
+
+    /// The tests with the zeros that some values give them.
+    pub fn moved_tests(&self, values: &[f64]) -> Vec<TestData> {
+        let tests = self.tests.iter().enumerate();
+        tests
+            .map(|(test, data)| data.with_zero_moved(self.moved(values, test)))
+            .collect()
+    }
+
+    /// By how much some values move the zero of a test.
+    fn moved(&self, values: &[f64], test: usize) -> f64 {
+        let own = self.zeros.iter().position(|zero| zero.test == test);
+        own.map_or(0.0, |place| {
+            self.zeros[place].by(values[self.law_values + place])
+        })
     }
 
     /// Every n-th point, so that about `count` are left.
@@ -78,13 +139,15 @@ impl<'a> Misfit<'a> {
         let stride = self.points.len().div_ceil(count);
         Self {
             points: self.points.iter().copied().step_by(stride).collect(),
+            zeros: self.zeros.clone(),
             ..*self
         }
     }
 
     pub fn build(&self, values: &[f64]) -> (Box<dyn HyperelasticLaw>, CardEntries) {
         let measure = self.tests[0].stress_measure;
-        self.law.with_values(values, measure, MEASURE)
+        let own = &values[..values.len().min(self.law_values)];
+        self.law.with_values(own, measure, MEASURE)
     }
 
     /// The rows along each axis of each test, with the strain that they are drawn over.
@@ -166,8 +229,9 @@ impl Residuals for Misfit<'_> {
     fn evaluate(&self, parameters: &[f64], residuals: &mut [f64]) -> bool {
         let (law, _) = self.build(parameters);
         for (residual, point) in residuals.iter_mut().zip(&self.points) {
-            let difference = point.observation.stress - self.predict(&*law, point);
-            *residual = point.weight * difference;
+            let data = &self.tests[point.test];
+            let one = data.moved(&point.observation, self.moved(parameters, point.test));
+            *residual = point.weight * (one.stress - data.stress_of(&*law, &one));
             if !residual.is_finite() {
                 return false;
             }
@@ -179,8 +243,14 @@ impl Residuals for Misfit<'_> {
 impl Reweighed for Misfit<'_> {
     fn reweighed(&self, values: &[f64]) -> Self {
         let (law, _) = self.build(values);
-        let stress = |data: &TestData, one: &Observation| data.stress_of(&*law, one);
-        Self::weighted(self.law, self.tests, self.weighting, &stress)
+        let stress = |test: usize, one: &Observation| {
+            let data = &self.tests[test];
+            data.stress_of(&*law, &data.moved(one, self.moved(values, test)))
+        };
+        Self {
+            zeros: self.zeros.clone(),
+            ..Self::weighted(self.law, self.tests, self.weighting, &stress)
+        }
     }
 
     fn is_relative(&self) -> bool {

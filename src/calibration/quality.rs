@@ -2,6 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::judged::Judged;
+use super::misfit::Zero;
+use super::refined_zero::MovedZero;
 use super::settings::{SMALLEST_SHARE, Weighting};
 use super::test_data::{Observation, Test, TestData};
 use super::verdict::Verdict;
@@ -66,9 +69,13 @@ pub struct Quality {
     pub estimates: Vec<Estimate>,
     /// Whether a bound holds it, for each parameter.
     pub at_bound: Vec<bool>,
+    /// Whether a value is not estimated at all, for each parameter and zero.
+    pub(super) fixed: Vec<bool>,
+    /// Zeros of the tests that were found again with the law.
+    pub zeros: Vec<MovedZero>,
     /// Correlation of the parameters.
     pub correlation: DMatrix<f64>,
-    /// The noise that makes the parameters uncertain which no bound holds.
+    /// The noise that makes the values uncertain which are estimated: parameters, and the zeros behind them.
     pub noise: Option<CurveNoise>,
     /// The stable ranges.
     pub stable: Vec<StableRange>,
@@ -87,10 +94,23 @@ impl Quality {
             .is_none_or(|verdict| verdict.answer.has_intervals())
     }
 
+    /// With the last estimates as those of zeros.
+    pub(super) fn with_zeros(mut self, zeros: &[Zero]) -> Self {
+        let parameters = self.estimates.len() - zeros.len();
+        let own = self.estimates.drain(parameters..);
+        let pairs = zeros.iter().zip(own);
+        self.zeros = pairs
+            .map(|(zero, value)| MovedZero::new(*zero, &value))
+            .collect();
+        self.at_bound.truncate(parameters);
+        self.correlation = self.correlation.resize(parameters, parameters, f64::NAN);
+        self
+    }
+
     /// AICc with another number of effective points, which laws must share to be compared.
     #[must_use]
     pub fn aicc_with(&self, effective: f64) -> f64 {
-        let parameters = (self.estimates.len() + 1) as f64;
+        let parameters = (self.estimates.len() + self.zeros.len() + 1) as f64;
         aicc(
             self.weighted_sum,
             [self.points as f64, effective],
@@ -151,28 +171,25 @@ pub(super) fn rounded(
 }
 
 /// The values with their uncertainty, NaN where a bound holds them, and their correlation.
-pub(super) fn estimates(
-    values: &[f64],
-    fixed: &[bool],
-    noise: Option<&CurveNoise>,
-) -> (Vec<Estimate>, DMatrix<f64>) {
+pub(super) fn estimates(values: &[f64], judged: &Judged) -> (Vec<Estimate>, DMatrix<f64>) {
     let size = values.len();
     let mut correlation = DMatrix::from_element(size, size, f64::NAN);
     let mut estimates: Vec<Estimate> = values
         .iter()
         .map(|value| Estimate::new(*value, f64::NAN, f64::NAN))
         .collect();
-    let Some(noise) = noise else {
+    let Some(noise) = &judged.noise else {
         return (estimates, correlation);
     };
-    let free: Vec<usize> = (0..size).filter(|index| !fixed[*index]).collect();
+    let free: Vec<usize> = (0..size).filter(|index| !judged.fixed[*index]).collect();
     let covariance = noise.covariance();
     let error = |i: usize| covariance[(i, i)].sqrt();
-    for (i, row) in free.iter().enumerate() {
+    let is_known = |(_, index): &(usize, &usize)| !judged.at_bound[**index];
+    for (i, row) in free.iter().enumerate().filter(is_known) {
         let unit = DVector::from_fn(free.len(), |j, _| f64::from(u8::from(i == j)));
         let reach = noise.half_width(&unit) / error(i);
         estimates[*row] = Estimate::new(values[*row], error(i), reach);
-        for (j, column) in free.iter().enumerate() {
+        for (j, column) in free.iter().enumerate().filter(is_known) {
             correlation[(*row, *column)] = covariance[(i, j)] / (error(i) * error(j));
         }
     }

@@ -111,6 +111,7 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
             design: &design,
             residual: &DVector::from_fn(12, left),
             orders: &[vec![Curve::even((0..12).collect())]],
+            sizes: &DVector::from_element(12, 1.0),
         };
         let expected = residuals.noise().unwrap();
         for (i, estimate) in found.quality.estimates.iter().enumerate() {

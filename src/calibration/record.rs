@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::cycles::{Branches, CYCLE, Cycle};
+use super::test_data::FoundZero;
 use super::zero::Beginning;
 use crate::document::{Faulty, Head};
 use crate::units::{self, Dimension};
@@ -32,6 +33,8 @@ pub struct Part {
     pub zero: f64,
     /// The stress of the record there, in MPa.
     pub offset: f64,
+    /// Which of them was found, and is uncertain.
+    pub found_zero: Option<FoundZero>,
     /// What was done, in words.
     pub remarks: Vec<String>,
 }
@@ -196,6 +199,9 @@ impl Part {
             let newton = machine.area * stress;
             format!("{newton:.4} N, {percent:.2} % of the largest force,")
         };
+        let strain = FoundZero::Strain {
+            length: machine.length,
+        };
         let done = match beginning {
             Beginning::Clean => return,
             Beginning::Slack {
@@ -204,6 +210,7 @@ impl Part {
                 offset,
             } => {
                 (self.zero, self.offset) = (zero, offset);
+                self.found_zero = Some(strain);
                 format!(
                     "slack up to {:.4} ± {:.4} mm is taken off: this is the zero of displacement, and {:.4} N that were read before it, of force",
                     mm(zero),
@@ -213,14 +220,17 @@ impl Part {
             }
             Beginning::Preload { zero, stress } => {
                 self.zero = zero;
+                self.found_zero = Some(strain);
                 format!(
-                    "preload of {} at the first row: the zero of displacement is {:.4} mm, where the curve, followed back, has no force",
+                    "preload of {} at the first row: the zero of displacement is {:.4} mm, where the curve, followed back, has no force; a \
+                     load cell that was not set to zero reads the same: if it was that, take the force off in the file",
                     force(stress),
                     mm(zero)
                 )
             }
             Beginning::Offset(stress) => {
                 self.offset = stress;
+                self.found_zero = Some(FoundZero::Stress { area: machine.area });
                 format!(
                     "{} at the first row are against the pull: the load cell's zero, which is taken off",
                     force(stress)

@@ -10,7 +10,7 @@ use std::fmt::Write;
 use super::cycles::Branches;
 use super::fit::{Fit, Relaxed, check_measures, fit};
 use super::history::History;
-use super::judged::{AT_BOUND, Judged, at_bound};
+use super::judged::{AT_BOUND, Judged, Values, at_bound};
 use super::least_squares::Residuals;
 use super::prony::{Found, ViscousMisfit};
 use super::quality::{Deviations, Quality, aicc, estimates, rounded};
@@ -18,12 +18,12 @@ use super::reweighed::{Reweighed, settled};
 use super::settings::{FitSettings, MEASURE, limits};
 use super::terms::{SHARES, TIMES, Terms, parameters, transformed};
 use super::test_data::{TestData, Times};
-use super::warnings::warnings;
+use super::warnings::{taken_zeros, warnings};
 use crate::error::Error;
 use crate::material::parameters::{Parameter, StressMeasure};
 use crate::material::registry::{Law, MARLOW_TABLE};
 use crate::material::viscosity::Covered;
-use crate::statistics::{CurveNoise, Estimate, extremes};
+use crate::statistics::{Estimate, extremes};
 use nalgebra::DMatrix;
 
 /// Fits a law with a Prony series to some tests together.
@@ -183,7 +183,7 @@ impl Whole<'_> {
                 *value
             };
         }
-        let estimated = self.estimated(&values, &judged.at_bound, judged.noise.as_ref());
+        let estimated = self.estimated(&values, &judged);
         let fitted = self.misfit.law(&values);
         let relaxed = self.relaxed(&values, tried)?;
         let predicted = |test: usize, row: usize| relaxed.predicted[test][row];
@@ -194,6 +194,7 @@ impl Whole<'_> {
         quality
             .warnings
             .extend(self.warnings(&parameters, &quality, terms));
+        quality.warnings.extend(taken_zeros(self.tests));
         Ok(Fit {
             fitted,
             parameters,
@@ -211,13 +212,8 @@ impl Whole<'_> {
     }
 
     /// The values with their uncertainty and correlation, times as they are.
-    fn estimated(
-        &self,
-        values: &[f64],
-        bounded: &[bool],
-        noise: Option<&CurveNoise>,
-    ) -> (Vec<Estimate>, DMatrix<f64>) {
-        let (mut estimated, correlation) = estimates(values, bounded, noise);
+    fn estimated(&self, values: &[f64], judged: &Judged) -> (Vec<Estimate>, DMatrix<f64>) {
+        let (mut estimated, correlation) = estimates(values, judged);
         for (index, estimate) in estimated.iter_mut().enumerate() {
             if self.is_logarithmic(index) {
                 *estimate = Estimate {
@@ -250,7 +246,7 @@ impl Whole<'_> {
         let law = misfit.law(values);
         let rounded = rounded(self.tests, &*law, self.settings.weighting);
         let left = (misfit as &dyn Residuals, misfit.curves());
-        Judged::of(left, values, at_bound, rounded)
+        Judged::of(left, Values::held(values, at_bound), rounded)
     }
 
     fn law(&self) -> &'static Law {

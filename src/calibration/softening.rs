@@ -8,7 +8,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::fit::{Fit, check_measures, fit};
-use super::judged::{AT_BOUND, Judged, at_bound};
+use super::judged::{AT_BOUND, Judged, Values, at_bound};
 use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
 use super::quality::{Deviations, Quality, aicc, estimates, rounded};
 use super::reweighed::settled;
@@ -16,7 +16,7 @@ use super::settings::{FitSettings, Weighting, limits};
 use super::softened::{Softened, cycles};
 use super::softening_misfit::{Base, SOFTENING, SofteningMisfit, softening_parameters};
 use super::test_data::{Observation, TestData};
-use super::warnings::warnings;
+use super::warnings::{taken_zeros, warnings};
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::registry::{Law, MARLOW_TABLE};
@@ -148,6 +148,8 @@ fn rising(data: &TestData) -> TestData {
     }
     TestData {
         observations: rows,
+        // It stays where the record has it.
+        found_zero: None,
         ..data.clone()
     }
 }
@@ -193,7 +195,7 @@ fn judged(
     let at_bound = at_bound(values, bounds, AT_BOUND);
     let left = (misfit as &dyn Residuals, misfit.curves());
     let rounded = rounded(tests, &*misfit.law(values), weighting);
-    Judged::of(left, values, at_bound, rounded)
+    Judged::of(left, Values::held(values, at_bound), rounded)
 }
 
 /// What the values that were found are judged by.
@@ -214,6 +216,7 @@ impl Whole<'_> {
         let softening = self.misfit.softening(values);
         let mut quality = self.quality(&*fitted, values, &predicted);
         quality.warnings = warnings(&quality, &parameters, None);
+        quality.warnings.extend(taken_zeros(self.tests));
         let tests = self.tests.iter().zip(&predicted);
         let of_tests = tests.flat_map(|(data, own)| cycles(data, &*fitted, softening, own));
         let softened = Softened {
@@ -248,7 +251,7 @@ impl Whole<'_> {
     ) -> Quality {
         let weighting = self.settings.weighting;
         let judged = judged(self.misfit, self.tests, values, self.bounds, weighting);
-        let estimates = estimates(values, &judged.at_bound, judged.noise.as_ref());
+        let estimates = estimates(values, &judged);
         let deviations = Deviations::of(self.tests, weighting, &|test, row| predicted[test][row]);
         let n = self.misfit.count() as f64;
         let counted = [n, judged.effective(n)];

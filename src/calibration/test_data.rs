@@ -92,6 +92,21 @@ pub enum Times {
     Unknown(Box<Diagnostic>),
 }
 
+/// A zero that was found at the beginning of a machine's record: uncertain, so that it is found again with the law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FoundZero {
+    /// That of strain, on a specimen of this length in mm.
+    Strain {
+        /// The length.
+        length: f64,
+    },
+    /// That of stress, on a specimen of this cross-section in mm².
+    Stress {
+        /// The cross-section.
+        area: f64,
+    },
+}
+
 /// The data of one test.
 #[derive(Clone, Debug)]
 pub struct TestData {
@@ -118,6 +133,8 @@ pub struct TestData {
     pub rise: f64,
     /// What the record holds and is not fitted: slack, holds, other cycles.
     pub left_out: Vec<Observation>,
+    /// The zero that was found in the record, if one was.
+    pub found_zero: Option<FoundZero>,
     /// What was taken of a record and what was taken off, in words.
     pub remarks: Vec<String>,
     /// What the head says about source, specimen, DOI and licence.
@@ -159,6 +176,32 @@ impl TestData {
                 })
             }
         }
+    }
+
+    /// An observation with the zero that was found moved: strain, or stress in MPa, larger by so much.
+    pub fn moved(&self, observation: &Observation, by: f64) -> Observation {
+        let mut moved = *observation;
+        match self.found_zero {
+            None => {}
+            Some(FoundZero::Stress { .. }) => moved.stress += by,
+            Some(FoundZero::Strain { .. }) => match self.test {
+                Test::Planar => moved.strains[self.drawn_axis] += by,
+                _ => moved.strains = moved.strains.map(|x| x + by),
+            },
+        }
+        moved
+    }
+
+    /// The test with the zero that was found moved, as [`Self::moved`].
+    #[must_use]
+    pub fn with_zero_moved(&self, by: f64) -> Self {
+        let mut all = self.clone();
+        for one in all.observations.iter_mut().chain(&mut all.left_out) {
+            *one = self.moved(one, by);
+        }
+        let stresses = all.observations.iter().map(|one| one.stress.abs());
+        all.largest_stress = stresses.fold(0.0, f64::max);
+        all
     }
 
     /// λ − 1 along the axis that the data are drawn over: the one of the stress in a uniaxial test, else the one

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::misfit::Rows;
-use crate::statistics::{Curve, CurveNoise, CurveResiduals, DurbinWatson};
+use crate::statistics::{Curve, CurveNoise, CurveResiduals, DurbinWatson, extremes, f_tail};
 
 /// What the residuals are.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -50,6 +50,8 @@ pub struct Verdict {
     pub pattern_probability: Option<f64>,
     /// The number of independent points that tell as much of the noise; all points where the residuals are no noise.
     pub effective_points: f64,
+    /// How many times the noise of one curve is larger than that of another; 1 where they are alike.
+    pub noise_ratio: f64,
 }
 
 impl Verdict {
@@ -62,11 +64,18 @@ impl Verdict {
                 test.statistic
             )
         });
+        let unequal = match self.noise_ratio > 1.0 {
+            true => format!(
+                "; of one test it is {:.1} times larger than of another, which the intervals hold",
+                self.noise_ratio
+            ),
+            false => String::new(),
+        };
         let pattern = percent(self.pattern_probability.unwrap_or(f64::NAN));
         match self.answer {
-            Answer::White => format!("white noise{test}"),
+            Answer::White => format!("white noise{test}{unequal}"),
             Answer::Correlated => format!(
-                "noise that correlates, neighbours by {:.2}, so that the points tell as much as {:.1} independent ones{test}",
+                "noise that correlates, neighbours by {:.2}, so that the points tell as much as {:.1} independent ones{test}{unequal}",
                 self.of_neighbours, self.effective_points
             ),
             Answer::Systematic => format!(
@@ -111,10 +120,12 @@ impl LeftOver<'_> {
         }
         let curves = &self.curves;
         let orders = orders(curves);
+        let (sizes, noise_ratio) = self.sizes();
         let residuals = CurveResiduals {
             design: self.design,
             residual: self.residual,
             orders: &orders,
+            sizes: &sizes,
         };
         let noise = residuals.noise()?;
         let tests = orders
@@ -141,8 +152,39 @@ impl LeftOver<'_> {
             of_neighbours: noise.of_neighbours(),
             pattern_probability: pattern,
             effective_points,
+            noise_ratio,
         };
         Some((verdict, noise))
+    }
+
+    /// The size of the noise of every row over that of all: of a curve by itself where curves differ by more than chance, else 1; and how
+    /// many times the largest is larger than the smallest.
+    fn sizes(&self) -> (DVector<f64>, f64) {
+        let rows = self.residual.len();
+        let share = 1.0 - self.design.ncols() as f64 / rows as f64;
+        let mean = self.residual.norm_squared() / rows as f64;
+        let of_curve = |curve: &Rows| {
+            let own = curve.iter().map(|(row, _)| self.residual[*row].powi(2));
+            (own.sum::<f64>() / curve.len() as f64, curve.len() as f64)
+        };
+        let squares: Vec<(f64, f64)> = self.curves.iter().map(of_curve).collect();
+        let pairs = squares
+            .iter()
+            .flat_map(|a| squares.iter().map(move |b| (a, b)));
+        // All pairs are looked at.
+        let by_chance = pairs.map(|((a, n), (b, m))| f_tail([share * n, share * m], a / b));
+        let least = by_chance.fold(1.0, f64::min) * squares.len().pow(2) as f64;
+        let mut sizes = DVector::from_element(rows, 1.0);
+        if !(least < DOUBTED && squares.iter().all(|(square, _)| *square > 0.0)) {
+            return (sizes, 1.0);
+        }
+        for (curve, (square, _)) in self.curves.iter().zip(&squares) {
+            for (row, _) in curve {
+                sizes[*row] = (square / mean).sqrt();
+            }
+        }
+        let [low, high] = extremes(sizes.iter().copied());
+        (sizes, high / low)
     }
 
     /// Whether the residuals are about as large as rounding leaves them, or smaller. Rounded strains count only where the residuals
@@ -183,7 +225,7 @@ fn smooth_functions(curves: &[Rows], rows: usize, estimates: usize) -> DMatrix<f
     let mut columns = Vec::new();
     for curve in curves {
         let count = (estimates + BEYOND).min(curve.len() / POINTS_EACH);
-        let [low, high] = crate::statistics::extremes(curve.iter().map(|(_, x)| *x));
+        let [low, high] = extremes(curve.iter().map(|(_, x)| *x));
         if high <= low {
             continue;
         }

@@ -1,6 +1,7 @@
 //! What a user must know before using a fit.
 
 use super::quality::{Quality, StableRange, knows_sign};
+use super::test_data::TestData;
 use crate::material::curve::Mode;
 use crate::material::parameters::Parameter;
 
@@ -29,6 +30,18 @@ pub(super) fn warnings(
         .collect()
 }
 
+/// Zeros that were found in the records and are taken as known.
+pub(super) fn taken_zeros(tests: &[TestData]) -> Option<String> {
+    let found = tests.iter().filter(|test| test.found_zero.is_some());
+    let names: Vec<&str> = found.map(|test| &*test.name).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the zero that was found in {} is taken as known: the intervals do not hold its uncertainty",
+            names.join(", ")
+        )
+    })
+}
+
 /// Parameters that a bound holds, or whose sign is not known.
 fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
     let (mut warnings, mut vague) = (Vec::new(), Vec::new());
@@ -36,9 +49,10 @@ fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
         let (key, value) = (parameters[index].key, estimate.value);
         if quality.at_bound[index] {
             let others = match quality.has_intervals() {
-                true => {
-                    ": the intervals of the others hold where it is there, and are too narrow where it is not"
+                true if quality.fixed[index] => {
+                    ": the intervals of the others hold where it is there"
                 }
+                true => ": the intervals of the others hold as if it were free",
                 false => "",
             };
             warnings.push(format!("{key} = {value:.4e} is held by a bound{others}"));

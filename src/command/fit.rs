@@ -131,6 +131,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     };
     let named = [&arguments.law, &arguments.card].map(Option::as_deref);
     let fit = found(named, &tests, &settings, wanted)?;
+    let tests = fit.fitted_tests(&tests);
     let first = arguments.data[0].file_stem().unwrap_or_default();
     let usual = || format!("{}-{}", first.to_string_lossy(), fit.law.name);
     let name = arguments.name.unwrap_or_else(usual);
@@ -333,7 +334,7 @@ pub fn refit(name: &str) -> Outcome {
             fitted(law(&card.law_name)?, &tests, &settings, wanted)?
         }
     };
-    let (text, same) = fit_message::refit(&card, &fit, &tests);
+    let (text, same) = fit_message::refit(&card, &fit, &fit.fitted_tests(&tests));
     print(&text)?;
     Ok(u8::from(!same))
 }

@@ -227,6 +227,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
             "correlation_of_neighbours": verdict.of_neighbours,
             "pattern_probability": verdict.pattern_probability,
             "effective_points": verdict.effective_points,
+            "noise_ratio": verdict.noise_ratio,
         })),
         "parameters": parameters.map(|(parameter, (estimate, at_bound))| json!({
             "key": parameter.key,

@@ -19,7 +19,6 @@ impl Results {
             .map(|(what, seconds)| (&**what, *seconds));
         let times = [("whole study", self.seconds)].into_iter().chain(parts);
         let times: Map<_, _> = times.map(|(what, s)| (what.to_owned(), json!(s))).collect();
-        let warnings = self.read_warnings.iter().chain(&outcome.warnings);
         json!({
             "gelbench": env!("CARGO_PKG_VERSION"),
             "name": self.name,
@@ -33,7 +32,7 @@ impl Results {
             "requirements": outcome.checks.iter().map(Check::json).collect::<Vec<_>>(),
             "passed": self.passed(),
             "verdict": verdict(&outcome.checks),
-            "warnings": warnings.collect::<Vec<_>>(),
+            "warnings": self.warnings().collect::<Vec<_>>(),
             "doubts": outcome.doubts,
             "ends": outcome.ends.iter().map(|end| &end.message).collect::<Vec<_>>(),
             "balance": { "worst": outcome.balance, "models": outcome.balances },

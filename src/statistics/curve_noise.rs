@@ -1,10 +1,12 @@
 //! What the estimates of a least-squares fit to curves are worth where the noise may correlate along them.
 //!
 //! ```text
-//! Cov(β) = s² P R Pᵀ,   P = (JᵀJ)⁻¹Jᵀ,   s² = rᵀ(R⁻¹ − R⁻¹J (JᵀR⁻¹J)⁻¹ JᵀR⁻¹) r/ν,   ν = n − k
+//! Cov(β) = s² P S R S Pᵀ,   P = (JᵀJ)⁻¹Jᵀ,   s² = rᵀ(R⁻¹ − R⁻¹J (JᵀR⁻¹J)⁻¹ JᵀR⁻¹) r/ν,   ν = n − k
 //! w(R) ∝ w₀(R) (det R det JᵀR⁻¹J (s²)^ν)^(−½)                   restricted likelihood, Σ w = 1
 //! Σ w(R) P(|t_ν| > h/√(aᵀ Cov a)) = 5 %                         h: half the width of the 95 % interval of aᵀβ
 //! ```
+//!
+//! S are the sizes of the noise of the rows, which differ from curve to curve; in s² and w, J and r stand for S⁻¹J and S⁻¹r.
 //!
 //! A short curve does not tell how far its noise correlates, and the likeliest length is too short in the mean: intervals
 //! that take it as known hold the truth too seldom. So all are asked: white noise, and exponential correlations whose lengths
@@ -42,6 +44,8 @@ pub struct CurveResiduals<'a> {
     pub residual: &'a DVector<f64>,
     /// Ways in which all rows follow one another on curves.
     pub orders: &'a [Vec<Curve>],
+    /// The standard deviation of the noise of each row over that of all.
+    pub sizes: &'a DVector<f64>,
 }
 
 /// Noise that residuals may have.
@@ -138,11 +142,12 @@ impl CurveResiduals<'_> {
         let estimates = self.design.ncols();
         let freedom = rows.checked_sub(estimates).filter(|freedom| *freedom > 0)? as f64;
         let basis = Basis::new(self.design)?;
-        let columns = with_last(&basis.columns, self.residual);
+        let columns = self.of_one_size(&with_last(&basis.columns, self.residual));
+        let sized = self.sized(&basis.columns);
         let part = |candidate: &Candidate| {
             let noise = self.along(candidate);
             let triangle = Triangle::new(noise, &columns);
-            let spread = basis.columns.tr_mul(&noise.product(&basis.columns));
+            let spread = sized.tr_mul(&noise.product(&sized));
             let variance = triangle.left(estimates) / freedom;
             let part = Part {
                 weight: candidate.weight,
@@ -180,7 +185,7 @@ impl CurveResiduals<'_> {
             return None;
         }
         let freedom = left as f64;
-        let columns = with_last(&all, self.residual);
+        let columns = self.of_one_size(&with_last(&all, self.residual));
         let tried = |candidate: &Candidate| {
             let noise = self.along(candidate);
             let triangle = Triangle::new(noise, &columns);
@@ -194,6 +199,20 @@ impl CurveResiduals<'_> {
         let weights = shares(tried.iter().map(|(_, log)| *log));
         let pairs = tried.iter().zip(&weights);
         Some(pairs.map(|((tail, _), weight)| tail * weight).sum())
+    }
+
+    /// S⁻¹ times some columns: rows whose noise is of one size.
+    fn of_one_size(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(columns.nrows(), columns.ncols(), |row, column| {
+            columns[(row, column)] / self.sizes[row]
+        })
+    }
+
+    /// S times some columns.
+    fn sized(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(columns.nrows(), columns.ncols(), |row, column| {
+            columns[(row, column)] * self.sizes[row]
+        })
     }
 
     fn along(&self, candidate: &Candidate) -> NoiseAlong<'_> {

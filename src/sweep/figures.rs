@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::plan::Run;
 use super::variable::Setting;
-use crate::results::Outcome;
+use crate::results::Results;
 
 /// A run with what came of it.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -21,11 +21,14 @@ pub struct Row {
     pub passed: bool,
     /// Why there is no solution, or where a model ended early; empty where neither is the case.
     pub fault: String,
+    /// What deserves attention in the study and in its results, each in a sentence.
+    pub warnings: Vec<String>,
 }
 
 impl Row {
     /// Of what a study has found.
-    pub fn of(run: &Run, outcome: &Outcome, passed: bool) -> Self {
+    pub fn of(run: &Run, results: &Results) -> Self {
+        let outcome = &results.outcome;
         let mut figures = Vec::new();
         for step in &outcome.steps {
             for (model, quantities) in &step.models {
@@ -39,24 +42,27 @@ impl Row {
                 );
             }
         }
+        let warnings = results.warnings().chain(&outcome.doubts);
         let ends = outcome.ends.iter().map(|end| end.message.as_str());
         Self {
             number: run.number,
             settings: run.settings.clone(),
             figures,
-            passed,
+            passed: results.passed(),
             fault: ends.collect::<Vec<_>>().join("; "),
+            warnings: warnings.map(|one| plain(one)).collect(),
         }
     }
 
     /// Of a study without a solution.
-    pub fn failed(run: &Run, fault: String) -> Self {
+    pub fn failed(run: &Run, fault: String, warnings: Vec<String>) -> Self {
         Self {
             number: run.number,
             settings: run.settings.clone(),
             figures: Vec::new(),
             passed: false,
             fault,
+            warnings,
         }
     }
 
@@ -67,6 +73,12 @@ impl Row {
             .find(|(own, _)| own == name)
             .map(|(_, value)| *value)
     }
+}
+
+/// A warning without the word before it.
+fn plain(warning: &str) -> String {
+    let own = warning.strip_prefix("Warning: ");
+    own.unwrap_or(warning).to_owned()
 }
 
 /// All numbers below a name, with two components where it ends with a unit; other lists are left out.

@@ -1,6 +1,6 @@
 //! What many runs say together: spreads, rank correlations, bands.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use serde_json::{Value, json};
 
@@ -89,7 +89,6 @@ fn of_last_step(all: &[Statistics]) -> impl Iterator<Item = &Statistics> {
 
 /// The report.
 pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
-    let failed = rows.iter().filter(|row| !row.fault.is_empty()).count();
     let all = statistics(rows);
     let mut head = vec![
         "figure of the last step",
@@ -133,12 +132,48 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
              always rises with a key, −1 where it always falls."
         )),
     ];
-    if failed > 0 {
-        blocks.push(Block::paragraph(format!(
-            "{failed} runs have no solution, or none at their last steps; why stands in the column `fault` of sweep.csv."
-        )));
-    }
+    blocks.extend(cautions(rows).into_iter().map(Block::paragraph));
     blocks
+}
+
+/// What deserves attention in the runs together: figures that some lack, and what is said of single runs, the same said once.
+pub fn cautions(rows: &[Row]) -> Vec<String> {
+    let failed = rows.iter().filter(|row| !row.fault.is_empty()).count();
+    let biased = (failed > 0).then(|| {
+        format!(
+            "{failed} of {} runs have no solution, or none at their last steps (column `fault` of sweep.csv): means, quantiles and \
+             bands there are those of the other runs alone, and are biased unless the runs without one are left out by chance.",
+            rows.len()
+        )
+    });
+    let mut kinds: Vec<(String, &Row, &str, usize)> = Vec::new();
+    for row in rows {
+        let mut told = HashSet::new();
+        for warning in &row.warnings {
+            let kind = kind(warning);
+            if !told.insert(kind.clone()) {
+                continue;
+            }
+            match kinds.iter_mut().find(|(known, ..)| *known == kind) {
+                Some((.., count)) => *count += 1,
+                None => kinds.push((kind, row, warning, 1)),
+            }
+        }
+    }
+    let said = kinds.into_iter().map(|(_, row, warning, count)| {
+        let others = match count {
+            1 => String::new(),
+            count => format!(" and {} others", count - 1),
+        };
+        format!("Run {}{others}: {warning}", row.number)
+    });
+    biased.into_iter().chain(said).collect()
+}
+
+/// A warning without its numbers: the same in runs in which they alone differ.
+fn kind(warning: &str) -> String {
+    let is_of_number = |c: char| c.is_ascii_digit() || ".,-−+e… ".contains(c);
+    warning.chars().filter(|c| !is_of_number(*c)).collect()
 }
 
 /// For machines: the statistics of every figure.
@@ -158,6 +193,7 @@ pub fn json(keys: &[String], rows: &[Row]) -> Value {
         "keys": heads(keys, rows),
         "runs": rows.len(),
         "failed": rows.iter().filter(|row| !row.fault.is_empty()).count(),
+        "warnings": cautions(rows),
         "figures": figures.collect::<Vec<_>>(),
     })
 }

@@ -10,7 +10,10 @@ use crate::error::Error;
 
 /// The columns before those of the figures, but for the keys, and those behind them.
 const FIRST: &str = "run";
-const LAST: [&str; 2] = ["passed", "fault"];
+const LAST: [&str; 3] = ["passed", "fault", "warnings"];
+
+/// What stands between the warnings of a run.
+const BETWEEN: &str = " | ";
 
 /// The names of all figures, in the order in which runs have them.
 pub fn names(rows: &[Row]) -> Vec<&str> {
@@ -28,7 +31,8 @@ pub fn heads(keys: &[String], rows: &[Row]) -> Vec<String> {
     keys.map(|(index, key)| headed(key, unit(index))).collect()
 }
 
-/// The table: number of the run, the keys with units, all figures, whether requirements are met, and what was amiss.
+/// The table: number of the run, the keys with units, all figures, whether requirements are met, what was amiss, and what deserves
+/// attention.
 pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
     let names = names(rows);
     let head = std::iter::once(FIRST.to_owned())
@@ -46,7 +50,8 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
             .map(|name| figures.get(name).map_or(String::new(), f64::to_string));
         let first = std::iter::once(row.number.to_string());
         let settings = row.settings.iter().map(Setting::words);
-        let last = [row.passed.to_string(), row.fault.clone()];
+        let warnings = row.warnings.join(BETWEEN);
+        let last = [row.passed.to_string(), row.fault.clone(), warnings];
         first.chain(settings).chain(found).chain(last).collect()
     };
     write_records(std::iter::once(head.collect()).chain(rows.iter().map(line)))
@@ -84,9 +89,15 @@ fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
             figures: own.collect::<Option<_>>()?,
             passed: line[figures.end].parse().ok()?,
             fault: line[figures.end + 1].clone(),
+            warnings: warnings(&line[figures.end + 2]),
         })
     };
     lines.iter().map(row).collect()
+}
+
+fn warnings(text: &str) -> Vec<String> {
+    let own = text.split(BETWEEN).filter(|one| !one.is_empty());
+    own.map(str::to_owned).collect()
 }
 
 fn setting(text: &str, unit: &str) -> Setting {

@@ -306,7 +306,7 @@ fn every_run_is_in_one_part_and_parts_of_others_are_refused() {
         assert_eq!(holders, 1, "run {}", run.number);
     }
     assert!(Shard::new(0, 3).is_none() && Shard::new(4, 3).is_none());
-    let row = |run: &Run| Row::failed(run, "none".to_owned());
+    let row = |run: &Run| Row::failed(run, "none".to_owned(), Vec::new());
     let mut rows: Vec<Row> = runs.iter().rev().map(row).collect();
     let joined = join(&runs, rows.clone()).unwrap();
     assert!(joined.iter().map(|row| row.number).eq(1..=7));
@@ -344,4 +344,42 @@ fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
     }
     let found = folder.rows(&|_| (), &|| ()).unwrap();
     assert_eq!(found, super::tests::rows(&sweep));
+}
+
+/// Beyond the range of the card, as `run` would say; once of all runs.
+#[test]
+fn what_deserves_attention_in_single_runs_is_told_of_all_together() {
+    let mut sweep = sweep(&["plate.thickness=1 mm,2 mm"], None);
+    let told = cautions(&rows(&sweep));
+    assert!(!told.iter().any(|one| one.contains("range")), "{told:?}");
+    let pressed = STUDY.replace("10 %", "-5 %").replace("20 %", "-10 %");
+    sweep.study.text = pressed.replace("neo-hooke", "pva-10-yeoh");
+    let rows = rows(&sweep);
+    let told = cautions(&rows);
+    let beyond: Vec<&String> = told.iter().filter(|one| one.contains("range")).collect();
+    assert!(
+        matches!(beyond[..], [one] if one.starts_with("Run 1 and 1 others: ")),
+        "{told:?}"
+    );
+    let keys = sweep.keys();
+    let read = read(Path::new("a.csv"), keys.len(), &write(&keys, &rows)).unwrap();
+    assert_eq!(read, rows);
+    assert_eq!(json(&keys, &rows)["warnings"][0], told[0]);
+    // Each kind of warning once, without a word before it.
+    assert!(told.iter().all(|one| !one.contains("Warning")), "{told:?}");
+}
+
+#[test]
+fn quantiles_that_leave_out_runs_without_a_solution_are_called_biased() {
+    let sweep = sweep(&["plate.thickness=1..2 mm:3"], None);
+    let mut rows = rows(&sweep);
+    let before = cautions(&rows);
+    let run = &sweep.runs().unwrap()[1];
+    rows[1] = Row::failed(run, "no solution".into(), Vec::new());
+    let told = cautions(&rows);
+    assert_eq!(told.len(), before.len() + 1, "{told:?}");
+    assert!(
+        told[0].starts_with("1 of 3 runs") && told[0].contains("biased"),
+        "{told:?}"
+    );
 }

@@ -91,7 +91,7 @@ impl RegressedLaw {
     }
 
     /// The keys of the parameters that act on the law and are not zero.
-    fn acting(&self) -> Vec<&'static str> {
+    pub fn acting(&self) -> Vec<&'static str> {
         let resistance = self.all[self.all.len() - usize::from(self.volume.is_some())..]
             .iter()
             .cloned();

@@ -5,10 +5,10 @@
 use super::MarkerStudy;
 use super::gross_errors::has_many;
 use super::report::{outliers, used};
-use crate::corrector::estimation::{Answer, FieldEstimate};
+use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
-use crate::results::small_strain;
+use crate::results::{Stretches, small_strain};
 use crate::statistics::{Estimate, small_probability};
 
 impl MarkerStudy {
@@ -17,7 +17,8 @@ impl MarkerStudy {
         let mut all = self.doubts.clone();
         let frames = self.series.frames.iter().zip(estimates);
         for (frame, estimate) in frames {
-            all.extend(of_frame(frame, estimate, self.strains(estimate)));
+            let strained = [self.strains(estimate), self.beyond_card(estimate)];
+            all.extend(of_frame(frame, estimate, strained));
         }
         all
     }
@@ -27,6 +28,20 @@ impl MarkerStudy {
         let law = self.law(estimate);
         let reason = small_strain::reason(&*law, &self.mesh, &estimate.displacement)?;
         Some((reason, small_strain::LARGE_STRAINS))
+    }
+
+    /// Stretches beyond the range of the card, on more than a hundredth of the area: its law is an extrapolation there. A law whose
+    /// parameters are all found with the field is calibrated by it.
+    fn beyond_card(&self, estimate: &FieldEstimate) -> Option<Doubt> {
+        let found = estimate.parameters.len();
+        let whole = self.regressed.as_ref().map(RegressedLaw::acting);
+        if whole.is_some_and(|keys| found == keys.len()) {
+            return None;
+        }
+        let stretches = Stretches::new(&self.card, &self.mesh, &estimate.displacement);
+        let reason = stretches.reason(&self.card, "");
+        let reason = reason.filter(|_| stretches.share > BESIDE_CORNERS)?;
+        Some((reason, EXTRAPOLATED))
     }
 
     /// An estimate whose intervals of forces hold that the edge may lie a marker's spacing farther out: one more row of
@@ -51,6 +66,13 @@ impl MarkerStudy {
     }
 }
 
+/// The share of the area that may lie beyond the range of the card: beside a clamped corner stretches have no bound.
+const BESIDE_CORNERS: f64 = 0.01;
+
+/// What helps where the card is left.
+const EXTRAPOLATED: &str = "stresses and forces there are an extrapolation that no interval holds: take a card of tests up to these \
+    stretches";
+
 /// Moves the end of an interval on the side of `by`.
 fn widen(estimate: &mut Estimate, by: f64) {
     let [low, high] = &mut estimate.interval;
@@ -60,15 +82,22 @@ fn widen(estimate: &mut Estimate, by: f64) {
     }
 }
 
-fn of_frame(frame: &Frame, estimate: &FieldEstimate, strains: Option<Doubt>) -> Vec<Diagnostic> {
+fn of_frame(
+    frame: &Frame,
+    estimate: &FieldEstimate,
+    strained: [Option<Doubt>; 2],
+) -> Vec<Diagnostic> {
     let doubts = [
         noise(estimate),
         many_outliers(estimate),
         edges(estimate),
         not_explained(estimate),
-        strains,
     ];
-    let doubts = doubts.into_iter().flatten().chain(forces(estimate));
+    let doubts = doubts
+        .into_iter()
+        .chain(strained)
+        .flatten()
+        .chain(forces(estimate));
     let named = |(message, hint): (String, &str)| {
         Diagnostic::warning("", format!("frame {}: {message}", frame.number)).hint(hint)
     };

@@ -1,6 +1,6 @@
 //! What deserves attention in the finite elements' states: compression, loss of stability, the range of the card.
 
-use nalgebra::{Matrix2, Vector4};
+use nalgebra::Vector4;
 
 use super::problem::Specimen;
 use super::results::models::Models;
@@ -10,7 +10,9 @@ use crate::material::sheet::Kinematics;
 use crate::material::stability::is_stable;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
-use crate::results::{is_one_of_several, locking, one_of_several, small_strain, wrinkling};
+use crate::results::{
+    Stretches, is_one_of_several, locking, one_of_several, small_strain, wrinkling,
+};
 
 /// All warnings, each in a sentence.
 pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
@@ -85,54 +87,37 @@ fn several(models: &Models) -> Option<String> {
     one_of_several(&states.collect::<Vec<_>>())
 }
 
-/// The principal stretches of a sheet at the centres of its cells, and whether its material is stable there.
+/// A state of the finite elements: its stretches, and whether its material is stable.
 struct Strained {
-    smallest: f64,
-    largest: f64,
+    stretches: Stretches,
     /// A cell whose state is not stable, if there is one.
     unstable: Option<String>,
 }
 
 impl Strained {
     fn new(card: &Card, mesh: &Mesh, displacement: &[f64]) -> Self {
-        let (mut smallest, mut largest, mut unstable) = (f64::INFINITY, 0.0_f64, None);
-        for cell in 0..mesh.cell_count() {
-            let gradient = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
-            let [xx, xy, yx, yy] = gradient;
-            let stretches = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy).singular_values();
-            smallest = smallest.min(stretches.min());
-            largest = largest.max(stretches.max());
+        let is_unstable = |cell: &usize| {
+            let gradient = mesh.gradient_at(displacement, *cell, mesh.shape(*cell).centre());
             let kinematics = Kinematics::new(&Vector4::from(gradient));
-            let stable = kinematics.is_ok_and(|kinematics| is_stable(&*card.law, &kinematics));
-            if !stable && unstable.is_none() {
-                unstable = Some(mesh.describe_cell(cell));
-            }
-        }
+            !kinematics.is_ok_and(|kinematics| is_stable(&*card.law, &kinematics))
+        };
+        let unstable = (0..mesh.cell_count()).find(is_unstable);
         Self {
-            smallest,
-            largest,
-            unstable,
+            stretches: Stretches::new(card, mesh, displacement),
+            unstable: unstable.map(|cell| mesh.describe_cell(cell)),
         }
     }
 }
 
 /// The warning about stretches beyond the card's range, at the worst load factor.
-///
-/// A card of tests from λ₁ to λ₂ has seen principal stretches in the plane between the smaller of λ₁ and λ₂^−½ and the
-/// larger of λ₂ and λ₁^−½: an incompressible sample contracts across.
 fn beyond(card: &Card, strained: &[(String, Strained)]) -> Option<String> {
-    let [low, high] = card.stretch_range;
-    let (least, most) = (low.min(high.powf(-0.5)), high.max(low.powf(-0.5)));
-    let outside = |own: &Strained| (own.largest / most).max(least / own.smallest);
+    let excess = |(_, own): &(String, Strained)| own.stretches.excess;
     let worst = strained
         .iter()
-        .max_by(|a, b| outside(&a.1).total_cmp(&outside(&b.1)));
-    let (load, worst) = worst.filter(|(_, own)| outside(own) > 1.0 + 1e-3)?;
-    Some(format!(
-        "Warning: principal stretches in the plane reach {:.3} … {:.3} at {load}, outside the range of the card `{}`, \
-         which was calibrated from λ = {low} to {high} ({} test).",
-        worst.smallest, worst.largest, card.name, card.test
-    ))
+        .max_by(|a, b| excess(a).total_cmp(&excess(b)));
+    let (load, worst) = worst?;
+    let reason = worst.stretches.reason(card, &format!(" at {load}"))?;
+    Some(format!("Warning: {reason}."))
 }
 
 /// The warning about a material that is not stable, at the first load factor.

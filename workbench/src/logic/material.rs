@@ -108,7 +108,7 @@ fn fit(question: &FitQuestion) -> Result<Ranking, Error> {
         reading: question.reading.clone(),
         base_card: None,
     };
-    let fitted = |fit: &Fit| fitted(fit, &tests, &provenance);
+    let fitted = |fit: &Fit| fitted(fit, &fit.fitted_tests(&tests), &provenance);
     Ok(Ranking {
         fits: fits.iter().map(fitted).collect(),
         without,

@@ -1,0 +1,166 @@
+//! Intervals where more than white noise of one size makes parameters uncertain: zeros that were found in records, parameters at
+//! bounds, tests of unequal noise.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+
+use super::*;
+use crate::document::Statements;
+use crate::material::parameters::{StrainMeasure, StressMeasure};
+use crate::material::registry::Law;
+
+const SEEDS: u64 = 40;
+
+/// A law with its values.
+type Subject = (&'static str, &'static [f64]);
+
+/// Nominal stress in a usual test.
+fn stress((name, values): Subject, test: &str, x: f64) -> f64 {
+    let law = Law::named(name).unwrap();
+    let (law, _) = law.with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal);
+    match test {
+        "uniaxial" => law.tension([1.0, 0.0], x).nominal_stress,
+        "planar" => law.biaxial([x, 0.0])[0],
+        _ => law.biaxial([x, x])[0],
+    }
+}
+
+/// Rows with noise of a standard deviation.
+fn rows(points: usize, noise: f64, seed: u64, row: &dyn Fn(f64) -> [f64; 2]) -> String {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let line = |index: usize| {
+        let [x, y] = row(index as f64 / (points - 1) as f64);
+        let z: f64 = StandardNormal.sample(&mut random);
+        format!("{x:.9},{:.9}\n", y + noise * z)
+    };
+    (0..points).map(line).collect()
+}
+
+fn read(text: &str) -> TestData {
+    TestData::parse("a.csv", text, &Statements::new()).unwrap()
+}
+
+/// Fits with intervals, intervals that hold the truth, and all intervals.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Held {
+    fits: usize,
+    held: usize,
+    intervals: usize,
+}
+
+impl Held {
+    /// Over all seeds of the tests of one.
+    fn of((name, truth): Subject, tests: &(dyn Fn(u64) -> Vec<TestData> + Sync)) -> Self {
+        let one = |seed: u64| {
+            let fit = fit(
+                Law::named(name).unwrap(),
+                &tests(seed),
+                &FitSettings::default(),
+            )
+            .unwrap();
+            let quality = fit.quality;
+            if !quality.has_intervals() {
+                return Self::default();
+            }
+            let known = quality.estimates.iter().zip(truth);
+            let known = known.filter(|(one, _)| one.standard_error.is_finite());
+            let holds = |(one, truth): &(&crate::statistics::Estimate, &f64)| {
+                (one.interval[0]..=one.interval[1]).contains(*truth)
+            };
+            Self {
+                fits: 1,
+                held: known.clone().filter(holds).count(),
+                intervals: known.count(),
+            }
+        };
+        let all = (0..SEEDS).into_par_iter().map(one);
+        all.reduce(Self::default, |a, b| Self {
+            fits: a.fits + b.fits,
+            held: a.held + b.held,
+            intervals: a.intervals + b.intervals,
+        })
+    }
+
+    fn share(self) -> f64 {
+        self.held as f64 / self.intervals as f64
+    }
+}
+
+const PULLED: [Subject; 4] = [
+    ("neo-hooke", &[0.05]),
+    ("mooney-rivlin", &[0.03, 0.02]),
+    ("yeoh", &[0.03, 0.01, 0.002]),
+    ("ogden-1", &[0.05, 3.0]),
+];
+
+/// A record of a machine, of a specimen of 20 mm and 10 mm², to 80 %.
+fn record(subject: Subject, beginning: &str, seed: u64) -> Vec<TestData> {
+    let force = |x: f64| 10.0 * stress(subject, "uniaxial", x.max(0.0));
+    let noise = 3e-3 * force(0.8);
+    let row = |share: f64| match beginning {
+        "preload" => [20.0 * 0.77 * share, force(0.03 + 0.77 * share)],
+        "slack" => [20.0 * (0.8 * share), force(0.8 * share - 0.05)],
+        _ => [20.0 * 0.8 * share, force(0.8 * share) - 0.05 * force(0.8)],
+    };
+    let head = "# test: uniaxial; length: 20 mm; area: 10 mm^2\nExtension [mm],Load [N]\n";
+    vec![read(&(head.to_owned() + &rows(200, noise, seed, &row)))]
+}
+
+#[test]
+fn intervals_hold_the_uncertainty_of_zeros_that_were_found() {
+    for beginning in ["preload", "slack", "offset"] {
+        let mut all = Held::default();
+        for subject in PULLED {
+            let found = Held::of(subject, &|seed| record(subject, beginning, seed));
+            all.fits += found.fits;
+            all.held += found.held;
+            all.intervals += found.intervals;
+        }
+        assert!(all.fits >= 150, "{beginning}: {all:?}");
+        assert!((0.9..=0.99).contains(&all.share()), "{beginning}: {all:?}");
+    }
+}
+
+#[test]
+fn intervals_beside_a_parameter_at_its_bound_hold_the_truth() {
+    let subject: Subject = ("neo-hooke-simo-pister", &[0.05, 0.49]);
+    let found = Held::of(subject, &|seed| {
+        let row = |share: f64| [1.0 + 0.8 * share, stress(subject, "uniaxial", 0.8 * share)];
+        let noise = 0.01 * stress(subject, "uniaxial", 0.8);
+        let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n";
+        vec![read(&(head.to_owned() + &rows(40, noise, seed, &row)))]
+    });
+    assert!(found.intervals > 50 && found.share() > 0.9, "{found:?}");
+}
+
+#[test]
+fn tests_of_unequal_noise_have_intervals_that_hold_the_truth() {
+    let subject: Subject = ("mooney-rivlin", &[0.04, 0.01]);
+    for noises in [[1e-2, 1e-3, 1e-3], [1e-3, 1e-3, 1e-2], [1e-3; 3]] {
+        let found = Held::of(subject, &|seed| {
+            let tests = ["uniaxial", "planar", "equibiaxial"]
+                .into_iter()
+                .enumerate();
+            let test = |(number, test): (usize, &str)| {
+                let row = |share: f64| {
+                    [
+                        1.02 + 0.6 * share,
+                        stress(subject, test, 0.02 + 0.6 * share),
+                    ]
+                };
+                let noise = noises[number] * stress(subject, test, 0.6);
+                let seed = 3 * seed + number as u64;
+                let head = format!("# test: {test}\nstretch [-],nominal_stress [MPa]\n");
+                read(&(head + &rows(20, noise, seed, &row)))
+            };
+            tests.map(test).collect()
+        });
+        assert!(found.fits >= 37, "{noises:?}: {found:?}");
+        assert!(
+            (0.88..=1.0).contains(&found.share()),
+            "{noises:?}: {found:?}"
+        );
+    }
+}

@@ -1,0 +1,124 @@
+//! The principal stretches of a sheet beside those at which its card was calibrated.
+
+use nalgebra::Matrix2;
+
+use super::wrinkling::area;
+use crate::material::Card;
+use crate::mesh::Mesh;
+
+/// Stretches are outside of the range from so much, relative, on.
+const ROUNDING: f64 = 1e-3;
+
+/// The principal stretches in the plane at the centres of the cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretches {
+    /// The smallest one.
+    pub smallest: f64,
+    /// The largest one.
+    pub largest: f64,
+    /// How far the worst is outside of the range of the card: 1 on its limit.
+    pub excess: f64,
+    /// The share of the area at rest outside of the range.
+    pub share: f64,
+}
+
+impl Stretches {
+    /// The stretches of a displacement field beside the range of a card.
+    ///
+    /// A card of tests from λ₁ to λ₂ has seen principal stretches in the plane between the smaller of λ₁ and λ₂^−½ and the
+    /// larger of λ₂ and λ₁^−½: an incompressible sample contracts across.
+    pub fn new(card: &Card, mesh: &Mesh, displacement: &[f64]) -> Self {
+        let [low, high] = card.stretch_range;
+        let (least, most) = (low.min(high.powf(-0.5)), high.max(low.powf(-0.5)));
+        let mut all = Self {
+            smallest: f64::INFINITY,
+            largest: 0.0,
+            excess: 0.0,
+            share: 0.0,
+        };
+        let (mut outside, mut whole) = (0.0, 0.0);
+        for cell in 0..mesh.cell_count() {
+            let centre = mesh.shape(cell).centre();
+            let [xx, xy, yx, yy] = mesh.gradient_at(displacement, cell, centre);
+            let stretches = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy).singular_values();
+            let excess = (stretches.max() / most).max(least / stretches.min());
+            let area = area(mesh, cell);
+            whole += area;
+            if excess > 1.0 + ROUNDING {
+                outside += area;
+            }
+            all.smallest = all.smallest.min(stretches.min());
+            all.largest = all.largest.max(stretches.max());
+            all.excess = all.excess.max(excess);
+        }
+        all.share = outside / whole;
+        all
+    }
+
+    /// What is to be said of them, as of `at 30 % stretch`; nothing within the range.
+    pub fn reason(&self, card: &Card, load: &str) -> Option<String> {
+        let [low, high] = card.stretch_range;
+        (self.share > 0.0).then(|| {
+            format!(
+                "principal stretches in the plane reach {:.3} … {:.3}{load}, on {} of the area outside the range of the card `{}`, which \
+                 was calibrated from λ = {low} to {high} ({} test)",
+                self.smallest,
+                self.largest,
+                percent(self.share),
+                card.name,
+                card.test
+            )
+        })
+    }
+}
+
+/// A share in percent, of small ones the first digit.
+fn percent(share: f64) -> String {
+    match 100.0 * share {
+        percent if percent < 0.1 => "less than 0.1 %".into(),
+        percent => format!("{percent:.1} %"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::NeoHooke;
+    use crate::mesh::CellShape;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_tests_have_seen_is_their_stretch_and_the_contraction_across() {
+        let mesh = Mesh::plate([4.0, 1.0], [4, 2], CellShape::Quad4);
+        let card = |range| Card::of_law("gel", Arc::new(NeoHooke { c10: 0.05 }), range);
+        let of = |range, [along, across]: [f64; 2]| {
+            let places = mesh.nodes.iter();
+            let u: Vec<f64> = places
+                .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
+                .collect();
+            Stretches::new(&card(range), &mesh, &u)
+        };
+        let tension = [1.0, 1.21];
+        assert_eq!(of(tension, [1.2, 1.2_f64.powf(-0.5)]).share, 0.0);
+        assert_eq!(of(tension, [1.3, 1.0]).share, 1.0);
+        assert_eq!(of(tension, [1.0, 0.85]).share, 1.0);
+        // Pressed to 0.64, a sample becomes wider by 1.25.
+        let pressed = [0.64, 1.0];
+        assert_eq!(of(pressed, [1.24, 0.7]).share, 0.0);
+        let beyond = of(pressed, [1.3, 0.7]);
+        assert!((beyond.excess - 1.04).abs() < 1e-12 && beyond.share == 1.0);
+        let told = beyond.reason(&card(pressed), " at load factor 1").unwrap();
+        assert!(
+            told.contains("0.700 … 1.300 at load factor 1, on 100.0 % of the area"),
+            "{told}"
+        );
+        // A turn stretches nothing.
+        let turned: Vec<f64> = mesh
+            .nodes
+            .iter()
+            .flat_map(|[x, y]| [-y - x, x - y])
+            .collect();
+        let found = Stretches::new(&card(tension), &mesh, &turned);
+        assert!(found.share == 0.0 && (found.largest - 1.0).abs() < 1e-12);
+    }
+}
