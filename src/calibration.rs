@@ -15,6 +15,7 @@ mod judged;
 mod layout;
 mod least_squares;
 mod misfit;
+mod plausible;
 mod prony;
 mod quality;
 mod reading;

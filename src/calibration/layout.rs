@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::cycles::Turns;
+use super::plausible::{check_signs, implausible};
 use super::record::{Machine, Part};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Role, check_columns, of_kind, roles};
 use super::rounding::WrittenColumn;
@@ -66,6 +67,12 @@ impl Layout {
         strains.chain(self.stresses.iter().map(|(column, ..)| *column))
     }
 
+    /// The columns that are read, that of times among them.
+    pub fn all_columns(&self) -> impl Iterator<Item = usize> {
+        let time = self.time.iter().flatten().map(|(column, _)| *column);
+        self.columns().chain(time)
+    }
+
     /// Reads the rows.
     pub fn read(&self, head: &Head) -> Faulty<TestData> {
         let table = head.table;
@@ -107,12 +114,13 @@ impl Layout {
             let strains = observations.iter().map(|one| one.strains[axis].abs());
             strains.fold(0.0, f64::max)
         };
+        let widest = [widest(0), widest(1)];
         Ok(TestData {
             name: table.source.name.clone(),
             test: self.test,
             stress_measure: self.stress_measure,
             axes: self.stresses.iter().map(|(.., axis)| *axis).collect(),
-            drawn_axis: usize::from(widest(1) > widest(0)),
+            drawn_axis: usize::from(widest[1] > widest[0]),
             observations,
             largest_stress,
             rounding: self.rounding(table, &part.rows),
@@ -122,7 +130,11 @@ impl Layout {
             found_zero: part.found_zero,
             remarks: part.remarks,
             head: head.written(),
-            warnings: turns.warning(head).into_iter().collect(),
+            warnings: turns
+                .warning(head)
+                .into_iter()
+                .chain(implausible(head, self.strain, widest[0].max(widest[1])))
+                .collect(),
         })
     }
 
@@ -193,44 +205,6 @@ impl Layout {
         };
         [first, second]
     }
-}
-
-/// Strains of compression that are positive by less than this share of the largest are at rest.
-const SCATTER: f64 = 1e-3;
-
-/// Data that say nothing, or a test of compression that counts pressing as positive, are refused.
-fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Faulty<()> {
-    let strains = || observations.iter().map(|one| one.strains[one.axis]);
-    let nothing = observations.iter().all(|one| one.stress == 0.0)
-        || observations
-            .iter()
-            .all(|one| one.strains.iter().all(|x| *x == 0.0 || x.is_nan()));
-    if nothing {
-        let hint = "look at the columns and their units";
-        return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
-    }
-    // Against the strain of the one axis that is driven a stress is only while it recoils; of two, the second may be held back.
-    let work = || {
-        observations
-            .iter()
-            .map(|one| one.strains[one.axis] * one.stress)
-    };
-    let against = !work().any(|work| work > 0.0) && work().any(|work| work < 0.0);
-    if against && test != Test::Biaxial {
-        let message = "the stresses have the sign that is opposite to the strains";
-        let hint =
-            "tension is positive in both columns, compression negative: turn the sign of one";
-        return Err(head.fault(0..0, message, hint));
-    }
-    let compression = head.setting("test", None)?.as_deref() == Some("compression");
-    // A machine's reading at rest scatters about zero.
-    let nothing = strains().fold(0.0, |most: f64, x| most.max(-x)) * SCATTER;
-    if compression && strains().any(|x| x > nothing) {
-        let message = "a compression test has positive strains";
-        let hint = "give strains and stresses of compression a minus sign, or stretches below 1";
-        return Err(head.fault(head.place("test"), message, hint));
-    }
-    Ok(())
 }
 
 /// What is missing or wrong, each once.

@@ -1,5 +1,6 @@
 //! Test data from files.
 
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use super::layout::Layout;
@@ -47,8 +48,95 @@ impl TestData {
         let head = Head::new(table, &KEYS, reading)?;
         let layout = Layout::new(&head).map_err(Error::Input)?;
         let hint = "every row holds finite numbers; units stand in the line of names";
-        table.check_numbers(layout.columns(), hint)?;
-        layout.read(&head).map_err(|fault| input(*fault))
+        table.check_numbers_or_holes(layout.columns(), hint)?;
+        let rows = MeasuredRows::of(table, &layout);
+        if rows.kept.is_empty() {
+            table.check_numbers(layout.columns(), hint)?;
+        }
+        let measured = table.with_rows(&rows.kept);
+        let head = Head::new(&measured, &KEYS, reading)?;
+        let mut data = layout.read(&head).map_err(|fault| input(*fault))?;
+        data.warnings.extend(rows.warnings(&measured));
+        Ok(data)
+    }
+}
+
+/// The rows of a table that are measurements, each once.
+struct MeasuredRows {
+    kept: Vec<usize>,
+    /// Rows without a number in a column that is read.
+    holes: usize,
+    /// Rows that stand before in the same table, where all do.
+    copies: usize,
+    /// Rows that stand before in the same table, where others do not.
+    repeated: usize,
+}
+
+impl MeasuredRows {
+    /// Rows that stand several times are copies where all rows do so equally often; else some may have been measured alike.
+    fn of(table: &Table, layout: &Layout) -> Self {
+        let columns: Vec<usize> = layout.all_columns().collect();
+        let key = |row: usize| -> Vec<u64> {
+            let values = &table.rows[row].0;
+            let read = columns
+                .iter()
+                .map(|column| (values[*column] + 0.0).to_bits());
+            read.collect()
+        };
+        let has_numbers = |row: &usize| {
+            let values = &table.rows[*row].0;
+            layout.columns().all(|column| values[column].is_finite())
+        };
+        let all: Vec<usize> = (0..table.rows.len()).filter(has_numbers).collect();
+        let mut counts: HashMap<Vec<u64>, usize> = HashMap::new();
+        for row in &all {
+            *counts.entry(key(*row)).or_default() += 1;
+        }
+        let [least, most] = [counts.values().min(), counts.values().max()];
+        let more = all.len() - counts.len();
+        let are_copies = most > Some(&1) && least == most;
+        let mut seen = HashSet::new();
+        let is_kept = |row: &usize| !are_copies || seen.insert(key(*row));
+        let holes = table.rows.len() - all.len();
+        Self {
+            kept: all.into_iter().filter(is_kept).collect(),
+            holes,
+            copies: if are_copies { more } else { 0 },
+            repeated: if are_copies { 0 } else { more },
+        }
+    }
+
+    /// What is to be said of the others.
+    fn warnings(&self, table: &Table) -> Vec<Diagnostic> {
+        /// So many equal rows, as a share, are no chance.
+        const MANY: f64 = 0.2;
+        let repeated = match self.repeated as f64 > MANY * self.kept.len() as f64 {
+            true => self.repeated,
+            false => 0,
+        };
+        let told = [
+            (
+                self.holes,
+                "rows without a number for strain or stress",
+                "they are left out",
+            ),
+            (
+                self.copies,
+                "rows that stand before in the table, as all of its rows do",
+                "each counts once: writing a measurement down again makes it no surer",
+            ),
+            (
+                repeated,
+                "rows that stand before in the table",
+                "each counts as a measurement of its own: if they are copies, intervals are too narrow",
+            ),
+        ];
+        let told = told.into_iter().filter(|(count, ..)| *count > 0);
+        told.map(|(count, what, hint)| {
+            let message = format!("{}: {what}: {count}", table.source.name);
+            Diagnostic::warning("", message).hint(hint)
+        })
+        .collect()
     }
 }
 

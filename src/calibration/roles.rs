@@ -66,6 +66,24 @@ const MACHINE_FORCES: [&str; 11] = [
     "载荷",
 ];
 
+/// Names that they give to strains and stresses, whose measure they do not say.
+const MACHINE_STRAINS: [&str; 6] = [
+    "tensile_strain",
+    "compressive_strain",
+    "dehnung",
+    "stauchung",
+    "déformation",
+    "应变",
+];
+const MACHINE_STRESSES: [&str; 6] = [
+    "tensile_stress",
+    "compressive_stress",
+    "spannung",
+    "zugspannung",
+    "contrainte",
+    "应力",
+];
+
 /// Names that they give to the time.
 const TIMES: [&str; 10] = [
     "time",
@@ -129,6 +147,17 @@ impl Role {
         }
         is(&MACHINE_FORCES).then(|| Self::stress(Some(FORCE), axis))
     }
+
+    /// What a name says that only machines write beside displacements and forces: it counts where there are none of these.
+    fn of_machine_s_evaluation(name: &str) -> Option<Self> {
+        let (stem, axis) = axis_of(name);
+        if MACHINE_STRAINS.contains(&stem) {
+            return Some(Self::strain(None, axis));
+        }
+        MACHINE_STRESSES
+            .contains(&stem)
+            .then(|| Self::stress(None, axis))
+    }
 }
 
 /// A name without the number of its axis, and the axis.
@@ -156,12 +185,14 @@ pub fn roles(head: &Head) -> Vec<Role> {
     let named = columns.iter().map(|column| Role::named(&column.name));
     let mut roles: Vec<Role> = named.collect();
     for kind in [Kind::Strain, Kind::Stress] {
-        if of_kind(&roles, kind).next().is_some() {
-            continue;
-        }
-        for (role, column) in roles.iter_mut().zip(columns) {
-            let own = Role::of_machine(&column.name).filter(|own| own.kind == kind);
-            *role = own.unwrap_or(*role);
+        for meaning in [Role::of_machine, Role::of_machine_s_evaluation] {
+            if of_kind(&roles, kind).next().is_some() {
+                break;
+            }
+            for (role, column) in roles.iter_mut().zip(columns) {
+                let own = meaning(&column.name).filter(|own| own.kind == kind);
+                *role = own.unwrap_or(*role);
+            }
         }
     }
     roles

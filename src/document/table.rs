@@ -207,6 +207,26 @@ impl Table {
         self.rows.push((row, place));
     }
 
+    /// The table with some of its rows, in their order; holes in the others are forgotten.
+    pub fn with_rows(&self, kept: &[usize]) -> Self {
+        let again = |fault: &FieldFault| {
+            let (row, reason) = fault.as_ref()?;
+            let place = kept.iter().position(|index| index == row)?;
+            Some((place, reason.clone()))
+        };
+        let nonsense: Vec<FieldFault> = self.nonsense.iter().map(again).collect();
+        Self {
+            source: Arc::clone(&self.source),
+            encoding: self.encoding,
+            columns: self.columns.clone(),
+            columns_place: self.columns_place.clone(),
+            rows: kept.iter().map(|row| self.rows[*row].clone()).collect(),
+            delimiter: self.delimiter,
+            faults: nonsense.clone(),
+            nonsense,
+        }
+    }
+
     /// The first column of this name.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)

@@ -1,0 +1,62 @@
+//! Test data that cannot be, or are hardly what they seem.
+
+use super::test_data::{Observation, StrainColumn, Test};
+use crate::document::{Faulty, Head};
+use crate::error::Diagnostic;
+
+/// Strains of compression that are positive by less than this share of the largest are at rest.
+const SCATTER: f64 = 1e-3;
+
+/// Data that say nothing, or a test of compression that counts pressing as positive, are refused.
+pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Faulty<()> {
+    let strains = || observations.iter().map(|one| one.strains[one.axis]);
+    let nothing = observations.iter().all(|one| one.stress == 0.0)
+        || observations
+            .iter()
+            .all(|one| one.strains.iter().all(|x| *x == 0.0 || x.is_nan()));
+    if nothing {
+        let hint = "look at the columns and their units";
+        return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
+    }
+    // Against the strain of the one axis that is driven a stress is only while it recoils; of two, the second may be held back.
+    let work = || {
+        observations
+            .iter()
+            .map(|one| one.strains[one.axis] * one.stress)
+    };
+    let against = !work().any(|work| work > 0.0) && work().any(|work| work < 0.0);
+    if against && test != Test::Biaxial {
+        let message = "the stresses have the sign that is opposite to the strains";
+        let hint =
+            "tension is positive in both columns, compression negative: turn the sign of one";
+        return Err(head.fault(0..0, message, hint));
+    }
+    let compression = head.setting("test", None)?.as_deref() == Some("compression");
+    // A machine's reading at rest scatters about zero.
+    let nothing = strains().fold(0.0, |most: f64, x| most.max(-x)) * SCATTER;
+    if compression && strains().any(|x| x > nothing) {
+        let message = "a compression test has positive strains";
+        let hint = "give strains and stresses of compression a minus sign, or stretches below 1";
+        return Err(head.fault(head.place("test"), message, hint));
+    }
+    Ok(())
+}
+
+/// Strains that are so large that they may be in percent.
+pub fn implausible(head: &Head, strain: StrainColumn, largest: f64) -> Option<Diagnostic> {
+    /// λ − 1: stretches of soft gels are seen up to about 20.
+    const MOST: f64 = 20.0;
+    let about = match strain {
+        StrainColumn::Stretch => "stretches",
+        StrainColumn::Strain(_) => "strains",
+    };
+    (largest > MOST).then(|| {
+        let message = format!(
+            "{}: the {about} reach λ = {:.4}",
+            head.table.source.name,
+            1.0 + largest
+        );
+        let hint = "if the column is in percent, write [%] behind its name in place of [-]";
+        Diagnostic::warning("", message).hint(hint)
+    })
+}
