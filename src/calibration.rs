@@ -18,6 +18,7 @@ mod misfit;
 mod plausible;
 mod prony;
 mod quality;
+mod ranking;
 mod reading;
 mod record;
 mod refined_zero;
@@ -38,8 +39,9 @@ mod zero;
 
 pub use card_text::{Provenance, card_text};
 pub use conversion::Conversion;
-pub use fit::{Fit, Relaxed, fit, rank};
+pub use fit::{Fit, Relaxed, fit};
 pub use quality::{Quality, StableRange};
+pub use ranking::rank;
 pub use reading::KEYS;
 pub use refined_zero::MovedZero;
 pub use relaxation::fit_relaxation;

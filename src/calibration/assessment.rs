@@ -3,7 +3,7 @@
 use super::judged::{Judged, Values, at_bound};
 use super::least_squares::{LEAST_SIZE, Residuals};
 use super::misfit::Misfit;
-use super::quality::{Deviations, Quality, aicc, estimates, rounded};
+use super::quality::{Deviations, Quality, aicc, rounded};
 use super::settings::Weighting;
 use super::test_data::{Observation, TestData};
 use crate::material::HyperelasticLaw;
@@ -31,7 +31,7 @@ impl Assessment<'_> {
             data.stress_of(self.law, &data.observations[row])
         });
         let judged = self.judge(points);
-        let estimates = estimates(values, &judged);
+        let estimates = judged.estimates(values);
         let n = points as f64;
         let counted = [n, judged.effective(n)];
         let aicc = aicc(deviations.weighted, counted, (values.len() + 1) as f64);

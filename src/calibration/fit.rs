@@ -13,8 +13,6 @@
 //! # References
 //! G. H. Golub, V. Pereyra, Inverse Problems 19, R1 (2003), doi:10.1088/0266-5611/19/2/201
 
-use rayon::prelude::*;
-
 use super::assessment::Assessment;
 use super::least_squares::{self, LEAST_SIZE, Residuals};
 use super::misfit::Misfit;
@@ -30,7 +28,7 @@ use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::material::marlow::{Marlow, TableCurve};
 use crate::material::parameters::{Parameter, StressMeasure};
-use crate::material::registry::{LAWS, Law, MARLOW_TABLE};
+use crate::material::registry::{Law, MARLOW_TABLE};
 use crate::material::viscosity::ViscousMaterial;
 
 /// A law fitted to tests.
@@ -190,7 +188,27 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         );
         Error::input(message, "widen the bounds, or choose another law")
     })?;
-    let stiffness = misfit.stiffness();
+    let begun = Found {
+        misfit,
+        values: minimum.values,
+        bounds,
+    };
+    Ok(finished(
+        law,
+        tests,
+        settings,
+        (begun, &parameters, minimum.other),
+    ))
+}
+
+/// The fit at the best values, with its zeros and all that is to be said of it.
+fn finished(
+    law: &'static Law,
+    tests: &[TestData],
+    settings: &FitSettings,
+    (begun, parameters, other): (Found, &[Parameter], Option<Vec<f64>>),
+) -> Fit {
+    let stiffness = begun.misfit.stiffness();
     let least: Vec<f64> = parameters.iter().map(|one| size(one, stiffness)).collect();
     let is_noise = |misfit: &Misfit, values: &[f64], bounds: &[[f64; 2]]| {
         let (law, _) = misfit.build(values);
@@ -206,12 +224,13 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         }
         .is_noise()
     };
-    let of_law = |misfit: &Misfit, values: &[f64]| is_noise(misfit, values, &bounds);
-    let (misfit, values) = settled(&misfit, minimum.values, &bounds, of_law);
+    let of_law = |misfit: &Misfit, values: &[f64]| is_noise(misfit, values, &begun.bounds);
+    let (misfit, values) = settled(&begun.misfit, begun.values, &begun.bounds, of_law);
+    let bounds = begun.bounds.clone();
     let found = Found {
         misfit,
         values,
-        bounds: bounds.clone(),
+        bounds,
     };
     let Found {
         misfit,
@@ -229,8 +248,8 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         least: &least,
     };
     let mut quality = assessment.quality();
-    quality.warnings = warnings(&quality, &built.parameters, minimum.other.as_deref());
-    Ok(Fit {
+    quality.warnings = warnings(&quality, &built.parameters, other.as_deref());
+    Fit {
         law,
         fitted,
         parameters: built.parameters,
@@ -241,7 +260,7 @@ pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         quality,
         relaxed: None,
         softened: None,
-    })
+    }
 }
 
 /// The least size of a parameter that counts: a thousandth of a usual one.
@@ -271,6 +290,12 @@ pub(super) fn check_measures(tests: &[TestData]) -> Result<(), Error> {
     Err(Error::input(message, hint))
 }
 
+/// What is said of a curve that begins at rest with a stress.
+fn subtracted([x, at_rest]: [f64; 2]) -> Option<String> {
+    (x == 0.0 && at_rest != 0.0)
+        .then(|| format!("the stress at rest, {at_rest:.4e} MPa, is subtracted from the curve"))
+}
+
 /// Marlow's law of one measured tension curve: nothing is fitted.
 fn take_curve(
     law: &'static Law,
@@ -288,8 +313,10 @@ fn take_curve(
         return Err(refuse(": takes a uniaxial test".into(), hint));
     }
     if let Some((key, _)) = settings.bounds.first() {
-        let message = format!(" has no parameter `{key}`");
-        return Err(refuse(message, "leave the bound out"));
+        return Err(refuse(
+            format!(" has no parameter `{key}`"),
+            "leave the bound out",
+        ));
     }
     let point = |one: &Observation| {
         let x = test.drawn_strain(one);
@@ -312,14 +339,7 @@ fn take_curve(
     };
     let mut quality = assessment.quality();
     quality.warnings = warnings(&quality, &[], None);
-    if let [x, at_rest] = points[0]
-        && x == 0.0
-        && at_rest != 0.0
-    {
-        let warning =
-            format!("the stress at rest, {at_rest:.4e} MPa, is subtracted from the curve");
-        quality.warnings.push(warning);
-    }
+    quality.warnings.extend(subtracted(points[0]));
     Ok(Fit {
         law,
         fitted,
@@ -332,52 +352,4 @@ fn take_curve(
         relaxed: None,
         softened: None,
     })
-}
-
-/// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that cannot be are
-/// left out with their reasons. All have the effective points of the law with the least variance of residuals: how
-/// many points are independent is a matter of the noise, not of a law that misses them.
-pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
-    // A fibre law needs to see two directions.
-    let axis = |axis: usize| {
-        tests
-            .iter()
-            .flat_map(|test| &test.observations)
-            .any(|one| one.axis == axis)
-    };
-    let (both_axes, measure) = (axis(0) && axis(1), StressMeasure::Nominal);
-    let eligible: Vec<&'static Law> = LAWS
-        .iter()
-        .filter(|law| law.name != MARLOW_TABLE)
-        .filter(|law| {
-            let own = law.with_values(&[], measure, MEASURE).0;
-            // How a body changes its volume is not in the stresses of the usual tests alone.
-            own.bulk_modulus().is_none() && (both_axes || own.is_isotropic())
-        })
-        .collect();
-    let outcomes: Vec<Result<Fit, Error>> = eligible
-        .into_par_iter()
-        .map(|law| fit(law, tests, settings))
-        .collect();
-    let (mut fits, mut reasons) = (Vec::new(), Vec::new());
-    for outcome in outcomes {
-        match outcome {
-            Ok(fit) => fits.push(fit),
-            Err(reason) => reasons.push(reason.to_string()),
-        }
-    }
-    let variance = |fit: &Fit| {
-        let quality = &fit.quality;
-        quality.weighted_sum / (quality.points - fit.parameters.len()) as f64
-    };
-    let nearest = fits
-        .iter()
-        .min_by(|a, b| variance(a).total_cmp(&variance(b)));
-    if let Some(effective) = nearest.map(|fit| fit.quality.effective_points()) {
-        for fit in &mut fits {
-            fit.quality.aicc = fit.quality.aicc_with(effective);
-        }
-    }
-    fits.sort_by(|a, b| a.quality.aicc.total_cmp(&b.quality.aicc));
-    (fits, reasons)
 }

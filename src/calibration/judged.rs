@@ -108,6 +108,32 @@ impl Judged {
             .map_or(points, |verdict| verdict.effective_points)
     }
 
+    /// The values with their uncertainty, NaN where a bound holds them, and their correlation.
+    pub fn estimates(&self, values: &[f64]) -> (Vec<Estimate>, DMatrix<f64>) {
+        let size = values.len();
+        let mut correlation = DMatrix::from_element(size, size, f64::NAN);
+        let mut estimates: Vec<Estimate> = values
+            .iter()
+            .map(|value| Estimate::new(*value, f64::NAN, f64::NAN))
+            .collect();
+        let Some(noise) = &self.noise else {
+            return (estimates, correlation);
+        };
+        let free: Vec<usize> = (0..size).filter(|index| !self.fixed[*index]).collect();
+        let covariance = noise.covariance();
+        let error = |i: usize| covariance[(i, i)].sqrt();
+        let is_known = |(_, index): &(usize, &usize)| !self.at_bound[**index];
+        for (i, row) in free.iter().enumerate().filter(is_known) {
+            let unit = DVector::from_fn(free.len(), |j, _| f64::from(u8::from(i == j)));
+            let reach = noise.half_width(&unit) / error(i);
+            estimates[*row] = Estimate::new(values[*row], error(i), reach);
+            for (j, column) in free.iter().enumerate().filter(is_known) {
+                correlation[(*row, *column)] = covariance[(i, j)] / (error(i) * error(j));
+            }
+        }
+        (estimates, correlation)
+    }
+
     /// The figures of a fit of a law to tests, without warnings.
     pub fn quality(
         self,

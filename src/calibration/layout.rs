@@ -110,11 +110,10 @@ impl Layout {
         let stresses = observations.iter().map(|one| one.stress.abs());
         let largest_stress = stresses.fold(0.0, f64::max);
         check_signs(head, &observations, self.test)?;
-        let widest = |axis: usize| {
-            let strains = observations.iter().map(|one| one.strains[axis].abs());
-            strains.fold(0.0, f64::max)
-        };
-        let widest = [widest(0), widest(1)];
+        let sizes = |axis: usize| observations.iter().map(move |one| one.strains[axis].abs());
+        let widest = [0, 1].map(|axis| sizes(axis).fold(0.0, f64::max));
+        let implausible = implausible(head, self.strain, widest[0].max(widest[1]));
+        let warnings = turns.warning(head).into_iter().chain(implausible);
         Ok(TestData {
             name: table.source.name.clone(),
             test: self.test,
@@ -130,11 +129,7 @@ impl Layout {
             found_zero: part.found_zero,
             remarks: part.remarks,
             head: head.written(),
-            warnings: turns
-                .warning(head)
-                .into_iter()
-                .chain(implausible(head, self.strain, widest[0].max(widest[1])))
-                .collect(),
+            warnings: warnings.collect(),
         })
     }
 

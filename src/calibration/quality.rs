@@ -1,8 +1,7 @@
 //! How far a fit can be trusted.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-use super::judged::Judged;
 use super::misfit::Zero;
 use super::refined_zero::MovedZero;
 use super::settings::{SMALLEST_SHARE, Weighting};
@@ -168,32 +167,6 @@ pub(super) fn rounded(
         }
     }
     sums.map(|sum| sum / f64::from(count))
-}
-
-/// The values with their uncertainty, NaN where a bound holds them, and their correlation.
-pub(super) fn estimates(values: &[f64], judged: &Judged) -> (Vec<Estimate>, DMatrix<f64>) {
-    let size = values.len();
-    let mut correlation = DMatrix::from_element(size, size, f64::NAN);
-    let mut estimates: Vec<Estimate> = values
-        .iter()
-        .map(|value| Estimate::new(*value, f64::NAN, f64::NAN))
-        .collect();
-    let Some(noise) = &judged.noise else {
-        return (estimates, correlation);
-    };
-    let free: Vec<usize> = (0..size).filter(|index| !judged.fixed[*index]).collect();
-    let covariance = noise.covariance();
-    let error = |i: usize| covariance[(i, i)].sqrt();
-    let is_known = |(_, index): &(usize, &usize)| !judged.at_bound[**index];
-    for (i, row) in free.iter().enumerate().filter(is_known) {
-        let unit = DVector::from_fn(free.len(), |j, _| f64::from(u8::from(i == j)));
-        let reach = noise.half_width(&unit) / error(i);
-        estimates[*row] = Estimate::new(values[*row], error(i), reach);
-        for (j, column) in free.iter().enumerate().filter(is_known) {
-            correlation[(*row, *column)] = covariance[(i, j)] / (error(i) * error(j));
-        }
-    }
-    (estimates, correlation)
 }
 
 /// The stretches within which a law is stable in the usual tests.

@@ -147,4 +147,6 @@ fn input(fault: Diagnostic) -> Error {
 #[cfg(test)]
 mod missing_tests;
 #[cfg(test)]
+mod rows_tests;
+#[cfg(test)]
 mod tests;

@@ -82,6 +82,9 @@ pub fn with_zeros(tests: &[TestData], zeros: &[MovedZero]) -> Vec<TestData> {
     moved
 }
 
+/// Whether what values within their bounds leave is noise.
+pub(super) type IsNoise<'a> = dyn Fn(&Misfit, &[f64], &[[f64; 2]]) -> bool + 'a;
+
 /// Values with their bounds, and the residuals that they leave.
 pub(super) struct Found<'a> {
     pub misfit: Misfit<'a>,
@@ -91,11 +94,11 @@ pub(super) struct Found<'a> {
 
 impl<'a> Found<'a> {
     /// With the zeros among the values, where the records had any and what is left is noise then.
-    pub fn with_zeros(self, is_noise: &dyn Fn(&Misfit, &[f64], &[[f64; 2]]) -> bool) -> Self {
+    pub fn with_zeros(self, is_noise: &IsNoise) -> Self {
         self.wider(is_noise).unwrap_or(self)
     }
 
-    fn wider(&self, is_noise: &dyn Fn(&Misfit, &[f64], &[[f64; 2]]) -> bool) -> Option<Found<'a>> {
+    fn wider(&self, is_noise: &IsNoise) -> Option<Found<'a>> {
         let misfit = self.misfit.with_zeros();
         let count = misfit.zeros().len();
         if count == 0 {

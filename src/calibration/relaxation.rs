@@ -13,7 +13,7 @@ use super::history::History;
 use super::judged::{AT_BOUND, Judged, Values, at_bound};
 use super::least_squares::Residuals;
 use super::prony::{Found, ViscousMisfit};
-use super::quality::{Deviations, Quality, aicc, estimates, rounded};
+use super::quality::{Deviations, Quality, aicc, rounded};
 use super::reweighed::{Reweighed, settled};
 use super::settings::{FitSettings, MEASURE, limits};
 use super::terms::{SHARES, TIMES, Terms, parameters, transformed};
@@ -213,7 +213,7 @@ impl Whole<'_> {
 
     /// The values with their uncertainty and correlation, times as they are.
     fn estimated(&self, values: &[f64], judged: &Judged) -> (Vec<Estimate>, DMatrix<f64>) {
-        let (mut estimated, correlation) = estimates(values, judged);
+        let (mut estimated, correlation) = judged.estimates(values);
         for (index, estimate) in estimated.iter_mut().enumerate() {
             if self.is_logarithmic(index) {
                 *estimate = Estimate {

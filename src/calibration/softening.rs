@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::fit::{Fit, check_measures, fit};
 use super::judged::{AT_BOUND, Judged, Values, at_bound};
 use super::least_squares::{Precision, Residuals, minimise, sum_of_squares};
-use super::quality::{Deviations, Quality, aicc, estimates, rounded};
+use super::quality::{Deviations, Quality, aicc, rounded};
 use super::reweighed::settled;
 use super::settings::{FitSettings, Weighting, limits};
 use super::softened::{Softened, cycles};
@@ -251,7 +251,7 @@ impl Whole<'_> {
     ) -> Quality {
         let weighting = self.settings.weighting;
         let judged = judged(self.misfit, self.tests, values, self.bounds, weighting);
-        let estimates = estimates(values, &judged);
+        let estimates = judged.estimates(values);
         let deviations = Deviations::of(self.tests, weighting, &|test, row| predicted[test][row]);
         let n = self.misfit.count() as f64;
         let counted = [n, judged.effective(n)];

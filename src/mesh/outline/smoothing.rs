@@ -9,7 +9,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::polygon::{Polygon, distance, needed, needed_behind_the_first, shifted, straightened};
+use super::polygon::{
+    Polygon, distance, needed, needed_behind_the_first, shifted, straightened, turn_between,
+};
 use crate::mesh::geometry::distance as length;
 
 /// Parabolas are fitted to so many spacings on either side, but to no more than this share of a closed line.
@@ -19,6 +21,10 @@ const SHARE: f64 = 0.125;
 const LEAST: f64 = 2.5;
 const FEWEST: usize = 4;
 const WIDER: f64 = 1.3;
+
+/// Straight edges of so many spacings at least that meet by a turn of more than this, 40°, meet at a corner.
+const SIDE: f64 = 3.0;
+const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
 /// Curves have points so many spacings apart, as far as they are needed.
 const STEP: f64 = 0.4;
@@ -41,7 +47,6 @@ pub fn smoothed(line: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         return plain();
     }
     let curve = closed(line, spacing);
-    let is_corner = |point: usize| length(line[point], curve.place(curve.at[point])) > near;
     let edges: Vec<Part> = (0..kept.len())
         .map(|i| part(line, kept[i], kept[(i + 1) % kept.len()]))
         .collect();
@@ -50,8 +55,18 @@ pub fn smoothed(line: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         .map(|edge| chord(edge) > LONG * spacing && bulge(edge) < BULGE * spacing)
         .collect();
     let count = kept.len();
+    let is_side = |edge: &Part| {
+        let long = chord(edge) >= SIDE * spacing * (1.0 - 1e-9) && edge.len() > SIDE as usize;
+        long && bulge(edge) < BULGE * spacing
+    };
+    let is_corner = |i: usize| {
+        let (before, next) = (&edges[(i + count - 1) % count], &edges[i]);
+        let [a, b] = [before, next].map(|edge| [edge[0], edge[edge.len() - 1]]);
+        let is_sharp = turn_between(a, b).abs() > CORNER && is_side(before) && is_side(next);
+        is_sharp || length(line[kept[i]], curve.place(curve.at[kept[i]])) > near
+    };
     let ends =
-        |i: &usize| is_corner(kept[*i]) || is_straight[*i] || is_straight[(*i + count - 1) % count];
+        |i: &usize| is_corner(*i) || is_straight[*i] || is_straight[(*i + count - 1) % count];
     let breaks: Vec<usize> = (0..count).filter(ends).collect();
     let Some(first) = breaks.first() else {
         return outermost(&curve, near, spacing);
@@ -311,6 +326,18 @@ mod tests {
                     "{radius} {shift:?}: {own} {nearest}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn corners_of_small_specimens_stay() {
+        for [across, along] in [[4, 4], [5, 10], [6, 6], [3, 20], [10, 10]] {
+            let points: Vec<[f64; 2]> = (0..=across)
+                .flat_map(|i| (0..=along).map(move |j| [f64::from(i), f64::from(j)]))
+                .collect();
+            let found = Outline::of_points(&points).unwrap().outline;
+            assert_eq!(found.outer.len(), 4, "{across} {along}: {:?}", found.outer);
+            assert_eq!(polygon_area(&found.outer), f64::from(across * along));
         }
     }
 

@@ -19,8 +19,25 @@ impl MarkerStudy {
         for (frame, estimate) in frames {
             let strained = [self.strains(estimate), self.beyond_card(estimate)];
             all.extend(of_frame(frame, estimate, strained));
+            all.extend(self.unknown_edge(estimate).map(|(message, hint)| {
+                let message = format!("frame {}: {message}", frame.number);
+                Diagnostic::warning("", message).hint(hint)
+            }));
         }
         all
+    }
+
+    /// An edge that nothing but the markers tells of may be what does not explain the data.
+    fn unknown_edge(&self, estimate: &FieldEstimate) -> Option<Doubt> {
+        let gap = self.unknown_gap.filter(|_| !estimate.is_explained())?;
+        let message = format!(
+            "the free edges of the specimen are known but for {gap:.4} mm, as only the markers tell of them: precise data contradict edges \
+             that lie by less elsewhere"
+        );
+        Some((
+            message,
+            "give the edges and holes with --outline or --mesh, or --edge-gap where the report tells how far free edges lie from the mesh's",
+        ))
     }
 
     /// Strains that are too large for the law.

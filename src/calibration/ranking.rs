@@ -1,0 +1,58 @@
+//! All laws beside one another.
+
+use rayon::prelude::*;
+
+use super::fit::{Fit, fit};
+use super::settings::{FitSettings, MEASURE};
+use super::test_data::TestData;
+use crate::error::Error;
+use crate::material::parameters::StressMeasure;
+use crate::material::registry::{LAWS, Law, MARLOW_TABLE};
+
+/// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that cannot be are
+/// left out with their reasons. All have the effective points of the law with the least variance of residuals: how
+/// many points are independent is a matter of the noise, not of a law that misses them.
+pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String>) {
+    // A fibre law needs to see two directions.
+    let axis = |axis: usize| {
+        tests
+            .iter()
+            .flat_map(|test| &test.observations)
+            .any(|one| one.axis == axis)
+    };
+    let (both_axes, measure) = (axis(0) && axis(1), StressMeasure::Nominal);
+    let eligible: Vec<&'static Law> = LAWS
+        .iter()
+        .filter(|law| law.name != MARLOW_TABLE)
+        .filter(|law| {
+            let own = law.with_values(&[], measure, MEASURE).0;
+            // How a body changes its volume is not in the stresses of the usual tests alone.
+            own.bulk_modulus().is_none() && (both_axes || own.is_isotropic())
+        })
+        .collect();
+    let outcomes: Vec<Result<Fit, Error>> = eligible
+        .into_par_iter()
+        .map(|law| fit(law, tests, settings))
+        .collect();
+    let (mut fits, mut reasons) = (Vec::new(), Vec::new());
+    for outcome in outcomes {
+        match outcome {
+            Ok(fit) => fits.push(fit),
+            Err(reason) => reasons.push(reason.to_string()),
+        }
+    }
+    let variance = |fit: &Fit| {
+        let quality = &fit.quality;
+        quality.weighted_sum / (quality.points - fit.parameters.len()) as f64
+    };
+    let nearest = fits
+        .iter()
+        .min_by(|a, b| variance(a).total_cmp(&variance(b)));
+    if let Some(effective) = nearest.map(|fit| fit.quality.effective_points()) {
+        for fit in &mut fits {
+            fit.quality.aicc = fit.quality.aicc_with(effective);
+        }
+    }
+    fits.sort_by(|a, b| a.quality.aicc.total_cmp(&b.quality.aicc));
+    (fits, reasons)
+}

@@ -1,0 +1,84 @@
+//! Columns that machines name in their own way, and rows that are no measurements.
+
+use super::tests::read;
+
+/// As laboratories write them in German, where neither displacements nor forces stand beside.
+#[test]
+fn strains_and_stresses_of_machines_are_read_where_nothing_better_stands_beside_them() {
+    let stated = [
+        ("test", "uniaxial"),
+        ("strain measure", "nominal"),
+        ("stress measure", "nominal"),
+    ];
+    let data = read("Dehnung [%];Spannung [kPa]\n10,5;4,0\n21;8\n", &stated).unwrap();
+    assert!((data.observations[0].strains[0] - 0.105).abs() < 1e-15);
+    assert!((data.observations[1].stress - 8e-3).abs() < 1e-15);
+    let head = "# test: uniaxial; length: 20 mm; area: 10 mm^2\n";
+    let text = "Tensile extension [mm],Tensile strain [%],Load [N],Tensile stress [MPa]\n2,99,1,99\n4,99,2,99\n";
+    let data = read(&(head.to_owned() + text), &[]).unwrap();
+    assert!((data.observations[0].strains[0] - 0.1).abs() < 1e-15);
+    assert!((data.observations[0].stress - 0.1).abs() < 1e-15);
+}
+
+#[test]
+fn rows_without_a_number_are_left_out_and_a_word_is_refused() {
+    let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n";
+    let data = read(
+        &(head.to_owned() + "1.1,0.1\n1.2,NaN\n,0.3\n1.4,0.4\n"),
+        &[],
+    )
+    .unwrap();
+    let strains: Vec<f64> = data.observations.iter().map(|one| one.strains[0]).collect();
+    assert_eq!(strains.len(), 2);
+    assert!((strains[1] - 0.4).abs() < 1e-15);
+    let told = data.warnings[0].to_string();
+    assert!(
+        told.contains("without a number for strain or stress: 2"),
+        "{told}"
+    );
+    let fault = read(&(head.to_owned() + "1.1,0.1\n1.2,lost\n"), &[]).unwrap_err();
+    assert!(
+        fault.contains("a.csv:4") && fault.contains("lost"),
+        "{fault}"
+    );
+    let fault = read(&(head.to_owned() + "1.1,\n1.2,\n"), &[]).unwrap_err();
+    assert!(fault.contains("a.csv:3"), "{fault}");
+}
+
+/// Copies are no measurements; alike measurements are.
+#[test]
+fn a_table_that_was_pasted_several_times_counts_once() {
+    let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n";
+    let rows = "1.1,0.1\n1.2,0.2\n1.3,0.3\n";
+    let once = read(&(head.to_owned() + rows), &[]).unwrap();
+    let thrice = read(&(head.to_owned() + rows + rows + rows), &[]).unwrap();
+    assert_eq!(once.observations.len(), 3);
+    let [all, own] = [&thrice, &once].map(|data| format!("{:?}", data.observations));
+    assert_eq!(all, own);
+    let told = thrice.warnings[0].to_string();
+    assert!(
+        once.warnings.is_empty() && told.contains("all of its rows do: 6"),
+        "{told}"
+    );
+    let some = read(&(head.to_owned() + rows + "1.1,0.1\n"), &[]).unwrap();
+    assert_eq!(some.observations.len(), 4);
+    let told = some.warnings.iter().map(ToString::to_string);
+    assert!(
+        told.clone().any(|one| one.contains("stand before")),
+        "{told:?}"
+    );
+    // A record over time may rest.
+    let timed = "# test: uniaxial; time unit: s\ntime,stretch [-],nominal_stress [MPa]\n";
+    let rest = read(&(timed.to_owned() + "0,1.1,0.1\n1,1.1,0.1\n"), &[]).unwrap();
+    assert_eq!(rest.observations.len(), 2);
+}
+
+#[test]
+fn strains_that_may_be_in_percent_deserve_a_word() {
+    let head = "# test: uniaxial\nnominal_strain [-],nominal_stress [MPa]\n";
+    let data = read(&(head.to_owned() + "10,0.1\n50,0.2\n"), &[]).unwrap();
+    let told = data.warnings[0].to_string();
+    assert!(told.contains("λ = 51") && told.contains("[%]"), "{told}");
+    let data = read(&(head.to_owned() + "1,0.1\n5,0.2\n"), &[]).unwrap();
+    assert!(data.warnings.is_empty());
+}
