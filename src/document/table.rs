@@ -207,23 +207,22 @@ impl Table {
         self.rows.push((row, place));
     }
 
-    /// The table with some of its rows, in their order; holes in the others are forgotten.
+    /// The table with some of its rows, in their order, among them all whose fields are nonsense.
     pub fn with_rows(&self, kept: &[usize]) -> Self {
+        let lacks = |i: usize| kept.iter().position(|row| self.rows[*row].0[i].is_nan());
+        let first = |(i, fault): (usize, &FieldFault)| Some((lacks(i)?, fault.clone()?.1));
         let again = |fault: &FieldFault| {
-            let (row, reason) = fault.as_ref()?;
-            let place = kept.iter().position(|index| index == row)?;
-            Some((place, reason.clone()))
+            let (row, reason) = fault.clone()?;
+            Some((kept.binary_search(&row).ok()?, reason))
         };
-        let nonsense: Vec<FieldFault> = self.nonsense.iter().map(again).collect();
         Self {
             source: Arc::clone(&self.source),
-            encoding: self.encoding,
             columns: self.columns.clone(),
             columns_place: self.columns_place.clone(),
             rows: kept.iter().map(|row| self.rows[*row].clone()).collect(),
-            delimiter: self.delimiter,
-            faults: nonsense.clone(),
-            nonsense,
+            faults: self.faults.iter().enumerate().map(first).collect(),
+            nonsense: self.nonsense.iter().map(again).collect(),
+            ..*self
         }
     }
 

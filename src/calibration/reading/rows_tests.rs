@@ -1,6 +1,7 @@
 //! Columns that machines name in their own way, and rows that are no measurements.
 
 use super::tests::read;
+use crate::calibration::Times;
 
 /// As laboratories write them in German, where neither displacements nor forces stand beside.
 #[test]
@@ -43,6 +44,22 @@ fn rows_without_a_number_are_left_out_and_a_word_is_refused() {
     );
     let fault = read(&(head.to_owned() + "1.1,\n1.2,\n"), &[]).unwrap_err();
     assert!(fault.contains("a.csv:3"), "{fault}");
+}
+
+/// Of a record over time, whose time is not read where a row has none.
+#[test]
+fn a_row_that_was_left_out_hides_no_time_that_is_missing() {
+    let timed = "# test: uniaxial; time unit: s\ntime,stretch [-],nominal_stress [MPa]\n";
+    for (rows, is_known) in [
+        ("0,1.1,0.1\n1,,0.1\n2,1.2,0.2\n", true),
+        ("0,1.1,0.1\n1,,0.1\n,1.2,0.2\n", false),
+        (",,0.1\n1,1.1,0.1\n2,1.2,0.2\n", true),
+        (",,0.1\n1,1.1,0.1\n,1.2,0.2\n", false),
+    ] {
+        let data = read(&(timed.to_owned() + rows), &[]).unwrap();
+        assert_eq!(data.observations.len(), 2);
+        assert_eq!(matches!(data.times, Times::Known(_)), is_known, "{rows}");
+    }
 }
 
 /// Copies are no measurements; alike measurements are.
