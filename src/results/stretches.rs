@@ -2,7 +2,6 @@
 
 use nalgebra::Matrix2;
 
-use super::wrinkling::area;
 use crate::material::Card;
 use crate::mesh::Mesh;
 
@@ -42,7 +41,7 @@ impl Stretches {
             let [xx, xy, yx, yy] = mesh.gradient_at(displacement, cell, centre);
             let stretches = Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy).singular_values();
             let excess = (stretches.max() / most).max(least / stretches.min());
-            let area = area(mesh, cell);
+            let area = mesh.cell_area(cell);
             whole += area;
             if excess > 1.0 + ROUNDING {
                 outside += area;

@@ -32,7 +32,7 @@ impl Wrinkling {
     pub fn of_cells(law: &dyn HyperelasticLaw, mesh: &Mesh, states: &[LocalState]) -> Self {
         let stresses: Vec<[f64; 2]> = states.iter().map(LocalState::principal_cauchy).collect();
         let areas: Vec<f64> = (0..mesh.cell_count())
-            .map(|cell| area(mesh, cell))
+            .map(|cell| mesh.cell_area(cell))
             .collect();
         let all: f64 = areas.iter().sum();
         let pairs = stresses.iter().zip(&areas);
@@ -78,13 +78,6 @@ pub fn of_parts(parts: &str) -> String {
         "Warning: part of the sheet is under compression, where a thin sheet wrinkles and the plane solution carries stress that it would \
          lose: {parts} (array `wrinkling` of the finite elements' VTK files)."
     )
-}
-
-/// The area of a cell at rest in mm².
-pub(super) fn area(mesh: &Mesh, cell: usize) -> f64 {
-    let rule = mesh.shape(cell).quadrature().into_iter();
-    rule.map(|(local, weight)| weight * mesh.gradients(cell, local).1)
-        .sum()
 }
 
 #[cfg(test)]
