@@ -163,13 +163,18 @@ class SweepTable:
         return self._core.faults()
 
     @property
+    def run_warnings(self) -> list[str]:
+        """What deserves attention in each run, as ``sweep.csv`` has it: its warnings with `` | `` between them."""
+        return self._core.run_warnings()
+
+    @property
     def files(self) -> list[Path]:
         """The files that were written."""
         return [Path(path) for path in self._core.files]
 
     @property
     def warnings(self) -> list[str]:
-        """What deserves attention: pictures that could not be drawn."""
+        """What deserves attention: pictures that could not be drawn, and what is said of the runs, the same once."""
         return self._core.warnings
 
     def __getitem__(self, name: str) -> Column:
@@ -184,7 +189,7 @@ class SweepTable:
     def columns(self) -> dict[str, Any]:
         """The whole table, column by column, as ``sweep.csv`` has it."""
         first = {"run": self.numbers, **self.settings}
-        return {**first, **self.figures, "passed": self.passed, "fault": self.faults}
+        return {**first, **self.figures, "passed": self.passed, "fault": self.faults, "warnings": self.run_warnings}
 
     @cached_property
     def json(self) -> dict[str, Any]:

@@ -308,6 +308,11 @@ impl SweepTable {
         self.rows.iter().map(|row| row.fault.as_str()).collect()
     }
 
+    /// The warnings of each run, as one text.
+    fn run_warnings(&self) -> Vec<String> {
+        self.rows.iter().map(Row::told_warnings).collect()
+    }
+
     /// What was set: heads with units, and the values.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
         let mut found = Vec::new();

@@ -7,6 +7,9 @@ use super::plan::Run;
 use super::variable::Setting;
 use crate::results::Results;
 
+/// What stands between the warnings of a run.
+pub(super) const BETWEEN: &str = " | ";
+
 /// A run with what came of it.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Row {
@@ -64,6 +67,11 @@ impl Row {
             fault,
             warnings,
         }
+    }
+
+    /// Its warnings as one text.
+    pub fn told_warnings(&self) -> String {
+        self.warnings.join(BETWEEN)
     }
 
     /// A figure by its name.

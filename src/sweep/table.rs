@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use super::figures::Row;
+use super::figures::{BETWEEN, Row};
 use super::variable::{Setting, headed, key_and_unit};
 use crate::document::{read_records, write_records};
 use crate::error::Error;
@@ -11,9 +11,6 @@ use crate::error::Error;
 /// The columns before those of the figures, but for the keys, and those behind them.
 const FIRST: &str = "run";
 const LAST: [&str; 3] = ["passed", "fault", "warnings"];
-
-/// What stands between the warnings of a run.
-const BETWEEN: &str = " | ";
 
 /// The names of all figures, in the order in which runs have them.
 pub fn names(rows: &[Row]) -> Vec<&str> {
@@ -50,8 +47,11 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
             .map(|name| figures.get(name).map_or(String::new(), f64::to_string));
         let first = std::iter::once(row.number.to_string());
         let settings = row.settings.iter().map(Setting::words);
-        let warnings = row.warnings.join(BETWEEN);
-        let last = [row.passed.to_string(), row.fault.clone(), warnings];
+        let last = [
+            row.passed.to_string(),
+            row.fault.clone(),
+            row.told_warnings(),
+        ];
         first.chain(settings).chain(found).chain(last).collect()
     };
     write_records(std::iter::once(head.collect()).chain(rows.iter().map(line)))
