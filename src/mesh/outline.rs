@@ -3,7 +3,8 @@
 //! The outline of scattered points is the boundary of those Delaunay triangles whose circumscribed circle has a
 //! radius below 1.9 s, where the spacing s is the median length of all Delaunay edges (an α-shape). This closes gaps of up to
 //! two by two points of a grid; a wider one inside is a hole. The lines are then straightened where
-//! this moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge. Where points
+//! this moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge, and made round where they
+//! are curved. Where points
 //! are scattered, as where many of a grid are lost, gaps at the edge are wider: the outer line is that of circles 1.6 times as
 //! large. Scattered points, and steps of the outer line shorter than 2.5 spacings, are reported as doubts.
 //!
@@ -28,6 +29,7 @@ mod fault;
 mod lattice;
 mod polygon;
 mod sides;
+mod smoothing;
 
 pub use fault::OutlineFault;
 use polygon::Polygon;
@@ -80,7 +82,7 @@ impl Outline {
             return Err(OutlineFault::TooFew(points.len()));
         }
         let (lines, spacing) = alpha_shape::lines(&points, 1.0)?;
-        let mut outline = Self::straightened(&lines, spacing)?;
+        let (mut outline, mut steps) = Self::behind(&lines, spacing)?;
         let mut doubts = Vec::new();
         let regular = regularity(&points, outline.area());
         if regular < SCATTERED {
@@ -90,16 +92,16 @@ impl Outline {
             ));
             // Gaps at the edge are wider then; holes are judged as ever.
             let (wide, _) = alpha_shape::lines(&points, WIDER)?;
-            let wide = Self::straightened(&wide, spacing)?;
+            let (wide, steps_of_wide) = Self::behind(&wide, spacing)?;
             let wider = Self {
                 outer: wide.outer,
                 holes: outline.holes.clone(),
             };
             if wider.check().is_ok() {
                 outline = wider;
+                steps = steps_of_wide;
             }
         }
-        let steps = polygon::steps(&outline.outer, STEP_TURN, STEP_LENGTH * spacing);
         if let Some([x, y]) = steps.first() {
             let count = steps.len();
             doubts.push(format!(
@@ -115,27 +117,33 @@ impl Outline {
         })
     }
 
-    /// The lines without the steps of a grid.
-    fn straightened(lines: &[Vec<[f64; 2]>], spacing: f64) -> Result<Self, OutlineFault> {
-        let straightened = lines
-            .iter()
-            .map(|line| polygon::straightened(line, STRAIGHT * spacing));
-        let lines = straightened.filter(|line| line.len() >= 3);
+    /// The lines without the steps of a grid, and where the outer one has other steps.
+    fn behind(
+        lines: &[Vec<[f64; 2]>],
+        spacing: f64,
+    ) -> Result<(Self, Vec<[f64; 2]>), OutlineFault> {
         let mut outline = Self {
             outer: Vec::new(),
             holes: Vec::new(),
         };
+        let mut steps = Vec::new();
         for line in lines {
-            if polygon_area(&line) > 0.0 {
-                outline.outer = line;
+            let own = smoothing::smoothed(line, STRAIGHT * spacing, spacing);
+            if own.len() < 3 {
+                continue;
+            }
+            if polygon_area(&own) > 0.0 {
+                outline.outer = own;
+                let plain = polygon::straightened(line, STRAIGHT * spacing);
+                steps = polygon::steps(&plain, STEP_TURN, STEP_LENGTH * spacing);
             } else {
-                outline.holes.push(line);
+                outline.holes.push(own);
             }
         }
         if outline.outer.is_empty() {
             return Err(OutlineFault::TooFarApart);
         }
-        Ok(outline)
+        Ok((outline, steps))
     }
 
     /// The lines a distance farther out: the outer one wider, holes narrower.

@@ -50,8 +50,14 @@ pub fn distance([a, b]: [[f64; 2]; 2], point: [f64; 2]) -> f64 {
     length([a[0] + share * along[0], a[1] + share * along[1]], point)
 }
 
-/// A closed line with fewer points, none of its points further than `near` from it (Douglas and Peucker).
+/// A closed line with fewer points, none of its points further than `near` from it.
 pub fn straightened(line: &[[f64; 2]], near: f64) -> Vec<[f64; 2]> {
+    let kept = needed(line, near).into_iter();
+    kept.map(|point| line[point]).collect()
+}
+
+/// The points that a closed line needs so that none is further than `near` from it (Douglas and Peucker), by their numbers in its order.
+pub fn needed(line: &[[f64; 2]], near: f64) -> Vec<usize> {
     let centre = [0, 1].map(|axis| line.iter().map(|p| p[axis]).sum::<f64>() / line.len() as f64);
     let farthest = |from: [f64; 2]| {
         let points = 0..line.len();
@@ -62,24 +68,27 @@ pub fn straightened(line: &[[f64; 2]], near: f64) -> Vec<[f64; 2]> {
     let count = line.len();
     let turned: Vec<[f64; 2]> = (0..=count).map(|i| line[(first + i) % count]).collect();
     let half = (second + count - first) % count;
-    let mut kept = vec![turned[0]];
-    keep(&turned[..=half], near, &mut kept);
-    keep(&turned[half..], near, &mut kept);
+    let first_half = needed_behind_the_first(&turned[..=half], near).into_iter();
+    let second_half = needed_behind_the_first(&turned[half..], near).into_iter();
+    let mut kept = vec![0];
+    kept.extend(first_half.chain(second_half.map(|point| half + point)));
     kept.pop();
-    kept
+    kept.iter().map(|point| (first + point) % count).collect()
 }
 
-/// Adds the points that a line needs after its first one.
-fn keep(line: &[[f64; 2]], near: f64, kept: &mut Vec<[f64; 2]>) {
+/// The points that an open line needs after its first one, by their numbers.
+pub fn needed_behind_the_first(line: &[[f64; 2]], near: f64) -> Vec<usize> {
+    let mut kept = Vec::new();
     let mut open = vec![(0, line.len() - 1)];
     while let Some((from, to)) = open.pop() {
         let far = |point: usize| distance([line[from], line[to]], line[point]);
         let most = (from + 1..to).max_by(|a, b| far(*a).total_cmp(&far(*b)));
         match most.filter(|most| far(*most) > near) {
             Some(most) => open.extend([(most, to), (from, most)]),
-            None => kept.push(line[to]),
+            None => kept.push(to),
         }
     }
+    kept
 }
 
 /// By how much a line turns from one edge to the next, in rad from −π to π.

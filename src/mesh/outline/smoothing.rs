@@ -1,0 +1,311 @@
+//! Lines through the outermost points of a grid that are the curves and corners behind them.
+//!
+//! Points of a grid follow a curved edge in steps. Where a parabola of the arc's length, fitted around every point of the line, stays
+//! as near to the points as a straightened line may, the line is curved; else there is a corner, or a straight edge whose steps are long.
+//! Curved parts are moved out to their outermost points: the specimen reaches at least as far.
+//!
+//! # References
+//! W. S. Cleveland, J. Am. Stat. Assoc. 74, 829 (1979), doi:10.1080/01621459.1979.10481038
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::polygon::{
+    Polygon, distance, needed, needed_behind_the_first, shifted, straightened, turn_between,
+};
+use crate::mesh::geometry::distance as length;
+
+/// Parabolas are fitted to so many spacings on either side, but to no more than this share of a closed line.
+const BESIDE: f64 = 4.0;
+const SHARE: f64 = 0.125;
+/// But to so many spacings at least, and to so many points, and a little farther.
+const LEAST: f64 = 2.5;
+const FEWEST: usize = 4;
+const WIDER: f64 = 1.3;
+
+/// Straight edges of so many spacings at least that meet by a turn of more than this, 40°, meet at a corner.
+const SIDE: f64 = 3.0;
+const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
+
+/// So do a longer and a shorter one by a turn of more than this, 75°: ends of strips with two or three rows of markers.
+const STRIP: f64 = 5.0;
+const END: f64 = 1.0;
+const SQUARE: f64 = 75.0 * std::f64::consts::PI / 180.0;
+
+/// Curves have points so many spacings apart, as far as they are needed.
+const STEP: f64 = 0.4;
+
+/// Longer edges, in spacings, that bulge by less than this are straight.
+const LONG: f64 = 10.0;
+const BULGE: f64 = 0.2;
+
+/// What is smooth has points as near as this, in spacings, to straight edges between them.
+const FINE: f64 = 0.05;
+
+/// A part of a closed line: its points, the first and the last one among them.
+type Part = Vec<[f64; 2]>;
+
+/// The line behind a closed line of points; no point is farther than `near` from it but where it is curved.
+pub fn smoothed(line: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
+    let kept = needed(line, near);
+    let plain = || kept.iter().map(|point| line[*point]).collect();
+    if kept.len() < 3 {
+        return plain();
+    }
+    let curve = closed(line, spacing);
+    let edges: Vec<Part> = (0..kept.len())
+        .map(|i| part(line, kept[i], kept[(i + 1) % kept.len()]))
+        .collect();
+    let is_straight: Vec<bool> = edges
+        .iter()
+        .map(|edge| chord(edge) > LONG * spacing && bulge(edge) < BULGE * spacing)
+        .collect();
+    let count = kept.len();
+    let is_corner = |i: usize| {
+        let (before, next) = (&edges[(i + count - 1) % count], &edges[i]);
+        meet_at_a_corner(before, next, spacing)
+            || length(line[kept[i]], curve.place(curve.at[kept[i]])) > near
+    };
+    let ends =
+        |i: &usize| is_corner(*i) || is_straight[*i] || is_straight[(*i + count - 1) % count];
+    let breaks: Vec<usize> = (0..count).filter(ends).collect();
+    let Some(first) = breaks.first() else {
+        return outermost(&curve, near, spacing);
+    };
+    let following = breaks.iter().skip(1).chain([first]);
+    let parts = breaks.iter().zip(following).map(|(from, to)| {
+        let own = part(line, kept[*from], kept[*to]);
+        let is_one_edge = (from + 1) % count == *to;
+        match is_one_edge && (is_straight[*from] || bulge(&own) < BULGE * spacing) {
+            true => vec![own[0]],
+            false => open_curve(&own, near, spacing),
+        }
+    });
+    let found: Vec<[f64; 2]> = parts.flatten().collect();
+    match found.len() < 3 {
+        true => plain(),
+        false => found,
+    }
+}
+
+/// Whether two edges are straight and meet by an angle.
+fn meet_at_a_corner(before: &Part, next: &Part, spacing: f64) -> bool {
+    let is_side = |edge: &Part, least: f64| {
+        let long = chord(edge) >= least * spacing * (1.0 - 1e-9) && edge.len() > least as usize;
+        long && bulge(edge) < BULGE * spacing
+    };
+    let both = |one, other| {
+        let sides = [[before, next], [next, before]];
+        sides
+            .into_iter()
+            .any(|[a, b]| is_side(a, one) && is_side(b, other))
+    };
+    let [a, b] = [before, next].map(|edge| [edge[0], edge[edge.len() - 1]]);
+    let turn = turn_between(a, b).abs();
+    turn > CORNER && both(SIDE, SIDE) || turn > SQUARE && both(STRIP, END)
+}
+
+/// The points of a closed line from one to another one.
+fn part(line: &[[f64; 2]], from: usize, to: usize) -> Part {
+    let count = line.len();
+    let steps = (to + count - from - 1) % count + 1;
+    (0..=steps)
+        .map(|step| line[(from + step) % count])
+        .collect()
+}
+
+fn chord(part: &[[f64; 2]]) -> f64 {
+    length(part[0], part[part.len() - 1])
+}
+
+/// How far a part bulges between its ends, by the parabola over its chord that is nearest to its points.
+fn bulge(part: &[[f64; 2]]) -> f64 {
+    let (from, to) = (part[0], part[part.len() - 1]);
+    let size = length(from, to);
+    if part.len() < 4 || size == 0.0 {
+        return 0.0;
+    }
+    let [tx, ty] = [(to[0] - from[0]) / size, (to[1] - from[1]) / size];
+    let at = part.iter().map(|[x, y]| {
+        let [dx, dy] = [x - from[0], y - from[1]];
+        (
+            2.0 * (dx * tx + dy * ty) / size - 1.0,
+            dy * tx - dx * ty,
+            1.0,
+        )
+    });
+    parabola(at).map_or(0.0, |coefficients| coefficients[2].abs())
+}
+
+/// The parabola nearest to points (t, y) with weights.
+fn parabola(points: impl Iterator<Item = (f64, f64, f64)>) -> Option<Vector3<f64>> {
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for (t, y, weight) in points {
+        let row = Vector3::new(1.0, t, t * t);
+        normal += weight * row * row.transpose();
+        right += weight * y * row;
+    }
+    normal.cholesky().map(|factor| factor.solve(&right))
+}
+
+/// The points of a line with their arc lengths, and how far parabolas reach along it.
+struct Followed<'a> {
+    line: &'a [[f64; 2]],
+    at: Vec<f64>,
+    /// The arc length of the whole line.
+    whole: f64,
+    is_closed: bool,
+    reach: f64,
+}
+
+impl Followed<'_> {
+    /// The value of the parabola around an arc length.
+    fn place(&self, own: f64) -> [f64; 2] {
+        let Self { line, at, .. } = self;
+        let from_here = |at: &f64| {
+            let t = at - own;
+            let turns = if self.is_closed {
+                (t / self.whole).round()
+            } else {
+                0.0
+            };
+            t - self.whole * turns
+        };
+        let apart: Vec<f64> = at.iter().map(from_here).collect();
+        let mut sorted: Vec<f64> = apart.iter().map(|t| t.abs()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let reach = self.reach.max(WIDER * sorted[sorted.len().min(FEWEST) - 1]);
+        let near = apart.iter().enumerate().filter_map(|(other, t)| {
+            let share = (t / reach).abs();
+            let weight = (1.0 - share.powi(3)).max(0.0).powi(3);
+            (weight > 0.0).then_some((t / reach, other, weight))
+        });
+        let near: Vec<(f64, usize, f64)> = near.collect();
+        let of_axis = |axis: usize| {
+            let points = near.iter();
+            let points = points.map(|(t, other, weight)| (*t, line[*other][axis], *weight));
+            parabola(points).map(|found| found[0])
+        };
+        match [0, 1].map(of_axis) {
+            [Some(x), Some(y)] => [x, y],
+            _ => self.on_the_line(own),
+        }
+    }
+
+    /// The place at an arc length on the line itself.
+    fn on_the_line(&self, own: f64) -> [f64; 2] {
+        let last = self.at.partition_point(|at| *at <= own).max(1) - 1;
+        let next = (last + 1) % self.line.len();
+        let [a, b] = [self.line[last], self.line[next]];
+        let size = length(a, b);
+        let share = if size > 0.0 {
+            ((own - self.at[last]) / size).min(1.0)
+        } else {
+            0.0
+        };
+        [0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis]))
+    }
+
+    /// Arc lengths from the first point on, a step apart.
+    fn steps(&self, step: f64) -> Vec<f64> {
+        let end = match self.is_closed {
+            true => self.whole,
+            false => self.at[self.at.len() - 1],
+        };
+        let count = (end / step).ceil().max(1.0) as usize;
+        let last = count - usize::from(self.is_closed);
+        (0..=last).map(|i| end * i as f64 / count as f64).collect()
+    }
+}
+
+/// The lengths along a line up to each of its points, and behind the last one.
+fn arc_lengths(line: &[[f64; 2]]) -> (Vec<f64>, f64) {
+    let mut sum = 0.0;
+    let at = Polygon(line).edges().map(|[a, b]| {
+        let own = sum;
+        sum += length(a, b);
+        own
+    });
+    let at: Vec<f64> = at.collect();
+    (at, sum)
+}
+
+/// A closed line with parabolas around all its points.
+fn closed(line: &[[f64; 2]], spacing: f64) -> Followed<'_> {
+    let (at, whole) = arc_lengths(line);
+    Followed {
+        line,
+        at,
+        whole,
+        is_closed: true,
+        reach: (BESIDE * spacing).min(SHARE * whole).max(LEAST * spacing),
+    }
+}
+
+/// A closed curve moved out to the outermost of the line's points.
+fn outermost(followed: &Followed, near: f64, spacing: f64) -> Vec<[f64; 2]> {
+    let line = followed.line;
+    let steps = followed.steps(STEP * spacing).into_iter();
+    let curve: Vec<[f64; 2]> = steps.map(|at| followed.place(at)).collect();
+    let curve = straightened(&curve, FINE * spacing);
+    let out = line.iter().map(|point| outside(&curve, *point));
+    let out = out.fold(0.0, f64::max).min(near);
+    shifted(&curve, out)
+}
+
+/// How far a point lies to the right of a closed line, which has the specimen to its left.
+fn outside(line: &[[f64; 2]], point: [f64; 2]) -> f64 {
+    let edges = Polygon(line).edges();
+    let nearest = edges.min_by(|a, b| distance(*a, point).total_cmp(&distance(*b, point)));
+    nearest.map_or(0.0, |[a, b]| {
+        let side = (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
+        -side.signum() * distance([a, b], point)
+    })
+}
+
+/// The curve behind a part between two corners or straight edges, without its last point: its ends stay, and what lies between
+/// is moved out to the outermost points.
+fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
+    let (at, whole) = arc_lengths(part);
+    let followed = Followed {
+        line: part,
+        at,
+        whole,
+        is_closed: false,
+        reach: BESIDE * spacing,
+    };
+    let at = followed.steps(STEP * spacing);
+    let whole = at[at.len() - 1];
+    let mut curve: Vec<[f64; 2]> = at.iter().map(|at| followed.place(*at)).collect();
+    let last = curve.len() - 1;
+    let normal = |i: usize| {
+        let (a, b) = (curve[i.saturating_sub(1)], curve[(i + 1).min(last)]);
+        let size = length(a, b).max(f64::MIN_POSITIVE);
+        [(b[1] - a[1]) / size, (a[0] - b[0]) / size]
+    };
+    let normals: Vec<[f64; 2]> = (0..=last).map(normal).collect();
+    let out = part.iter().map(|point| {
+        let far = |i: &usize| length(curve[*i], *point);
+        let nearest = (0..=last).min_by(|a, b| far(a).total_cmp(&far(b)));
+        let i = nearest.unwrap_or_default();
+        let [dx, dy] = [0, 1].map(|axis| point[axis] - curve[i][axis]);
+        dx * normals[i][0] + dy * normals[i][1]
+    });
+    let out = out.fold(0.0, f64::max).min(near);
+    for (i, [nx, ny]) in normals.into_iter().enumerate() {
+        // The ends stay where they are.
+        let ease = (at[i].min(whole - at[i]) / (BESIDE * spacing)).min(1.0);
+        let blend = |axis: usize, n: f64| {
+            let moved = curve[i][axis] + out * n;
+            let own = followed.on_the_line(at[i])[axis];
+            own + ease * (moved - own)
+        };
+        curve[i] = [blend(0, nx), blend(1, ny)];
+    }
+    let needed = needed_behind_the_first(&curve, FINE * spacing);
+    let inner = &needed[..needed.len() - 1];
+    let first = std::iter::once(&0);
+    first.chain(inner).map(|point| curve[*point]).collect()
+}
+
+#[cfg(test)]
+mod tests;
