@@ -36,6 +36,7 @@ mod penalty;
 mod recording;
 mod sample;
 mod smoothing;
+mod suspects;
 mod types;
 mod warnings;
 
@@ -65,6 +66,9 @@ const FINER: usize = 4;
 
 /// Instants for each part of the motion at least: both signals count at each.
 const FEWEST_IN_MOTION: usize = 2;
+
+/// Parts of the motion that the longest interval between two instants may span: a spline with more of them empty is hardly determined, and swings there.
+const BRIDGED: f64 = 1.5;
 
 /// Least noise, over the largest value of its signal: that of sums in floating point.
 const LEAST_NOISE: f64 = 1e-9;
@@ -120,8 +124,12 @@ fn begin<'a>(
 ) -> Option<(Joint<'a>, State)> {
     let times = &recording.times;
     let span = [times[0], times[times.len() - 1]];
-    let mut intervals =
-        (FINER * extension.intervals.max(force.intervals)).min(times.len() / FEWEST_IN_MOTION);
+    let longest = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let bridged = BRIDGED * (span[1] - span[0]) / longest.fold(f64::MIN_POSITIVE, f64::max);
+    let wanted = FINER * extension.intervals.max(force.intervals);
+    let mut intervals = wanted
+        .min(times.len() / FEWEST_IN_MOTION)
+        .min((bridged as usize).max(1));
     let (spline, motion) = loop {
         let spline = BSpline::new(span, intervals, 5, Ends::Uniform);
         match nearest(&spline, times, &recording.extension) {
@@ -282,6 +290,8 @@ impl Fit<'_> {
             warnings: Vec::new(),
         };
         identification.warnings = warnings(&identification, joint.recording, signals);
+        let suspects = suspects::suspects(joint, &self.state, (found, misfit));
+        identification.warnings.extend(suspects::warning(&suspects));
         Some(identification)
     }
 

@@ -91,6 +91,7 @@ def correct(
     force: Mapping[str, Mapping[str, Quantity]] | None = None,
     noise: Quantity | None = None,
     edge_gap: Quantity | None = None,
+    scale_error: Quantity | None = None,
     robust: str | None = None,
     physics: str | None = None,
     fit: Sequence[str] = (),
@@ -138,6 +139,8 @@ def correct(
         Standard deviation of the displacement's components [mm]; estimated where it is not given.
     edge_gap : quantity, optional
         How far inside of the specimen's edge the outermost markers lie [mm].
+    scale_error : quantity, optional
+        Standard deviation of the scale of the pictures, such as ``"0.1 %"`` or 0.001: a specimen 1 mm nearer to a camera 1 m away seems to grow by so much.
     robust : {"no", "huber", "tukey"}, optional
         Weights of markers that are far off.
     physics : {"exact", "weighted"}, optional
@@ -173,6 +176,7 @@ def correct(
     said = {
         "noise": noise if noise is None else text(noise, "mm", "noise"),
         "edge_gap": edge_gap if edge_gap is None else text(edge_gap, "mm", "edge_gap"),
+        "scale_error": scale_error if scale_error is None else text(scale_error, "", "scale_error"),
         "robust": robust,
         "physics": physics,
         "fit": list(fit) or None,

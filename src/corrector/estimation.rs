@@ -47,6 +47,7 @@ mod moved_edges;
 mod noise;
 mod observations;
 mod outline;
+mod picture_scale;
 mod regressed_law;
 mod regression;
 mod result;
@@ -58,6 +59,7 @@ mod smoothed_away;
 mod start;
 mod task;
 mod transfer;
+mod unknown_places;
 mod verdict;
 mod whiteness;
 
@@ -66,11 +68,14 @@ pub use field_estimate::{
     StressEstimate, TRADE, TRADE_WEIGHTED, VariogramBin, Whiteness,
 };
 pub use joint::{
-    Direction, ForcePrediction, FrameOutcome, JointEstimate, JointFrame, JointSettings, Told,
-    VAGUE, check_joint_frames, estimate_jointly,
+    Direction, ForcePrediction, ForceScatter, FrameOutcome, JointEstimate, JointFrame,
+    JointSettings, Told, VAGUE, check_joint_frames, estimate_jointly,
 };
-pub use knowledge::{EdgeCondition, Knowledge, MeasuredForce, Physics, Specimen, Unnamed};
+pub use knowledge::{
+    EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, Specimen, Unnamed,
+};
 pub use mesh_error::MOST_REFINED_CELLS;
+pub use picture_scale::ScaleChange;
 pub use regressed_law::RegressedLaw;
 pub use robust::Robust;
 pub use transfer::transfer;

@@ -51,6 +51,9 @@ pub struct Instant {
     by_functions: DVector<f64>,
 }
 
+/// The derivatives of extension and force by one more parameter, instant after instant, over the noise.
+pub type Column = Vec<[f64; 2]>;
+
 /// The equations of one Gauss–Newton step.
 pub struct JointEquations {
     /// What is left when the motion is eliminated.
@@ -144,7 +147,20 @@ impl Joint<'_> {
     /// # Errors
     /// [`FactorFault`] when the instants do not determine the motion.
     pub fn linearise(&self, state: &State) -> Result<JointEquations, FactorFault> {
-        let (motions, count) = (state.motion.len(), state.functions.len());
+        self.linearise_with(state, &[])
+    }
+
+    /// The same with more parameters behind those of the functions.
+    ///
+    /// # Errors
+    /// As [`Self::linearise`].
+    pub fn linearise_with(
+        &self,
+        state: &State,
+        more: &[Column],
+    ) -> Result<JointEquations, FactorFault> {
+        let motions = state.motion.len();
+        let count = state.functions.len() + more.len();
         let mut reduced = NormalEquations::new(count);
         let mut matrix = BandMatrix::new(motions)?;
         let mut coupling = DMatrix::zeros(motions, count);
@@ -153,18 +169,21 @@ impl Joint<'_> {
             let at = self.instant(instant, state);
             let left = self.left(instant, &at);
             let (first, by_motion) = self.by_motion(instant, &at);
-            let by_functions = &at.by_functions / self.noise[1];
-            reduced.add(&by_functions, left[1]);
-            reduced.sum += left[0] * left[0];
+            let by_others = self.by_others(instant, &at, more);
+            for (row, left) in by_others.iter().zip(left) {
+                reduced.add(row, left);
+            }
             for (row, left) in by_motion.iter().zip(left) {
                 matrix.add(first, row);
                 for (sum, value) in pull[first..].iter_mut().zip(row) {
                     *sum += value * left;
                 }
             }
-            for (row, value) in by_motion[1].iter().enumerate().take(motions - first) {
-                let mut target = coupling.row_mut(first + row);
-                target += *value * by_functions.transpose();
+            for (by_motion, by_others) in by_motion.iter().zip(&by_others) {
+                for (row, value) in by_motion.iter().enumerate().take(motions - first) {
+                    let mut target = coupling.row_mut(first + row);
+                    target += *value * by_others.transpose();
+                }
             }
         }
         let mut elimination = matrix.factorise()?;
@@ -183,6 +202,18 @@ impl Joint<'_> {
             by_functions,
             by_data,
         })
+    }
+
+    /// The derivatives of extension and force by the functions' coefficients and more parameters, over the noise.
+    fn by_others(&self, instant: usize, at: &Instant, more: &[Column]) -> [DVector<f64>; 2] {
+        let own = at.by_functions.len();
+        let mut rows = [0, 1].map(|signal| {
+            let more = more.iter().map(|column| column[instant][signal]);
+            DVector::from_iterator(own + more.len(), std::iter::repeat_n(0.0, own).chain(more))
+        });
+        let functions = &at.by_functions / self.noise[1];
+        rows[1].rows_mut(0, own).copy_from(&functions);
+        rows
     }
 
     /// The derivatives of extension and force by the motion's coefficients, over the noise.

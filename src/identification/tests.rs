@@ -1,3 +1,6 @@
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
 use super::*;
 use crate::document::{Statements, Table};
 
@@ -202,4 +205,68 @@ fn the_recording_that_comes_along_is_the_one_of_its_seed() {
     let table = Table::parse("spring_dashpot.csv", text).unwrap();
     let recording = Recording::of_table(&table, &Statements::new()).unwrap();
     assert!((recording.mass - 2e-4).abs() < 1e-12 && recording.length == Some(50.0));
+}
+
+/// Zeros, a lag and a wrong mass that the misfit hardly shows are named, with their size; nothing is of a sound recording.
+#[test]
+fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
+    let sound = Sample::default().recording();
+    let suspected = |change: &dyn Fn(&mut Recording)| {
+        let mut recording = sound.clone();
+        change(&mut recording);
+        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let told = |warning: &&String| warning.starts_with("the recording asks for");
+        found
+            .warnings
+            .iter()
+            .find(told)
+            .cloned()
+            .unwrap_or_default()
+    };
+    assert_eq!(suspected(&|_| ()), "");
+    let largest = sound
+        .force
+        .iter()
+        .fold(0.0_f64, |most, f| most.max(f.abs()));
+    let zero = suspected(&|own| own.force.iter_mut().for_each(|f| *f += 0.03 * largest));
+    assert!(zero.contains("a force whose zero lies at"), "{zero}");
+    let mass = suspected(&|own| own.mass *= 1.1);
+    assert!(mass.contains("a mass that is larger by -"), "{mass}");
+    let late = suspected(&|own| {
+        own.force.rotate_right(1);
+        own.force[0] = own.force[1];
+    });
+    assert!(late.contains("later than the motion"), "{late}");
+}
+
+/// Instants that are missing here and there leave a motion that is determined.
+#[test]
+fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one() {
+    for seed in 1..7 {
+        let whole = Sample {
+            seed,
+            ..Sample::default()
+        };
+        let whole = whole.recording();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let kept: Vec<usize> = (0..whole.times.len())
+            .filter(|_| random.random_range(0..3) > 0)
+            .collect();
+        let of = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+        let part = Recording {
+            times: of(&whole.times),
+            extension: of(&whole.extension),
+            force: of(&whole.force),
+            ..whole.clone()
+        };
+        let found = identify(&part, IdentificationSettings::default(), &|_| ()).unwrap();
+        assert!(found.misfit < 1.2, "{seed}: {}", found.misfit);
+        for x in PLACES {
+            let k = found.stiffness.at(x).value;
+            assert!(
+                (k / Sample::stiffness(x) - 1.0).abs() < 0.1,
+                "{seed} {x}: {k}"
+            );
+        }
+    }
 }

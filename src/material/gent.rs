@@ -46,7 +46,8 @@ impl InvariantLaw for Gent {
     #[inline(always)]
     fn evaluate(&self, invariants: Invariants) -> EnergyDerivatives {
         let share = invariants.i1_minus_3 / self.jm;
-        let left = 1.0 - share;
+        // Beyond the limit there is no stress either, though the formula has one.
+        let left = if share < 1.0 { 1.0 - share } else { f64::NAN };
         EnergyDerivatives {
             energy: -0.5 * self.mu * self.jm * logarithm_of_one_plus(-share),
             d1: 0.5 * self.mu / left,
@@ -60,5 +61,24 @@ impl InvariantLaw for Gent {
             Code::FeBio => CodeLaw::named("Gent", [("G", self.mu), ("Jm", self.jm), ("k", bulk)]),
             _ => CodeLaw::of_first_invariant(code),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::sheet::{Gradient, Kinematics};
+
+    #[test]
+    fn beyond_the_limit_there_is_neither_energy_nor_stress() {
+        let law = Gent { mu: 0.1, jm: 20.0 };
+        let stress = |stretch: f64| {
+            let across = 1.0 / stretch.sqrt();
+            let gradient = Gradient::new(stretch - 1.0, 0.0, 0.0, across - 1.0);
+            let (energy, stress) = law.stress(&Kinematics::new(&gradient).unwrap());
+            [energy, stress[0]]
+        };
+        assert!(stress(4.7).iter().all(|value| *value > 0.0));
+        assert!(stress(4.9).iter().all(|value| value.is_nan()));
     }
 }

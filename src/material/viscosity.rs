@@ -62,6 +62,18 @@ impl ViscousMaterial {
         self.shear_viscosity == 0.0 && self.relaxation.is_empty()
     }
 
+    /// What figures of equilibria leave out, as a sentence; `None` where there is nothing viscous.
+    pub fn left_out(&self) -> Option<String> {
+        let at_once = self.relaxation_function(0.0);
+        let sudden = match self.relaxation.is_empty() {
+            true => String::new(),
+            false => format!(", and after a sudden load the stress is {at_once:.4} times as large"),
+        };
+        (!self.is_none()).then(|| {
+            format!("the viscosity of the card takes no part: these are the figures of infinitely slow loading{sudden}")
+        })
+    }
+
     /// S(t)/S∞ after a sudden stretch: 1 + Σ βᵢ e^(−t/τᵢ).
     pub fn relaxation_function(&self, time: f64) -> f64 {
         let terms = self.relaxation.iter().enumerate();

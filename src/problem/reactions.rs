@@ -12,8 +12,10 @@ pub struct GroupState {
     /// Force of the supports of the group on the sheet in N, with the signs of the axes; that of a pulled grip included. At a corner that
     /// it shares with another group, supports of the other group have no part in it, and what both groups' supports hold is shared.
     pub force: [f64; 2],
-    /// Moment of that force about the mean deformed place of the group's nodes in N·mm, counter-clockwise.
+    /// Moment of that force about `place` in N·mm, counter-clockwise.
     pub moment: f64,
+    /// Mean deformed place over the length of its edges at rest, in mm.
+    pub place: [f64; 2],
     /// Mean displacement over the length of its edges in mm.
     pub displacement: [f64; 2],
     /// The sum of the sizes of the forces on its nodes in N, of which `force` is what they have in common.
@@ -85,27 +87,27 @@ impl Reactions<'_> {
         };
         let forces: Vec<_> = nodes.iter().zip(&parts).map(force).collect();
         let place = |node: usize, axis: usize| mesh.nodes[node][axis] + u[2 * node + axis];
-        let middle = [0, 1].map(|axis| {
-            let places = nodes.iter().map(|node| place(*node, axis));
-            places.sum::<f64>() / nodes.len() as f64
-        });
+        let shares = shares(mesh, group);
+        let mean = |of_node: &dyn Fn(usize, usize) -> f64| {
+            [0, 1].map(|axis| {
+                let parts = shares
+                    .iter()
+                    .map(|(node, share)| share * of_node(*node, axis));
+                parts.fold(0.0, |sum, part| sum + part)
+            })
+        };
+        let middle = mean(&place);
         let moment = |(node, force): (&usize, &[f64; 2])| {
             let [x, y] = [0, 1].map(|axis| place(*node, axis) - middle[axis]);
             x * force[1] - y * force[0]
-        };
-        let shares = shares(mesh, group);
-        let mean = |axis: usize| {
-            let parts = shares
-                .iter()
-                .map(|(node, share)| share * u[2 * node + axis]);
-            parts.fold(0.0, |sum, part| sum + part)
         };
         GroupState {
             size: forces.iter().map(|[x, y]| x.hypot(*y)).sum(),
             rounding: self.rounding(),
             force: [0, 1].map(|axis| forces.iter().map(|force| force[axis]).sum()),
             moment: nodes.iter().zip(&forces).map(moment).sum(),
-            displacement: [0, 1].map(mean),
+            place: middle,
+            displacement: mean(&|node, axis| u[2 * node + axis]),
         }
     }
 

@@ -9,7 +9,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::corrector::estimation::{FieldEstimate, RegressedLaw, Specimen, estimate, transfer};
+use crate::corrector::estimation::{
+    FieldEstimate, Knowledge, RegressedLaw, Specimen, estimate, transfer,
+};
 use crate::error::{Diagnostic, Error};
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on, read};
 use crate::material::softened_law::check_memory;
@@ -33,6 +35,7 @@ mod reading;
 mod refined;
 mod report;
 mod request;
+mod scale;
 mod specimen_file;
 mod specimen_mesh;
 mod tables;
@@ -80,6 +83,15 @@ pub struct MarkerStudy {
     /// Where the specimen's edge is nobody's knowledge but the markers': how far outside of them it may lie, in mm. The
     /// intervals of forces hold that.
     pub unknown_gap: Option<f64>,
+}
+
+/// What deserves attention of a card on a mesh.
+fn of_material(card: &Card, mesh: &Mesh) -> impl Iterator<Item = Diagnostic> {
+    let left_out = card.viscosity.left_out();
+    let left_out = left_out.map(|told| {
+        Diagnostic::warning("", told).hint("take a card of tests at the rate of these ones")
+    });
+    too_stiff(&*card.law, mesh).into_iter().chain(left_out)
 }
 
 /// The warning about a mesh whose cells lock.
@@ -143,7 +155,7 @@ impl MarkerStudy {
             let message = format!("markers outside of the mesh: {}", placed.outside);
             warnings.push(Diagnostic::warning("", message).hint("they are left out"));
         }
-        warnings.extend(too_stiff(&*card.law, &mesh));
+        warnings.extend(of_material(&card, &mesh));
         let mut all = field.warnings;
         doubts.extend(check_thickness(&mesh, request.thickness));
         all.extend(warnings);
@@ -198,7 +210,10 @@ impl MarkerStudy {
             thickness: self.thickness,
         };
         let law = self.regressed.as_ref();
-        let knowledge = self.conditions.knowledge(frame.number, law);
+        let knowledge = Knowledge {
+            edge_gap: self.unknown_gap,
+            ..self.conditions.knowledge(frame.number, law)
+        };
         let found = match &self.coarse {
             None => self.weighted(knowledge, &|knowledge| {
                 estimate(&specimen, &frame.markers, knowledge)

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::pictures::PictureOptions;
 use super::values::{Cells, Holds, Holes, Places, Weights, YAxis};
-use super::values::{encoding, force, force_column, gap, length, size, unit};
+use super::values::{encoding, force, force_column, gap, length, scale_error, size, unit};
 use crate::command::large::Large;
 use crate::command::terminal::Printed;
 use crate::corrector::estimation::{JointSettings, MeasuredForce};
@@ -82,6 +82,10 @@ pub struct Options {
     /// markers is widened by it
     #[arg(long, value_name = "LENGTH", value_parser = gap, conflicts_with_all = ["mesh", "outline"])]
     pub edge_gap: Option<f64>,
+    /// Standard deviation of the scale of the pictures, such as "0.1 %": a specimen 1 mm nearer to a camera 1 m away seems to grow by so much. Intervals
+    /// hold it
+    #[arg(long, value_name = "RATIO", value_parser = scale_error)]
+    pub scale_error: Option<f64>,
     /// The field's unit or the length of a pixel, such as mm or "0.05 mm", where the file does not say it. It corrects the head
     /// of a table whose columns all name one other unit
     #[arg(long, value_name = "UNIT", value_parser = unit)]

@@ -67,6 +67,7 @@ fn conditions(options: &Options) -> Result<Conditions, Error> {
     conditions.fit.extend(options.fit.iter().cloned());
     conditions.noise = options.noise.or(conditions.noise);
     conditions.edge_gap = options.edge_gap.or(conditions.edge_gap);
+    conditions.scale_deviation = options.scale_error.unwrap_or(conditions.scale_deviation);
     conditions.robust = match options.robust {
         None => conditions.robust,
         Some(Weights::No) => Some(Robust::No),

@@ -108,15 +108,19 @@ fn on_an_edge<'a>(
 }
 
 fn newtons(text: &str) -> Result<f64, Diagnostic> {
-    units::parse(text, Dimension::Force).map_err(|fault| {
-        let hint = fault.remedy(text, Dimension::Force);
-        Diagnostic::error("", format!("it {fault}")).hint(hint)
-    })
+    quantity(text, Dimension::Force, |_| true, ("", ""))
 }
 
 /// A length of zero or more in mm.
 pub fn gap(text: &str) -> Result<f64, Diagnostic> {
     within(text, |length| length >= 0.0, "it must not be negative")
+}
+
+/// A relative error of a scale.
+pub fn scale_error(text: &str) -> Result<f64, Diagnostic> {
+    let holds = |ratio: f64| (0.0..=0.1).contains(&ratio);
+    let wanted = "it must be from 0 to 10 %";
+    quantity(text, Dimension::Ratio, holds, (wanted, "0.1 %"))
 }
 
 /// The size of a thing in mm.
@@ -132,13 +136,22 @@ pub fn length(text: &str) -> Result<f64, Diagnostic> {
 }
 
 fn within(text: &str, holds: impl Fn(f64) -> bool, wanted: &str) -> Result<f64, Diagnostic> {
-    let length = units::parse(text, Dimension::Length).map_err(|fault| {
-        let hint = fault.remedy(text, Dimension::Length);
+    quantity(text, Dimension::Length, holds, (wanted, "1.5 mm"))
+}
+
+fn quantity(
+    text: &str,
+    dimension: Dimension,
+    holds: impl Fn(f64) -> bool,
+    (wanted, example): (&str, &str),
+) -> Result<f64, Diagnostic> {
+    let value = units::parse(text, dimension).map_err(|fault| {
+        let hint = fault.remedy(text, dimension);
         Diagnostic::error("", format!("it {fault}")).hint(hint)
     })?;
-    match holds(length) {
-        true => Ok(length),
-        false => Err(Diagnostic::error("", wanted).hint("write it as in \"1.5 mm\"")),
+    match holds(value) {
+        true => Ok(value),
+        false => Err(Diagnostic::error("", wanted).hint(format!("write it as in \"{example}\""))),
     }
 }
 

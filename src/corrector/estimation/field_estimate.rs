@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::knowledge::{EdgeCondition, MeasuredForce};
+use super::picture_scale::ScaleChange;
 use super::robust::Robust;
 use super::verdict::{Answer, Verdict};
 use crate::mesh::Mesh;
@@ -57,9 +58,11 @@ pub struct FieldEstimate {
     /// The condition of each part of the boundary.
     pub edges: Vec<EdgeOutcome>,
     /// The parameters of the law that were found: key, unit, estimate.
-    pub parameters: Vec<(Cow<'static, str>, Cow<'static, str>, Estimate)>,
+    pub parameters: Vec<FoundParameter>,
     /// Steps of the search.
     pub steps: usize,
+    /// What an error of the picture's scale would change.
+    pub scale_change: ScaleChange,
     /// Whether the standard errors of displacements, forces and parameters hold the mesh's own error: of meshes with too many
     /// cells it is not known.
     pub holds_mesh_error: bool,
@@ -149,6 +152,9 @@ pub struct StressEstimate {
     /// Its standard error in mm.
     pub thickness_error: f64,
 }
+
+/// A parameter of the law that was found: key, unit, estimate.
+pub type FoundParameter = (Cow<'static, str>, Cow<'static, str>, Estimate);
 
 /// The force that an edge exerts on the sheet.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]

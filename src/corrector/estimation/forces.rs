@@ -1,9 +1,7 @@
 //! The forces on the edges of an estimated field, the parameters of its law, and how both depend on where the edges lie.
 
-use std::borrow::Cow;
-
 use super::bodies::Body;
-use super::field_estimate::{EdgeForce, ForceCheck};
+use super::field_estimate::{EdgeForce, ForceCheck, FoundParameter};
 use super::linearise::dot;
 use super::mesh_error::MeshError;
 use super::search::NearestField;
@@ -48,7 +46,7 @@ impl NearestField<'_> {
         &self,
         reach: f64,
         own: Option<&MeshError>,
-    ) -> Vec<(Cow<'static, str>, Cow<'static, str>, Estimate)> {
+    ) -> Vec<FoundParameter> {
         let first = self.equations.motion.parameters();
         let regressed = self.equations.task.knowledge.law.iter();
         let parameters = regressed.flat_map(|law| law.parameters()).enumerate();

@@ -3,6 +3,8 @@
 //! ```text
 //! ∂u/∂c = K⁻¹ f,   fᵢ = ∫ Nᵢ φ dA (a force),   −∫ φ P ∇Nᵢ dV (a stiffness that varies),   −∫ P* ∇Nᵢ dV (another law's P*)
 //! ```
+//!
+//! and as what the picture could lack: its scale ([`super::picture_scale`]).
 
 use nalgebra::DMatrix;
 
@@ -19,7 +21,7 @@ use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 pub type Column = (Freedom, DMatrix<f64>);
 
 impl NearestField<'_> {
-    /// The freedoms of forces, stiffness, law and mesh, with all edges as they are.
+    /// The freedoms of forces, stiffness, law, picture and mesh, with all edges as they are.
     pub(super) fn freedoms(&mut self, own: Option<&MeshError>) -> Result<Vec<Column>, Error> {
         let mut all = Vec::new();
         if self.equations.body.is_none() {
@@ -33,6 +35,7 @@ impl NearestField<'_> {
         for (freedom, forces) in all {
             columns.push((freedom, self.marker_changes(&forces)?));
         }
+        columns.push((Freedom::Scale, self.magnification()));
         if let Some(own) = own {
             let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
             columns.push((Freedom::Mesh, error));

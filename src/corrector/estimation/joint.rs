@@ -43,7 +43,9 @@ mod reduced;
 mod tests;
 
 pub use direction::{Direction, VAGUE};
-pub use found::{ForcePrediction, FrameOutcome, JointEstimate, JointFrame, JointSettings, Told};
+pub use found::{
+    ForcePrediction, ForceScatter, FrameOutcome, JointEstimate, JointFrame, JointSettings, Told,
+};
 
 /// Finds the parameters of a law from all frames together.
 ///
@@ -114,48 +116,64 @@ fn outcome(
     }
     let inverse = direction::inverse(&directions, &scales, VAGUE);
     let common = frame::common_noise(&descent.frames, &says);
-    let covariance = covariance(&says, &inverse, common);
-    told("intervals");
-    let mesh = mesh_error(&says, &inverse);
-    let holds_mesh_error = mesh.is_some();
     let sum = |value: fn(&Say) -> f64| says.iter().map(value).sum::<f64>();
     let determined = directions.iter().filter(|one| one.is_determined()).count() as f64;
+    let measured = descent.measured();
+    let scatter = ForceScatter::new(sum(|say| say.force_misfit), measured - determined);
+    let covariance = covariance(&says, &inverse, (common, scatter.widening()));
+    told("intervals");
+    let mesh = mesh_error(&says, &inverse);
+    let alike = alike(&says, &inverse, mesh.as_ref());
     let effective = sum(|say| say.effective) + determined;
     let ends = profile::Ends {
         descent,
         course: &course,
         inverse: &inverse,
         covariance: &covariance,
-        mesh: &mesh.unwrap_or(DVector::zeros(scales.len())),
+        alike: &alike,
         reach: reach(descent, sum(|say| say.independent) - effective),
         directions: &directions,
     };
     let parameters = ends.intervals(settings.profiles);
     let frames = left_out::outcomes(descent, &course, (&says, &inverse), settings, told)?;
-    let forces: usize = frames.iter().map(|frame| frame.forces.len()).sum();
     Ok(JointEstimate {
         law: descent.law.beginning_at(&course.values),
         parameters,
         directions,
-        holds_mesh_error,
+        holds_mesh_error: mesh.is_some(),
         frames,
         common,
         misfit: course.misfit(),
+        force_scatter: scatter,
         deviance: sum(|say| say.deviance),
         effective_parameters: effective,
-        independent: sum(|say| say.independent) + forces as f64,
+        independent: sum(|say| say.independent) + measured,
         steps: course.steps,
         ended: course.ended,
     })
 }
 
-/// S⁻¹ (Σ Jₖ) S⁻¹, the noise of markers counted as often as it is the same in other frames.
-fn covariance(says: &[Say], inverse: &DMatrix<f64>, common: f64) -> DMatrix<f64> {
+/// S⁻¹ (Σ Jₖ) S⁻¹, the noise of markers counted as often as it is the same in other frames, and that of the forces as much larger than stated as
+/// they scatter.
+fn covariance(says: &[Say], inverse: &DMatrix<f64>, (common, forces): (f64, f64)) -> DMatrix<f64> {
     let alike = common * (says_that_count(says, inverse) - 1.0).max(0.0);
     let sum = says.iter().fold(inverse * 0.0, |sum, say| {
-        sum + &say.spread + &say.spread_of_markers * alike
+        let of_forces = &say.spread - &say.spread_of_markers;
+        sum + of_forces * forces + &say.spread_of_markers * (1.0 + alike)
     });
     inverse * sum * inverse
+}
+
+/// What errors that all frames have in common make of each parameter: those of forces, of pictures, and of meshes, as independent ones.
+fn alike(says: &[Say], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
+    let common = [0, 1].map(|kind| {
+        let targets = says.iter().map(|say| &say.common[kind]);
+        inverse * targets.sum::<Step>()
+    });
+    let all = common.iter().chain(mesh);
+    all.fold(DVector::zeros(inverse.nrows()), |sum, step| {
+        sum.zip_map(step, f64::hypot)
+    })
 }
 
 /// S⁻¹ Σ tₖ of the right-hand sides that the meshes' own errors make, as alike in all frames as their meshes are.

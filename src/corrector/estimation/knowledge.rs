@@ -40,6 +40,11 @@ pub struct Knowledge {
     pub robust: Robust,
     /// Whether equilibrium holds exactly.
     pub physics: Physics,
+    /// How far outside of the mesh free edges may lie, in mm, where nothing but markers tells of the specimen's edge: the errors of displacement and stress
+    /// hold it.
+    pub edge_gap: Option<f64>,
+    /// Relative standard deviation of the scale of the picture: a specimen that comes nearer to its camera seems to grow.
+    pub scale_deviation: f64,
     /// Parameters of the law that are found with the field; the specimen's law is not used then.
     pub law: Option<RegressedLaw>,
 }
@@ -83,6 +88,9 @@ impl Physics {
         [("exact", Self::Exact), ("weighted", Self::Weighted)];
 }
 
+/// Standard deviation of a force over the force where none is stated: that of the class of a load cell, the same in all frames.
+pub const FORCE_CLASS: f64 = 0.01;
+
 /// A force that was measured on an edge that is not free.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct MeasuredForce {
@@ -94,6 +102,10 @@ pub struct MeasuredForce {
     pub force: f64,
     /// Its standard deviation in N.
     pub standard_deviation: f64,
+    /// The relative standard deviation of a factor that all measured forces have in common, such as the gain of their load cell: parameters of a law
+    /// that is found from several frames are as uncertain by it in all of them together.
+    #[serde(default)]
+    pub common_deviation: f64,
 }
 
 /// What is known of a part of the boundary.

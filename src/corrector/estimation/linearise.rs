@@ -83,6 +83,7 @@ impl Equations<'_> {
                 axis,
                 force,
                 standard_deviation,
+                ..
             } = measured;
             let own = self.bodies.iter().filter(|body| body.name == *edge);
             let shares: Vec<Share> = own.flat_map(|body| &body.shares[*axis]).copied().collect();

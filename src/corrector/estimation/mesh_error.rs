@@ -238,12 +238,7 @@ impl Equations<'_> {
         difference: &MeshDifference,
         (linear, trade): (&Linear, &Trade),
     ) -> DVector<f64> {
-        let weights = &self.task.observations.weights;
-        let weight = |row: usize| weights[row / 2] * trade.trust[row / 2];
-        let weighted = difference.markers.iter().enumerate();
-        let weighted = weighted.map(|(row, d)| -weight(row) * d / trade.variance);
-        let weighted = DVector::from_iterator(difference.markers.len(), weighted);
-        let mut target = linear.design.tr_mul(&weighted);
+        let mut target = self.target_of(&difference.markers, (linear, trade));
         let measured = self.task.knowledge.facts().iter().enumerate();
         for (row, measured) in measured {
             let own = self.bodies.iter().zip(&difference.forces);
@@ -253,6 +248,20 @@ impl Equations<'_> {
             target -= slopes * (off / measured.standard_deviation);
         }
         target
+    }
+
+    /// −AᵀWd/v of displacements d at the markers.
+    pub fn target_of(
+        &self,
+        displacements: &[f64],
+        (linear, trade): (&Linear, &Trade),
+    ) -> DVector<f64> {
+        let weights = &self.task.observations.weights;
+        let weight = |row: usize| weights[row / 2] * trade.trust[row / 2];
+        let weighted = displacements.iter().enumerate();
+        let weighted = weighted.map(|(row, d)| -weight(row) * d / trade.variance);
+        let weighted = DVector::from_iterator(displacements.len(), weighted);
+        linear.design.tr_mul(&weighted)
     }
 }
 

@@ -20,14 +20,9 @@ pub type MovedEdge = (Option<String>, DMatrix<f64>);
 impl NearestField<'_> {
     /// Each of the free edges moved alone, and all of them together where there are several.
     pub(super) fn moved_edges(&mut self, edges: &[Edge]) -> Result<Vec<MovedEdge>, Error> {
-        let is_free = |edge: &&Edge| !edge.is_loaded() && !edge.segment.inside;
-        let free: Vec<&Edge> = edges.iter().filter(is_free).collect();
-        let mut names: Vec<Option<String>> = Vec::new();
-        let mut strips: Vec<Vec<f64>> = Vec::new();
-        for edge in &free {
-            names.push(Some(edge.segment.name.clone()));
-            strips.push(self.strip(&edge.segment.nodes));
-        }
+        let free = edges.iter().filter(|edge| edge.has_strip());
+        let mut names: Vec<_> = free.map(|edge| Some(edge.segment.name.clone())).collect();
+        let mut strips = self.strips(edges);
         if strips.len() > 1 {
             let mut all = vec![0.0; self.field.len()];
             for strip in &strips {
@@ -39,6 +34,12 @@ impl NearestField<'_> {
         let designs = self.marker_changes(&strips)?;
         let columns = (0..designs.ncols()).map(|column| designs.columns(column, 1).into_owned());
         Ok(names.into_iter().zip(columns).collect())
+    }
+
+    /// The forces in N/mm of a strip along each of the free edges.
+    pub(super) fn strips(&self, edges: &[Edge]) -> Vec<Vec<f64>> {
+        let free = edges.iter().filter(|edge| edge.has_strip());
+        free.map(|edge| self.strip(&edge.segment.nodes)).collect()
     }
 
     /// The forces in N/mm on all unknowns of a strip along an edge.

@@ -5,10 +5,12 @@ use rayon::prelude::*;
 
 use super::equations::{Equations, Neighbours, solve};
 use super::field_estimate::{
-    EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE, TRADE_WEIGHTED,
+    EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, FoundParameter, MarkerEstimate, Smoothing,
+    StressEstimate, TRADE, TRADE_WEIGHTED,
 };
 use super::judge::Judgement;
 use super::mesh_error::MeshError;
+use super::picture_scale::ScaleChange;
 use super::robust::Robust;
 use super::search::NearestField;
 use super::task::Edge;
@@ -21,6 +23,16 @@ use crate::statistics::{chi_squared_limit, normal_reach, student_reach};
 /// Share of sound markers that are taken for outliers.
 const FALSE_ALARMS: f64 = 1e-3;
 
+/// What is uncertain, and by how much.
+struct Uncertain {
+    freedom: f64,
+    reach: f64,
+    force_checks: Vec<ForceCheck>,
+    forces: Vec<EdgeForce>,
+    parameters: Vec<FoundParameter>,
+    scale_change: ScaleChange,
+}
+
 impl NearestField<'_> {
     /// The field with all that follows from it.
     pub fn into_estimate(
@@ -32,28 +44,23 @@ impl NearestField<'_> {
         let whiteness = self.whiteness(&judged.sound, own);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
-        let rows = self.linear.design.nrows() as f64;
-        let white = (rows - self.fit.effective).max(1.0);
-        // Where the data are not explained, what is left would hide a wrong force if it were taken for noise.
-        let is_explained = judged.verdict.answer != Answer::NotExplained;
-        let before = self.force_checks(own)?;
-        let freedom = self.widen(&judged).unwrap_or(white);
-        let reach = match known_noise && robust == Robust::No && judged.noise.is_none() {
-            true => normal_reach(),
-            false => student_reach(freedom),
-        };
+        let Uncertain {
+            freedom,
+            reach,
+            force_checks,
+            forces,
+            parameters,
+            scale_change,
+        } = self.take_uncertainty(edges, own, &judged)?;
         let larger = judged.noise.map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        let force_checks = match is_explained {
-            true => self.force_checks(own)?,
-            false => before,
-        };
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(own),
             cells: self.cells(own)?,
-            forces: self.forces(reach, own)?,
-            parameters: self.law_parameters(reach, own),
+            forces,
+            parameters,
+            scale_change,
             holds_mesh_error: own.is_some(),
             imbalance: self.imbalance(),
             growth: self.growth(edges),
@@ -80,6 +87,48 @@ impl NearestField<'_> {
             reactions: self.reactions(),
             multipliers: self.multipliers,
             displacement: self.field,
+        })
+    }
+
+    /// Brings all into the covariance that the field is uncertain by, one after the other; figures that are not by all of it are made
+    /// on the way.
+    fn take_uncertainty(
+        &mut self,
+        edges: &[Edge],
+        own: Option<&MeshError>,
+        judged: &Judgement,
+    ) -> Result<Uncertain, Error> {
+        let rows = self.linear.design.nrows() as f64;
+        let white = (rows - self.fit.effective).max(1.0);
+        let before = self.force_checks(own)?;
+        let places = self.unknown_places(edges)?;
+        let scale = self.scale_answer();
+        let scale_change = self.scale_change(&scale)?;
+        let freedom = self.widen(judged).unwrap_or(white);
+        let is_plain = self.equations.task.knowledge.robust == Robust::No && judged.noise.is_none();
+        let reach = match self.observations().known_noise && is_plain {
+            true => normal_reach(),
+            false => student_reach(freedom),
+        };
+        self.take_scale(&scale);
+        // Where the data are not explained, what is left would hide a wrong force if it were taken for noise.
+        let force_checks = match judged.verdict.answer {
+            Answer::NotExplained => before,
+            _ => self.force_checks(own)?,
+        };
+        let forces = self.forces(reach, own)?;
+        let parameters = self.law_parameters(reach, own);
+        // Forces hold unknown places on the side that is possible.
+        if let Some(places) = places {
+            self.consider(places);
+        }
+        Ok(Uncertain {
+            freedom,
+            reach,
+            force_checks,
+            forces,
+            parameters,
+            scale_change,
         })
     }
 

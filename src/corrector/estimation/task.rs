@@ -46,4 +46,9 @@ impl Edge<'_> {
     pub fn is_loaded(&self) -> bool {
         self.condition != EdgeCondition::Free
     }
+
+    /// Whether it is free, so that a strip of the sheet may lie outside of it.
+    pub fn has_strip(&self) -> bool {
+        !self.is_loaded() && !self.segment.inside
+    }
 }

@@ -216,6 +216,7 @@ fn a_modulus_is_found_with_the_field() {
             axis: 0,
             force: truth.force * 1.01,
             standard_deviation: truth.force * 0.01,
+            common_deviation: 0.0,
         }],
         law: Some(RegressedLaw::of_card(&card, &["c10"]).unwrap()),
         ..with_grips(EdgeCondition::Unknown)

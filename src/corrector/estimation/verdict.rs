@@ -114,6 +114,8 @@ pub enum Freedom {
     Direction,
     /// A volume that changes.
     Volume,
+    /// A picture of another scale.
+    Scale,
     /// A finer mesh.
     Mesh,
     /// Stiffness times thickness, by a factor.
@@ -141,6 +143,9 @@ impl Freedom {
             Self::Law => "another isotropic law".into(),
             Self::Direction => "a stiffness that depends on the direction".into(),
             Self::Volume => "a volume that changes".into(),
+            Self::Scale => {
+                "a picture of another scale (a specimen nearer to its camera, or farther)".into()
+            }
             Self::Mesh => "a finer mesh".into(),
             Self::Factor(factor) => {
                 format!("stiffness times thickness larger by a factor of {factor:.3}")

@@ -75,3 +75,32 @@ fn forces_of_sides_that_meet_add_up_to_those_of_all_supports() {
         assert_eq!(bottom.size, 0.0);
     }
 }
+
+/// Where the nodes lie says nothing of a moment: rows that become narrower towards one side, pulled evenly.
+#[test]
+fn moments_are_about_the_middle_of_the_group_however_its_nodes_lie() {
+    let supports = [
+        ("left", CLAMP),
+        ("right", Support::Displacement([Some(3.0), Some(0.0)])),
+    ];
+    for (_, cells) in CellShape::NAMES {
+        let (mut mesh, problem) = (strip(cells), problem(&supports, &[]));
+        let [[_, low], [_, high]] = mesh.bounding_box();
+        let width = high - low;
+        for [_, y] in &mut mesh.nodes {
+            *y = low + (*y - low).powi(2) / width;
+        }
+        let energy = problem.finite_elements(&mesh);
+        let model = problem.on(&mesh, &energy).unwrap();
+        let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
+        let reactions = model.reactions(&state);
+        for group in ["left", "right"] {
+            let own = reactions.at_group(group);
+            let middle = 0.5 * (low + high);
+            assert!((own.place[1] - middle).abs() < 1e-9, "{group}: {own:?}");
+            // Of the force at half the width a small share: the cells are coarse.
+            let arm = own.moment / (own.force[0] * width);
+            assert!(arm.abs() < 0.02, "{group}: {arm}");
+        }
+    }
+}

@@ -6,7 +6,7 @@ use super::area::Area;
 use super::machine::{self, ForceColumn, FrameForces};
 use super::specimen_file::{self, SpecimenFile};
 use crate::corrector::estimation::{
-    EdgeCondition, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
+    EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, RegressedLaw, Robust, Unnamed,
 };
 use crate::document::{Bound, Document, Faults, Key, Section};
 use crate::error::{Diagnostic, Error, suggestion};
@@ -47,15 +47,14 @@ pub struct Conditions {
     pub fit: Vec<String>,
     /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
     pub edge_gap: Option<f64>,
+    /// Relative standard deviation of the scale of the pictures.
+    pub scale_deviation: f64,
     /// The specimen itself, where the file holds it.
     pub specimen: Option<SpecimenFile>,
 }
 
 /// The file that `gelbench new --kind markers` writes.
 pub const TEMPLATE: &str = include_str!("default.toml");
-
-/// Standard deviation of a force over the force where it is not given.
-const FORCE_DEVIATION: f64 = 0.01;
 
 /// A measured force; without a standard deviation it has one of 1 %.
 pub fn measured_force(
@@ -68,7 +67,8 @@ pub fn measured_force(
         edge: edge.to_owned(),
         axis,
         force,
-        standard_deviation: deviation.unwrap_or(FORCE_DEVIATION * force.abs()),
+        standard_deviation: deviation.unwrap_or(FORCE_CLASS * force.abs()),
+        common_deviation: deviation.map_or(FORCE_CLASS, |_| 0.0),
     }
 }
 
@@ -225,6 +225,8 @@ impl Conditions {
         let forces: Vec<_> = own.map(|(_, force)| force.clone()).collect();
         Knowledge {
             edges: self.edges.clone(),
+            edge_gap: None,
+            scale_deviation: self.scale_deviation,
             unnamed: self.unnamed,
             noise: self.noise,
             robust: self.robust.unwrap_or_default(),
@@ -258,6 +260,10 @@ fn read(root: &Section) -> Conditions {
     if root.has("edge_gap") {
         conditions.edge_gap =
             Some(root.quantity("edge_gap", Dimension::Length, Bound::NonNegative));
+    }
+    if root.has("scale_error") {
+        let bound = Bound::Within(0.0, 0.1);
+        conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, bound);
     }
     if root.has("robust") {
         conditions.robust = root.choice("robust", &Robust::NAMES);

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::report::{largest_correction, largest_error, left, outliers, used};
 use super::verdict;
-use crate::corrector::estimation::{EdgeCondition, FieldEstimate, Robust};
+use crate::corrector::estimation::{EdgeCondition, EdgeForce, FieldEstimate, Robust};
 use crate::markers::{Frame, Understood};
 use crate::results::Step;
 use crate::statistics::Estimate;
@@ -56,13 +56,6 @@ pub fn step(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Ste
 
 fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Value {
     let of = |found: &Estimate| of_estimate(found, estimate.is_explained());
-    let forces = estimate.forces.iter().map(|force| {
-        json!({
-            "edge": force.edge,
-            "x_N": of(&force.force[0]),
-            "y_N": of(&force.force[1]),
-        })
-    });
     let parameters = estimate.parameters.iter();
     let parameters = parameters
         .map(|(key, unit, found)| json!({ "key": key, "unit": unit, "found": of(found) }));
@@ -107,10 +100,27 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
             })).collect::<Vec<_>>(),
         })),
         "measured_forces": checks.collect::<Vec<_>>(),
-        "forces": forces.collect::<Vec<_>>(),
+        "forces": forces(estimate),
         "parameters": parameters.collect::<Vec<_>>(),
         "free_edges": free.map(|edge| edge.edge.as_str()).collect::<Vec<_>>(),
     })
+}
+
+fn forces(estimate: &FieldEstimate) -> Vec<Value> {
+    let of = |found: &Estimate| of_estimate(found, estimate.is_explained());
+    let change = |index: usize| {
+        let own = estimate.scale_change.forces.get(index);
+        own.map(|change| change.map(|change| 0.01 * change))
+    };
+    let force = |(index, force): (usize, &EdgeForce)| {
+        json!({
+            "edge": force.edge,
+            "x_N": of(&force.force[0]),
+            "y_N": of(&force.force[1]),
+            "change_by_one_percent_of_the_scale_N": change(index),
+        })
+    };
+    estimate.forces.iter().enumerate().map(force).collect()
 }
 
 /// A value with its uncertainty, which only an explained field has.

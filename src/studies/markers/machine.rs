@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-use crate::corrector::estimation::MeasuredForce;
+use crate::corrector::estimation::{FORCE_CLASS, MeasuredForce};
 use crate::document::Table;
 use crate::error::{Diagnostic, Error};
 use crate::markers::{Frame, MarkerSeries, column_named, columns};
@@ -71,8 +71,8 @@ pub fn forces(
             .iter()
             .map(|(row, _)| factor * row[column])
             .collect();
-        let deviation = one.standard_deviation;
-        let deviation = deviation.unwrap_or_else(|| 0.01 * largest(&forces));
+        let stated = one.standard_deviation;
+        let deviation = stated.unwrap_or_else(|| FORCE_CLASS * largest(&forces));
         for frame in &series.frames {
             match rows.at(&table, frame, &forces)? {
                 Some(force) => {
@@ -81,6 +81,7 @@ pub fn forces(
                         axis: one.axis,
                         force,
                         standard_deviation: deviation,
+                        common_deviation: stated.map_or(FORCE_CLASS, |_| 0.0),
                     };
                     found.push((Some(frame.number), force));
                 }

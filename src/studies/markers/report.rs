@@ -1,6 +1,6 @@
 //! The report of a correction.
 
-use super::{reading, refined, verdict};
+use super::{reading, refined, scale, verdict};
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::results::Block;
 use crate::statistics::Estimate;
@@ -46,6 +46,8 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 newtons(y, last.is_explained())
             );
         }
+        let deviation = field.conditions.scale_deviation;
+        text += &scale::line(frame.number, last, deviation).unwrap_or_default();
     }
     text += &verdict::summary(field, estimates);
     let doubts = field.all_doubts(estimates);
@@ -195,6 +197,11 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         Block::heading("Forces on the edges"),
         forces(field, estimates),
     ]);
+    let deviation = field.conditions.scale_deviation;
+    let scale = estimates
+        .last()
+        .and_then(|last| scale::paragraph(last, deviation));
+    blocks.extend(scale.map(Block::paragraph));
     blocks.extend(field.unknown_gap.map(|gap| {
         let free = estimates.iter().any(|estimate| estimate.growth > 0.0);
         let then = match free {

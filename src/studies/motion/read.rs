@@ -51,8 +51,8 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let forces = tables(root, "force", |one| read_force(one, &problem));
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
-    let covered = &material.viscosity.covered;
-    check_covered(root, &in_time, time.as_ref().zip(grip.as_ref()), covered);
+    let motion = time.as_ref().zip(grip.as_ref());
+    check_times(root, &in_time, motion, &material.viscosity);
     let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity);
     let section = root.section("finite_element");
     let element = section.choice("element", &Element::NAMES);
@@ -163,6 +163,35 @@ fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotio
     }
     section.unknown_keys();
     (start, grip)
+}
+
+/// Warns where stresses that are made of the instants miss what relaxes between them.
+fn check_interval(section: &Section, time: Option<&TimeSettings>, viscosity: &ViscousMaterial) {
+    /// Of the shortest relaxation time: stresses are a few percent off then where a motion changes between two instants.
+    const SHORT: f64 = 0.25;
+    let shortest = viscosity.relaxation.iter().map(|term| term.time);
+    let shortest = shortest.fold(f64::INFINITY, f64::min);
+    if time.is_some_and(|time| time.interval > SHORT * shortest * (1.0 + 1e-9)) {
+        let message = format!(
+            "stresses in files and pictures are those of a motion that is even between two instants, and the shortest relaxation time is {shortest} s"
+        );
+        let hint = format!(
+            "forces hold the whole motion; for stresses take an interval of {} s or less",
+            SHORT * shortest
+        );
+        section.warning("interval", &message, &hint);
+    }
+}
+
+/// Warns of times that do not suit a viscous material.
+fn check_times(
+    root: &Section,
+    in_time: &Section,
+    motion: Option<(&TimeSettings, &GripMotion)>,
+    viscosity: &ViscousMaterial,
+) {
+    check_interval(in_time, motion.map(|(time, _)| time), viscosity);
+    check_covered(root, in_time, motion, &viscosity.covered);
 }
 
 /// Warns where a motion lasts longer, or is faster or slower, than the tests behind the relaxation.

@@ -31,6 +31,8 @@ pub fn warnings(study: &Study, results: &Results) -> Vec<String> {
         .filter_map(|((name, locks), remedy)| locks.then_some((name, remedy)))
         .collect();
     all.extend(locking::warning(&*study.problem.law, &locking));
+    let left_out = study.card.viscosity.left_out();
+    all.extend(left_out.map(|told| format!("Warning: {told}.")));
     all.extend(compression_and_strains(study, results));
     all.extend(instability(results));
     all.extend(imbalance(results));

@@ -42,8 +42,8 @@ pub fn table(specimen: &Specimen, models: &Models) -> Vec<Block> {
         }
     }
     let text = "Forces of the supports on the specimen, with the signs of the axes, and their moments about the middle of \
-                the group's deformed nodes, counter-clockwise; the force that a grip is given counts as one of its \
-                support; what rounding leaves of nothing is 0. Displacements are means over the length of the group's edges.";
+                the deformed group, counter-clockwise; the force that a grip is given counts as one of its \
+                support; what rounding leaves of nothing is 0. Displacements, and the middle, are means over the length of the group's edges at rest.";
     vec![
         Block::Heading(2, "Forces at the groups".into()),
         Block::Paragraph(text.into()),
@@ -122,6 +122,7 @@ pub fn groups(specimen: &Specimen, solution: &Solution, step: usize) -> Option<V
         let value = json!({
             "force_N": state.force,
             "moment_Nmm": state.moment,
+            "middle_mm": state.place,
             "displacement_mm": state.displacement,
         });
         (name.to_owned(), value)

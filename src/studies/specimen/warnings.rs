@@ -39,6 +39,8 @@ pub fn warnings(specimen: &Specimen, models: &Models) -> Vec<String> {
         .collect();
     all.extend(locking::warning(&*specimen.problem.law, &locking));
     all.extend(small_strain::warning(&*specimen.problem.law, mesh, loads()));
+    let left_out = specimen.card.viscosity.left_out();
+    all.extend(left_out.map(|told| format!("Warning: {told}.")));
     all.extend(idle_loads(specimen, mesh));
     all.extend(loads_on_points(specimen, mesh));
     all.extend(several(models));

@@ -158,6 +158,7 @@ impl Subject {
             axis: 0,
             force: self.truth.force + deviation * off,
             standard_deviation: deviation,
+            common_deviation: 0.0,
         }
     }
 

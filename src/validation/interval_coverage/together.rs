@@ -147,6 +147,7 @@ impl Test {
                     axis: 0,
                     force: force + deviation * off,
                     standard_deviation: deviation,
+                    common_deviation: 0.0,
                 }],
                 ..unknown_grips()
             }

@@ -80,6 +80,12 @@ impl Course {
 }
 
 impl<'a> Descent<'a> {
+    /// How many forces were measured.
+    pub fn measured(&self) -> f64 {
+        let measured = self.frames.iter().map(|frame| frame.measured().len());
+        measured.sum::<usize>() as f64
+    }
+
     /// Of frames, with a law that begins at its first values.
     pub fn new(frames: Vec<&'a Judged<'a>>, law: &RegressedLaw) -> Self {
         Self {

@@ -8,7 +8,7 @@ use super::direction::Direction;
 use crate::markers::Marker;
 use crate::material::parameters::Parameter;
 use crate::mesh::Mesh;
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, chi_squared_limit};
 
 /// One frame of one specimen. The law of what is known is not used.
 #[derive(Clone, Debug)]
@@ -60,6 +60,8 @@ pub struct JointEstimate {
     pub common: f64,
     /// Σ Qₖ at its minimum.
     pub misfit: f64,
+    /// How far the measured forces are from those of the fields.
+    pub force_scatter: ForceScatter,
     /// −2 ln L of markers and forces with as many values as are independent, but for a constant of the data.
     pub deviance: f64,
     /// Parameters that the data determined: of edges and law.
@@ -70,6 +72,38 @@ pub struct JointEstimate {
     pub steps: usize,
     /// Why the search ended before the least misfit, if it did: frames have no equilibrium with the parameters beyond.
     pub ended: Option<String>,
+}
+
+/// How far measured forces are from those of the fields with the law found, over what noise leaves of both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceScatter {
+    /// χ² = Σ (F − f)²/(σ² + s²).
+    pub misfit: f64,
+    /// Its degrees of freedom: forces less parameters that the data determine.
+    pub freedom: f64,
+}
+
+impl ForceScatter {
+    pub(super) fn new(misfit: f64, freedom: f64) -> Self {
+        Self { misfit, freedom }
+    }
+
+    /// By how much the variances of the forces are larger than stated, never smaller: χ² over its degrees of freedom (Birge's ratio squared).
+    ///
+    /// # References
+    /// R. T. Birge, Phys. Rev. 40, 207 (1932), doi:10.1103/PhysRev.40.207
+    pub fn widening(&self) -> f64 {
+        match self.freedom >= 1.0 {
+            true => (self.misfit / self.freedom).max(1.0),
+            false => 1.0,
+        }
+    }
+
+    /// Whether chance leaves so much in less than one case of a thousand.
+    pub fn is_too_large(&self) -> bool {
+        const CHANCE: f64 = 1e-3;
+        self.freedom >= 1.0 && self.misfit > chi_squared_limit(self.freedom, CHANCE)
+    }
 }
 
 /// What was found of one frame.

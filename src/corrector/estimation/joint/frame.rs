@@ -61,6 +61,10 @@ pub struct Say {
     pub deviance: f64,
     /// What its mesh's own error adds to the score; `None` where that is not known.
     pub mesh: Option<Step>,
+    /// What a standard deviation of what all forces, or all pictures, have in common adds to it.
+    pub common: [Step; 2],
+    /// Σ (F − f)²/(σ² + s²) of its forces.
+    pub force_misfit: f64,
     /// Parameters of its edges that the data determine.
     pub effective: f64,
     /// Independent values of its markers.
@@ -84,6 +88,8 @@ struct AboutField {
     design: DMatrix<f64>,
     /// What the mesh's own error makes of the right-hand side.
     mesh: Option<DVector<f64>>,
+    /// What forces, and what pictures, that are too large by what they have in common make of it.
+    common: [DVector<f64>; 2],
 }
 
 impl<'a> Ground<'a> {
@@ -237,6 +243,8 @@ impl Judged<'_> {
                 spread: reduced.project(&spread),
                 spread_of_markers: reduced.project(&of_markers),
                 mesh: about.mesh.map(|target| reduced.score_of(&target)),
+                common: about.common.map(|target| reduced.score_of(&target)),
+                force_misfit: forces,
                 information: reduced.information,
                 deviance: markers_deviance + forces,
                 effective,
@@ -332,10 +340,17 @@ impl Judged<'_> {
             all: linear.design.ncols(),
         };
         let target = difference.map(|own| equations.mesh_target(own, (&linear, &trade)));
+        let facts = knowledge.facts().iter();
+        let off = facts.map(|own| own.common_deviation * own.force / own.standard_deviation);
+        let off = linear.facts.0.tr_mul(&DVector::from_vec(off.collect()));
+        let magnified = equations.magnified(&place.field);
+        let magnified = equations.target_of(&magnified, (&linear, &trade));
+        let common = [off, magnified * -knowledge.scale_deviation];
         Ok(AboutField {
             design: order.columns(&linear.design),
             normal: order.of(normal),
             mesh: target.map(|target| order.rows(&target)),
+            common: common.map(|target| order.rows(&target)),
         })
     }
 

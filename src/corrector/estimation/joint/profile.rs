@@ -23,8 +23,8 @@ pub struct Ends<'a> {
     pub covariance: &'a DMatrix<f64>,
     /// Half the width of an interval in standard errors.
     pub reach: f64,
-    /// What the meshes' own error makes of each parameter.
-    pub mesh: &'a Step,
+    /// What is alike in all frames makes of each parameter: the meshes' own error, and that which forces have in common.
+    pub alike: &'a Step,
     /// Combinations of parameters.
     pub directions: &'a [Direction],
 }
@@ -32,7 +32,7 @@ pub struct Ends<'a> {
 impl Ends<'_> {
     /// The values found with their intervals: where the misfit, the other parameters following, has risen by the square of the
     /// reach; by more where the noise correlates. Where no equilibrium is found on the way, the end is that of the standard error.
-    /// The meshes' own error is added as if it were noise.
+    /// What is alike in all frames is added as if it were noise.
     pub fn intervals(&self, profiles: bool) -> Vec<Estimate> {
         let estimate = |index: usize| {
             let value = self.course.values[index];
@@ -40,8 +40,8 @@ impl Ends<'_> {
                 return Estimate::exact(value);
             }
             let variance = self.covariance[(index, index)].max(0.0);
-            let mesh = self.mesh[index];
-            let mut estimate = Estimate::new(value, variance.sqrt().hypot(mesh), self.reach);
+            let alike = self.alike[index];
+            let mut estimate = Estimate::new(value, variance.sqrt().hypot(alike), self.reach);
             if profiles && variance > 0.0 {
                 let side = Side {
                     ends: self,
@@ -51,7 +51,7 @@ impl Ends<'_> {
                 let first = self.reach * variance.sqrt();
                 estimate.interval = [-first, first].map(|first| {
                     let off = side.end(first) - value;
-                    value + off.hypot(self.reach * mesh).copysign(first)
+                    value + off.hypot(self.reach * alike).copysign(first)
                 });
             }
             estimate

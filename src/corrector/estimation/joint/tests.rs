@@ -99,6 +99,7 @@ impl Series {
             axis: 0,
             force,
             standard_deviation: 0.01 * force,
+            common_deviation: 0.0,
         };
         JointFrame {
             mesh: &self.mesh,
@@ -224,4 +225,52 @@ fn the_error_of_coarse_cells_is_in_the_intervals() {
         let off = (estimate.value - truth).abs();
         assert!(high - low < 8.0 * off, "{truth} by {estimate:?}");
     }
+}
+
+/// A load cell that shows too much does so in all frames: no number of frames makes up for it.
+#[test]
+fn intervals_hold_a_factor_that_all_forces_have_in_common() {
+    let series = Series::on(CELLS, &STRETCHES, [1e-3, 1e-4], 1);
+    let truth = series.law.start()[0];
+    let held = |common: f64| {
+        let mut frames = series.frames();
+        let forces = frames
+            .iter_mut()
+            .flat_map(|frame| &mut frame.knowledge.forces);
+        for own in forces {
+            own.force *= 1.01;
+            own.standard_deviation *= 0.1;
+            own.common_deviation = common;
+        }
+        let [low, high] = estimated(&frames, &series.law, true).parameters[0].interval;
+        low < truth && truth < high
+    };
+    assert!(held(0.01) && !held(0.0));
+}
+
+/// Forces that scatter more than is said are told, and intervals hold it.
+#[test]
+fn forces_that_scatter_more_than_stated_widen_the_intervals() {
+    let [calm, wild] = [0.01, 0.06].map(|noise| {
+        let series = Series::on(CELLS, &STRETCHES, [1e-3, noise], 3);
+        estimated(&series.frames(), &series.law, false)
+    });
+    assert!(
+        !calm.force_scatter.is_too_large(),
+        "{:?}",
+        calm.force_scatter
+    );
+    assert!(
+        wild.force_scatter.is_too_large(),
+        "{:?}",
+        wild.force_scatter
+    );
+    let width =
+        |found: &JointEstimate| found.parameters[0].standard_error / found.parameters[0].value;
+    assert!(
+        width(&wild) > 2.0 * width(&calm),
+        "{} {}",
+        width(&wild),
+        width(&calm)
+    );
 }

@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::report::{self, ForceRow};
 use super::{CorrectedSpecimen, JointResults, JointStudy, card};
+use crate::corrector::estimation::{ForceScatter, JointEstimate};
 use crate::results::{
     Axis, Content, Figure, Line, LineChart, Material, Outcome, PALETTE, Results, Scale, Stroke,
 };
@@ -27,7 +28,10 @@ pub fn results(
     let ended = found.estimate.ended.iter().map(|ended| {
         format!("the search for the parameters ended before its goal: {ended}; frames, forces and thickness contradict each other")
     });
-    let doubts = ended.chain(specimens.iter().filter_map(doubt));
+    let scattered = forces_scatter(&found.estimate);
+    let doubts = ended
+        .chain(scattered)
+        .chain(specimens.iter().filter_map(doubt));
     let estimates = specimens.iter().flat_map(|specimen| &specimen.estimates);
     let outcome = Outcome {
         problem: problem(study, found, specimens),
@@ -60,6 +64,18 @@ pub fn results(
         outcome,
         seconds,
     }
+}
+
+/// Forces that scatter more than they are said to.
+fn forces_scatter(estimate: &JointEstimate) -> Option<String> {
+    let ForceScatter { misfit, freedom } = estimate.force_scatter;
+    estimate.force_scatter.is_too_large().then(|| {
+        format!(
+            "the measured forces lie {:.1} times as far from those of the fields as their standard deviations allow (χ² is {misfit:.1} of {freedom:.0} \
+             degrees of freedom): deviations, thickness or law are wrong; intervals hold forces that are so much less certain",
+            (misfit / freedom).sqrt()
+        )
+    })
 }
 
 /// What makes the figures of a specimen doubtful, in one sentence.

@@ -1,0 +1,158 @@
+//! The scale of the picture of the deformed specimen, which is not quite that of the specimen at rest: a sheet that comes nearer to its camera, by a
+//! thousandth of the distance, seems to have grown by a thousandth.
+//!
+//! ```text
+//! d = H u + e q,   q = X + H u − c                e the relative error of the scale, c the middle of the markers
+//! M ∂p/∂e = AᵀWq/v
+//! Cov(p) = C + σₑ² (∂p/∂e)(∂p/∂e)ᵀ
+//! ```
+//!
+//! with A, W, v, M of [`super::regression`]. Much of it looks like an even stretch, so that data which are explained do not tell it.
+
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use super::equations::Equations;
+use super::linearise::dot;
+use super::search::NearestField;
+use crate::error::Error;
+
+/// What an error of the scale changes, per relative error.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct ScaleChange {
+    /// The force of each body along x and y in N, in the order of the forces.
+    pub forces: Vec<[f64; 2]>,
+    /// Each parameter of the law.
+    pub parameters: Vec<f64>,
+}
+
+impl Equations<'_> {
+    /// q of a field, two numbers a marker, in mm.
+    pub fn magnified(&self, field: &[f64]) -> Vec<f64> {
+        let observations = self.task.observations;
+        let moved = observations.interpolation.multiply(field);
+        let places = observations.places.iter().flatten();
+        let mut places: Vec<f64> = places.zip(moved).map(|(x, u)| x + u).collect();
+        let count = observations.places.len() as f64;
+        let middle = [0, 1].map(|axis| places.iter().skip(axis).step_by(2).sum::<f64>() / count);
+        let own = places.iter_mut().enumerate();
+        own.for_each(|(row, place)| *place -= middle[row % 2]);
+        places
+    }
+}
+
+impl NearestField<'_> {
+    /// q as a column.
+    pub(super) fn magnification(&self) -> DMatrix<f64> {
+        let column = self.equations.magnified(&self.field);
+        DMatrix::from_vec(column.len(), 1, column)
+    }
+
+    /// ∂p/∂e; before the covariance takes the noise found, as it has to be M⁻¹.
+    pub(super) fn scale_answer(&self) -> DVector<f64> {
+        let column = self.equations.magnified(&self.field);
+        let target = self
+            .equations
+            .target_of(&column, (&self.linear, &self.trade));
+        -(&self.fit.covariance * target)
+    }
+
+    /// What follows from ∂p/∂e.
+    pub(super) fn scale_change(&self, answer: &DVector<f64>) -> Result<ScaleChange, Error> {
+        let first = self.equations.motion.parameters();
+        let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
+        let along = |body: usize, axis: usize| -> Result<f64, Error> {
+            let shares = &self.equations.bodies[body].shares[axis];
+            let grip = self.equations.grip(shares, axis, &self.field)?;
+            let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
+            Ok(dot(&row, answer.as_slice()))
+        };
+        let bodies = 0..self.equations.bodies.len();
+        let forces = bodies.map(|body| Ok([along(body, 0)?, along(body, 1)?]));
+        let parameters = self.equations.law_values(&self.parameters).len();
+        Ok(ScaleChange {
+            forces: forces.collect::<Result<_, Error>>()?,
+            parameters: answer.rows(first, parameters).iter().copied().collect(),
+        })
+    }
+
+    /// Adds the variance of the scale.
+    pub(super) fn take_scale(&mut self, answer: &DVector<f64>) {
+        let deviation = self.equations.task.knowledge.scale_deviation;
+        self.fit.covariance += answer * answer.transpose() * (deviation * deviation);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{SIZE, Truth, specimen, with_grips};
+    use super::super::{Answer, EdgeCondition, FieldEstimate, Freedom, Knowledge, estimate};
+    use crate::markers::Marker;
+    use crate::mesh::{CellShape, Mesh};
+
+    const NOISE: f64 = 0.1;
+
+    /// The estimate of a plate in pictures that show it larger by a relative `error`.
+    fn seen(truth: &Truth, (error, deviation): (f64, f64), seed: u64) -> FieldEstimate {
+        let mut markers = truth.markers(NOISE, seed);
+        let moved = |marker: &Marker, axis: usize| {
+            let middle = 0.5 * SIZE[axis];
+            error * (marker.place[axis] + marker.displacement[axis] - middle)
+        };
+        for marker in &mut markers {
+            let by = [moved(marker, 0), moved(marker, 1)];
+            (0..2).for_each(|axis| marker.displacement[axis] += by[axis]);
+        }
+        let mesh = Mesh::plate(SIZE, [20, 10], CellShape::Quad9);
+        let knowledge = Knowledge {
+            scale_deviation: deviation,
+            ..with_grips(EdgeCondition::Rigid)
+        };
+        estimate(&specimen(&mesh), &markers, &knowledge).unwrap()
+    }
+
+    fn right(found: &FieldEstimate) -> usize {
+        let own = found.forces.iter().position(|own| own.edge == "right");
+        own.unwrap()
+    }
+
+    #[test]
+    fn the_change_that_is_told_is_that_of_a_larger_picture() {
+        let truth = Truth::new();
+        let [plain, larger] = [0.0, 1e-3].map(|error| seen(&truth, (error, 0.0), 2));
+        let index = right(&plain);
+        let change = larger.forces[index].force[0].value - plain.forces[index].force[0].value;
+        let told = 1e-3 * plain.scale_change.forces[index][0];
+        assert!((change / told - 1.0).abs() < 0.05, "{change} {told}");
+    }
+
+    /// 0.3 %, as likely smaller as larger: most intervals miss the force where nothing is said of it.
+    #[test]
+    fn intervals_hold_a_scale_that_is_stated() {
+        let truth = Truth::new();
+        let held = |deviation: f64| {
+            let errors = [-3e-3, 3e-3].into_iter();
+            let cases = errors.flat_map(|error| (0..4).map(move |seed| (error, seed)));
+            let holds = cases.filter(|(error, seed)| {
+                let found = seen(&truth, (*error, deviation), *seed);
+                let [low, high] = found.forces[right(&found)].force[0].interval;
+                low < truth.force && truth.force < high
+            });
+            holds.count()
+        };
+        let (without, with) = (held(0.0), held(3e-3));
+        assert!(without < 4 && with == 8, "{without} {with}");
+    }
+
+    #[test]
+    fn a_scale_that_is_far_off_is_named() {
+        let found = seen(&Truth::new(), (0.05, 0.0), 1);
+        assert_eq!(found.verdict.answer, Answer::NotExplained);
+        assert_eq!(
+            found.verdict.mends[0].freedom,
+            Freedom::Scale,
+            "{:?}",
+            found.verdict.mends
+        );
+    }
+}

@@ -1,0 +1,161 @@
+//! What could be wrong with a recording that its misfit hardly shows: each as one more parameter, tried in one linearised step.
+//!
+//! ```text
+//! r = z τ + J δ + noise,   δ of variance P⁻¹           z the derivative of both signals by a suspect, J those by motion and functions, over the noise
+//! I = zᵀz − zᵀJ (JᵀJ + P)⁻¹ Jᵀz,   τ = zᵀr / I,   t = τ √I
+//! ```
+//!
+//! A zero of the force of a fiftieth of its range bends K(·) by far more than its interval and leaves a misfit of 1.05: the test of one degree of freedom sees it.
+
+use nalgebra::DVector;
+
+use super::joint::{Column, Joint, State};
+use super::penalty::PenalisedFit;
+
+/// t above which a suspect is told: by chance in less than one recording of a thousand, five being tried.
+const LIMIT: f64 = 4.0;
+
+/// The share of zᵀz that has to be left of I: what is less is a part of K(·), D(·) or the motion.
+const OWN: f64 = 1e-6;
+
+/// What could be wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Suspect {
+    /// A constant on the force in N.
+    ForceZero,
+    /// A constant on the extension in mm.
+    ExtensionZero,
+    /// A force that drifts, in N over the recording.
+    Drift,
+    /// A force that is late, in s.
+    Lag,
+    /// A mass that is larger than stated, in tonne.
+    Mass,
+}
+
+impl Suspect {
+    const ALL: [Self; 5] = [
+        Self::ForceZero,
+        Self::ExtensionZero,
+        Self::Drift,
+        Self::Lag,
+        Self::Mass,
+    ];
+
+    /// In words, with its amount.
+    fn words(self, amount: f64, error: f64) -> String {
+        let around = |factor: f64, unit: &str| {
+            format!("{:.3} ± {:.3} {unit}", factor * amount, factor * error)
+        };
+        match self {
+            Self::ForceZero => format!("a force whose zero lies at {}", around(1.0, "N")),
+            Self::ExtensionZero => {
+                format!("an extension whose zero lies at {}", around(1.0, "mm"))
+            }
+            Self::Drift => format!(
+                "a force that drifts by {} over the recording",
+                around(1.0, "N")
+            ),
+            Self::Lag => format!(
+                "a force that is recorded {} later than the motion",
+                around(1e3, "ms")
+            ),
+            Self::Mass => format!("a mass that is larger by {}", around(1e6, "g")),
+        }
+    }
+}
+
+/// A suspect with how large it is, with the standard error of that.
+#[derive(Clone, Copy, Debug)]
+pub struct Suspected {
+    pub suspect: Suspect,
+    pub amount: f64,
+    pub error: f64,
+}
+
+impl Suspected {
+    fn size(&self) -> f64 {
+        (self.amount / self.error).abs()
+    }
+}
+
+/// The derivatives of both signals by a suspect, over the noise.
+fn column(joint: &Joint, state: &State, suspect: Suspect) -> Column {
+    let recording = joint.recording;
+    let times = &recording.times;
+    let duration = times[times.len() - 1] - times[0];
+    let instants = 0..times.len();
+    let force: Vec<f64> = instants
+        .clone()
+        .map(|i| joint.instant(i, state).force)
+        .collect();
+    let rate = |i: usize| {
+        let (a, b) = (i.saturating_sub(1), (i + 1).min(times.len() - 1));
+        (force[b] - force[a]) / (times[b] - times[a])
+    };
+    let of = |i: usize| match suspect {
+        Suspect::ForceZero => [0.0, 1.0],
+        Suspect::ExtensionZero => [1.0, 0.0],
+        Suspect::Drift => [0.0, (times[i] - times[0]) / duration - 0.5],
+        Suspect::Lag => [0.0, -rate(i)],
+        Suspect::Mass => [0.0, joint.instant(i, state).acceleration],
+    };
+    let over = |[x, f]: [f64; 2]| [x / joint.noise[0], f / joint.noise[1]];
+    instants.map(|i| over(of(i))).collect()
+}
+
+/// Those that are surely there, the surest first.
+pub fn suspects(
+    joint: &Joint,
+    state: &State,
+    (found, misfit): (&PenalisedFit, f64),
+) -> Vec<Suspected> {
+    let tried = Suspect::ALL
+        .into_iter()
+        .filter(|suspect| *suspect != Suspect::Mass || joint.recording.mass > 0.0);
+    let tried: Vec<Suspect> = tried.collect();
+    let columns: Vec<Column> = tried
+        .iter()
+        .map(|suspect| column(joint, state, *suspect))
+        .collect();
+    let Ok(equations) = joint.linearise_with(state, &columns) else {
+        return Vec::new();
+    };
+    let (reduced, own) = (&equations.reduced, state.functions.len());
+    let gradient = reduced.gradient.rows(0, own) - &found.penalty * &state.functions;
+    let test = |(index, suspect): (usize, Suspect)| {
+        let place = own + index;
+        let mixed: DVector<f64> = reduced
+            .information
+            .view((0, place), (own, 1))
+            .column(0)
+            .into();
+        let follow = &found.inverse * &mixed;
+        let information = reduced.information[(place, place)] - mixed.dot(&follow);
+        let square: f64 = columns[index].iter().flatten().map(|z| z * z).sum();
+        let score = reduced.gradient[place] - follow.dot(&gradient);
+        (information > OWN * square).then(|| Suspected {
+            suspect,
+            amount: score / information,
+            error: (misfit.max(1.0) / information).sqrt(),
+        })
+    };
+    let tests = tried.iter().copied().enumerate().filter_map(test);
+    let mut sure: Vec<Suspected> = tests.filter(|own| own.size() > LIMIT).collect();
+    sure.sort_by(|a, b| b.size().total_cmp(&a.size()));
+    sure
+}
+
+/// What is said of them.
+pub fn warning(suspects: &[Suspected]) -> Option<String> {
+    let words = suspects
+        .iter()
+        .map(|own| own.suspect.words(own.amount, own.error));
+    let words: Vec<String> = words.collect();
+    (!words.is_empty()).then(|| {
+        format!(
+            "the recording asks for {}: put it right before, as no interval holds it",
+            words.join(", or else for ")
+        )
+    })
+}
