@@ -47,8 +47,9 @@ const SHORTEST: f64 = 1.0 / 1024.0;
 /// The shortest step from or to rest, as a share of the load factor that is wanted or left.
 const SHORTEST_FROM_REST: f64 = 1.0 / 1_048_576.0;
 
-/// Tolerances from which on an equilibrium is a first guess, whatever its branch.
+/// Tolerances from which on an equilibrium is a first guess, whatever its branch; one that needs steps shorter than such a share is not worth them.
 const ROUGH: f64 = 1e-2;
+const SHORTEST_GUESS: f64 = 1.0 / 4.0;
 
 /// Iterations up to which a step was easy.
 const EASY: usize = 6;
@@ -203,11 +204,16 @@ impl<'a> Path<'a> {
             } else {
                 start + step.copysign(rest)
             };
-            let shortest = 0.5 * (aim - start).abs() <= at_rest.max(SHORTEST * aim.abs());
+            let least = match self.is_guess() {
+                true => SHORTEST_GUESS * (factor - begin).abs(),
+                false => SHORTEST * aim.abs(),
+            };
+            let shortest = 0.5 * (aim - start).abs() <= at_rest.max(least);
             // A step that would be halved after a shift anyhow is given up there.
             self.newton.shifts = shortest || self.is_rough();
             let found = match self.solve_at(previous, aim, &history) {
                 Ok(found) if found.is_sure || shortest => found,
+                Err(fault) if shortest && self.is_guess() => return Err((fault, last)),
                 Err(fault) if shortest => {
                     let stage = Stage {
                         factor: aim,
@@ -241,9 +247,14 @@ impl<'a> Path<'a> {
         }
     }
 
+    /// Whether a first guess is wanted alone: why there is none is nobody's question.
+    fn is_guess(&self) -> bool {
+        self.settings.tolerance >= ROUGH
+    }
+
     /// Whether an equilibrium of any branch will do.
     fn is_rough(&self) -> bool {
-        self.settings.tolerance >= ROUGH || !self.loading.follows_its_branch()
+        self.is_guess() || !self.loading.follows_its_branch()
     }
 
     fn solve_at(

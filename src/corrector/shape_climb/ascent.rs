@@ -22,10 +22,11 @@ const ON_THE_WAY: f64 = 3.0;
 /// What of the allowed share is used: the imbalance tells the error of the field in the energy, not in the displacement.
 const SURE: f64 = 0.1;
 
-/// The springs are a first guess, which the correction changes by some hundredths: to be nearer to their equilibrium is lost time.
+/// The springs are a first guess, which the correction changes by some hundredths: to be nearer to their equilibrium is lost time, and more iterations than
+/// finite elements take from nothing are too.
 const SPRINGS: NewtonSettings = NewtonSettings {
     tolerance: 5e-2,
-    ..NEWTON
+    max_iterations: 8,
 };
 
 /// What the finer meshes add is larger by far, where there are any.
@@ -105,19 +106,19 @@ impl Ascent {
         let model = levels.model(0)?;
         let by_springs = on(problem, &springs.mesh, springs.potential())?;
         let by_springs = by_springs.describing(|element| springs.describe_element(element));
+        let settings = match levels.finest() {
+            0 => ALONE,
+            _ => COARSEST,
+        };
         let corrected = |state: State| {
             let interpolation = springs.mesh.interpolation_on(mesh);
             let data = interpolation.apply(&state.displacement);
-            let settings = match levels.finest() {
-                0 => ALONE,
-                _ => COARSEST,
-            };
             correct_without_multipliers(&model, &data, Stage::first(factor), settings).ok()
         };
         let by_springs = by_springs.reach(&[factor], SPRINGS).ok();
         let state = match by_springs.and_then(corrected) {
             Some(corrected) => corrected,
-            None => model.reach(&[factor], NEWTON)?,
+            None => model.reach(&[factor], settings)?,
         };
         let potential = model.potential(factor, &[]);
         let ladder = Ladder::begin(&*potential, &model.held(), &state.displacement);
