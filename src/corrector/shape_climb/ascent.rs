@@ -29,6 +29,9 @@ const SPRINGS: NewtonSettings = NewtonSettings {
     max_iterations: 8,
 };
 
+/// Iterations of the correction after which the springs were no good guess: finite elements take about as many from nothing.
+const AFTER_SPRINGS: usize = 6;
+
 /// What the finer meshes add is larger by far, where there are any.
 const COARSEST: NewtonSettings = NewtonSettings {
     tolerance: 1e-4,
@@ -113,6 +116,10 @@ impl Ascent {
         let corrected = |state: State| {
             let interpolation = springs.mesh.interpolation_on(mesh);
             let data = interpolation.apply(&state.displacement);
+            let settings = NewtonSettings {
+                max_iterations: AFTER_SPRINGS,
+                ..settings
+            };
             correct_without_multipliers(&model, &data, Stage::first(factor), settings).ok()
         };
         let by_springs = by_springs.reach(&[factor], SPRINGS).ok();
