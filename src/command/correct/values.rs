@@ -118,8 +118,8 @@ pub fn gap(text: &str) -> Result<f64, Diagnostic> {
 
 /// A relative error of a scale.
 pub fn scale_error(text: &str) -> Result<f64, Diagnostic> {
-    let holds = |ratio: f64| (0.0..=0.1).contains(&ratio);
-    let wanted = "it must be from 0 to 10 %";
+    let holds = |ratio: f64| (0.0..=0.5).contains(&ratio);
+    let wanted = "it must be from 0 to 50 %";
     quantity(text, Dimension::Ratio, holds, (wanted, "0.1 %"))
 }
 

@@ -262,7 +262,7 @@ fn read(root: &Section) -> Conditions {
             Some(root.quantity("edge_gap", Dimension::Length, Bound::NonNegative));
     }
     if root.has("scale_error") {
-        let bound = Bound::Within(0.0, 0.1);
+        let bound = Bound::Within(0.0, 0.5);
         conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, bound);
     }
     if root.has("robust") {

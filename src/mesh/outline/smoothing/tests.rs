@@ -80,12 +80,13 @@ fn corners_and_straight_edges_stay() {
 #[test]
 fn arcs_between_straight_edges_are_round() {
     let half = |x: f64| {
-        15.0 - ((x - 30.0).abs() < 14.0)
-            .then(|| {
-                let u = (x - 30.0) / 14.0;
-                5.0 * (1.0 - u * u).powi(2)
-            })
-            .unwrap_or(0.0)
+        let u = (x - 30.0) / 14.0;
+        let waist = if u.abs() < 1.0 {
+            5.0 * (1.0 - u * u).powi(2)
+        } else {
+            0.0
+        };
+        15.0 - waist
     };
     let points: Vec<[f64; 2]> = (0..=60)
         .flat_map(|i| (-15..=15).map(move |j| [f64::from(i), f64::from(j)]))
