@@ -26,7 +26,7 @@ use crate::statistics::{BSpline, Ends, extremes};
 use band::reach;
 use joint::{Joint, JointEquations, State};
 use penalty::{Exponents, PenalisedFit};
-use smoothing::{SignalSpline, SplineValues, nearest, smooth};
+use smoothing::{SignalSpline, SplineValues, bridged_parts, nearest, smooth, wanted_parts};
 
 mod band;
 mod basis;
@@ -59,16 +59,8 @@ const CHOICES: usize = 6;
 /// Change of the penalised sum of squares that is left undone, over the misfit; a change of one is a standard error.
 const SETTLED: f64 = 1e-3;
 
-/// Parts of the motion for each part that cross-validation asks for in either signal alone: two derivatives of the
-/// motion count, and where it cannot follow them they make a bias. Finer parts cost little, since the equation of
-/// motion ties them together.
-const FINER: usize = 4;
-
 /// Instants for each part of the motion at least: both signals count at each.
 const FEWEST_IN_MOTION: usize = 2;
-
-/// Parts of the motion that the longest interval between two instants may span: a spline with more of them empty is hardly determined, and swings there.
-const BRIDGED: f64 = 1.5;
 
 /// Least noise, over the largest value of its signal: that of sums in floating point.
 const LEAST_NOISE: f64 = 1e-9;
@@ -124,12 +116,9 @@ fn begin<'a>(
 ) -> Option<(Joint<'a>, State)> {
     let times = &recording.times;
     let span = [times[0], times[times.len() - 1]];
-    let longest = times.windows(2).map(|pair| pair[1] - pair[0]);
-    let bridged = BRIDGED * (span[1] - span[0]) / longest.fold(f64::MIN_POSITIVE, f64::max);
-    let wanted = FINER * extension.intervals.max(force.intervals);
-    let mut intervals = wanted
+    let mut intervals = wanted_parts(extension, force)
         .min(times.len() / FEWEST_IN_MOTION)
-        .min((bridged as usize).max(1));
+        .min(bridged_parts(times));
     let (spline, motion) = loop {
         let spline = BSpline::new(span, intervals, 5, Ends::Uniform);
         match nearest(&spline, times, &recording.extension) {
@@ -290,7 +279,7 @@ impl Fit<'_> {
             warnings: Vec::new(),
         };
         identification.warnings = warnings(&identification, joint.recording, signals);
-        let suspects = suspects::suspects(joint, &self.state, (found, misfit));
+        let suspects = suspects::suspects(joint, &self.state, (found, [misfit, freedom]));
         identification.warnings.extend(suspects::warning(&suspects));
         Some(identification)
     }

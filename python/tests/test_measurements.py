@@ -99,6 +99,17 @@ def test_markers_in_arrays_are_those_of_the_file(root, corrected):
     assert own.forces["right"][0].value == pytest.approx(corrected.forces["right"][0].value, rel=1e-6)
 
 
+@pytest.mark.parametrize("scale_error", ["0.5 %", 0.005])
+def test_intervals_hold_a_scale_that_is_stated(root, corrected, scale_error):
+    found = gb.correct(
+        root / "examples/measured_plate.csv", "pva-10", 2.0,
+        free=["top", "bottom"], rigid=["left", "right"], robust="tukey", edge_gap=0, scale_error=scale_error,
+    )  # fmt: skip
+    own, plain = (one.forces["right"][0] for one in (found, corrected))
+    assert own.value == pytest.approx(plain.value, rel=1e-6)
+    assert np.diff(own.interval)[0] > 1.2 * np.diff(plain.interval)[0]
+
+
 @pytest.mark.parametrize("markers", [np.ones(4), np.ones((5, 3)), np.full((30, 4), np.nan), "no_such_file.csv"])
 def test_markers_that_are_none_are_refused(markers):
     with pytest.raises(gb.InputError):

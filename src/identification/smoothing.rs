@@ -6,6 +6,14 @@ use crate::statistics::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 /// Instants for each part of a spline at least.
 const FEWEST: usize = 4;
 
+/// Parts of the motion for each part that cross-validation asks for in either signal alone: two derivatives of the
+/// motion count, and where it cannot follow them they make a bias. Finer parts cost little, since the equation of
+/// motion ties them together.
+const FINER: usize = 4;
+
+/// Parts of the motion that the longest interval between two instants may span: a spline with more of them empty is hardly determined, and swings there.
+const BRIDGED: f64 = 1.5;
+
 /// A signal's own spline.
 #[derive(Clone, Debug)]
 pub struct SignalSpline {
@@ -141,6 +149,18 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpli
     let (_, mut found) = best?;
     found.coarse = found.intervals + found.intervals / 8 + 1 > most;
     Some(found)
+}
+
+/// The parts of the motion that both signals ask for.
+pub fn wanted_parts(extension: &SignalSpline, force: &SignalSpline) -> usize {
+    FINER * extension.intervals.max(force.intervals)
+}
+
+/// The parts of the motion that the longest interval between two instants allows.
+pub fn bridged_parts(times: &[f64]) -> usize {
+    let longest = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let longest = longest.fold(f64::MIN_POSITIVE, f64::max);
+    ((BRIDGED * (times[times.len() - 1] - times[0]) / longest) as usize).max(1)
 }
 
 #[cfg(test)]

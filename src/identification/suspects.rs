@@ -15,6 +15,9 @@ use super::penalty::PenalisedFit;
 /// t above which a suspect is told: by chance in less than one recording of a thousand, five being tried.
 const LIMIT: f64 = 4.0;
 
+/// The share of what is left beyond the noise that a suspect has to take: where forms are wrong, or the noise is not white, suspects take a little of it.
+const TAKEN: f64 = 0.5;
+
 /// The share of zᵀz that has to be left of I: what is less is a part of K(·), D(·) or the motion.
 const OWN: f64 = 1e-6;
 
@@ -108,8 +111,9 @@ fn column(joint: &Joint, state: &State, suspect: Suspect) -> Column {
 pub fn suspects(
     joint: &Joint,
     state: &State,
-    (found, misfit): (&PenalisedFit, f64),
+    (found, [misfit, freedom]): (&PenalisedFit, [f64; 2]),
 ) -> Vec<Suspected> {
+    let beyond = (misfit - 1.0).max(0.0) * freedom;
     let tried = Suspect::ALL
         .into_iter()
         .filter(|suspect| *suspect != Suspect::Mass || joint.recording.mass > 0.0);
@@ -134,7 +138,8 @@ pub fn suspects(
         let information = reduced.information[(place, place)] - mixed.dot(&follow);
         let square: f64 = columns[index].iter().flatten().map(|z| z * z).sum();
         let score = reduced.gradient[place] - follow.dot(&gradient);
-        (information > OWN * square).then(|| Suspected {
+        let taken = score * score / information;
+        (information > OWN * square && taken > TAKEN * beyond).then(|| Suspected {
             suspect,
             amount: score / information,
             error: (misfit.max(1.0) / information).sqrt(),

@@ -1,23 +1,27 @@
 //! What deserves attention in an identification.
 
 use super::recording::Recording;
-use super::smoothing::SignalSpline;
+use super::smoothing::{SignalSpline, bridged_parts, wanted_parts};
 use super::types::Identification;
 use crate::statistics::{Estimate, median};
 
-/// A longest interval of so many usual ones, and of such a part of the duration, is a gap.
+/// A longest interval that leaves the motion less than this share of the parts that both signals ask for is a gap, ...
+const FEW: f64 = 0.5;
+
+/// ... and so is one of so many usual ones, and of such a part of the duration.
 const INTERVALS: f64 = 20.0;
 const PART: f64 = 0.05;
 
 /// The warning about a gap in the rows: a spline has only as many parts as the gap leaves it, and what they miss is taken for noise.
-fn gap(times: &[f64]) -> Option<String> {
+fn gap(times: &[f64], [wanted, bridged]: [usize; 2]) -> Option<String> {
     let length = |pair: &[f64]| pair[1] - pair[0];
     let usual = median(times.windows(2).map(length));
     let longest = times
         .windows(2)
         .max_by(|a, b| length(a).total_cmp(&length(b)))?;
     let duration = times.last()? - times.first()?;
-    (length(longest) > (INTERVALS * usual).max(PART * duration)).then(|| {
+    let is_few = (bridged as f64) < FEW * wanted as f64;
+    (is_few || length(longest) > (INTERVALS * usual).max(PART * duration)).then(|| {
         format!(
             "there are no rows between {} and {} s: the motion may be told with less detail than it has, and the rest be taken for noise; \
              identify what lies before and after it by itself",
@@ -46,7 +50,11 @@ pub fn warnings(
             found.misfit.sqrt()
         ));
     }
-    warnings.extend(gap(&recording.times));
+    let parts = [
+        wanted_parts(&signals.0, &signals.1),
+        bridged_parts(&recording.times),
+    ];
+    warnings.extend(gap(&recording.times, parts));
     for (name, _, function) in found.functions() {
         let estimates: Vec<_> = function
             .places(41)

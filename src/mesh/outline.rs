@@ -122,28 +122,32 @@ impl Outline {
         lines: &[Vec<[f64; 2]>],
         spacing: f64,
     ) -> Result<(Self, Vec<[f64; 2]>), OutlineFault> {
-        let mut outline = Self {
-            outer: Vec::new(),
-            holes: Vec::new(),
+        let near = STRAIGHT * spacing;
+        let smooth = Self::of_each(lines, &|line| smoothing::smoothed(line, near, spacing))?;
+        let plain = Self::of_each(lines, &|line| polygon::straightened(line, near))?;
+        let steps = polygon::steps(&plain.outer, STEP_TURN, STEP_LENGTH * spacing);
+        // What is smooth may come nearer to itself than the points do.
+        let outline = if smooth.check().is_ok() {
+            smooth
+        } else {
+            plain
         };
-        let mut steps = Vec::new();
-        for line in lines {
-            let own = smoothing::smoothed(line, STRAIGHT * spacing, spacing);
-            if own.len() < 3 {
-                continue;
-            }
-            if polygon_area(&own) > 0.0 {
-                outline.outer = own;
-                let plain = polygon::straightened(line, STRAIGHT * spacing);
-                steps = polygon::steps(&plain, STEP_TURN, STEP_LENGTH * spacing);
-            } else {
-                outline.holes.push(own);
-            }
-        }
-        if outline.outer.is_empty() {
-            return Err(OutlineFault::TooFarApart);
-        }
         Ok((outline, steps))
+    }
+
+    /// What is made of each line; lines of which hardly anything is left are left out.
+    fn of_each(
+        lines: &[Vec<[f64; 2]>],
+        make: &dyn Fn(&[[f64; 2]]) -> Vec<[f64; 2]>,
+    ) -> Result<Self, OutlineFault> {
+        let made = lines.iter().map(|line| make(line));
+        let (outer, holes): (Vec<_>, Vec<_>) = made
+            .filter(|line| line.len() > 2)
+            .partition(|line| polygon_area(line) > 0.0);
+        match outer.into_iter().next_back() {
+            Some(outer) => Ok(Self { outer, holes }),
+            None => Err(OutlineFault::TooFarApart),
+        }
     }
 
     /// The lines a distance farther out: the outer one wider, holes narrower.

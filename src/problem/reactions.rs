@@ -14,7 +14,7 @@ pub struct GroupState {
     pub force: [f64; 2],
     /// Moment of that force about `place` in N·mm, counter-clockwise.
     pub moment: f64,
-    /// Mean deformed place over the length of its edges at rest, in mm.
+    /// Mean deformed place in mm: over the length of its edges at rest, else over its cells, lines or nodes.
     pub place: [f64; 2],
     /// Mean displacement over the length of its edges in mm.
     pub displacement: [f64; 2],

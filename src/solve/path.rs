@@ -47,7 +47,7 @@ const SHORTEST: f64 = 1.0 / 1024.0;
 /// The shortest step from or to rest, as a share of the load factor that is wanted or left.
 const SHORTEST_FROM_REST: f64 = 1.0 / 1_048_576.0;
 
-/// Tolerances from which on an equilibrium is a first guess, whatever its branch; one that needs steps shorter than such a share is not worth them.
+/// Tolerances from which on an equilibrium is a first guess, whatever its branch; one that needs steps shorter than twice such a share of the way is not worth them.
 const ROUGH: f64 = 1e-2;
 const SHORTEST_GUESS: f64 = 1.0 / 4.0;
 

@@ -4,6 +4,7 @@ use super::bodies::Body;
 use super::field_estimate::{EdgeForce, ForceCheck, FoundParameter};
 use super::linearise::dot;
 use super::mesh_error::MeshError;
+use super::picture_scale::ScaleChange;
 use super::search::NearestField;
 use super::task::Edge;
 use crate::error::Error;
@@ -60,13 +61,18 @@ impl NearestField<'_> {
         parameters.map(estimate).collect()
     }
 
-    /// The measured forces beside those of the field; those that a parameter of the law follows say nothing.
-    pub(super) fn force_checks(&self, own: Option<&MeshError>) -> Result<Vec<ForceCheck>, Error> {
+    /// The measured forces beside those of the field, which the picture's scale moves besides; before the covariance holds that. Those that a parameter of the law follows say nothing.
+    pub(super) fn force_checks(
+        &self,
+        own: Option<&MeshError>,
+        scale: &ScaleChange,
+    ) -> Result<Vec<ForceCheck>, Error> {
         const REDUNDANT: f64 = 1e-3;
         let with_mesh = self.forces(1.0, own)?;
         let plain = self.forces(1.0, None)?;
         let mut checks = Vec::new();
-        for measured in &self.equations.task.knowledge.forces {
+        let knowledge = self.equations.task.knowledge;
+        for measured in &knowledge.forces {
             let axis = measured.axis;
             let sum = |forces: &[EdgeForce]| {
                 let own = forces.iter().filter(|force| force.edge == measured.edge);
@@ -77,12 +83,16 @@ impl NearestField<'_> {
             };
             let ([found, noise], [_, whole]) = (sum(&plain), sum(&with_mesh));
             let variance = measured.standard_deviation.powi(2);
-            let left = match self.equations.task.knowledge.forces_are_checks {
+            let left = match knowledge.forces_are_checks {
                 true => variance + noise,
                 false => variance - noise,
             };
             if left > REDUNDANT * variance {
-                let spread = (left + (whole - noise).max(0.0)).sqrt();
+                let bodies = self.equations.bodies.iter().zip(&scale.forces);
+                let of_edge = bodies.filter(|(body, _)| body.name == measured.edge);
+                let by_scale: f64 = of_edge.map(|(_, change)| change[axis]).sum();
+                let by_scale = knowledge.scale_deviation * by_scale;
+                let spread = (left + (whole - noise).max(0.0)).sqrt().hypot(by_scale);
                 checks.push(ForceCheck {
                     measured: measured.clone(),
                     found,

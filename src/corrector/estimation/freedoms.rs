@@ -35,12 +35,20 @@ impl NearestField<'_> {
         for (freedom, forces) in all {
             columns.push((freedom, self.marker_changes(&forces)?));
         }
-        columns.push((Freedom::Scale, self.magnification()));
+        if self.equations.task.knowledge.scale_deviation == 0.0 {
+            columns.push((Freedom::Scale, self.magnification()));
+        }
         if let Some(own) = own {
             let error = DMatrix::from_column_slice(own.markers.len(), 1, &own.markers);
             columns.push((Freedom::Mesh, error));
         }
         Ok(columns)
+    }
+
+    /// What the data may do without a word, as it is stated: a picture of another scale.
+    pub(super) fn granted(&self) -> Vec<DMatrix<f64>> {
+        let stated = self.equations.task.knowledge.scale_deviation > 0.0;
+        stated.then(|| self.magnification()).into_iter().collect()
     }
 
     /// The displacements of the markers that small residual forces make, a column for each of several.

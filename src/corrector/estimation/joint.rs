@@ -17,6 +17,10 @@
 //! right-hand sides: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::mesh_error) has d, G and d_F of one frame).
 //! ± 1.96 e is added to the intervals as if it were noise; it is alike in all frames, so that more of them do not make it less.
 //!
+//! So are what a standard deviation of the load cell's gain, and one of the pictures' scale, make of the right-hand sides, of the same sign in all frames of
+//! all specimens. Where measured forces scatter more than both noises let them, Cov(θ) is as much larger as their χ² over its degrees of
+//! freedom.
+//!
 //! # References
 //! L. Kish, Survey Sampling, Wiley 1965 (the factor 1 + ρ (K − 1)); D. J. Venzon, S. H. Moolgavkar, Appl. Stat. 37, 87 (1988),
 //! doi:10.2307/2347496 (profile likelihood).
@@ -153,14 +157,18 @@ fn outcome(
     })
 }
 
-/// S⁻¹ (Σ Jₖ) S⁻¹, the noise of markers counted as often as it is the same in other frames, and that of the forces as much larger than stated as
-/// they scatter.
-fn covariance(says: &[Say], inverse: &DMatrix<f64>, (common, forces): (f64, f64)) -> DMatrix<f64> {
+/// S⁻¹ (Σ Jₖ) S⁻¹, the noise of markers counted as often as it is the same in other frames, and all of it as much larger as forces scatter
+/// more than both noises let them.
+fn covariance(
+    says: &[Say],
+    inverse: &DMatrix<f64>,
+    (common, widening): (f64, f64),
+) -> DMatrix<f64> {
     let alike = common * (says_that_count(says, inverse) - 1.0).max(0.0);
     let sum = says.iter().fold(inverse * 0.0, |sum, say| {
-        let of_forces = &say.spread - &say.spread_of_markers;
-        sum + of_forces * forces + &say.spread_of_markers * (1.0 + alike)
+        sum + &say.spread + &say.spread_of_markers * alike
     });
+    let sum = sum * widening;
     inverse * sum * inverse
 }
 

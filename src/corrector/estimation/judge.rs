@@ -17,7 +17,7 @@ use super::verdict::{Answer, Freedom, Mend, NoiseCorrelation, Reason, Verdict, W
 use crate::error::Error;
 use crate::statistics::{CorrelatedNoise, nearest, normal_tail};
 
-/// Probability by noise below which a freedom speaks against the equations. Eight are tried, and smoothness is chosen by the data.
+/// Probability by noise below which a freedom speaks against the equations. Nine are tried, and smoothness is chosen by the data.
 const LEVEL: f64 = 1e-5;
 
 /// A freedom mends something where it leaves less than this share of the misfit.
@@ -62,10 +62,12 @@ pub fn judge(
             ..Judgement::default()
         });
     };
-    let base = Model::of_search(&rows, found);
+    let granted = found.granted();
+    let base = Model::of_search(&rows, found).with(&rows, &granted);
     let noise = base.noise(&rows);
     let columns = found.freedoms(own)?;
-    let all = all.map(|scored| Model::of_score(&rows, found, &scored));
+    let of_score = |scored: &Scored| Model::of_score(&rows, found, scored).with(&rows, &granted);
+    let all = all.map(|scored| of_score(&scored));
     let trials = Trials {
         reference: Reference::new(&rows, noise.as_ref(), (&base, all.as_ref()), &columns, own),
         rows: &rows,
@@ -84,7 +86,7 @@ pub fn judge(
     if !reasons.is_empty() {
         let alone = |name: &str| {
             let scored = let_go(task, found, edges, &|other| other == name)?;
-            let model = Model::of_score(&rows, found, &scored);
+            let model = Model::of_score(&rows, found, &scored).with(&rows, &granted);
             Some(trials.mend(found, Freedom::Edge(name.to_owned()), &model))
         };
         let each: Vec<Mend> = said(edges).into_iter().filter_map(alone).collect();

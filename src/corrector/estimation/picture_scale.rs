@@ -86,7 +86,9 @@ impl NearestField<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::tests::{SIZE, Truth, specimen, with_grips};
-    use super::super::{Answer, EdgeCondition, FieldEstimate, Freedom, Knowledge, estimate};
+    use super::super::{
+        Answer, EdgeCondition, FieldEstimate, Freedom, Knowledge, MeasuredForce, estimate,
+    };
     use crate::markers::Marker;
     use crate::mesh::{CellShape, Mesh};
 
@@ -142,6 +144,38 @@ mod tests {
         };
         let (without, with) = (held(0.0), held(3e-3));
         assert!(without < 4 && with == 8, "{without} {with}");
+    }
+
+    /// A stated scale explains what it makes of the markers and of a measured force.
+    #[test]
+    fn a_scale_that_is_stated_and_there_is_explained() {
+        let truth = Truth::new();
+        let mut markers = truth.markers(0.01, 3);
+        for marker in &mut markers {
+            for axis in [0, 1] {
+                let place = marker.place[axis] + marker.displacement[axis];
+                marker.displacement[axis] += 5e-3 * (place - 0.5 * SIZE[axis]);
+            }
+        }
+        let mesh = Mesh::plate(SIZE, [20, 10], CellShape::Quad9);
+        let answer = |scale_deviation: f64| {
+            let measured = MeasuredForce {
+                edge: "right".into(),
+                axis: 0,
+                force: truth.force,
+                standard_deviation: 0.01 * truth.force,
+                common_deviation: 0.0,
+            };
+            let knowledge = Knowledge {
+                forces: vec![measured],
+                scale_deviation,
+                ..with_grips(EdgeCondition::Rigid)
+            };
+            let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+            found.verdict.answer
+        };
+        assert_eq!(answer(0.0), Answer::NotExplained);
+        assert_ne!(answer(5e-3), Answer::NotExplained);
     }
 
     #[test]

@@ -100,22 +100,22 @@ impl NearestField<'_> {
     ) -> Result<Uncertain, Error> {
         let rows = self.linear.design.nrows() as f64;
         let white = (rows - self.fit.effective).max(1.0);
-        let before = self.force_checks(own)?;
         let places = self.unknown_places(edges)?;
         let scale = self.scale_answer();
         let scale_change = self.scale_change(&scale)?;
+        let before = self.force_checks(own, &scale_change)?;
         let freedom = self.widen(judged).unwrap_or(white);
         let is_plain = self.equations.task.knowledge.robust == Robust::No && judged.noise.is_none();
         let reach = match self.observations().known_noise && is_plain {
             true => normal_reach(),
             false => student_reach(freedom),
         };
-        self.take_scale(&scale);
         // Where the data are not explained, what is left would hide a wrong force if it were taken for noise.
         let force_checks = match judged.verdict.answer {
             Answer::NotExplained => before,
-            _ => self.force_checks(own)?,
+            _ => self.force_checks(own, &scale_change)?,
         };
+        self.take_scale(&scale);
         let forces = self.forces(reach, own)?;
         let parameters = self.law_parameters(reach, own);
         // Forces hold unknown places on the side that is possible.

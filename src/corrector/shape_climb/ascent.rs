@@ -97,8 +97,8 @@ impl Ascent {
         Ok(ascent)
     }
 
-    /// The springs' field, corrected, on the coarsest mesh; where the springs have none, or it does not lead to the corrected one, load
-    /// steps do.
+    /// The springs' field, corrected, on the coarsest mesh; where the springs have none after few iterations, or it does not lead to the corrected one in
+    /// few, finite elements do from nothing.
     fn begin(levels: &Levels, factor: f64) -> Result<Self, Error> {
         let (problem, mesh) = (levels.problem, &levels.meshes[0]);
         let lattice = match mesh.degree() {

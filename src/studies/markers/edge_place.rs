@@ -85,14 +85,14 @@ impl EdgePlace {
                 ),
                 format!(
                     "subsets lie inside of the specimen, and less than a step was left: between free edges, intervals of forces hold an edge up to \
-                     {step:.4} mm farther out, else they are forces through the outline, and errors of stress hold it too; say where the edge is with \
+                     {step:.4} mm farther out, else they are forces through the outline, and errors of stress beside free edges hold it too; say where the edge is with \
                      --edge-gap LENGTH, --outline or --mesh"
                 ),
             ),
             Self::Unknown(_) => (
                 "the specimen's edge is not known: the outline is that of the markers, which usually end inside of it".to_owned(),
                 "forces grow with the width: between free edges their intervals hold an edge up to a spacing farther out, else they are \
-                 forces through the outline, and errors of stress hold it too; say where the edge is with --edge-gap LENGTH \
+                 forces through the outline, and errors of stress beside free edges hold it too; say where the edge is with --edge-gap LENGTH \
                  (\"0 mm\" where markers lie on it), --outline or --mesh"
                     .to_owned(),
             ),

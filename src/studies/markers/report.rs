@@ -205,7 +205,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     blocks.extend(field.unknown_gap.map(|gap| {
         let free = estimates.iter().any(|estimate| estimate.growth > 0.0);
         let then = match free {
-            true => format!("intervals of forces and moduli hold that it may lie up to {gap:.4} mm farther out than the mesh"),
+            true => format!("intervals of forces and moduli, and errors of displacement and stress, hold that it may lie up to {gap:.4} mm farther out than the mesh"),
             false => "no edge is free: forces and their intervals are those through the outline of the mesh".to_owned(),
         };
         Block::paragraph(format!("The specimen's edge is not known but for the markers: {then}."))

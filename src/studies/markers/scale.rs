@@ -44,7 +44,7 @@ pub fn paragraph(estimate: &FieldEstimate, deviation: f64) -> Option<String> {
     let changed: Vec<String> = changes(estimate).iter().map(percent).collect();
     let held = match deviation > 0.0 {
         true => format!(
-            "intervals hold a standard deviation of the scale of {} %",
+            "intervals hold a standard deviation of the scale of {:.3} %",
             100.0 * deviation
         ),
         false => "no interval holds that, unless --scale-error states it".to_owned(),

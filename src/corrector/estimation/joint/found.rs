@@ -88,7 +88,7 @@ impl ForceScatter {
         Self { misfit, freedom }
     }
 
-    /// By how much the variances of the forces are larger than stated, never smaller: χ² over its degrees of freedom (Birge's ratio squared).
+    /// By how much variances are larger than the noises let expect, never smaller: χ² over its degrees of freedom (Birge's ratio squared).
     ///
     /// # References
     /// R. T. Birge, Phys. Rev. 40, 207 (1932), doi:10.1103/PhysRev.40.207

@@ -49,9 +49,11 @@ impl Ends<'_> {
                     wider: variance / self.inverse[(index, index)],
                 };
                 let first = self.reach * variance.sqrt();
+                let [low, high] = self.descent.law.parameters()[index].bound.ends();
                 estimate.interval = [-first, first].map(|first| {
                     let off = side.end(first) - value;
-                    value + off.hypot(self.reach * alike).copysign(first)
+                    let end = value + off.hypot(self.reach * alike).copysign(first);
+                    end.clamp(low, high)
                 });
             }
             estimate

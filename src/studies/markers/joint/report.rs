@@ -284,7 +284,8 @@ fn intervals(estimate: &JointEstimate, explained: bool) -> String {
         true => format!(
             "Markers that are far off are weighted by Tukey's weights, unless the conditions say otherwise. Intervals follow the profile \
              likelihood of all frames, with the noise that was found in each. What is left of a marker in \
-             one frame and the next correlates by {:.2}, by which frames count for less. {}",
+             one frame and the next correlates by {:.2}, by which frames count for less. They hold 1 % that all forces without a stated deviation may have in \
+             common, a scale of the pictures that is stated, and forces that scatter more than is stated. {}",
             estimate.common,
             match estimate.holds_mesh_error {
                 true => "They hold the error of the meshes, from the same equations on cells half as large.",
