@@ -123,8 +123,12 @@ impl Outline {
         spacing: f64,
     ) -> Result<(Self, Vec<[f64; 2]>), OutlineFault> {
         let near = STRAIGHT * spacing;
-        let smooth = Self::of_each(lines, &|line| smoothing::smoothed(line, near, spacing))?;
-        let plain = Self::of_each(lines, &|line| polygon::straightened(line, near))?;
+        let smooth = lines
+            .iter()
+            .map(|line| smoothing::smoothed(line, near, spacing));
+        let smooth = Self::of_each(smooth)?;
+        let plain = lines.iter().map(|line| polygon::straightened(line, near));
+        let plain = Self::of_each(plain)?;
         let steps = polygon::steps(&plain.outer, STEP_TURN, STEP_LENGTH * spacing);
         // What is smooth may come nearer to itself than the points do.
         let outline = if smooth.check().is_ok() {
@@ -135,13 +139,9 @@ impl Outline {
         Ok((outline, steps))
     }
 
-    /// What is made of each line; lines of which hardly anything is left are left out.
-    fn of_each(
-        lines: &[Vec<[f64; 2]>],
-        make: &dyn Fn(&[[f64; 2]]) -> Vec<[f64; 2]>,
-    ) -> Result<Self, OutlineFault> {
-        let made = lines.iter().map(|line| make(line));
-        let (outer, holes): (Vec<_>, Vec<_>) = made
+    /// Of lines around the specimen and its holes; those of which hardly anything is left are left out.
+    fn of_each(lines: impl Iterator<Item = Vec<[f64; 2]>>) -> Result<Self, OutlineFault> {
+        let (outer, holes): (Vec<_>, Vec<_>) = lines
             .filter(|line| line.len() > 2)
             .partition(|line| polygon_area(line) > 0.0);
         match outer.into_iter().next_back() {
