@@ -279,7 +279,8 @@ impl Fit<'_> {
             warnings: Vec::new(),
         };
         identification.warnings = warnings(&identification, joint.recording, signals);
-        let suspects = suspects::suspects(joint, &self.state, (found, [misfit, freedom]));
+        let at = (&self.state, &identification.motion);
+        let suspects = suspects::suspects(joint, at, (found, [misfit, freedom]));
         identification.warnings.extend(suspects::warning(&suspects));
         Some(identification)
     }

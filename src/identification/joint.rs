@@ -170,8 +170,11 @@ impl Joint<'_> {
             let left = self.left(instant, &at);
             let (first, by_motion) = self.by_motion(instant, &at);
             let by_others = self.by_others(instant, &at, more);
-            for (row, left) in by_others.iter().zip(left) {
+            for (row, left) in by_others.iter().zip([left[1], left[0]]) {
                 reduced.add(row, left);
+            }
+            if more.is_empty() {
+                reduced.sum += left[0] * left[0];
             }
             for (row, left) in by_motion.iter().zip(left) {
                 matrix.add(first, row);
@@ -179,7 +182,7 @@ impl Joint<'_> {
                     *sum += value * left;
                 }
             }
-            for (by_motion, by_others) in by_motion.iter().zip(&by_others) {
+            for (by_motion, by_others) in by_motion.iter().rev().zip(&by_others) {
                 for (row, value) in by_motion.iter().enumerate().take(motions - first) {
                     let mut target = coupling.row_mut(first + row);
                     target += *value * by_others.transpose();
@@ -204,16 +207,20 @@ impl Joint<'_> {
         })
     }
 
-    /// The derivatives of extension and force by the functions' coefficients and more parameters, over the noise.
-    fn by_others(&self, instant: usize, at: &Instant, more: &[Column]) -> [DVector<f64>; 2] {
-        let own = at.by_functions.len();
-        let mut rows = [0, 1].map(|signal| {
-            let more = more.iter().map(|column| column[instant][signal]);
-            DVector::from_iterator(own + more.len(), std::iter::repeat_n(0.0, own).chain(more))
-        });
+    /// The derivatives of force, and of extension where there are more parameters, by the functions' coefficients and these, over the noise:
+    /// the functions alone do not move the extension.
+    fn by_others(&self, instant: usize, at: &Instant, more: &[Column]) -> Vec<DVector<f64>> {
         let functions = &at.by_functions / self.noise[1];
-        rows[1].rows_mut(0, own).copy_from(&functions);
-        rows
+        if more.is_empty() {
+            return vec![functions];
+        }
+        let with_more = |functions: DVector<f64>, signal: usize| {
+            let more = more.iter().map(|column| column[instant][signal]);
+            let all: Vec<f64> = functions.iter().copied().chain(more).collect();
+            DVector::from_vec(all)
+        };
+        let none = DVector::zeros(functions.len());
+        vec![with_more(functions, 1), with_more(none, 0)]
     }
 
     /// The derivatives of extension and force by the motion's coefficients, over the noise.

@@ -11,6 +11,7 @@ use nalgebra::DVector;
 
 use super::joint::{Column, Joint, State};
 use super::penalty::PenalisedFit;
+use super::types::FittedMotion;
 
 /// t above which a suspect is told: by chance in less than one recording of a thousand, five being tried.
 const LIMIT: f64 = 4.0;
@@ -83,15 +84,11 @@ impl Suspected {
 }
 
 /// The derivatives of both signals by a suspect, over the noise.
-fn column(joint: &Joint, state: &State, suspect: Suspect) -> Column {
+fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
     let recording = joint.recording;
     let times = &recording.times;
     let duration = times[times.len() - 1] - times[0];
-    let instants = 0..times.len();
-    let force: Vec<f64> = instants
-        .clone()
-        .map(|i| joint.instant(i, state).force)
-        .collect();
+    let force = &motion.force;
     let rate = |i: usize| {
         let (a, b) = (i.saturating_sub(1), (i + 1).min(times.len() - 1));
         (force[b] - force[a]) / (times[b] - times[a])
@@ -101,16 +98,16 @@ fn column(joint: &Joint, state: &State, suspect: Suspect) -> Column {
         Suspect::ExtensionZero => [1.0, 0.0],
         Suspect::Drift => [0.0, (times[i] - times[0]) / duration - 0.5],
         Suspect::Lag => [0.0, -rate(i)],
-        Suspect::Mass => [0.0, joint.instant(i, state).acceleration],
+        Suspect::Mass => [0.0, motion.acceleration[i]],
     };
     let over = |[x, f]: [f64; 2]| [x / joint.noise[0], f / joint.noise[1]];
-    instants.map(|i| over(of(i))).collect()
+    (0..times.len()).map(|i| over(of(i))).collect()
 }
 
 /// Those that are surely there, the surest first.
 pub fn suspects(
     joint: &Joint,
-    state: &State,
+    (state, motion): (&State, &FittedMotion),
     (found, [misfit, freedom]): (&PenalisedFit, [f64; 2]),
 ) -> Vec<Suspected> {
     let beyond = (misfit - 1.0).max(0.0) * freedom;
@@ -120,7 +117,7 @@ pub fn suspects(
     let tried: Vec<Suspect> = tried.collect();
     let columns: Vec<Column> = tried
         .iter()
-        .map(|suspect| column(joint, state, *suspect))
+        .map(|suspect| column(joint, motion, *suspect))
         .collect();
     let Ok(equations) = joint.linearise_with(state, &columns) else {
         return Vec::new();

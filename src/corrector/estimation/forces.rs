@@ -2,7 +2,7 @@
 
 use super::bodies::Body;
 use super::field_estimate::{EdgeForce, ForceCheck, FoundParameter};
-use super::linearise::dot;
+use super::linearise::{Grip, dot};
 use super::mesh_error::MeshError;
 use super::picture_scale::ScaleChange;
 use super::search::NearestField;
@@ -13,15 +13,25 @@ use crate::material::sheet::{Gradient, Kinematics};
 use crate::statistics::Estimate;
 
 impl NearestField<'_> {
+    /// The force of a body along an axis, and its derivatives by p; `slopes` are those of F by the law's parameters.
+    pub(super) fn grip_of(
+        &self,
+        (body, axis): (usize, usize),
+        slopes: &[Vec<f64>],
+    ) -> Result<(Grip, Vec<f64>), Error> {
+        let shares = &self.equations.bodies[body].shares[axis];
+        let grip = self.equations.grip(shares, axis, &self.field)?;
+        let first = self.equations.motion.parameters();
+        let row = grip.slopes(&self.linear.sensitivities, (first, slopes));
+        Ok((grip, row))
+    }
+
     /// The forces of the bodies that hold the sheet; with the mesh's own error, if it is known.
     pub fn forces(&self, reach: f64, own: Option<&MeshError>) -> Result<Vec<EdgeForce>, Error> {
         let reactions = self.reactions();
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
-        let first = self.equations.motion.parameters();
         let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
-            let shares = &self.equations.bodies[index].shares[axis];
-            let grip = self.equations.grip(shares, axis, &self.field)?;
-            let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
+            let (grip, row) = self.grip_of((index, axis), &slopes)?;
             let force = dot(&grip.marks, &reactions);
             let mesh = own.map_or(0.0, |own| {
                 own.forces[index][axis] + dot(&row, own.parameters.as_slice())

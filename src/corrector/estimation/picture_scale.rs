@@ -22,8 +22,6 @@ use crate::error::Error;
 pub struct ScaleChange {
     /// The force of each body along x and y in N, in the order of the forces.
     pub forces: Vec<[f64; 2]>,
-    /// Each parameter of the law.
-    pub parameters: Vec<f64>,
 }
 
 impl Equations<'_> {
@@ -59,20 +57,15 @@ impl NearestField<'_> {
 
     /// What follows from ∂p/∂e.
     pub(super) fn scale_change(&self, answer: &DVector<f64>) -> Result<ScaleChange, Error> {
-        let first = self.equations.motion.parameters();
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let along = |body: usize, axis: usize| -> Result<f64, Error> {
-            let shares = &self.equations.bodies[body].shares[axis];
-            let grip = self.equations.grip(shares, axis, &self.field)?;
-            let row = grip.slopes(&self.linear.sensitivities, (first, &slopes));
+            let (_, row) = self.grip_of((body, axis), &slopes)?;
             Ok(dot(&row, answer.as_slice()))
         };
         let bodies = 0..self.equations.bodies.len();
         let forces = bodies.map(|body| Ok([along(body, 0)?, along(body, 1)?]));
-        let parameters = self.equations.law_values(&self.parameters).len();
         Ok(ScaleChange {
             forces: forces.collect::<Result<_, Error>>()?,
-            parameters: answer.rows(first, parameters).iter().copied().collect(),
         })
     }
 

@@ -5,12 +5,10 @@ use rayon::prelude::*;
 
 use super::equations::{Equations, Neighbours, solve};
 use super::field_estimate::{
-    EdgeForce, EdgeOutcome, FieldEstimate, ForceCheck, FoundParameter, MarkerEstimate, Smoothing,
-    StressEstimate, TRADE, TRADE_WEIGHTED,
+    EdgeOutcome, FieldEstimate, MarkerEstimate, Smoothing, StressEstimate, TRADE, TRADE_WEIGHTED,
 };
 use super::judge::Judgement;
 use super::mesh_error::MeshError;
-use super::picture_scale::ScaleChange;
 use super::robust::Robust;
 use super::search::NearestField;
 use super::task::Edge;
@@ -23,16 +21,6 @@ use crate::statistics::{chi_squared_limit, normal_reach, student_reach};
 /// Share of sound markers that are taken for outliers.
 const FALSE_ALARMS: f64 = 1e-3;
 
-/// What is uncertain, and by how much.
-struct Uncertain {
-    freedom: f64,
-    reach: f64,
-    force_checks: Vec<ForceCheck>,
-    forces: Vec<EdgeForce>,
-    parameters: Vec<FoundParameter>,
-    scale_change: ScaleChange,
-}
-
 impl NearestField<'_> {
     /// The field with all that follows from it.
     pub fn into_estimate(
@@ -44,38 +32,24 @@ impl NearestField<'_> {
         let whiteness = self.whiteness(&judged.sound, own);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
-        let Uncertain {
-            freedom,
-            reach,
-            force_checks,
-            forces,
-            parameters,
-            scale_change,
-        } = self.take_uncertainty(edges, own, &judged)?;
+        let begun = self.take_uncertainty(edges, own, &judged)?;
         let larger = judged.noise.map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(own),
             cells: self.cells(own)?,
-            forces,
-            parameters,
-            scale_change,
             holds_mesh_error: own.is_some(),
             imbalance: self.imbalance(),
             growth: self.growth(edges),
-            verdict: judged.verdict.with_forces(&force_checks),
-            force_checks,
+            verdict: judged.verdict.with_forces(&begun.force_checks),
             contradiction: judged.contradiction,
             whiteness,
             markers,
             noise: (larger * self.trade.sound / mean).sqrt(),
             robust,
             known_noise,
-            noise_ratio: None,
             effective_parameters: self.fit.effective,
-            degrees_of_freedom: freedom,
-            reach,
             smoothing: self.smoothing(),
             rule: match self.equations.body {
                 Some(_) => TRADE_WEIGHTED.into(),
@@ -87,17 +61,18 @@ impl NearestField<'_> {
             reactions: self.reactions(),
             multipliers: self.multipliers,
             displacement: self.field,
+            ..begun
         })
     }
 
     /// Brings all into the covariance that the field is uncertain by, one after the other; figures that are not by all of it are made
-    /// on the way.
+    /// on the way, the beginning of an estimate.
     fn take_uncertainty(
         &mut self,
         edges: &[Edge],
         own: Option<&MeshError>,
         judged: &Judgement,
-    ) -> Result<Uncertain, Error> {
+    ) -> Result<FieldEstimate, Error> {
         let rows = self.linear.design.nrows() as f64;
         let white = (rows - self.fit.effective).max(1.0);
         let places = self.unknown_places(edges)?;
@@ -122,13 +97,14 @@ impl NearestField<'_> {
         if let Some(places) = places {
             self.consider(places);
         }
-        Ok(Uncertain {
-            freedom,
+        Ok(FieldEstimate {
+            degrees_of_freedom: freedom,
             reach,
             force_checks,
             forces,
             parameters,
             scale_change,
+            ..FieldEstimate::default()
         })
     }
 
