@@ -13,6 +13,7 @@ mod durbin_watson;
 mod neighbours;
 mod ranks;
 mod spline;
+mod unevenness;
 
 pub use correlated_regression::{CorrelatedNoise, CorrelatedRegression, WhiteRegression};
 pub use correlation::{Correlation, Decay, Sites, Whitening};
@@ -22,6 +23,7 @@ pub use durbin_watson::DurbinWatson;
 pub use neighbours::nearest;
 pub use ranks::{quantile, rank_correlation};
 pub use spline::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
+pub use unevenness::Unevenness;
 
 /// The least and the largest of some values; infinities the wrong way round where there are none.
 pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {

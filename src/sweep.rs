@@ -116,7 +116,7 @@ impl Sweep {
     /// between the steps of each, and may unwind.
     ///
     /// # Errors
-    /// [`Error::Input`] of a run whose study has faults, with its number; those of `keep`. A model without a solution is no error: it stands in
+    /// [`Error::Input`] of a run whose study has faults, with its number, unless it is one of few that were drawn; those of `keep`. A model without a solution is no error: it stands in
     /// the run's row.
     pub fn compute(
         &self,
@@ -129,10 +129,11 @@ impl Sweep {
             .iter()
             .map(|run| (run, done.remove(&run.number)))
             .collect();
-        // Faults are told before anything is computed, the same ones each time.
-        let wanted = done.par_iter().filter(|(_, row)| row.is_none());
-        let checked = wanted.map(|(run, _)| self.ready(run).map(drop));
-        checked.find_first(Result::is_err).unwrap_or(Ok(()))?;
+        self.check(
+            done.iter()
+                .filter(|(_, row)| row.is_none())
+                .map(|(run, _)| *run),
+        )?;
         let row = |(run, done): (&Run, Option<Row>)| match done {
             Some(row) => Ok(row),
             None => {
@@ -144,12 +145,35 @@ impl Sweep {
         done.into_par_iter().map(row).collect()
     }
 
+    /// Tells faults before anything is computed, the same ones each time. Of runs that are drawn a few may be beyond what a study may
+    /// hold, as parameters that no law has: such a run is told in its row.
+    fn check<'a>(&self, runs: impl Iterator<Item = &'a Run>) -> Result<(), Error> {
+        /// Of as many drawn runs one may be beyond it.
+        const FEW: usize = 5;
+        let runs: Vec<&Run> = runs.collect();
+        let checked = runs.par_iter().map(|run| self.ready(run).map(drop));
+        let faults: Vec<Error> = checked.filter_map(Result::err).collect();
+        let few = self.is_drawn() && FEW * faults.len() <= runs.len();
+        match faults.into_iter().next() {
+            Some(fault) if !few => Err(fault),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether values are drawn of distributions without bounds.
+    fn is_drawn(&self) -> bool {
+        let mut variables = self.variables.iter();
+        self.fitted.is_some() || variables.any(|own| matches!(own.values, Values::Normal(..)))
+    }
+
     /// The study of a run, read.
     fn ready(&self, run: &Run) -> Result<PreparedStudy, Error> {
         let told = |error: Error| match error {
             Error::Input(faults) => {
+                // The lines of a run's study are not those of the file.
                 let named = |fault: Diagnostic| Diagnostic {
                     message: format!("run {}: {}", run.number, fault.message),
+                    place: None,
                     ..fault
                 };
                 Error::Input(faults.into_iter().map(named).collect())
@@ -161,7 +185,13 @@ impl Sweep {
 
     fn row(&self, run: &Run, attend: &dyn Fn()) -> Result<Row, Error> {
         attend();
-        let study = self.ready(run)?;
+        let study = match self.ready(run) {
+            Err(Error::Input(faults)) if self.is_drawn() => {
+                let faults: Vec<String> = faults.iter().map(ToString::to_string).collect();
+                return Ok(Row::failed(run, faults.join("; "), Vec::new()));
+            }
+            read => read?,
+        };
         let warnings = study.warnings.iter().map(ToString::to_string).collect();
         match study.compute(Progress::to(&|_| attend())) {
             Ok(results) => Ok(Row::of(run, &results)),

@@ -425,6 +425,14 @@ fn a_coarse_field_is_brought_onto_a_finer_mesh() {
     let before = displacement_percent(&finer, &interpolated, &truth);
     let after = displacement_percent(&finer, &corrected, &truth);
     assert!(before > 0.1 && after < 0.1 * before, "{before} % {after} %");
+    // A computed field has neither noise nor a scale.
+    let told = [&arguments[..], &["--scale-error", "0.1 %"]].concat();
+    let done = gelbench(folder.path(), &told).code(0);
+    let told = words(&done.get_output().stderr);
+    assert!(
+        told.contains("what is said of scale_error has no part in it"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -12,7 +12,7 @@ use super::large::Large;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use crate::compare::imported::{
-    Difference, ExternalField, ImportSettings, Mismatch, ModelField, Sites,
+    Difference, ExternalField, ImportSettings, Mismatch, ModelField, ModelFields, Sites,
 };
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
@@ -69,14 +69,14 @@ struct Comparison {
     factor: f64,
     imported: ExternalField,
     sites: Sites,
-    fields: [ModelField; 3],
+    models: ModelFields,
 }
 
 /// Compares, prints, and writes what is asked for.
 pub fn run(options: Options) -> Outcome {
     options.printed.choose();
     let compared = compute(&options)?;
-    let fields = compared.fields.iter();
+    let fields = compared.models.fields.iter();
     let differences = fields.map(|field| compared.sites.difference(field));
     let differences: Result<Vec<Difference>, Mismatch> = differences.collect();
     let differences = differences.map_err(|reason| {
@@ -128,9 +128,10 @@ fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
             Diagnostic::warning("", message).hint("say that of the file with --factor")
         })
     });
-    let shifted = differences
-        .last()
-        .filter(|last| doubt.is_none() && last.is_shifted());
+    let [finite_elements, ..] = differences else {
+        return Vec::new();
+    };
+    let shifted = Some(finite_elements).filter(|own| doubt.is_none() && own.is_shifted());
     doubt.into_iter().chain(shifted.map(shift_doubt)).collect()
 }
 
@@ -186,7 +187,7 @@ fn plate(options: &Options, text: String, told: studies::Progress) -> Result<Com
         factor,
         imported,
         sites,
-        fields: run::fields(study, factor, told)?,
+        models: run::fields(study, factor, told)?,
     })
 }
 
@@ -217,7 +218,7 @@ fn shape(
         factor,
         imported,
         sites,
-        fields: specimen::fields(specimen, factor, told)?,
+        models: specimen::fields(specimen, factor, told)?,
     })
 }
 
@@ -248,14 +249,22 @@ fn summary(compared: &Comparison, differences: &[Difference]) -> String {
         compared.factor,
         compared.imported.describe()
     );
-    for (field, difference) in compared.fields.iter().zip(differences) {
+    for (field, difference) in compared.models.fields.iter().zip(differences) {
         let [x, y] = difference.place;
         text += &format!(
             "{:<16}  {:>16.4}  {:>23.5}  {x:.3}, {y:.3}\n",
             field.model, difference.percent, difference.largest
         );
     }
-    text
+    text + &own_error(compared) + "\n"
+}
+
+/// The finite elements' own error, in words.
+fn own_error(compared: &Comparison) -> String {
+    match compared.models.own_percent {
+        Some(own) => format!("The finite elements' own error is estimated as {own:.4} %."),
+        None => "The finite elements' own error is not known.".to_owned(),
+    }
 }
 
 fn write(
@@ -270,7 +279,7 @@ fn write(
         past: &[],
         viscous: None,
     };
-    for field in &compared.fields {
+    for field in &compared.models.fields {
         let grid = match &compared.imported {
             ExternalField::OnMesh(imported) => {
                 let (mesh, u) = (&field.mesh, &field.displacement);
@@ -312,7 +321,7 @@ fn json(
             "at_mm": difference.place,
         })
     };
-    let models = compared.fields.iter().zip(differences).map(model);
+    let models = compared.models.fields.iter().zip(differences).map(model);
     json!({
         "gelbench": env!("CARGO_PKG_VERSION"),
         "title": compared.title,
@@ -320,6 +329,7 @@ fn json(
         "read_as": compared.imported.describe(),
         "load_factor": compared.factor,
         "models": models.collect::<Vec<_>>(),
+        "finite_elements_own_error_percent": compared.models.own_percent,
         "doubts": doubts.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
@@ -354,7 +364,11 @@ fn report(compared: &Comparison, differences: &[Difference], file: &Path) -> Vec
             file.file_name().unwrap_or_default().to_string_lossy(),
             compared.imported.describe()
         )),
-        Block::table(&head, compared.fields.iter().zip(differences).map(row)),
+        Block::table(
+            &head,
+            compared.models.fields.iter().zip(differences).map(row),
+        ),
+        Block::Paragraph(own_error(compared)),
         Block::Paragraph(format!("gelbench {}", env!("CARGO_PKG_VERSION"))),
     ]
 }

@@ -23,7 +23,7 @@ pub enum Level {
     Coarse,
     /// The one between
     Middle,
-    /// The finest, with which the other models are compared
+    /// The finest of the three; `run` of a specimen may halve it once more where it is too coarse to judge
     Fine,
 }
 

@@ -41,6 +41,15 @@ pub struct ModelField {
     pub displacement: Vec<f64>,
 }
 
+/// The fields of all models at one load factor.
+#[derive(Clone, Debug)]
+pub struct ModelFields {
+    /// Finite elements, springs, corrected springs.
+    pub fields: [ModelField; 3],
+    /// The finite elements' own error in relative L2 in %; `None` where it is not known.
+    pub own_percent: Option<f64>,
+}
+
 /// Where fields are compared, and what the imported one is there.
 #[derive(Clone, Debug)]
 pub struct Sites {

@@ -54,7 +54,6 @@ mod result;
 mod robust;
 mod rows;
 mod search;
-mod shares;
 mod smoothed_away;
 mod start;
 mod task;
@@ -128,35 +127,28 @@ fn estimate_with(
         };
         result_of(&task, edges.clone())
     };
-    let (found, ratio) = search(&observations)?;
-    match ratio {
-        None => Ok(found),
-        // Noise that the data contradict keeps its proportions, and its size is estimated.
-        Some(ratio) => {
-            observations.known_noise = false;
-            let (found, _) = search(&observations)?;
-            Ok(FieldEstimate {
-                noise_ratio: Some(ratio),
-                ..found
-            })
-        }
-    }
+    let (found, ratio) = noise::with_own_noise(&mut observations, search)?;
+    Ok(FieldEstimate {
+        noise_ratio: ratio,
+        ..found
+    })
 }
 
-/// The estimate, and what the markers scatter over their stated noise, where they contradict it.
+/// The estimate; where the noise is another one than was taken, that alone.
 fn result_of(
     task: &task::Task,
     edges: Vec<task::Edge>,
-) -> Result<(FieldEstimate, Option<f64>), Error> {
+) -> Result<(FieldEstimate, noise::OtherNoise), Error> {
     let (mut found, edges) = free_edges::search(task, edges)?;
     let markers = found.markers();
-    if let Some(ratio) = found.contradicted_noise(&markers) {
-        return Ok((FieldEstimate::default(), Some(ratio)));
+    let other = found.other_noise(&markers, &edges);
+    if !other.is_none() {
+        return Ok((FieldEstimate::default(), other));
     }
     let own = found.mesh_error(&edges);
     let judged = judge::judge(task, &mut found, &edges, own.as_ref())?;
     let found = found.into_estimate(&edges, own.as_ref(), (markers, judged))?;
-    Ok((found, None))
+    Ok((found, other))
 }
 
 #[cfg(test)]

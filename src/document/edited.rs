@@ -54,6 +54,20 @@ impl EditedDocument {
         set(&mut self.table, path, value)
     }
 
+    /// Whether there is a value at a path of names and of places in lists from 0 on.
+    pub fn holds(&self, path: &[&str]) -> bool {
+        self.at(path).is_some()
+    }
+
+    fn at(&self, path: &[&str]) -> Option<&Value> {
+        let (first, rest) = path.split_first()?;
+        rest.iter()
+            .try_fold(self.table.get(*first)?, |value, key| match value {
+                Value::Array(all) => all.get(key.parse::<usize>().ok()?),
+                _ => value.get(*key),
+            })
+    }
+
     /// The document again.
     pub fn text(&self) -> String {
         self.table.to_string()

@@ -151,6 +151,8 @@ pub struct StressAfter {
     pub stress: Gradient,
     /// η; 1 for a law without softening.
     pub factor: f64,
+    /// The part of Ψ that is dissipated, in mJ/mm³; none without softening.
+    pub dissipated: f64,
 }
 
 impl StressAfter {
@@ -166,6 +168,7 @@ impl StressAfter {
                 energy: virgin.0,
                 stress: virgin.1,
                 factor: 1.0,
+                dissipated: 0.0,
             };
         };
         let states = past.into_iter().filter_map(|h| Kinematics::new(&h).ok());
@@ -176,6 +179,7 @@ impl StressAfter {
             energy,
             stress,
             factor,
+            dissipated: softening.dissipated(most.max(virgin.0)),
         }
     }
 }

@@ -6,9 +6,10 @@ use super::blocks::{Block, mesh_of_blocks};
 use super::cell_shape::CellShape;
 use super::cells::Mesh;
 
-/// A number of cells, one at least.
+/// A number of cells, one at least. Halves go up, whatever rounding has left of them in one unit or another.
 pub fn count(cells: f64) -> usize {
-    (cells.round() as usize).max(1)
+    const ROUNDING: f64 = 1e-9;
+    ((cells * (1.0 + ROUNDING)).round() as usize).max(1)
 }
 
 /// The length over the width of a strip whose half width varies along it, in the mean along it.

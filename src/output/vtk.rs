@@ -53,11 +53,12 @@ pub fn grid(grid: &Grid) -> Vec<u8> {
     let mut bytes = Vec::new();
     file.write_xml(&mut bytes)
         .expect("a grid with matching arrays can be written to memory");
-    with_component_names(&bytes, grid)
+    finished(&bytes, grid)
 }
 
-/// The file with the names of the components, which vtkio does not write.
-fn with_component_names(file: &[u8], grid: &Grid) -> Vec<u8> {
+/// The file with the names of the components, which vtkio does not write, and with numbers of points that have a sign, as VTK and meshio
+/// expect them.
+fn finished(file: &[u8], grid: &Grid) -> Vec<u8> {
     let file = String::from_utf8_lossy(file);
     let arrays = || grid.at_points.iter().chain(&grid.in_cells);
     let named = |head: &str| {
@@ -70,7 +71,9 @@ fn with_component_names(file: &[u8], grid: &Grid) -> Vec<u8> {
     for part in parts {
         let (head, rest) = part.split_once('>').unwrap_or((part, ""));
         whole += "<DataArray ";
-        whole += head.trim_end_matches('/');
+        whole += &head
+            .trim_end_matches('/')
+            .replace("\"UInt64\"", "\"Int64\"");
         let names = named(head).map_or(&[][..], |array| names(array.components));
         for (index, name) in names.iter().enumerate() {
             whole += &format!(" ComponentName{index}=\"{name}\"");

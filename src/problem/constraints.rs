@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::boundary_conditions::{Drive, Support};
+use super::corner_forces::{Hold, Part, reaction_parts};
 use super::grip::RigidMotion;
 use super::groups::{named, refused};
 use crate::error::Diagnostic;
@@ -56,17 +57,23 @@ impl Support {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 enum SupportMisfit {
     #[error(
-        "has a node at the centre of its radial displacement, where no direction leads away from it; move the centre, or \
-         leave the node out"
+        "has a node at the centre of its radial displacement, where no direction leads away from it"
     )]
     NodeAtCentre,
     #[error("has no nodes")]
     NoNodes,
-    #[error(
-        "is no straight line parallel to an axis, which a roller or an axis of symmetry needs; turn the mesh, or hold the \
-         group with the kind \"displacement\""
-    )]
+    #[error("is no straight line parallel to an axis, which a roller or an axis of symmetry needs")]
     NotAlongAxis,
+}
+
+impl SupportMisfit {
+    fn remedy(self) -> &'static str {
+        match self {
+            Self::NodeAtCentre => "move the centre, or leave the node out",
+            Self::NoNodes => "take a group with nodes",
+            Self::NotAlongAxis => "turn the mesh, or hold the group with the kind \"displacement\"",
+        }
+    }
 }
 
 /// All supports of a problem on the unknowns of a mesh.
@@ -82,9 +89,11 @@ pub struct Constraints {
     holders: Vec<Holder>,
 }
 
-/// The nodes that a support holds along some axes.
+/// What a support holds along some axes.
 struct Holder {
     nodes: BTreeSet<usize>,
+    /// Its edges of the boundary.
+    edges: Vec<Vec<usize>>,
     /// Whether it holds edges, lines or cells, and not nodes alone.
     has_parts: bool,
     axes: [bool; 2],
@@ -102,6 +111,18 @@ impl Holder {
         let held = parts.filter(|part| part.iter().all(|node| self.nodes.contains(node)));
         held.flatten().copied().collect()
     }
+
+    fn hold(&self) -> Hold {
+        let nodes = |holds: bool| match holds {
+            true => self.nodes.clone(),
+            false => BTreeSet::new(),
+        };
+        Hold {
+            rank: 0,
+            nodes: self.axes.map(nodes),
+            sides: self.edges.clone(),
+        }
+    }
 }
 
 impl Constraints {
@@ -113,7 +134,9 @@ impl Constraints {
         let mut all = Self::default();
         for (name, support) in supports {
             let added = all.add(mesh, named("support", mesh, name)?, support);
-            added.map_err(|misfit| refused("support", name, &misfit.to_string()))?;
+            added.map_err(|misfit| {
+                refused("support", name, &misfit.to_string()).hint(misfit.remedy())
+            })?;
         }
         Ok(all)
     }
@@ -150,31 +173,24 @@ impl Constraints {
     pub fn holds(&mut self, group: &Group, axes: [bool; 2]) {
         self.holders.push(Holder {
             nodes: group.nodes.iter().copied().collect(),
+            edges: group.edges.clone(),
             has_parts: group.has_parts(),
             axes,
         });
     }
 
-    /// The part of the supports' force at each node of a group, along each axis, that acts on this group: at a corner, what supports of
-    /// the other edge do there acts on that edge alone, and what supports of both edges hold is shared between them. Forces of
-    /// groups that meet in corners therefore add up to those of all supports.
-    pub fn parts_on(&self, mesh: &Mesh, group: &Group) -> Vec<[f64; 2]> {
-        let own = self.holders.iter().map(|own| own.on(mesh, group));
-        let own: Vec<_> = own.collect();
-        let part = |node: &usize, axis: usize| {
-            let (mut here, mut all) = (0.0_f64, 0.0_f64);
-            for (holder, on_group) in self.holders.iter().zip(&own) {
-                if holder.axes[axis] && holder.nodes.contains(node) {
-                    all += 1.0;
-                    here += f64::from(u8::from(on_group.contains(node)));
-                }
-            }
-            here / all.max(1.0)
+    /// The parts of the supports' forces along an axis that act on a group: at a corner, what supports of the other edge do there acts on
+    /// that edge alone, and what supports of both edges hold is each edge's as far as its tractions beside the corner tell, and the rest
+    /// shared. Forces of groups that meet in corners therefore add up to those of all supports.
+    pub fn parts_on(&self, mesh: &Mesh, group: &Group, axis: usize) -> Vec<Part> {
+        let holds: Vec<Hold> = self.holders.iter().map(Holder::hold).collect();
+        let parts = reaction_parts(mesh, &holds, axis);
+        let on_group = |(holder, parts): (&Holder, Vec<Part>)| {
+            let own = holder.on(mesh, group);
+            let parts = parts.into_iter();
+            parts.filter(move |part| own.contains(&part.at))
         };
-        let nodes = group.nodes.iter();
-        nodes
-            .map(|node| [0, 1].map(|axis| part(node, axis)))
-            .collect()
+        self.holders.iter().zip(parts).flat_map(on_group).collect()
     }
 
     /// Ties the nodes of a group along an axis to the first of them, which takes the force.

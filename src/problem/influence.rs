@@ -97,14 +97,10 @@ impl Model<'_> {
         let group = &self.mesh.groups()[name];
         let pulled = |unknown: &usize| forces.iter().any(|(master, _)| master == unknown);
         let (mut motion, mut force) = (vec![0.0; state.displacement.len()], None);
-        for (node, part) in group
-            .nodes
-            .iter()
-            .zip(self.constraints.parts_on(self.mesh, group))
-        {
-            let unknown = 2 * node + axis;
+        for part in self.constraints.parts_on(self.mesh, group, axis) {
+            let unknown = 2 * part.of + axis;
             if held.contains_key(&unknown) {
-                motion[unknown] = part[axis];
+                motion[unknown] += part.factor;
             }
         }
         let mut unknowns = group.nodes.iter().map(|node| 2 * node + axis);

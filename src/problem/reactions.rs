@@ -1,5 +1,7 @@
 //! What follows from a state of a model: the forces of its supports, what happens at groups, the balance of all forces.
 
+use std::collections::BTreeMap;
+
 use super::balance::{Balance, Body, Resultant};
 use super::constraints::Constraints;
 use super::groups::shares;
@@ -10,7 +12,8 @@ use crate::solve::{Assembly, State};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroupState {
     /// Force of the supports of the group on the sheet in N, with the signs of the axes; that of a pulled grip included. At a corner that
-    /// it shares with another group, supports of the other group have no part in it, and what both groups' supports hold is shared.
+    /// it shares with another group, supports of the other group have no part in it, and what both groups' supports hold is each one's as far
+    /// as its tractions beside the corner tell, and the rest shared.
     pub force: [f64; 2],
     /// Moment of that force about `place` in N·mm, counter-clockwise.
     pub moment: f64,
@@ -77,15 +80,14 @@ impl Reactions<'_> {
     pub fn at_group(&self, name: &str) -> GroupState {
         let mesh = self.model.mesh;
         let group = &mesh.groups()[name];
-        let (nodes, u) = (&group.nodes, &self.state.displacement);
-        let parts = self.model.constraints.parts_on(mesh, group);
-        let force = |(node, part): (&usize, &[f64; 2])| {
-            [0, 1].map(|axis| match part[axis] > 0.0 {
-                true => part[axis] * self.forces[2 * node + axis],
-                false => 0.0,
-            })
-        };
-        let forces: Vec<_> = nodes.iter().zip(&parts).map(force).collect();
+        let u = &self.state.displacement;
+        let mut forces: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+        for axis in [0, 1] {
+            for part in self.model.constraints.parts_on(mesh, group, axis) {
+                let force = forces.entry(part.at).or_default();
+                force[axis] += part.factor * self.forces[2 * part.of + axis];
+            }
+        }
         let place = |node: usize, axis: usize| mesh.nodes[node][axis] + u[2 * node + axis];
         let shares = shares(mesh, group);
         let mean = |of_node: &dyn Fn(usize, usize) -> f64| {
@@ -102,10 +104,10 @@ impl Reactions<'_> {
             x * force[1] - y * force[0]
         };
         GroupState {
-            size: forces.iter().map(|[x, y]| x.hypot(*y)).sum(),
+            size: forces.values().map(|[x, y]| x.hypot(*y)).sum(),
             rounding: self.rounding(),
-            force: [0, 1].map(|axis| forces.iter().map(|force| force[axis]).sum()),
-            moment: nodes.iter().zip(&forces).map(moment).sum(),
+            force: [0, 1].map(|axis| forces.values().map(|force| force[axis]).sum()),
+            moment: forces.iter().map(moment).sum(),
             place: middle,
             displacement: mean(&|node, axis| u[2 * node + axis]),
         }

@@ -59,7 +59,7 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
 }
 
 /// What follows from the displacement gradients in the centres of the cells. The nominal stress is Pᵀ: its first index is the
-/// reference direction. Of a material that softens, what it has left of the stress is one more.
+/// reference direction. Of a material that softens, what it has dissipated and what it has left of the stress are two more.
 pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
     let viscous = sheet.viscous.map_or(&[][..], |own| &own.in_cells);
     let states = cell_states(sheet.law, mesh, &sheet.fields(displacement), viscous);
@@ -96,6 +96,9 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
         of("energy_density_mJ_per_mm3", |state| state.energy),
     ];
     if sheet.law.softening().is_some() {
+        arrays.push(of("dissipated_energy_density_mJ_per_mm3", |state| {
+            state.dissipated
+        }));
         arrays.push(of("softening_factor", |state| state.softening_factor));
     }
     arrays

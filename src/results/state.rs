@@ -22,8 +22,10 @@ pub struct LocalState {
     pub stretches: [f64; 3],
     /// I₁ = tr C = λ₁² + λ₂² + λ₃², with the sheet's own λ₃.
     pub first_invariant: f64,
-    /// Energy per reference volume in mJ/mm³.
+    /// Energy per reference volume that is stored, in mJ/mm³.
     pub energy: f64,
+    /// Energy per reference volume that softening has dissipated, in mJ/mm³.
+    pub dissipated: f64,
     /// What softening has left of the stress; 1 without it.
     pub softening_factor: f64,
 }
@@ -54,7 +56,8 @@ impl LocalState {
             green_lagrange: [c11, c22, thickness * thickness - 1.0, c12].map(|c| 0.5 * c),
             stretches: [larger, smaller, thickness],
             first_invariant: 2.0 + c11 + c22 + thickness * thickness,
-            energy: after.energy,
+            energy: after.energy - after.dissipated,
+            dissipated: after.dissipated,
             softening_factor: after.factor,
         }
     }
@@ -68,6 +71,7 @@ impl LocalState {
             stretches: [f64::NAN; 3],
             first_invariant: f64::NAN,
             energy: f64::NAN,
+            dissipated: f64::NAN,
             softening_factor: f64::NAN,
         }
     }

@@ -30,6 +30,7 @@ mod gross_errors;
 pub mod joint;
 mod json;
 mod machine;
+mod noise;
 mod quantities;
 mod reading;
 mod refined;
@@ -145,6 +146,7 @@ impl MarkerStudy {
             // Interpolation needs all nodes.
             placed.series = field.series;
             placed.outside = 0;
+            warnings.extend(doubts::of_a_computed_field(&request.conditions));
         }
         force_signs::check(
             request.conditions.forces_with_frames(&placed.series),

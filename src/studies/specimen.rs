@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use crate::budget::Budget;
+use crate::compare::imported::{ModelField, ModelFields};
 use crate::document::Section;
 use crate::error::{Diagnostic, Error};
+use crate::material::softened_law::check_memory;
 use crate::mesh::MeshData;
+use crate::problem::Solution;
 use crate::results::Outcome;
 use crate::studies::{Computation, Kind, Progress};
 
@@ -22,7 +25,7 @@ mod work;
 pub use problem::{Outline, Refinement, Specimen};
 use results::end::{End, tell};
 use results::models::Models;
-pub use results::{fields, finest_mesh, force_with_error, one_model};
+pub use results::{finest_mesh, force_with_error, one_model};
 
 /// The `kind` of these studies.
 pub const KIND: &str = "specimen";
@@ -70,11 +73,7 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
 /// [`Error::Solve`] where no model has an equilibrium at all.
 pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
     let mut ends = Vec::new();
-    let mut models = Models::solve(specimen, &mut ends, progress)?;
-    if models.reference.may_be_finer(specimen) && outcome::is_open(specimen, &models) {
-        progress.tell("finer finite elements");
-        models.reference = models.reference.finer(specimen, &mut ends, progress)?;
-    }
+    let models = solved(specimen, &mut ends, progress)?;
     if models.reached() == 0 && ends.iter().all(End::is_empty) {
         // Not even an equilibrium on the way to the first load factor.
         let first = ends.first().map(End::error);
@@ -83,4 +82,53 @@ pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error
     let mut outcome = outcome::outcome(specimen, &models);
     tell(specimen, &models.reference.measured, ends, &mut outcome);
     Ok(outcome)
+}
+
+/// The models; with finer finite elements where those of the study are too coarse to judge the others.
+fn solved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Models, Error> {
+    let mut models = Models::solve(specimen, ends, progress)?;
+    if models.reference.may_be_finer(specimen) && outcome::is_open(specimen, &models) {
+        progress.tell("finer finite elements");
+        models.reference = models.reference.finer(specimen, ends, progress)?;
+    }
+    Ok(models)
+}
+
+/// The fields of all models at a load factor: finite elements as a run has them, springs, corrected springs. The study's load
+/// factors before it are steps on the way.
+///
+/// # Errors
+/// [`Error::Solve`] when a model has no solution.
+pub fn fields(
+    mut specimen: Specimen,
+    factor: f64,
+    progress: Progress,
+) -> Result<ModelFields, Error> {
+    check_memory(
+        &*specimen.problem.law,
+        "a comparison with another program's field",
+    )?;
+    specimen.factors.retain(|before| *before < factor);
+    specimen.factors.push(factor);
+    let mut ends = Vec::new();
+    let models = solved(&specimen, &mut ends, progress)?;
+    if let Some(end) = ends.first() {
+        return Err(end.error());
+    }
+    let last = specimen.factors.len() - 1;
+    let lattice = &models.on_lattice.springs.mesh;
+    let own_percent = models.reference.displacement_percent(last, lattice);
+    let field = |model, solution: &Solution| ModelField {
+        model,
+        mesh: solution.mesh.clone(),
+        displacement: solution.states[last].displacement.clone(),
+    };
+    Ok(ModelFields {
+        fields: [
+            field("finite elements", &models.reference.finest),
+            field("mass-spring", &models.on_lattice.uncorrected),
+            field("corrected", &models.on_lattice.corrected),
+        ],
+        own_percent,
+    })
 }

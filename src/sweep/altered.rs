@@ -68,7 +68,7 @@ impl BaseStudy {
             let path: Vec<&str> = key.split('.').collect();
             let value = new_value(setting);
             let of_card = match path[..] {
-                ["material", parameter] if parameter != "card" => {
+                ["material", ref parameter @ ..] if parameter != ["card"] => {
                     if card.is_none() {
                         card = Some(VariedCard::of(&study, folder)?);
                     }
@@ -135,14 +135,27 @@ impl VariedCard {
         })
     }
 
-    /// Sets a parameter; says whether the card has one of this name.
-    fn set(&mut self, key: &str, value: &NewValue) -> bool {
-        let section = match key {
-            "poisson_ratio" | "bulk_modulus" => "volume",
-            _ => "parameters",
+    /// Sets a parameter, by the name that a fit has for it; says whether the card has one of this name.
+    fn set(&mut self, parameter: &[&str], value: &NewValue) -> bool {
+        let place = match *parameter {
+            [key @ ("poisson_ratio" | "bulk_modulus")] => vec!["volume".to_owned(), key.to_owned()],
+            [key] => vec!["parameters".to_owned(), key.to_owned()],
+            ["softening", key] => vec!["softening".to_owned(), key.to_owned()],
+            // Terms are counted from one.
+            ["relaxation", term, key] => match term.parse::<usize>() {
+                Ok(term @ 1..) => ["viscosity", "relaxation", &(term - 1).to_string(), key]
+                    .map(str::to_owned)
+                    .to_vec(),
+                _ => return false,
+            },
+            _ => return false,
         };
-        let is_set =
-            self.card.parameter(key).is_some() && self.document.set(&[section, key], value).is_ok();
+        let place: Vec<&str> = place.iter().map(String::as_str).collect();
+        let is_known = match *parameter {
+            [key] => self.card.parameter(key).is_some(),
+            _ => self.document.holds(&place),
+        };
+        let is_set = is_known && self.document.set(&place, value).is_ok();
         self.is_varied |= is_set;
         is_set
     }

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::points::Points;
 use super::variable::{MOST_RUNS, Setting, Values, Variable};
 use crate::error::Diagnostic;
-use crate::statistics::normal_quantile;
+use crate::statistics::{normal_quantile, normal_reach};
 
 /// What the scrambled sequence holds.
 const MOST_OF_SOBOL: usize = 1 << 16;
@@ -80,6 +80,7 @@ impl FittedParameters {
         let values = numbers("value").ok_or_else(|| wrong("holds parameters without values"))?;
         let errors =
             numbers("standard_error").ok_or_else(|| without_errors(file, &fit, parameters))?;
+        let errors = widened(&errors, parameters);
         let correlation = |i: usize, j: usize| fit["correlation"][i][j].as_f64();
         let count = keys.len();
         let mut covariance = DMatrix::zeros(count, count);
@@ -120,6 +121,16 @@ impl FittedParameters {
             .map(|(value, unit)| Setting::Number(*value, unit))
             .collect()
     }
+}
+
+/// Deviations of normal distributions with the 95 % intervals of a fit, which of few data reach farther than 1.96 standard errors.
+fn widened(errors: &[f64], parameters: &[Value]) -> Vec<f64> {
+    let deviation = |(error, one): (&f64, &Value)| {
+        let end = |index: usize| one["interval_95_percent"][index].as_f64();
+        let half = end(1).zip(end(0)).map(|(high, low)| 0.5 * (high - low));
+        half.map_or(*error, |half| half / normal_reach())
+    };
+    errors.iter().zip(parameters).map(deviation).collect()
 }
 
 /// Why the parameters of a fit have no standard errors, and what to do.
@@ -242,6 +253,10 @@ pub fn rows(
 fn points_to_draw(sampling: Sampling, dimensions: usize) -> Result<usize, Diagnostic> {
     let samples = match (sampling.samples, dimensions) {
         (None, 0) => 1,
+        (Some(0), _) => {
+            let fault = Diagnostic::error("", "no points are to be drawn");
+            return Err(fault.hint("give --samples a number above zero, such as --samples 256"));
+        }
         (Some(samples), 1..) => samples,
         (None, _) => {
             let fault = Diagnostic::error(

@@ -80,16 +80,49 @@ impl Statistics {
     }
 }
 
-/// The figures of the last step, without the step in their names.
-fn of_last_step(all: &[Statistics]) -> impl Iterator<Item = &Statistics> {
-    let step = |one: &Statistics| one.name.rsplit_once('@').map(|(_, at)| at.to_owned());
-    let last = all.last().and_then(step);
-    all.iter().filter(move |one| step(one) == last)
+/// The step that a figure is of.
+fn step_of(name: &str) -> &str {
+    name.rsplit_once('@').map_or("", |(_, at)| at)
+}
+
+/// The figures of the last step alone. Where steps are varied, that is another one in each run: of those that reach it, under one name.
+fn at_last_step(rows: &[Row]) -> Vec<Row> {
+    const OWN: &str = "the last step";
+    let last = |row: &Row| row.figures.last().map(|(name, _)| step_of(name).to_owned());
+    let sound = rows.iter().filter(|row| row.fault.is_empty());
+    let mut steps: Vec<String> = sound.filter_map(last).collect();
+    steps.sort_unstable();
+    steps.dedup();
+    let common = match &steps[..] {
+        [] => rows.last().and_then(last),
+        [one] => Some(one.clone()),
+        _ => None,
+    };
+    let of_row = |row: &Row| {
+        let own = last(row).filter(|_| row.fault.is_empty());
+        let (at, named) = match &common {
+            Some(step) => (Some(step.clone()), step.as_str()),
+            None => (own, OWN),
+        };
+        let figures = row.figures.iter();
+        let figures = figures.filter(|(name, _)| at.as_deref() == Some(step_of(name)));
+        let renamed = figures.map(|(name, value)| {
+            let quantity = name
+                .rsplit_once('@')
+                .map_or(&**name, |(quantity, _)| quantity);
+            (format!("{quantity}@{named}"), *value)
+        });
+        Row {
+            figures: renamed.collect(),
+            ..row.clone()
+        }
+    };
+    rows.iter().map(of_row).collect()
 }
 
 /// The report.
 pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
-    let all = statistics(rows);
+    let all = statistics(&at_last_step(rows));
     let mut head = vec![
         "figure of the last step",
         "runs",
@@ -108,7 +141,7 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
         true => number(value),
         false => "–".to_owned(),
     };
-    let lines = of_last_step(&all).map(|one| {
+    let lines = all.iter().map(|one| {
         let [low, middle, high] = one.quantiles;
         let numbers = [one.mean, one.standard_deviation, low, middle, high];
         let numbers = numbers.iter().chain(&one.rank_correlations);
@@ -141,8 +174,9 @@ pub fn cautions(rows: &[Row]) -> Vec<String> {
     let failed = rows.iter().filter(|row| !row.fault.is_empty()).count();
     let biased = (failed > 0).then(|| {
         format!(
-            "{failed} of {} runs have no solution, or none at their last steps (column `fault` of sweep.csv): means, quantiles and \
-             bands there are those of the other runs alone, and are biased unless the runs without one are left out by chance.",
+            "{failed} of {} runs have no solution, or none at their last steps, or were drawn beyond what a study may hold (column `fault` of \
+             sweep.csv): means, quantiles and bands there are those of the other runs alone, and are biased unless the runs without one \
+             are left out by chance.",
             rows.len()
         )
     });
@@ -209,10 +243,12 @@ pub fn figures(keys: &[String], rows: &[Row]) -> Vec<Figure> {
             chart,
         )
     });
-    let last =
-        of_last_step(&all).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
+    let rows = at_last_step(rows);
+    let last = statistics(&rows);
+    let last = (last.iter()).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
     let over = last.into_iter().flat_map(|one| {
-        let at = one.name.rsplit('@').next().unwrap_or_default();
+        let at = step_of(&one.name);
+        let rows = &rows;
         let heads = &heads;
         let axis = |index: usize| -> Option<Figure> {
             let points: Option<Vec<[f64; 2]>> = rows

@@ -2,8 +2,8 @@
 
 use super::knowledge::EdgeCondition;
 use super::outline::Segment;
-use super::shares::{Hold, Share, shares};
 use crate::mesh::Mesh;
+use crate::problem::corner_forces::{Hold, Share, reaction_shares};
 
 /// What holds the sheet.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +54,10 @@ pub fn bodies<'a>(
     let members: Vec<Vec<usize>> = members.collect();
     let holds = members.iter().map(|members| hold(mesh, &edges, members));
     let holds: Vec<Hold> = holds.collect();
-    let all = shares(mesh, &holds).into_iter().zip(holds).zip(members);
+    let all = reaction_shares(mesh, &holds)
+        .into_iter()
+        .zip(holds)
+        .zip(members);
     let body = |((shares, hold), members): ((_, Hold), Vec<usize>)| Body {
         name: edges[members[0]].0.name.clone(),
         edges: members,
@@ -88,6 +91,8 @@ fn hold(mesh: &Mesh, edges: &[(&Segment, EdgeCondition)], members: &[usize]) -> 
     }
 }
 
+#[cfg(test)]
+mod corner_tests;
 #[cfg(test)]
 mod tests {
     use super::super::edge_motion::EdgeMotion;

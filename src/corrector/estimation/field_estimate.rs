@@ -42,6 +42,9 @@ pub struct FieldEstimate {
     pub known_noise: bool,
     /// The scatter of the markers over their stated noise, where they contradict it: the stated noise is scaled then.
     pub noise_ratio: Option<f64>,
+    /// The least and the largest standard deviation of a marker's noise in mm, where it differs from place to place: markers are weighted
+    /// by it then.
+    pub noise_range: Option<[f64; 2]>,
     /// How many parameters the data have determined: the trace of the matrix that makes the fitted displacements of the
     /// measured ones.
     pub effective_parameters: f64,

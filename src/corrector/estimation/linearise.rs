@@ -5,8 +5,8 @@ use nalgebra::{DMatrix, DVector};
 use super::body_force::BodyForce;
 use super::equations::{Equations, Place, solve};
 use super::knowledge::MeasuredForce;
-use super::shares::Share;
 use crate::error::Error;
+use crate::problem::corner_forces::Share;
 use crate::solve::Assembly;
 
 /// The equations and the observations linearised about a place.

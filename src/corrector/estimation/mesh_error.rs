@@ -22,9 +22,9 @@ use super::knowledge::EdgeCondition;
 use super::linearise::{Linear, dot};
 use super::regression::Trade;
 use super::search::NearestField;
-use super::shares::{Hold, Share, shares};
 use super::task::Edge;
 use crate::mesh::Mesh;
+use crate::problem::corner_forces::{Hold, Share, reaction_shares};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{Newton, NewtonSettings, Sum};
 
@@ -58,6 +58,13 @@ pub struct MeshDifference {
     markers: Vec<f64>,
     /// Of each body.
     forces: Vec<[f64; 2]>,
+}
+
+impl MeshDifference {
+    /// H (u½ − u), two numbers a marker.
+    pub fn at_markers(&self) -> &[f64] {
+        &self.markers
+    }
 }
 
 /// The equilibrium on the refined mesh.
@@ -218,7 +225,7 @@ impl NearestField<'_> {
         let reactions = self.reactions();
         let bodies = &self.equations.bodies;
         let holds: Vec<Hold> = bodies.iter().map(|body| fine.hold(body)).collect();
-        let shares = shares(&fine.mesh, &holds).into_iter().zip(bodies);
+        let shares = reaction_shares(&fine.mesh, &holds).into_iter().zip(bodies);
         let difference = |(shares, own): ([Vec<Share>; 2], &Body)| {
             let there = Body {
                 shares,

@@ -11,16 +11,121 @@ use nalgebra::{DMatrix, DVector};
 use super::field_estimate::MarkerEstimate;
 use super::judge::Judgement;
 use super::marker_rows::MarkerRows;
+use super::observations::Observations;
 use super::regression::Trade;
 use super::search::NearestField;
-use crate::statistics::{Sites, robust_deviation};
+use super::task::Edge;
+use crate::error::Error;
+use crate::statistics::{Sites, Unevenness, extremes, robust_deviation};
 
 /// Noise farther from what was stated than this factor contradicts it, if it is by four standard errors too.
 const OFF: f64 = 1.25;
 
+/// How often weights follow noise that differs from place to place.
+const ROUNDS: usize = 3;
+
+/// What markers show of their noise otherwise than was taken of it.
+#[derive(Clone, Debug, Default)]
+pub struct OtherNoise {
+    /// The scatter of the markers over their stated noise, where it is far from one.
+    pub ratio: Option<f64>,
+    /// How it differs from place to place.
+    pub unevenness: Option<Unevenness>,
+}
+
+/// A search with the noise that it shows: what contradicts the stated noise keeps its proportions, and its size is estimated; markers where
+/// noise is larger have less weight. With it, the scatter over stated noise that was contradicted.
+///
+/// # Errors
+/// As the search.
+pub fn with_own_noise<T>(
+    observations: &mut Observations,
+    search: impl Fn(&Observations) -> Result<(T, OtherNoise), Error>,
+) -> Result<(T, Option<f64>), Error> {
+    let mut ratio = None;
+    loop {
+        let (found, other) = search(observations)?;
+        if !observations.take(&other) {
+            return Ok((found, ratio));
+        }
+        ratio = ratio.or(other.ratio);
+    }
+}
+
+impl OtherNoise {
+    /// Whether it is as it was taken.
+    pub fn is_none(&self) -> bool {
+        self.ratio.is_none() && self.unevenness.is_none()
+    }
+}
+
+impl Observations {
+    /// Whether anything is otherwise; the weights follow it.
+    fn take(&mut self, other: &OtherNoise) -> bool {
+        if other.is_none() {
+            return false;
+        }
+        self.known_noise = false;
+        if let Some(unevenness) = &other.unevenness {
+            self.reweighted += 1;
+            for (weight, place) in self.weights.iter_mut().zip(&self.places) {
+                *weight /= unevenness.factor(*place).powi(2);
+            }
+        }
+        true
+    }
+}
+
 impl NearestField<'_> {
+    /// What the markers show of their noise otherwise than was taken of it.
+    pub(super) fn other_noise(
+        &self,
+        markers: &[Option<MarkerEstimate>],
+        edges: &[Edge],
+    ) -> OtherNoise {
+        let unevenness = self.unevenness(markers);
+        OtherNoise {
+            ratio: self.contradicted_noise(markers),
+            unevenness: unevenness.filter(|_| !self.is_left_by_cells(edges)),
+        }
+    }
+
+    /// Whether the mesh's own error, which is no noise, is much of what is left of the markers.
+    fn is_left_by_cells(&self, edges: &[Edge]) -> bool {
+        const MUCH: f64 = 0.2;
+        let weights = &self.observations().weights;
+        let size = |values: &[f64]| {
+            let squares = values.iter().zip(0..);
+            let squares = squares.map(|(value, row)| weights[row / 2] * value * value);
+            squares.sum::<f64>().sqrt()
+        };
+        let difference = self.mesh_difference(edges);
+        difference
+            .is_some_and(|own| size(own.at_markers()) > MUCH * size(self.fit.residual.as_slice()))
+    }
+
+    /// How the noise of the sound markers differs from place to place.
+    fn unevenness(&self, markers: &[Option<MarkerEstimate>]) -> Option<Unevenness> {
+        let observations = self.observations();
+        if observations.reweighted >= ROUNDS {
+            return None;
+        }
+        let estimates = observations.chosen.iter().map(|index| &markers[*index]);
+        let sound = estimates
+            .enumerate()
+            .filter(|(_, own)| own.as_ref().is_some_and(|own| !own.outlier));
+        let (places, noise): (Vec<_>, Vec<_>) = sound
+            .map(|(index, _)| {
+                let scale = observations.weights[index].sqrt();
+                let left = [0, 1].map(|axis| scale * self.fit.residual[2 * index + axis]);
+                (observations.places[index], left)
+            })
+            .unzip();
+        Unevenness::found(&places, &noise)
+    }
+
     /// The scatter of the markers over their stated noise, from the median of the standardised residuals, where it is far from one.
-    pub(super) fn contradicted_noise(&self, markers: &[Option<MarkerEstimate>]) -> Option<f64> {
+    fn contradicted_noise(&self, markers: &[Option<MarkerEstimate>]) -> Option<f64> {
         // The standard error of ln of a deviation from the median.
         const ERROR: f64 = 0.72;
         const SURE: f64 = 4.0;
@@ -32,6 +137,14 @@ impl NearestField<'_> {
         let sure = SURE * ERROR / (lengths.len() as f64).sqrt();
         let ratio = self.trade.sound.sqrt() * robust_deviation(lengths);
         (ratio.ln().abs() > OFF.ln().max(sure)).then_some(ratio)
+    }
+
+    /// The least and the largest standard deviation of the noise of markers in mm, where it differs from place to place.
+    pub(super) fn deviations(&self, larger: f64) -> Option<[f64; 2]> {
+        let observations = self.observations();
+        let weights = observations.weights.iter();
+        let deviations = weights.map(|weight| (larger * self.trade.sound / weight).sqrt());
+        (observations.reweighted > 0).then(|| extremes(deviations))
     }
 
     /// The noise's standard deviation of a marker of mean weight in mm, as if it were white.

@@ -26,6 +26,8 @@ pub struct Observations {
     pub weights: Vec<f64>,
     /// Whether the noise is known.
     pub known_noise: bool,
+    /// How often the weights have followed noise that differs from place to place.
+    pub reweighted: usize,
     /// H: two rows a marker.
     pub interpolation: SparseRows,
 }
@@ -56,6 +58,7 @@ impl Observations {
             displacements: Vec::new(),
             weights: Vec::new(),
             known_noise: known > 0,
+            reweighted: 0,
             interpolation: SparseRows::new(2 * mesh.nodes.len()),
         };
         for (index, marker) in markers.iter().enumerate() {

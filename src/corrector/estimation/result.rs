@@ -47,6 +47,7 @@ impl NearestField<'_> {
             whiteness,
             markers,
             noise: (larger * self.trade.sound / mean).sqrt(),
+            noise_range: self.deviations(larger),
             robust,
             known_noise,
             effective_parameters: self.fit.effective,

@@ -19,9 +19,9 @@ use nalgebra::{DMatrix, DVector};
 use super::equations::solve;
 use super::linearise::dot;
 use super::search::NearestField;
-use super::shares::Share;
 use super::task::Edge;
 use crate::error::Error;
+use crate::problem::corner_forces::Share;
 
 /// Distances of free edges that are considered.
 pub struct UnknownPlaces {

@@ -4,6 +4,7 @@ use super::samples::{CLAMP, problem, strip};
 use crate::mesh::CellShape;
 use crate::problem::{GroupState, Load, Support};
 use crate::solve::NewtonSettings;
+use crate::units::parse_linear_length;
 
 const TIGHT: NewtonSettings = NewtonSettings {
     tolerance: 1e-12,
@@ -73,6 +74,32 @@ fn forces_of_sides_that_meet_add_up_to_those_of_all_supports() {
         let [left, bottom, right, _] = at_groups(cells, &grips, &[]);
         assert!((left.force[0] + right.force[0]).abs() < 1e-10 && right.force[0] > 0.1);
         assert_eq!(bottom.size, 0.0);
+    }
+}
+
+/// An evenly stretched sheet that is held all around: every side has the force of its own tractions, also at the corners, which two
+/// sides hold along both axes.
+#[test]
+fn sides_that_hold_one_corner_have_the_forces_of_their_own_tractions() {
+    let along = |text: &str| Some(parse_linear_length(text).unwrap());
+    let stretched = Support::LinearDisplacement([along("0.1 * X"), along("-0.02 * Y")]);
+    let supports = GROUPS.map(|group| (group, stretched));
+    for (name, cells) in CellShape::NAMES {
+        let [left, bottom, right, top] = at_groups(cells, &supports, &[]);
+        assert!(right.force[0] > 0.1 && top.force[1].abs() > 0.01);
+        for (own, across, other) in [(left, 1, right), (bottom, 0, top)] {
+            let along = 1 - across;
+            assert!(
+                (own.force[along] + other.force[along]).abs() < 1e-10,
+                "{name}: {own:?} {other:?}"
+            );
+            for side in [own, other] {
+                assert!(
+                    side.force[across].abs() + side.moment.abs() < 1e-10,
+                    "{name}: {side:?}"
+                );
+            }
+        }
     }
 }
 

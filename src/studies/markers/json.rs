@@ -78,6 +78,7 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
         "outliers": outliers(estimate),
         "weights": Robust::NAMES.iter().find(|(_, one)| *one == estimate.robust).map(|(name, _)| name),
         "noise_mm": estimate.noise,
+        "noise_range_mm": estimate.noise_range,
         "noise_is_given": estimate.known_noise,
         "left_mm": left(estimate),
         "largest_left_mm": largest_correction(estimate),

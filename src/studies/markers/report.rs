@@ -1,6 +1,6 @@
 //! The report of a correction.
 
-use super::{reading, refined, scale, verdict};
+use super::{noise, reading, refined, scale, verdict};
 use crate::corrector::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::results::Block;
 use crate::statistics::Estimate;
@@ -25,7 +25,7 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
         Some(_) => "frame    nodes  correction, root mean square [mm]  largest [mm]\n",
     };
     text += &rows(field, estimates);
-    gross_errors(field, estimates).for_each(|told| text += &format!("{told}\n"));
+    noise::remarks(field, estimates).for_each(|told| text += &format!("{told}\n"));
     for (frame, estimate) in field.series.frames.iter().zip(estimates) {
         for (key, unit, found) in &estimate.parameters {
             let interval = interval(found, estimate.is_explained(), 6);
@@ -108,15 +108,6 @@ fn interval(found: &Estimate, explained: bool, digits: usize) -> String {
     }
 }
 
-/// What is said of gross errors, frame by frame.
-fn gross_errors(field: &MarkerStudy, estimates: &[FieldEstimate]) -> impl Iterator<Item = String> {
-    let frames = field.series.frames.iter().zip(estimates);
-    frames.filter_map(|(frame, estimate)| {
-        let told = field.of_gross_errors(estimate)?;
-        Some(format!("frame {}: {told}", frame.number))
-    })
-}
-
 /// How many markers lie on the mesh.
 pub(super) fn used(estimate: &FieldEstimate) -> usize {
     estimate.markers.iter().flatten().count()
@@ -189,7 +180,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     let understood = reading::blocks(&field.understood);
     blocks.splice(1..1, understood);
     blocks.extend(refined::told(field, estimates).map(Block::paragraph));
-    blocks.extend(gross_errors(field, estimates).map(Block::paragraph));
+    blocks.extend(noise::remarks(field, estimates).map(Block::paragraph));
     if field.coarse.is_none() {
         blocks.extend(verdict::blocks(field, estimates));
     }

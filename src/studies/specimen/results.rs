@@ -1,9 +1,7 @@
 //! What a specimen's models find: solutions, own errors, what the study requires.
 
 use super::problem::Specimen;
-use crate::compare::imported::ModelField;
 use crate::error::Error;
-use crate::material::softened_law::check_memory;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::studies::{ModelKind, OneModel, Progress};
@@ -16,7 +14,6 @@ pub mod reference;
 mod refine;
 pub mod verdict;
 
-use lattice::OnLattice;
 use reference::Reference;
 
 /// What is measured on the finest finite elements at the last load factor, and its own error in %.
@@ -82,43 +79,4 @@ pub fn finest_mesh(specimen: &Specimen) -> Result<Mesh, Error> {
     let mut ends = Vec::new();
     let finest = refine::finest(specimen, &mut ends, Progress::silent())?;
     ends.pop().map_or(Ok(finest.mesh), |end| Err(end.error()))
-}
-
-/// The fields of all models at a load factor: finite elements on the finest mesh, springs, corrected springs. The
-/// study's load factors before it are steps on the way.
-///
-/// # Errors
-/// [`Error::Solve`] when a model has no solution.
-pub fn fields(
-    mut specimen: Specimen,
-    factor: f64,
-    progress: Progress,
-) -> Result<[ModelField; 3], Error> {
-    check_memory(
-        &*specimen.problem.law,
-        "a comparison with another program's field",
-    )?;
-    specimen.factors.retain(|before| *before < factor);
-    specimen.factors.push(factor);
-    let mut ends = Vec::new();
-    progress.tell("finite elements");
-    let elements = refine::finest(&specimen, &mut ends, progress)?;
-    let OnLattice {
-        uncorrected,
-        corrected,
-        ..
-    } = OnLattice::solve(&specimen, &mut ends, progress)?;
-    if let Some(end) = ends.first() {
-        return Err(end.error());
-    }
-    let field = |model, mut solution: Solution| ModelField {
-        model,
-        mesh: solution.mesh,
-        displacement: solution.states.pop().expect("the last factor").displacement,
-    };
-    Ok([
-        field("finite elements", elements),
-        field("mass-spring", uncorrected),
-        field("corrected", corrected),
-    ])
 }

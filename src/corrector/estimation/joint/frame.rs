@@ -10,6 +10,7 @@ use super::super::knowledge::{Knowledge, MeasuredForce, Specimen};
 use super::super::linear_model::Model;
 use super::super::marker_rows::MarkerRows;
 use super::super::mesh_error::MeshDifference;
+use super::super::noise::with_own_noise;
 use super::super::observations::Observations;
 use super::super::outline::{self, Segment};
 use super::super::regressed_law::RegressedLaw;
@@ -123,15 +124,11 @@ impl<'a> Ground<'a> {
                 knowledge: &knowledge,
             };
             let (found, edges) = free_edges::search(&task, first.clone())?;
-            let off = found.contradicted_noise(&found.markers()).is_some();
             let settled = edges.iter().map(|edge| (edge.condition, edge.probability));
-            Ok::<_, Error>((settled.collect::<Vec<_>>(), off))
+            let other = found.other_noise(&found.markers(), &edges);
+            Ok((settled.collect::<Vec<_>>(), other))
         };
-        let (mut settled, off) = search(&observations)?;
-        if off {
-            observations.known_noise = false;
-            (settled, _) = search(&observations)?;
-        }
+        let (settled, _) = with_own_noise(&mut observations, search)?;
         let edges = first.into_iter().zip(settled);
         Ok(Judged {
             ground: self,

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use web_time::Instant;
 
 use super::{ReferenceMesh, Results};
-use crate::compare::imported::ModelField;
+use crate::compare::imported::{ModelField, ModelFields};
 use crate::compare::{Reference, StepComparison};
 use crate::corrector::PlateCorrector;
 use crate::corrector::climb::Climb;
@@ -267,11 +267,7 @@ fn tell(progress: Progress, model: &str, stretch: f64) {
 ///
 /// # Errors
 /// [`Error::Solve`] with the model and the stretch at which no solution was found.
-pub fn fields(
-    mut study: Study,
-    stretch: f64,
-    progress: Progress,
-) -> Result<[ModelField; 3], Error> {
+pub fn fields(mut study: Study, stretch: f64, progress: Progress) -> Result<ModelFields, Error> {
     check_memory(
         &*study.problem.law,
         "a comparison with another program's field",
@@ -291,11 +287,17 @@ pub fn fields(
     };
     let [springs, corrected, elements] = results.models(last);
     let [lattice, cells, finest] = results.meshes();
-    Ok([
-        field("finite elements", finest, elements),
-        field("mass-spring", lattice, springs),
-        field("corrected", cells, corrected),
-    ])
+    // Between its nodes the corrected field is what its differences take it for.
+    let cells = study.corrector.scheme.mesh(cells);
+    let own = results.comparison[last].reference;
+    Ok(ModelFields {
+        fields: [
+            field("finite elements", finest, elements),
+            field("mass-spring", lattice, springs),
+            field("corrected", &cells, corrected),
+        ],
+        own_percent: own.map(|own| own.displacement_percent),
+    })
 }
 
 #[cfg(test)]

@@ -21,9 +21,20 @@ pub struct Reference {
     pub(super) coarser: Vec<Solution>,
     /// The rounds of local refinement; none where the meshes are halved.
     pub(super) rounds: Vec<Round>,
-    /// What the curves that a file's edges stand for change in what is measured at each load factor; `None` where there
-    /// are no such edges.
-    pub(super) outline: Option<Vec<f64>>,
+    /// Of local refinement with all cells of the last mesh halved, where these are not too many.
+    pub(super) all_halved: Option<Solution>,
+    /// What the curves that a file's edges stand for change; `None` where there are no such edges.
+    pub(super) outline: Option<OutlineChange>,
+}
+
+/// The finite elements with the outline moved towards the curves that a file's edges stand for, beside those with its edges.
+pub struct OutlineChange {
+    /// The whole change over that between the two.
+    pub whole: f64,
+    /// On the moved outline.
+    pub rounded: Solution,
+    /// On the file's.
+    pub straight: Solution,
 }
 
 /// One mesh of local refinement, with its errors at the worst load factor.
@@ -105,19 +116,32 @@ impl Reference {
         if self.measures_none(step) {
             return Some(0.0);
         }
-        let change = self.outline.as_ref()?.get(step)?;
-        let measured = self.measured.at(&self.finest, step)?;
-        Some(100.0 * (change / measured).abs())
+        let outline = self.outline.as_ref()?;
+        let at = |own| self.measured.at(own, step);
+        let change = outline.whole * (at(&outline.rounded)? - at(&outline.straight)?);
+        Some(100.0 * (change / at(&self.finest)?).abs())
+    }
+
+    /// What they change in the displacement at the nodes of a lattice, in relative L2 in %.
+    fn outline_displacement_percent(&self, step: usize, lattice: &Mesh) -> Option<f64> {
+        let OutlineChange {
+            whole,
+            rounded,
+            straight,
+        } = self.outline.as_ref()?;
+        let [rounded, straight] = [rounded, straight].map(|own| on_lattice(own, step, lattice));
+        Some(whole.abs() * area_weighted_percent(lattice, &rounded?, &straight?))
     }
 
     /// What is said about a file's outline.
     fn outline_told(&self) -> Option<Block> {
-        let steps = 0..self.outline.as_ref()?.len();
+        self.outline.as_ref()?;
+        let steps = 0..self.reached();
         let percents = steps.filter_map(|step| self.outline_percent(step));
         let most = percents.fold(0.0, f64::max);
         Some(Block::Paragraph(format!(
             "The outline: finite elements on meshes of the file have its edges, chords or parabolas. With the smooth \
-             curves that these stand for the {} would change by up to {most:.2e} %; this is part of its own error.",
+             curves that these stand for the {} would change by about {most:.2e} %; this is part of its own error.",
             self.measured.name()
         )))
     }
@@ -156,19 +180,30 @@ impl Reference {
         Some(estimate.energy.percent())
     }
 
-    /// The error of the displacement at the nodes of a lattice by the coarser meshes, in relative L2 in %; `None` where no
-    /// coarser mesh has the load factor.
+    /// The error of the displacement at the nodes of a lattice in relative L2 in %, with that of a file's outline; `None` where it is not
+    /// known.
+    pub fn displacement_percent(&self, step: usize, lattice: &Mesh) -> Option<f64> {
+        let own = match self.rounds.is_empty() {
+            true => self.displacement_by_coarser(step, lattice)?,
+            false => self.displacement_by_halving(step, lattice)?,
+        };
+        match self.outline {
+            Some(_) => Some(own + self.outline_displacement_percent(step, lattice)?),
+            None => Some(own),
+        }
+    }
+
+    /// By meshes that are half as fine, and a quarter, in relative L2 in %.
     ///
     /// ```text
     /// e = ‖u₃ − u₂‖/(r − 1),   r = ‖u₂ − u₁‖/‖u₃ − u₂‖        ‖u₃ − u₂‖ where r ≤ 1
     /// ```
-    pub fn displacement_percent(&self, step: usize, lattice: &Mesh) -> Option<f64> {
-        let on_lattice = |own: &Solution| {
-            let displacement = own.displacement(step)?;
-            Some(own.mesh.displacement_on(displacement, lattice))
-        };
-        let fine = on_lattice(&self.finest)?;
-        let coarser: Vec<_> = self.coarser.iter().filter_map(on_lattice).collect();
+    fn displacement_by_coarser(&self, step: usize, lattice: &Mesh) -> Option<f64> {
+        let fine = on_lattice(&self.finest, step, lattice)?;
+        let coarser = self.coarser.iter();
+        let coarser: Vec<_> = coarser
+            .filter_map(|own| on_lattice(own, step, lattice))
+            .collect();
         let distance = |u: &[f64], v: &[f64]| area_weighted_percent(lattice, u, v);
         match &coarser[..] {
             [] => None,
@@ -184,6 +219,21 @@ impl Reference {
                 })
             }
         }
+    }
+
+    /// By the mesh with all cells halved, in relative L2 in %, which leaves between 2⁻ᵖ⁻¹ of the error, where the solution is smooth, and
+    /// a half, where a corner's is left:
+    ///
+    /// ```text
+    /// e = ‖u½ − u‖/(1 − 2⁻ᵖ)          p: degree of the elements
+    /// ```
+    ///
+    /// Two meshes of local refinement tell little of it: most of their cells are the same.
+    fn displacement_by_halving(&self, step: usize, lattice: &Mesh) -> Option<f64> {
+        let own = on_lattice(&self.finest, step, lattice)?;
+        let halved = on_lattice(self.all_halved.as_ref()?, step, lattice)?;
+        let left = 0.5_f64.powi(self.finest.mesh.shape(0).degree() as i32);
+        Some(area_weighted_percent(lattice, &own, &halved) / (1.0 - left))
     }
 
     /// Whether local refinement has come as far as the study wants.
@@ -235,4 +285,10 @@ impl Reference {
         let history = [Block::Paragraph(text.into()), Block::table(&head, rounds)];
         outline.into_iter().chain(history).collect()
     }
+}
+
+/// The displacement of a solution at the nodes of a lattice; `None` where it has not reached a load factor.
+fn on_lattice(solution: &Solution, step: usize, lattice: &Mesh) -> Option<Vec<f64>> {
+    let displacement = solution.displacement(step)?;
+    Some(solution.mesh.displacement_on(displacement, lattice))
 }

@@ -4,7 +4,7 @@
 use super::end::{End, last_groups};
 use super::lattice::solve;
 use super::measured::Measured;
-use super::reference::{Reference, Round};
+use super::reference::{OutlineChange, Reference, Round};
 use crate::error::Error;
 use crate::finite_element::error_estimate::{ErrorEstimate, SheetSolution, bulk, side_by_side};
 use crate::finite_element::recovery::Recovery;
@@ -18,6 +18,9 @@ const SHARE: f64 = 0.5;
 
 /// Cells up to which the finite elements are refined once more where they are too coarse to judge.
 const MOST_CELLS: usize = 30_000;
+
+/// Cells up to which all cells of the last mesh of local refinement are halved, for the error of the displacement.
+const MOST_HALVED: usize = 400_000;
 
 /// Begin of the names of the files of the meshes, from coarse to fine.
 const FILES: [&str; 3] = ["finite_element_coarse", "finite_element_middle", FILE];
@@ -38,14 +41,14 @@ impl Reference {
 
     fn halved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Self, Error> {
         let solutions = nested(specimen, ends, progress)?;
-        Self::of_meshes(specimen, solutions, Vec::new(), ends, progress)
+        Self::of_meshes(specimen, solutions, (Vec::new(), None), ends, progress)
     }
 
-    /// The reference on the last of some meshes.
+    /// The reference on the last of some meshes; of local refinement with its rounds, and the solution with all cells halved.
     fn of_meshes(
         specimen: &Specimen,
         mut meshes: Vec<Solution>,
-        rounds: Vec<Round>,
+        (rounds, all_halved): (Vec<Round>, Option<Solution>),
         ends: &[End],
         progress: Progress,
     ) -> Result<Self, Error> {
@@ -55,7 +58,8 @@ impl Reference {
         let once_halved = once_halved.filter(|_| rounds.is_empty());
         Ok(Self {
             estimates: estimates(specimen, &finest, &measured)?,
-            outline: outline_errors(specimen, &measured, once_halved, progress)?,
+            outline: outline_change(specimen, once_halved, progress)?,
+            all_halved,
             coarser: meshes.split_off(meshes.len().saturating_sub(2)),
             finest,
             measured,
@@ -85,7 +89,7 @@ impl Reference {
         let finer = on_mesh(specimen, &mesh, Some(&self.finest), FILE, ends, progress)?;
         let mut meshes = self.coarser.split_off(self.coarser.len() - 1);
         meshes.extend([self.finest, finer]);
-        Self::of_meshes(specimen, meshes, Vec::new(), ends, progress)
+        Self::of_meshes(specimen, meshes, (Vec::new(), None), ends, progress)
     }
 
     fn adaptive(
@@ -94,29 +98,67 @@ impl Reference {
         ends: &mut Vec<End>,
         progress: Progress,
     ) -> Result<Self, Error> {
-        let mut triangles = specimen.outline.first_triangles();
-        let (mut rounds, mut meshes) = (Vec::new(), Vec::new());
-        let ends_before = ends.len();
-        loop {
-            // A finer mesh may reach what a coarser one did not.
-            ends.truncate(ends_before);
-            let mesh = specimen.outline.elements_on(&triangles);
-            let solution = on_mesh(specimen, &mesh, meshes.last(), FILE, ends, progress)?;
-            let measured = measured(specimen, &solution, ends);
-            let estimates = estimates(specimen, &solution, &measured)?;
-            meshes.push(solution);
-            rounds.push(Round::of(&meshes[rounds.len()], &measured, &estimates));
-            let reached = rounds[rounds.len() - 1].energy_percent <= goal.error_percent;
-            // The error of the displacement takes two meshes.
-            let done = estimates.iter().all(Option::is_none) || reached && rounds.len() > 1;
-            let finer = || {
-                let marked = bulk(&indicators(mesh.cell_count(), &estimates), SHARE);
-                specimen.outline.fitted(triangles.refined_where(&marked))
-            };
-            let next = (!done).then(finer);
-            match next.filter(|next| next.cell_count() <= goal.most_cells) {
-                Some(next) => triangles = next,
-                None => return Self::of_meshes(specimen, meshes, rounds, ends, progress),
+        let Refined {
+            triangles,
+            meshes,
+            rounds,
+        } = refined(specimen, goal, ends, progress)?;
+        let finest = meshes.last().expect("a mesh at least");
+        let is_small = 4 * triangles.cell_count() <= MOST_HALVED;
+        let all_halved = (is_small && finest.reached() > 0).then(|| {
+            let halved = specimen.outline.fitted(triangles.refined());
+            let mesh = specimen.outline.elements_on(&halved);
+            // Where a path ends is told of the meshes whose results are given.
+            let mut untold = Vec::new();
+            on_mesh(specimen, &mesh, Some(finest), FILE, &mut untold, progress)
+        });
+        let all_halved = all_halved.transpose()?;
+        Self::of_meshes(specimen, meshes, (rounds, all_halved), ends, progress)
+    }
+}
+
+/// What local refinement has made.
+struct Refined {
+    /// The cells of the last mesh.
+    triangles: Mesh,
+    meshes: Vec<Solution>,
+    rounds: Vec<Round>,
+}
+
+/// Refines where the error is, until it is as small as wanted.
+fn refined(
+    specimen: &Specimen,
+    goal: Refinement,
+    ends: &mut Vec<End>,
+    progress: Progress,
+) -> Result<Refined, Error> {
+    let mut triangles = specimen.outline.first_triangles();
+    let (mut rounds, mut meshes): (Vec<Round>, Vec<Solution>) = (Vec::new(), Vec::new());
+    let ends_before = ends.len();
+    loop {
+        // A finer mesh may reach what a coarser one did not.
+        ends.truncate(ends_before);
+        let mesh = specimen.outline.elements_on(&triangles);
+        let solution = on_mesh(specimen, &mesh, meshes.last(), FILE, ends, progress)?;
+        let measured = measured(specimen, &solution, ends);
+        let estimates = estimates(specimen, &solution, &measured)?;
+        rounds.push(Round::of(&solution, &measured, &estimates));
+        meshes.push(solution);
+        let reached = rounds[rounds.len() - 1].energy_percent <= goal.error_percent;
+        let done = estimates.iter().all(Option::is_none) || reached;
+        let finer = || {
+            let marked = bulk(&indicators(mesh.cell_count(), &estimates), SHARE);
+            specimen.outline.fitted(triangles.refined_where(&marked))
+        };
+        let next = (!done).then(finer);
+        match next.filter(|next| next.cell_count() <= goal.most_cells) {
+            Some(next) => triangles = next,
+            None => {
+                return Ok(Refined {
+                    triangles,
+                    meshes,
+                    rounds,
+                });
             }
         }
     }
@@ -145,7 +187,8 @@ pub fn finest(
     progress: Progress,
 ) -> Result<Solution, Error> {
     if let Some(goal) = specimen.refinement {
-        return Ok(Reference::adaptive(specimen, goal, ends, progress)?.finest);
+        let finest = refined(specimen, goal, ends, progress)?.meshes.pop();
+        return Ok(finest.expect("a mesh at least"));
     }
     let mut all = Vec::new();
     let finest = nested(specimen, &mut all, progress)?.pop();
@@ -202,32 +245,26 @@ fn measured(specimen: &Specimen, solution: &Solution, ends: &[End]) -> Measured 
     }
 }
 
-/// What the curves that a file's edges stand for change in what is measured at each load factor; `None` where there are
-/// no such edges.
-fn outline_errors(
+/// What the curves that a file's edges stand for change; `None` where there are no such edges.
+fn outline_change(
     specimen: &Specimen,
-    what: &Measured,
     middle: Option<&Solution>,
     progress: Progress,
-) -> Result<Option<Vec<f64>>, Error> {
+) -> Result<Option<OutlineChange>, Error> {
     let Some((rounded, whole)) = specimen.outline.rounded_mesh() else {
         return Ok(None);
     };
     // Where a path ends is told of the meshes whose results are given.
     let mut untold = Vec::new();
     let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, middle, FILE, &mut untold, progress);
-    let rounded = on(&rounded)?;
-    let halved;
-    let middle = match middle {
-        Some(middle) => middle,
-        None => {
-            halved = on(&specimen.outline.reference_mesh(1))?;
-            &halved
-        }
-    };
-    let steps = 0..rounded.reached().min(middle.reached());
-    let change = |step| Some(whole * (what.at(&rounded, step)? - what.at(middle, step)?));
-    Ok(Some(steps.filter_map(change).collect()))
+    Ok(Some(OutlineChange {
+        whole,
+        rounded: on(&rounded)?,
+        straight: match middle {
+            Some(middle) => middle.clone(),
+            None => on(&specimen.outline.reference_mesh(1))?,
+        },
+    }))
 }
 
 /// The squared relative error of each cell, summed over the load factors.

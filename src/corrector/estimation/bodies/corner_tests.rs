@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::super::bodies::bodies;
 use super::super::knowledge::EdgeCondition;
 use super::super::outline::segments;
+use super::bodies;
 use crate::material::Card;
 use crate::material::sheet::{Gradient, Kinematics};
 use crate::mesh::{CellShape, Grid, Mesh};

@@ -1,4 +1,4 @@
-//! Which part of a reaction belongs to which body where bodies meet.
+//! Which part of a reaction belongs to which body, a support or what stands behind an edge, where bodies meet.
 //!
 //! At a corner the reaction R of the node comes from both edges. What an edge e gives, q, is told by its tractions beside the corner:
 //!
@@ -12,8 +12,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::groups::edge_lengths;
 use crate::mesh::Mesh;
-use crate::problem::edge_lengths;
 
 /// What a body holds.
 pub struct Hold {
@@ -54,18 +54,37 @@ impl Hold {
     }
 }
 
+/// A part of a body's force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// The node at which it acts.
+    pub at: usize,
+    /// The node of whose reaction it is a multiple.
+    pub of: usize,
+    /// That multiple.
+    pub factor: f64,
+}
+
 /// A node and the factor of its reaction.
 pub type Share = (usize, f64);
 
 /// The factors of the reactions that make up the force of each body along each axis.
-pub fn shares(mesh: &Mesh, holds: &[Hold]) -> Vec<[Vec<Share>; 2]> {
-    let [along_x, along_y] = [0, 1].map(|axis| shares_along(mesh, holds, axis));
-    let pairs = along_x.into_iter().zip(along_y);
-    pairs.map(|(x, y)| [x, y]).collect()
+pub fn reaction_shares(mesh: &Mesh, holds: &[Hold]) -> Vec<[Vec<Share>; 2]> {
+    let along = |axis: usize| {
+        let parts = reaction_parts(mesh, holds, axis).into_iter();
+        parts.map(|parts| {
+            let mut factors: BTreeMap<usize, f64> = BTreeMap::new();
+            for part in parts {
+                *factors.entry(part.of).or_insert(0.0) += part.factor;
+            }
+            factors.into_iter().collect()
+        })
+    };
+    along(0).zip(along(1)).map(|(x, y)| [x, y]).collect()
 }
 
-/// Those along one axis.
-fn shares_along(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<Vec<Share>> {
+/// The parts of the force of each body along one axis.
+pub fn reaction_parts(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<Vec<Part>> {
     let mut holders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (body, hold) in holds.iter().enumerate() {
         for node in &hold.nodes[axis] {
@@ -73,20 +92,18 @@ fn shares_along(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<Vec<Share>> {
         }
     }
     let is_alone = |node: &usize| holders.get(node).is_some_and(|bodies| bodies.len() == 1);
-    let mut all: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); holds.len()];
-    let mut add = |body: usize, node: usize, factor: f64| {
-        *all[body].entry(node).or_insert(0.0) += factor;
-    };
-    for (node, bodies) in &holders {
+    let mut all: Vec<Vec<Part>> = vec![Vec::new(); holds.len()];
+    for (&at, bodies) in &holders {
         let lowest = bodies.iter().map(|body| holds[*body].rank).min();
         let rest = bodies.iter().copied();
         let rest: Vec<usize> = rest
             .filter(|body| Some(holds[*body].rank) == lowest)
             .collect();
         let share = 1.0 / rest.len() as f64;
-        rest.iter().for_each(|body| add(*body, *node, share));
+        let mut add = |body: usize, of: usize, factor: f64| all[body].push(Part { at, of, factor });
+        rest.iter().for_each(|body| add(*body, at, share));
         for body in bodies.iter().filter(|_| bodies.len() > 1) {
-            let beside = holds[*body].beside(mesh, *node);
+            let beside = holds[*body].beside(mesh, at);
             let Some((next, factor)) = beside.filter(|(next, _)| is_alone(next)) else {
                 continue;
             };
@@ -95,9 +112,5 @@ fn shares_along(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<Vec<Share>> {
                 .for_each(|other| add(*other, next, -share * factor));
         }
     }
-    let all = all.into_iter();
-    all.map(|own| own.into_iter().collect()).collect()
+    all
 }
-
-#[cfg(test)]
-mod tests;
