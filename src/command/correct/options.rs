@@ -57,7 +57,7 @@ pub struct Options {
     /// A file with a specimen, see `gelbench new --kind markers`; several are taken together, as with --together
     #[arg(long, value_name = "FILE")]
     pub specimen: Vec<PathBuf>,
-    /// Further cards whose laws are compared with that of --material by forces of frames that are left out
+    /// Further cards, with commas between, whose laws are compared with that of --material by forces of frames that are left out
     #[arg(long, value_name = "CARD", value_delimiter = ',')]
     pub laws: Vec<String>,
     /// Into how many groups frames are split of which one after the other is left out
@@ -116,7 +116,8 @@ pub struct Options {
     /// about 20,000]
     #[arg(long, value_name = "LENGTH", value_parser = size)]
     pub cell_size: Option<f64>,
-    /// Halve the cells of a mesh that is made until its own error is a small part of the intervals of stress
+    /// Halve the cells of a mesh that is made until its own error is a small part of the intervals of stress, and no longer why data are not
+    /// explained
     #[arg(long, conflicts_with_all = ["together", "specimen", "laws"])]
     pub refine: bool,
     /// Kind of the cells of a mesh that is made

@@ -87,7 +87,15 @@ impl EdgeMotion {
         }
         for (segment, condition) in segments {
             if *condition == EdgeCondition::Unknown {
-                motion.smooth(segment, spacing, &mut moved);
+                let meets = |node: usize| {
+                    segments.iter().any(|(other, condition)| {
+                        *condition != EdgeCondition::Free
+                            && !std::ptr::eq(*other, *segment)
+                            && other.nodes.contains(&node)
+                    })
+                };
+                let singular = segment.ends().map(meets);
+                motion.smooth((segment, singular), spacing, &mut moved);
             }
         }
         motion
@@ -127,12 +135,21 @@ impl EdgeMotion {
         });
     }
 
-    fn smooth(&mut self, segment: &Segment, spacing: f64, moved: &mut Movers) {
+    /// A smooth edge; where it meets one that is not free the displacement may be singular, as beside a clamp.
+    fn smooth(
+        &mut self,
+        (segment, singular): (&Segment, [bool; 2]),
+        spacing: f64,
+        moved: &mut Movers,
+    ) {
         let length = segment.length();
         let edges = segment.nodes.len() - 1;
         let spans = (length / (SPACINGS * spacing)).round() as usize;
-        let spans = spans.clamp(1, MOST_SPANS.min(edges));
-        let spline = BSpline::new([0.0, 1.0], spans, 3, Ends::Clamped);
+        // Where they become shorter towards an end they are longer elsewhere.
+        let more = 1.0 + singular.map(f64::from).iter().sum::<f64>() / 4.0;
+        let spans = spans.clamp(1, MOST_SPANS) as f64 * more;
+        let spans = (spans.round() as usize).min(edges);
+        let spline = BSpline::new([0.0, 1.0], spans, 3, Ends::Clamped).graded(singular);
         let coefficients = [0, 1].map(|axis| {
             let [first, last] = segment.ends().map(|node| 2 * node + axis);
             let mut end = |motion: &mut Self, unknown: usize| {

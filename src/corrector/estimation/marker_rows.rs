@@ -31,7 +31,7 @@ impl MarkerRows<'_> {
 
     fn scaled(&self) -> DMatrix<f64> {
         let scale = |row: usize| {
-            let weight = self.weights[row / 2] * self.trade.trust[row / 2];
+            let weight = self.weights[row] * self.trade.trust[row / 2];
             (weight / self.trade.variance).sqrt()
         };
         DMatrix::from_fn(self.design.nrows(), self.design.ncols(), |row, column| {

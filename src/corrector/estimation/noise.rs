@@ -21,6 +21,9 @@ use crate::statistics::{Sites, Unevenness, extremes, robust_deviation};
 /// Noise farther from what was stated than this factor contradicts it, if it is by four standard errors too.
 const OFF: f64 = 1.25;
 
+/// Standardised residuals from which on a marker is a gross error, also where noise is larger than elsewhere.
+const GROSS: f64 = 8.0;
+
 /// How often weights follow noise that differs from place to place.
 const ROUNDS: usize = 3;
 
@@ -68,8 +71,9 @@ impl Observations {
         self.known_noise = false;
         if let Some(unevenness) = &other.unevenness {
             self.reweighted += 1;
-            for (weight, place) in self.weights.iter_mut().zip(&self.places) {
-                *weight /= unevenness.factor(*place).powi(2);
+            let factors = unevenness.factors.iter().flatten();
+            for (weight, factor) in self.weights.iter_mut().zip(factors) {
+                *weight /= factor * factor;
             }
         }
         true
@@ -96,7 +100,7 @@ impl NearestField<'_> {
         let weights = &self.observations().weights;
         let size = |values: &[f64]| {
             let squares = values.iter().zip(0..);
-            let squares = squares.map(|(value, row)| weights[row / 2] * value * value);
+            let squares = squares.map(|(value, row): (_, usize)| weights[row] * value * value);
             squares.sum::<f64>().sqrt()
         };
         let difference = self.mesh_difference(edges);
@@ -104,24 +108,22 @@ impl NearestField<'_> {
             .is_some_and(|own| size(own.at_markers()) > MUCH * size(self.fit.residual.as_slice()))
     }
 
-    /// How the noise of the sound markers differs from place to place.
+    /// How the noise of markers differs from place to place; outliers tell of it too, but for those that no noise makes.
     fn unevenness(&self, markers: &[Option<MarkerEstimate>]) -> Option<Unevenness> {
         let observations = self.observations();
         if observations.reweighted >= ROUNDS {
             return None;
         }
         let estimates = observations.chosen.iter().map(|index| &markers[*index]);
-        let sound = estimates
-            .enumerate()
-            .filter(|(_, own)| own.as_ref().is_some_and(|own| !own.outlier));
-        let (places, noise): (Vec<_>, Vec<_>) = sound
-            .map(|(index, _)| {
-                let scale = observations.weights[index].sqrt();
-                let left = [0, 1].map(|axis| scale * self.fit.residual[2 * index + axis]);
-                (observations.places[index], left)
-            })
-            .unzip();
-        Unevenness::found(&places, &noise)
+        let left = estimates.enumerate().map(|(index, own)| {
+            own.as_ref()
+                .filter(|own| own.standardised_residual < GROSS)?;
+            Some([0, 1].map(|axis| {
+                let row = 2 * index + axis;
+                observations.weights[row].sqrt() * self.fit.residual[row]
+            }))
+        });
+        Unevenness::found(&observations.places, &left.collect::<Vec<_>>())
     }
 
     /// The scatter of the markers over their stated noise, from the median of the standardised residuals, where it is far from one.
@@ -161,7 +163,7 @@ impl NearestField<'_> {
         trade: &Trade,
     ) -> DVector<f64> {
         let weights = &self.observations().weights;
-        let weight = |row: usize| weights[row / 2] * trade.trust[row / 2] / trade.variance;
+        let weight = |row: usize| weights[row] * trade.trust[row / 2] / trade.variance;
         let pull = DVector::from_fn(residual.len(), |row, _| -weight(row) * residual[row]);
         design.tr_mul(&pull)
     }

@@ -22,7 +22,7 @@ pub struct Observations {
     pub places: Vec<[f64; 2]>,
     /// Their displacements in mm.
     pub displacements: Vec<[f64; 2]>,
-    /// Their weights: 1/variance in 1/mm² where the noise is known, else 1.
+    /// The weights of their components, two numbers a marker: 1/variance in 1/mm² where the noise is known, else 1.
     pub weights: Vec<f64>,
     /// Whether the noise is known.
     pub known_noise: bool,
@@ -114,7 +114,7 @@ impl Observations {
         self.chosen.push(index);
         self.places.push(place);
         self.displacements.push(displacement);
-        self.weights.push(deviation.powi(-2));
+        self.weights.extend([deviation.powi(-2); 2]);
         Ok(())
     }
 

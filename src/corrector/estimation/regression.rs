@@ -153,7 +153,7 @@ impl Regression<'_> {
     /// AᵀWA and AᵀWr.
     fn normal(&self, trust: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let mut weighted = self.design.clone();
-        let weight = |row: usize| self.weights[row / 2] * trust[row / 2];
+        let weight = |row: usize| self.weights[row] * trust[row / 2];
         let weights = DVector::from_fn(weighted.nrows(), |row, _| weight(row));
         for mut column in weighted.column_iter_mut() {
             column.component_mul_assign(&weights);
@@ -250,22 +250,24 @@ impl Regression<'_> {
         changed < 1e-3
     }
 
-    /// √(w (rx² + ry²)) of each marker.
+    /// √(wx rx² + wy ry²) of each marker.
     fn distances(&self, fit: &Fit) -> Vec<f64> {
-        let residual = fit.residual.as_slice().chunks_exact(2);
-        let pairs = residual.zip(self.weights);
-        pairs
-            .map(|(r, weight)| (weight * (r[0] * r[0] + r[1] * r[1])).sqrt())
-            .collect()
+        let squares = squares(&fit.residual, self.weights);
+        squares.map(f64::sqrt).collect()
     }
 }
 
-/// Σ w ω r² of markers with two residuals each.
+/// wx rx² + wy ry² of each marker.
+pub fn squares(residual: &DVector<f64>, weights: &[f64]) -> impl Iterator<Item = f64> {
+    let markers = residual.as_slice().chunks_exact(2);
+    let pairs = markers.zip(weights.chunks_exact(2));
+    pairs.map(|(r, w)| w[0] * r[0] * r[0] + w[1] * r[1] * r[1])
+}
+
+/// Σ ω (wx rx² + wy ry²) of markers.
 pub fn weighted_square(residual: &DVector<f64>, weights: &[f64], trust: &[f64]) -> f64 {
-    let rows = residual.as_slice().chunks_exact(2);
-    rows.zip(weights.iter().zip(trust))
-        .map(|(r, (weight, trust))| weight * trust * (r[0] * r[0] + r[1] * r[1]))
-        .sum()
+    let squares = squares(residual, weights).zip(trust);
+    squares.map(|(square, trust)| trust * square).sum()
 }
 
 /// ‖ρ + Bδ‖² of a prior.

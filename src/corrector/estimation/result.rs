@@ -230,14 +230,13 @@ impl NearestField<'_> {
         let rows = self.linear.design.rows(2 * index, 2);
         let spread: DMatrix<f64> = rows * &self.fit.covariance * rows.transpose();
         let trust = self.trade.trust[index];
-        let own = self.trade.sound / self.observations().weights[index];
-        let covariance = Matrix2::from_fn(|i, j| {
-            let diagonal = if i == j { own } else { 0.0 };
-            diagonal + (1.0 - 2.0 * trust) * spread[(i, j)]
-        });
+        let weights = &self.observations().weights;
+        let own = Vector2::from_fn(|axis, _| self.trade.sound / weights[2 * index + axis]);
+        let covariance =
+            Matrix2::from_diagonal(&own) + (1.0 - 2.0 * trust) * spread.fixed_view::<2, 2>(0, 0);
         let solved = covariance
             .try_inverse()
-            .map_or(residual / own, |inverse| inverse * residual);
+            .map_or(residual.component_div(&own), |inverse| inverse * residual);
         let square = residual.dot(&solved).max(0.0);
         MarkerEstimate {
             residual: residual.into(),

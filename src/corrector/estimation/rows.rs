@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::mesh_error::MeshError;
-use super::regression::{Fit, Trade};
+use super::regression::{Fit, Trade, squares};
 use super::search::NearestField;
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
 
@@ -47,15 +47,16 @@ impl Rows {
         if chosen.len() < FEWEST || leaves_nothing(found, &chosen, own) {
             return None;
         }
-        let scale = |row: &usize| {
-            let trust = if sound[*row] > 0.0 { sound[*row] } else { 1.0 };
-            (observations.weights[*row] * trust / found.trade.sound).sqrt()
+        let scale = |marker: &usize| {
+            let trust = match sound[*marker] > 0.0 {
+                true => sound[*marker],
+                false => 1.0,
+            };
+            let weights = [0, 1].map(|axis| observations.weights[2 * marker + axis]);
+            weights.map(|weight| (weight * trust / found.trade.sound).sqrt())
         };
-        let scales: Vec<f64> = chosen.iter().map(scale).collect();
-        let left = |row: usize| {
-            let index = row / 2;
-            scales[index] * found.fit.residual[2 * chosen[index] + row % 2]
-        };
+        let scales: Vec<f64> = chosen.iter().flat_map(scale).collect();
+        let left = |row: usize| scales[row] * found.fit.residual[2 * chosen[row / 2] + row % 2];
         let places: Vec<[f64; 2]> = chosen.iter().map(|row| observations.places[*row]).collect();
         let extent = [0, 1].map(|axis| {
             let [low, high] = extremes(places.iter().map(|place| place[axis]));
@@ -98,7 +99,7 @@ impl Rows {
     /// Rows of these markers out of a matrix with two rows for each marker on the mesh, over the noise.
     pub fn scaled(&self, design: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(2 * self.chosen.len(), design.ncols(), |row, column| {
-            self.scales[row / 2] * design[(2 * self.chosen[row / 2] + row % 2, column)]
+            self.scales[row] * design[(2 * self.chosen[row / 2] + row % 2, column)]
         })
     }
 }
@@ -111,19 +112,12 @@ pub fn soundness(weights: &[f64], fit: &Fit, trade: &Trade) -> Vec<f64> {
     const TRUSTED: f64 = 0.5;
     const FALSE_ALARMS: f64 = 1e-3;
     let limit = chi_squared_limit(2.0, FALSE_ALARMS);
-    let rows = fit
-        .residual
-        .as_slice()
-        .chunks_exact(2)
-        .zip(weights)
-        .zip(&trade.trust);
-    let trust = |((r, weight), trust): ((&[f64], &f64), &f64)| {
-        let square = weight * (r[0] * r[0] + r[1] * r[1]) / trade.sound;
-        match *trust >= TRUSTED && square <= limit {
+    let rows = squares(&fit.residual, weights).zip(&trade.trust);
+    let trust =
+        |(square, trust): (f64, &f64)| match *trust >= TRUSTED && square / trade.sound <= limit {
             true => *trust,
             false => 0.0,
-        }
-    };
+        };
     rows.map(trust).collect()
 }
 

@@ -42,6 +42,14 @@ pub struct Verdict {
     pub worst: Option<Worst>,
 }
 
+impl Verdict {
+    /// Whether data are not explained because cells are too coarse for them: a finer mesh mends more than anything else.
+    pub fn asks_for_finer_mesh(&self) -> bool {
+        let first = self.mends.first().map(|mend| &mend.freedom);
+        self.answer == Answer::NotExplained && first == Some(&Freedom::Mesh)
+    }
+}
+
 /// How noise correlates with distance.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct NoiseCorrelation {

@@ -43,9 +43,9 @@ impl NearestField<'_> {
         let pairs: Pairs = around
             .flat_map(|(i, others)| others.into_iter().map(move |j| [i, j]))
             .collect();
-        let scale = |row: usize| (observations.weights[row] / self.trade.sound).sqrt();
         let z = |index: usize, axis: usize| {
-            scale(rows[index]) * self.fit.residual[2 * rows[index] + axis]
+            let row = 2 * rows[index] + axis;
+            (observations.weights[row] / self.trade.sound).sqrt() * self.fit.residual[row]
         };
         let moran = |axes: &[usize]| {
             let product = |[i, j]: &[usize; 2]| -> f64 {
@@ -68,9 +68,8 @@ impl NearestField<'_> {
     /// E[I].
     fn expected(&self, rows: &[usize], pairs: &Pairs) -> f64 {
         let weights = &self.equations.task.observations.weights;
-        let scale = |row: usize| {
-            (weights[row / 2] * self.trade.trust[row / 2] / self.trade.variance).sqrt()
-        };
+        let scale =
+            |row: usize| (weights[row] * self.trade.trust[row / 2] / self.trade.variance).sqrt();
         let design = &self.linear.design;
         let scaled = DMatrix::from_fn(design.nrows(), design.ncols(), |row, column| {
             scale(row) * design[(row, column)]

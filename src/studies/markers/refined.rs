@@ -11,8 +11,8 @@ const COARSE: f64 = 0.05;
 
 impl MarkerStudy {
     /// Reads everything but the material, as [`Self::prepare_with`], and halves the cells until, in the frame that moves most, the mesh's
-    /// own error is the larger part of the error of stress on 5 % of the area at most. Where that would take more cells
-    /// than can be refined, a warning says how far it came.
+    /// own error is the larger part of the error of stress on 5 % of the area at most, and is not why the data are not explained. Where that
+    /// would take more cells than can be refined, a warning says how far it came.
     ///
     /// # Errors
     /// As [`Self::prepare`] and [`Self::estimate_frame`]; [`Error::Input`] where the mesh is not made inside an outline.
@@ -30,18 +30,21 @@ impl MarkerStudy {
                 ));
             };
             told(&format!("cells of {size:.4} mm"));
-            let share = study
-                .estimate_frame(study.most_moved()?)?
-                .coarse_share(&study.mesh);
-            if share <= COARSE {
+            let found = study.estimate_frame(study.most_moved()?)?;
+            let share = found.coarse_share(&study.mesh);
+            let asked = found.verdict.asks_for_finer_mesh();
+            if share <= COARSE && !asked {
                 return Ok(study);
             }
             let coarse = |reason: &str| {
-                let message = format!(
-                    "on {:.0} % of the area the mesh's own error is still the larger part of the error of stress: {reason}",
-                    100.0 * share
-                );
-                Diagnostic::warning("", message)
+                let still = match asked {
+                    true => "the data are still not explained on these cells, and would be mended by smaller ones".to_owned(),
+                    false => format!(
+                        "on {:.0} % of the area the mesh's own error is still the larger part of the error of stress",
+                        100.0 * share
+                    ),
+                };
+                Diagnostic::warning("", format!("{still}: {reason}"))
             };
             if 4 * study.mesh.cell_count() > MOST_REFINED_CELLS {
                 let reason = format!("smaller cells than {size:.4} mm are too many");

@@ -62,6 +62,8 @@ pub fn summary(field: &MarkerStudy, estimates: &[FieldEstimate]) -> String {
                 }
             };
         }
+        text +=
+            &finer_mesh(field, &found.verdict).map_or(String::new(), |told| format!("{told}\n"));
         for mend in found.verdict.mends.iter().take(TOLD) {
             text += &format!("one linearised step with {}\n", words(mend));
         }
@@ -86,6 +88,17 @@ fn run_words(run: &[(usize, &FieldEstimate)], answer: Answer) -> String {
         (Answer::Correlated, false) => format!("{numbers} (over {low:.3} mm)"),
         _ => numbers,
     }
+}
+
+/// What is said where the cells are why data are not explained.
+fn finer_mesh(field: &MarkerStudy, verdict: &Verdict) -> Option<String> {
+    let remedy = match field.cell_size {
+        Some(size) => format!("take --refine, or --cell-size below {size:.4} mm"),
+        None => "take a finer one".to_owned(),
+    };
+    verdict.asks_for_finer_mesh().then(|| {
+        format!("the mesh is too coarse for data as precise as these, which says nothing against law and conditions: {remedy}")
+    })
 }
 
 fn reasons(verdict: &Verdict) -> String {
@@ -169,6 +182,7 @@ pub fn blocks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
             &["freedom", "would be left [mm]", "probability"],
             rows,
         ));
+        blocks.extend(finer_mesh(field, &found.verdict).map(Block::paragraph));
     }
     blocks
 }
