@@ -7,7 +7,8 @@ use std::fs;
 mod common;
 
 use common::exports::{ADAPTIVE, GRIPPED, HOLE, PLATE, PULLED, deviation};
-use common::{SMALL, folder_with, gelbench, words};
+use common::{SMALL, folder_with, gelbench, number, words};
+use gelbench::mesh::import_field;
 
 /// The mesh that goes out is the one that the other models are compared with.
 #[test]
@@ -140,6 +141,45 @@ fn a_field_of_ones_own_deviates_by_nothing() {
     let wrong = [&two[..], &["--array", "velocity"]].concat();
     let done = gelbench(folder.path(), &wrong).code(2);
     assert!(words(&done.get_output().stderr).contains("imported_displacement_mm"));
+}
+
+/// What a run says of the corrected field and what a comparison with its finite elements says is the same, but for the places; a shift
+/// of the whole field is all of the finite elements' difference then.
+#[test]
+fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_body() {
+    let folder = folder_with(SMALL);
+    let place = folder.path();
+    let json = |arguments: &[&str], code: i32| -> serde_json::Value {
+        let done = gelbench(place, arguments).code(code);
+        serde_json::from_slice(&done.get_output().stdout).unwrap()
+    };
+    let run = json(&["run", "small.toml", "--output", "out", "--json"], 0);
+    let field = "out/vtk/finite_element_001.vtu";
+    let compared = json(&["compare", "small.toml", field, "--json"], 0);
+    let of = |found: &serde_json::Value, model: usize| {
+        number(&found["models"][model], &["displacement_percent"])
+    };
+    assert!(of(&compared, 0) < 1e-6);
+    assert!(number(&compared, &["finite_elements_own_error_percent"]) > 0.0);
+    let own = number(&run["steps"][0], &["corrected", "displacement_percent"]);
+    let ratio = of(&compared, 2) / own;
+    assert!((0.9..1.2).contains(&ratio), "{ratio}");
+
+    let moved = import_field(&place.join(field), 1.0, None, 1.0).unwrap();
+    let nodes = moved.mesh.nodes.iter().zip(moved.displacement.chunks(2));
+    let rows = nodes.map(|([x, y], u)| format!("{x},{y},{},{}\n", u[0] + 1.5, u[1] - 0.7));
+    let table = format!(
+        "X [mm],Y [mm],ux [mm],uy [mm]\n{}",
+        rows.collect::<String>()
+    );
+    fs::write(place.join("moved.csv"), table).unwrap();
+    let compared = json(&["compare", "small.toml", "moved.csv", "--json"], 1);
+    let told = compared["doubts"][0].as_str().unwrap();
+    assert!(
+        told.contains("by (-1.5000, 0.7000) mm and -0.0000 degrees: without it 0.0000")
+            || told.contains("by (-1.5000, 0.7000) mm and 0.0000 degrees: without it 0.0000"),
+        "{told}"
+    );
 }
 
 #[test]

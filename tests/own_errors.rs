@@ -10,6 +10,10 @@ use gelbench::problem::{ClampedPlate, Measures};
 use gelbench::solve::NewtonSettings;
 use gelbench::solve::State;
 
+mod common;
+
+use common::{folder_with, gelbench, number};
+
 const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-11,
     max_iterations: 40,
@@ -82,5 +86,68 @@ fn what_the_finite_elements_state_as_their_own_error_is_of_its_size() {
         for ratio in [displacement, departure] {
             assert!((1.0..3.0).contains(&ratio), "{card}: {ratio}");
         }
+    }
+}
+
+const RING: &str = r#"
+kind = "specimen"
+[material]
+card = "neo-hooke"
+sheet = "plane-stress"
+[specimen]
+shape = "ring-sector"
+inner_radius = "10 mm"
+outer_radius = "15 mm"
+angle = "90 deg"
+thickness = "2 mm"
+cells = 6
+lattice = "triangles"
+[[support]]
+group = "start"
+kind = "symmetry"
+[[support]]
+group = "end"
+kind = "symmetry"
+[[load]]
+group = "inside"
+kind = "pressure"
+pressure = "0.02 MPa"
+[path]
+factors = [1.0]
+measured_group = "inside"
+[output]
+vtk = false
+plots = false
+[finite_element]
+adaptive = true
+"#;
+
+/// How far the corrected ring is from finite elements, and what these state as their own error of that, in %.
+fn ring(element: &str, error: &str) -> [f64; 2] {
+    let study = format!("{RING}element = \"{element}\"\nerror = \"{error}\"\n");
+    let folder = folder_with(&study);
+    let done = gelbench(folder.path(), &["run", "small.toml", "--quiet", "--json"]);
+    let report: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    let of = |model: &str, quantity: &str| number(&report["steps"][0], &[model, quantity]);
+    [
+        of("corrected", "displacement_percent"),
+        of("finite_element", "displacement_discretisation_percent"),
+    ]
+}
+
+/// One corrected field beside two solutions: its distances from them differ by no more than the two are apart.
+#[test]
+fn what_local_refinement_states_as_its_error_of_the_displacement_holds_the_difference_to_a_better_one()
+ {
+    let [truth, least] = ring("T2", "0.2 %");
+    assert!(least < 0.02, "{least}");
+    for error in ["10 %", "5 %", "4 %"] {
+        let [found, own] = ring("T1", error);
+        let apart = (found - truth).abs();
+        assert!(
+            apart < own + least,
+            "{error}: {found} {own} {truth} {least}"
+        );
+        assert!(own < 2.0, "{error}: {own}");
     }
 }

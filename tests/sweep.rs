@@ -147,6 +147,81 @@ fn runs_without_a_solution_stand_in_the_table() {
     assert_eq!(rows[0].figure("mass_spring.force_N@0.2"), None);
 }
 
+/// The column of a table whose head begins in a way.
+fn column<'a>(table: &'a str, head: &str) -> Vec<&'a str> {
+    let heads: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let place = heads.iter().position(|own| own.starts_with(head));
+    let place = place.unwrap_or_else(|| panic!("{head}: {heads:?}"));
+    let rows = table.lines().skip(1);
+    rows.map(|row| row.split(',').nth(place).unwrap()).collect()
+}
+
+#[test]
+fn parameters_of_softening_and_relaxation_are_varied_by_the_names_that_fits_have_for_them() {
+    let place = folder();
+    let card = "\
+law = \"neo-hooke\"
+title = \"soft\"
+[parameters]
+c10 = \"0.05 MPa\"
+[softening]
+r = 2.0
+m = \"0.005 MPa\"
+beta = 0.1
+[viscosity]
+relaxation = [{ share = 0.2, time = \"1 s\" }, { share = 0.1, time = \"10 s\" }]
+";
+    fs::write(place.path().join("card.toml"), card).unwrap();
+    let study = STUDY
+        .replace("\"neo-hooke\"", "\"card.toml\"")
+        .replace("\"20 %\"]", "\"20 %\", \"10 %\"]");
+    fs::write(place.path().join("s.toml"), study).unwrap();
+    let varied =
+        "s.toml --vary material.softening.r=1.5,3 --vary material.relaxation.2.share=0.1,0.2";
+    let done = run(place.path(), &format!("sweep {varied}"));
+    assert!(done.status.success(), "{}", told(&done));
+    let files = results(&place.path().join("output/s_sweep"));
+    let table = String::from_utf8(files["sweep.csv"].clone()).unwrap();
+    let forces = column(&table, "corrected.force_N@0.1");
+    assert_eq!(forces.len(), 4);
+    // Plates take no part of the relaxation, and softened ones pull back less.
+    assert!(
+        forces[0] == forces[1] && forces[0] != forces[2],
+        "{forces:?}"
+    );
+    let done = run(
+        place.path(),
+        "sweep s.toml --vary material.relaxation.3.share=0.1,0.2",
+    );
+    assert!(!done.status.success());
+}
+
+#[test]
+fn few_draws_beyond_what_a_study_may_hold_are_told_and_steps_may_be_varied() {
+    let place = folder();
+    let varied =
+        "s.toml --vary material.c10=0.05+-0.045MPa --vary load.stretches.1=15..25% --samples 16";
+    let done = run(place.path(), &format!("sweep {varied}"));
+    assert!(done.status.success(), "{}", told(&done));
+    let files = results(&place.path().join("output/s_sweep"));
+    let report: serde_json::Value = serde_json::from_slice(&files["sweep.json"]).unwrap();
+    let failed = report["failed"].as_u64().unwrap();
+    assert!((1..=3).contains(&failed), "{failed}");
+    let text = String::from_utf8(files["report.md"].clone()).unwrap();
+    let row = text
+        .lines()
+        .find(|line| line.contains("corrected.force_N@the last step"));
+    let row = row.unwrap_or_else(|| panic!("{text}"));
+    assert!(row.contains(&format!("| {} |", 16 - failed)), "{row}");
+    assert!(text.contains("beyond what a study may hold"), "{text}");
+    // More than a few are a mistake.
+    let done = run(
+        place.path(),
+        "sweep s.toml --vary material.c10=0.01+-0.1MPa --samples 16",
+    );
+    assert_ends(&done, 2, "material.c10");
+}
+
 #[test]
 fn what_cannot_be_varied_is_told_before_anything_is_computed() {
     let place = folder();
@@ -164,6 +239,10 @@ fn what_cannot_be_varied_is_told_before_anything_is_computed() {
         (
             "s.toml --vary plate.width=45mm,50mm --fit s.toml",
             "is not JSON",
+        ),
+        (
+            "s.toml --vary plate.width=45..50mm --samples 0",
+            "above zero",
         ),
         ("s.toml --points s.toml", "is no table"),
         ("none.toml --vary plate.width=45mm,50mm", "none.toml"),

@@ -9,6 +9,7 @@ use crate::solve::NewtonSettings;
 mod pads;
 mod places;
 mod truth;
+mod uneven;
 
 use truth::{C10, THICKNESS, estimate_mesh, noisy};
 pub(super) use truth::{SIZE, STRETCH, Truth, law, specimen, with_grips};

@@ -1,0 +1,106 @@
+//! Noise that is not the same everywhere, and corners at which fields are singular.
+
+use super::*;
+use crate::markers::Marker;
+use crate::mesh::{CellShape, Mesh};
+use crate::problem::Load;
+
+/// 31 × 16 places, the outermost on the edges.
+fn grid() -> Vec<[f64; 2]> {
+    let places =
+        (0..31).flat_map(|i| (0..16).map(move |j| [2.0 * f64::from(i), 2.0 * f64::from(j)]));
+    places.collect()
+}
+
+/// Markers of a field with noise of one size of each component at each place.
+fn markers(
+    field: &dyn Fn([f64; 2]) -> [f64; 2],
+    size: &dyn Fn([f64; 2]) -> [f64; 2],
+    seed: u64,
+) -> Vec<Marker> {
+    let mut all = noisy(&grid(), &|_| [0.0; 2], (1.0, seed));
+    for Marker {
+        place,
+        displacement,
+        ..
+    } in &mut all
+    {
+        let (u, size) = (field(*place), size(*place));
+        *displacement = [0, 1].map(|axis| u[axis] + size[axis] * displacement[axis]);
+    }
+    all
+}
+
+/// As of image correlation whose subsets reach beyond the edge, a camera that looks aslant, ultrasound.
+#[test]
+fn uneven_noise_is_neither_laid_to_grips_and_edges_nor_left_out_of_intervals() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let outwards = |[x, _]: [f64; 2]| [0.02 * (1.0 + 3.0 * (x / 30.0 - 1.0).powi(2)); 2];
+    let along = |[x, _]: [f64; 2]| [0.02 * (1.0 + 4.0 * x / SIZE[0]); 2];
+    let margin = |[_, y]: [f64; 2]| match y == 0.0 || y == SIZE[1] {
+        true => [0.06; 2],
+        false => [0.02; 2],
+    };
+    let aslant = |_: [f64; 2]| [0.1, 0.02];
+    let sizes: [&dyn Fn([f64; 2]) -> [f64; 2]; 4] = [&outwards, &along, &margin, &aslant];
+    let (mut held, mut explained) = (0, 0);
+    for size in sizes {
+        for seed in 0..4 {
+            let markers = markers(&|place| truth.at(place), size, seed);
+            let knowledge = with_grips(EdgeCondition::Rigid);
+            let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+            explained += usize::from(found.verdict.answer != Answer::NotExplained);
+            let force = found.forces.iter().find(|force| force.edge == "right");
+            let [low, high] = force.unwrap().force[0].interval;
+            held += usize::from(low < truth.force && truth.force < high);
+            let [least, most] = found.noise_range.expect("uneven");
+            assert!(most > 2.0 * least, "{least} {most}");
+        }
+    }
+    assert!(
+        explained >= 15 && held >= 13,
+        "{explained} and {held} of 16"
+    );
+}
+
+/// A sheet that is clamped at three sides and pulled at the fourth by a traction, of which nothing is said: the displacement is singular at
+/// the corners between, and the force is that of the traction.
+#[test]
+fn forces_of_unknown_edges_that_meet_in_singular_corners_are_in_their_intervals() {
+    let traction = [0.05, 0.01];
+    let clamp = |name: &str| (name.to_owned(), Support::Displacement([Some(0.0); 2]));
+    let problem = BoundaryProblem {
+        thickness: THICKNESS,
+        law: law(),
+        supports: ["left", "bottom", "top"].map(clamp).to_vec(),
+        loads: vec![("right".into(), Load::Traction(traction))],
+    };
+    let fine = Mesh::plate(SIZE, [52, 28], CellShape::Quad9);
+    let energy = problem.finite_elements(&fine);
+    let model = problem.on(&fine, &energy).unwrap();
+    let states = model.solve(&[0.5, 1.0], NewtonSettings::default(), &|_| ());
+    let field = &states.unwrap()[1].displacement;
+    let mesh = estimate_mesh();
+    let knowledge = Knowledge {
+        unnamed: Unnamed::Loaded,
+        edges: ["left", "bottom", "right", "top"]
+            .map(|name| (name.to_owned(), EdgeCondition::Unknown))
+            .to_vec(),
+        ..Knowledge::default()
+    };
+    for seed in 0..4 {
+        let at = |place| fine.displacement_at(field, place);
+        let markers = markers(&at, &|_| [0.01; 2], seed);
+        let found = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        let force = found.forces.iter().find(|force| force.edge == "right");
+        for (axis, own) in force.unwrap().force.iter().enumerate() {
+            let exact = traction[axis] * SIZE[1] * THICKNESS;
+            let [low, high] = own.interval;
+            assert!(low < exact && exact < high, "{seed}: {own:?} {exact}");
+            assert!(
+                own.standard_error < 0.1 * traction[0] * SIZE[1] * THICKNESS,
+                "{own:?}"
+            );
+        }
+    }
+}
