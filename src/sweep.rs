@@ -145,19 +145,28 @@ impl Sweep {
         done.into_par_iter().map(row).collect()
     }
 
-    /// Tells faults before anything is computed, the same ones each time. Of runs that are drawn a few may be beyond what a study may
-    /// hold, as parameters that no law has: such a run is told in its row.
+    /// Tells faults before anything is computed, the same ones each time. Of the drawn runs of a whole sweep a few may be beyond what a study
+    /// may hold, as parameters that no law has: such a run is told in its row.
     fn check<'a>(&self, runs: impl Iterator<Item = &'a Run>) -> Result<(), Error> {
         /// Of as many drawn runs one may be beyond it.
         const FEW: usize = 5;
-        let runs: Vec<&Run> = runs.collect();
-        let checked = runs.par_iter().map(|run| self.ready(run).map(drop));
-        let faults: Vec<Error> = checked.filter_map(Result::err).collect();
-        let few = self.is_drawn() && FEW * faults.len() <= runs.len();
-        match faults.into_iter().next() {
-            Some(fault) if !few => Err(fault),
-            _ => Ok(()),
+        let wanted: Vec<&Run> = runs.collect();
+        let fault_of = |run: &Run| self.ready(run).err();
+        let Some(fault) = wanted.par_iter().find_map_first(|run| fault_of(run)) else {
+            return Ok(());
+        };
+        if !self.is_drawn() {
+            return Err(fault);
         }
+        // Those that differ in what is drawn alone stand side by side.
+        let samples = self.sampling.samples.unwrap_or(1);
+        let all = self.runs()?;
+        let too_many = all.par_chunks(samples).find_map_first(|drawn| {
+            let faults: Vec<Error> = drawn.iter().filter_map(fault_of).collect();
+            let few = FEW * faults.len() <= drawn.len();
+            faults.into_iter().next().filter(|_| !few)
+        });
+        too_many.map_or(Ok(()), Err)
     }
 
     /// Whether values are drawn of distributions without bounds.

@@ -115,9 +115,6 @@ pressure = "0.02 MPa"
 [path]
 factors = [1.0]
 measured_group = "inside"
-[output]
-vtk = false
-plots = false
 [finite_element]
 adaptive = true
 "#;

@@ -83,8 +83,60 @@ pub fn reaction_shares(mesh: &Mesh, holds: &[Hold]) -> Vec<[Vec<Share>; 2]> {
     along(0).zip(along(1)).map(|(x, y)| [x, y]).collect()
 }
 
+/// What is left of the reaction at nodes where bodies of one rank meet, and is shared between them though it may belong to any.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SharedRest {
+    /// The bodies, by their numbers.
+    pub bodies: Vec<usize>,
+    /// R − Σ q, by reactions.
+    pub factors: Vec<Share>,
+}
+
+/// What bodies share along an axis.
+pub fn shared_rests(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<SharedRest> {
+    let mut rests = Vec::new();
+    for (at, meeting) in meetings(mesh, holds, axis) {
+        let own = meeting
+            .beside
+            .iter()
+            .map(|(_, next, factor)| (*next, -factor));
+        if meeting.lowest.len() > 1 {
+            rests.push(SharedRest {
+                factors: [(at, 1.0)].into_iter().chain(own).collect(),
+                bodies: meeting.lowest,
+            });
+        }
+    }
+    rests
+}
+
 /// The parts of the force of each body along one axis.
 pub fn reaction_parts(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<Vec<Part>> {
+    let mut all: Vec<Vec<Part>> = vec![Vec::new(); holds.len()];
+    for (at, Meeting { lowest, beside }) in meetings(mesh, holds, axis) {
+        let share = 1.0 / lowest.len() as f64;
+        let mut add = |body: usize, of: usize, factor: f64| all[body].push(Part { at, of, factor });
+        lowest.iter().for_each(|body| add(*body, at, share));
+        for (body, next, factor) in beside {
+            add(body, next, factor);
+            lowest
+                .iter()
+                .for_each(|other| add(*other, next, -share * factor));
+        }
+    }
+    all
+}
+
+/// The bodies that hold a node.
+struct Meeting {
+    /// Those of the lowest rank, which have what is left.
+    lowest: Vec<usize>,
+    /// Where there are several, those whose tractions beside the node are known: the body, the next node, and q over its reaction.
+    beside: Vec<(usize, usize, f64)>,
+}
+
+/// Every node that is held along an axis, with what holds it.
+fn meetings(mesh: &Mesh, holds: &[Hold], axis: usize) -> BTreeMap<usize, Meeting> {
     let mut holders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (body, hold) in holds.iter().enumerate() {
         for node in &hold.nodes[axis] {
@@ -92,25 +144,20 @@ pub fn reaction_parts(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<Vec<Part>
         }
     }
     let is_alone = |node: &usize| holders.get(node).is_some_and(|bodies| bodies.len() == 1);
-    let mut all: Vec<Vec<Part>> = vec![Vec::new(); holds.len()];
-    for (&at, bodies) in &holders {
-        let lowest = bodies.iter().map(|body| holds[*body].rank).min();
-        let rest = bodies.iter().copied();
-        let rest: Vec<usize> = rest
-            .filter(|body| Some(holds[*body].rank) == lowest)
-            .collect();
-        let share = 1.0 / rest.len() as f64;
-        let mut add = |body: usize, of: usize, factor: f64| all[body].push(Part { at, of, factor });
-        rest.iter().for_each(|body| add(*body, at, share));
-        for body in bodies.iter().filter(|_| bodies.len() > 1) {
-            let beside = holds[*body].beside(mesh, at);
-            let Some((next, factor)) = beside.filter(|(next, _)| is_alone(next)) else {
-                continue;
-            };
-            add(*body, next, factor);
-            rest.iter()
-                .for_each(|other| add(*other, next, -share * factor));
-        }
-    }
-    all
+    let meeting = |(at, bodies): (&usize, &Vec<usize>)| {
+        let rank = bodies.iter().map(|body| holds[*body].rank).min();
+        let lowest = bodies.iter().copied();
+        let lowest = lowest.filter(|body| Some(holds[*body].rank) == rank);
+        let several = bodies.iter().filter(|_| bodies.len() > 1);
+        let beside = several.filter_map(|body| {
+            let (next, factor) = holds[*body].beside(mesh, *at)?;
+            is_alone(&next).then_some((*body, next, factor))
+        });
+        let meeting = Meeting {
+            lowest: lowest.collect(),
+            beside: beside.collect(),
+        };
+        (*at, meeting)
+    };
+    holders.iter().map(meeting).collect()
 }

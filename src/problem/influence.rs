@@ -13,7 +13,8 @@ const SIDE_BY_SIDE: usize = 200_000;
 
 impl Model<'_> {
     /// The field in mm/mm that a motion of a group's held unknowns along an axis brings about, by the tangent at a
-    /// state, while everything else that is held rests; the field in mm/N that a force on the group brings about where it
+    /// state, while everything else that is held rests: the dual of the group's force, so that nodes at and beside corners which
+    /// another group holds too move by their parts of it; the field in mm/N that a force on the group brings about where it
     /// is a grip with a given force, or where nothing holds it.
     ///
     /// # Errors

@@ -2,14 +2,17 @@
 //!
 //! ```text
 //! dᵢ = zᵢ − ¼ Σⱼ zⱼ                       j: the four nearest neighbours of i
-//! ln ½|dᵢ|² = γ₀ + γ·q(xᵢ) + eᵢ,           Var e = π²/6       σ(x) ∝ exp(½ γ·q(x))
-//! mean of ln(dx²/dy²) = 2 ln σx/σy,        variance π²/N
+//! Vᵢ = 2 meanⱼ γ(rᵢⱼ) − meanⱼₖ γ(rⱼₖ)      of noise of one size with the variogram γ
+//! ln |dᵢ|²/Vᵢ = g₀ + g·q(xᵢ) + eᵢ,         Var e = π²/6       σ(x) ∝ exp(½ g·q(x))
+//! mean of ln(dx²/dy²) = 2 ln σx/σy,        variance v π²/N
 //! ```
 //!
-//! q are the linear and quadratic terms of the place, the linear ones alone of few places, and how far a place lies out of the middle of its
-//! eight nearest neighbours along each axis, which is nothing but at the margin. What changes slowly from place to place, as
-//! a misfit does, is hardly left in differences to neighbours. The evidence is χ² = Σ (ŷ − ȳ)²/(v s²), s² = π²/6 or what is left, beside as many degrees of freedom as q
-//! has terms. v = Σᵢⱼ eᵢ eⱼ/Σᵢ eᵢ² over the 24 nearest neighbours j of i is what neighbours have in common, at least that of white noise.
+//! q are the linear and quadratic terms of the place, the linear ones alone of few places, and how far a place lies out of the
+//! middle of its eight nearest neighbours along each axis, which is nothing but at the margin. What changes slowly from place to
+//! place, as a misfit or noise that correlates, is hardly left in differences to neighbours, but more at the margin, where these lie
+//! on one side: V, by the variogram of all places, holds that. The evidence is χ² = Σ (ŷ − ȳ)²/(v s²), s² = π²/6 or what is
+//! left, beside as many degrees of freedom as q has terms. v = Σᵢⱼ eᵢ eⱼ/Σᵢ eᵢ² over the 24 nearest neighbours j of i is what
+//! neighbours have in common, at least that of white noise.
 //!
 //! # References
 //! A. C. Harvey, Econometrica 44, 461 (1976), doi:10.2307/1913974 (regression of the logarithms);
@@ -28,15 +31,15 @@ const FEWEST: [usize; 2] = [30, 60];
 const NEIGHBOURS: usize = 4;
 const AROUND: usize = 8;
 
+/// Neighbours that may have noise in common where it correlates.
+const FAR: usize = 24;
+
 /// The variance of the logarithm of half the square of a vector of white noise.
 const VARIANCE: f64 = PI * PI / 6.0;
 
 /// What variances of means of neighbouring logarithms grow by: differences of neighbours on a square grid correlate by −0.4, their
 /// logarithms therefore by Li₂(0.16)/(π²/6) = 0.10.
 const COMMON: f64 = 1.45;
-
-/// Neighbours that may have noise in common where it correlates.
-const FAR: usize = 24;
 
 /// Probability by chance below which noise is uneven, and the least ratio of the largest deviation to the smallest that matters.
 const LEVEL: f64 = 1e-4;
@@ -46,13 +49,17 @@ const LEAST: f64 = 1.25;
 const SURE: f64 = 4.0;
 const LEAST_OF_COMPONENTS: f64 = 1.1;
 
-/// Terms of a place.
+/// Terms of a place, the first of which are asked for where places are few.
 const TERMS: usize = 7;
+const FEW_TERMS: usize = 4;
+
+/// The largest logarithm of a factor; quadratic terms reach far where places are few.
+const MOST: f64 = 2.5;
 
 /// How much larger or smaller noise is than elsewhere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unevenness {
-    /// The factor of the standard deviation of each component at each place.
+    /// The factor of the standard deviation of each component at each place; their geometric mean is one.
     pub factors: Vec<[f64; 2]>,
 }
 
@@ -65,19 +72,24 @@ impl Unevenness {
         if own.len() < FEWEST[0] {
             return None;
         }
-        let differences = differences(&own, &z)?;
-        let squares = differences.iter().map(|[x, y]| 0.5 * (x * x + y * y));
-        let sites: Vec<[f64; TERMS]> = terms(&own, &own);
-        let slopes = slopes(&own, &sites, &logarithms(squares));
-        let ratio = ratio_of_components(&differences);
+        let around = nearest(&own, FAR);
+        let differences = differences(&around, &z)?;
+        let expected = expected(&own, &around, &z)?;
+        let squares = differences.iter().zip(expected);
+        let logarithms = logarithms(squares.map(|([x, y], expected)| (x * x + y * y) / expected));
+        let slopes = slopes(&around, &terms(&own, &own)?, &logarithms);
+        let ratio = ratio_of_components(&around, &differences);
         if slopes.is_none() && ratio.is_none() {
             return None;
         }
         let slopes = slopes.unwrap_or([0.0; TERMS]);
-        let ratio = ratio.unwrap_or(1.0).sqrt();
-        let factors = terms(places, &own).into_iter().map(|terms| {
-            let factor = factor(&slopes, &terms);
-            [factor * ratio, factor / ratio]
+        let sites = terms(places, &own)?;
+        let all: Vec<f64> = sites.iter().map(|site| logarithm(&slopes, site)).collect();
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        let half = 0.5 * ratio.unwrap_or(0.0);
+        let factors = all.iter().map(|own| {
+            let own = (own - mean).clamp(-MOST, MOST);
+            [own + half, own - half].map(f64::exp)
         });
         Some(Self {
             factors: factors.collect(),
@@ -85,52 +97,63 @@ impl Unevenness {
     }
 }
 
-/// exp(½ γ·q).
-fn factor(slopes: &[f64; TERMS], terms: &[f64; TERMS]) -> f64 {
-    // Quadratic terms reach far where places are few.
-    const MOST: f64 = 3.0;
-    let logarithm: f64 = slopes
-        .iter()
-        .zip(terms)
-        .map(|(slope, term)| slope * term)
-        .sum();
-    (0.5 * logarithm).clamp(-MOST, MOST).exp()
+/// ½ g·q.
+fn logarithm(slopes: &[f64; TERMS], site: &[f64; TERMS]) -> f64 {
+    let terms = slopes.iter().zip(site);
+    0.5 * terms.map(|(slope, term)| slope * term).sum::<f64>()
 }
 
-/// q of places, relative to those that are sound.
-fn terms(places: &[[f64; 2]], sound: &[[f64; 2]]) -> Vec<[f64; TERMS]> {
+/// q of places, relative to those that are sound; `None` where it is no number.
+fn terms(places: &[[f64; 2]], sound: &[[f64; 2]]) -> Option<Vec<[f64; TERMS]>> {
     let sides = [0, 1].map(|axis| extremes(sound.iter().map(|place| place[axis])));
-    let around = nearest(places, AROUND).into_iter().zip(places);
-    let of_place = |(others, place): (Vec<usize>, &[f64; 2])| {
+    let around = nearest(places, AROUND).into_iter().enumerate();
+    let of_place = |(own, others): (usize, Vec<usize>)| {
+        let place = places[own];
         let [x, y] = [0, 1].map(|axis| {
             let [low, high] = sides[axis];
-            (2.0 * place[axis] - low - high) / (high - low).max(f64::MIN_POSITIVE)
+            share(2.0 * place[axis] - low - high, high - low)
         });
-        let away = others
-            .iter()
-            .map(|other| [0, 1].map(|axis| places[*other][axis] - place[axis]));
-        let (sum, far) = away.fold(([0.0; 2], 0.0), |(sum, far), [x, y]| {
-            ([sum[0] + x, sum[1] + y], far + x.hypot(y))
-        });
-        let [out_x, out_y] = sum.map(|sum| sum.abs() / far);
+        let [out_x, out_y] = out_of_the_middle(places, place, &others);
         [x, y, out_x, out_y, x * x, x * y, y * y]
     };
-    around.map(of_place).collect()
+    let all: Vec<_> = around.map(of_place).collect();
+    all.iter()
+        .flatten()
+        .all(|term| term.is_finite())
+        .then_some(all)
 }
 
-/// γ, where chance would hardly make it; quadratic terms are none where places are few.
+/// How far a place lies out of the middle of its neighbours along each axis, over their mean distance.
+fn out_of_the_middle(places: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize]) -> [f64; 2] {
+    let away = others
+        .iter()
+        .map(|other| [places[*other][0] - x, places[*other][1] - y]);
+    let (sum, far) = away.fold(([0.0; 2], 0.0), |(sum, far), [x, y]| {
+        ([sum[0] + x, sum[1] + y], far + x.hypot(y))
+    });
+    sum.map(|sum: f64| share(sum.abs(), far))
+}
+
+/// A ratio; of nothing, nothing.
+fn share(part: f64, whole: f64) -> f64 {
+    match whole > 0.0 {
+        true => part / whole,
+        false => 0.0,
+    }
+}
+
+/// g, where chance would hardly make it; quadratic terms are none where places are few.
 fn slopes(
-    places: &[[f64; 2]],
+    around: &[Vec<usize>],
     sites: &[[f64; TERMS]],
     logarithms: &DVector<f64>,
 ) -> Option<[f64; TERMS]> {
-    let count = match places.len() < FEWEST[1] {
-        true => 4,
+    let count = match sites.len() < FEWEST[1] {
+        true => FEW_TERMS,
         false => TERMS,
     };
-    let means: Vec<f64> = (0..count)
-        .map(|term| sites.iter().map(|site| site[term]).sum::<f64>() / sites.len() as f64)
-        .collect();
+    let mean = |term: usize| sites.iter().map(|site| site[term]).sum::<f64>() / sites.len() as f64;
+    let means: Vec<f64> = (0..count).map(mean).collect();
     let design = DMatrix::from_fn(sites.len(), count, |site, term| {
         sites[site][term] - means[term]
     });
@@ -138,44 +161,44 @@ fn slopes(
     let found = design.clone().svd(true, true).solve(&right, 1e-9).ok()?;
     let fitted = &design * &found;
     let left = right - &fitted;
-    let common = in_common(places, &left).max(COMMON);
     // Gross errors spread logarithms wider than noise does.
     let variance = (left.norm_squared() / left.len() as f64).max(VARIANCE);
-    let statistic = fitted.norm_squared() / (common * variance);
+    let statistic = fitted.norm_squared() / (in_common(around, &left) * variance);
     let mut slopes = [0.0; TERMS];
     slopes[..count].copy_from_slice(found.as_slice());
-    let [low, high] = extremes(sites.iter().map(|site| factor(&slopes, site)));
+    let [low, high] = extremes(sites.iter().map(|site| logarithm(&slopes, site)));
     let is_sure = statistic > chi_squared_limit(count as f64, LEVEL);
-    (is_sure && high > LEAST * low).then_some(slopes)
+    (is_sure && high - low > LEAST.ln()).then_some(slopes)
 }
 
-/// σx/σy, where it is surely not one.
-fn ratio_of_components(differences: &[[f64; 2]]) -> Option<f64> {
+/// ln σx/σy, where it is surely not nothing.
+fn ratio_of_components(around: &[Vec<usize>], differences: &[[f64; 2]]) -> Option<f64> {
     let of_axis = |axis: usize| logarithms(differences.iter().map(|own| own[axis] * own[axis]));
-    let mean = (of_axis(0) - of_axis(1)).mean();
-    let error = PI * (COMMON / differences.len() as f64).sqrt();
+    let ratios = of_axis(0) - of_axis(1);
+    let mean = ratios.mean();
+    let common = in_common(around, &ratios.add_scalar(-mean));
+    let error = PI * (common / differences.len() as f64).sqrt();
     let is_sure = mean.abs() > SURE * error && mean.abs() > 2.0 * LEAST_OF_COMPONENTS.ln();
-    is_sure.then(|| (0.5 * mean).exp())
+    is_sure.then_some(0.5 * mean)
 }
 
 /// v.
-fn in_common(places: &[[f64; 2]], left: &DVector<f64>) -> f64 {
-    let around = nearest(places, FAR).into_iter().enumerate();
-    let products = around.map(|(own, others)| {
+fn in_common(around: &[Vec<usize>], left: &DVector<f64>) -> f64 {
+    let products = around.iter().enumerate().map(|(own, others)| {
         let beside = others.iter().map(|other| left[*other]).sum::<f64>();
         left[own] * (left[own] + beside)
     });
-    products.sum::<f64>() / left.norm_squared()
+    share(products.sum::<f64>(), left.norm_squared()).max(COMMON)
 }
 
-/// dᵢ; `None` where there is no noise at all.
-fn differences(places: &[[f64; 2]], z: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
-    let around = nearest(places, NEIGHBOURS).into_iter().zip(z);
-    let differences = around.map(|(others, own)| {
-        let count = others.len() as f64;
+/// dᵢ; `None` where a component has no noise at all.
+fn differences(around: &[Vec<usize>], z: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
+    let pairs = around.iter().zip(z);
+    let differences = pairs.map(|(others, own)| {
+        let others = &others[..NEIGHBOURS];
         [0, 1].map(|axis| {
             let beside = others.iter().map(|other| z[*other][axis]).sum::<f64>();
-            own[axis] - beside / count
+            own[axis] - beside / NEIGHBOURS as f64
         })
     });
     let differences: Vec<[f64; 2]> = differences.collect();
@@ -184,103 +207,94 @@ fn differences(places: &[[f64; 2]], z: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     (is_some(0) && is_some(1) && all.clone().all(|own| own.is_finite())).then_some(differences)
 }
 
+/// Vᵢ with the variogram of both components of all places together.
+fn expected(places: &[[f64; 2]], around: &[Vec<usize>], z: &[[f64; 2]]) -> Option<Vec<f64>> {
+    let variogram = Variogram::new(places, around, z)?;
+    let of_place = |(own, others): (usize, &Vec<usize>)| {
+        let others = &others[..NEIGHBOURS];
+        let count = others.len() as f64;
+        let far = others
+            .iter()
+            .map(|other| variogram.between(places, own, *other));
+        let beside = others.iter().flat_map(|one| {
+            let variogram = &variogram;
+            others
+                .iter()
+                .map(move |other| variogram.between(places, *one, *other))
+        });
+        2.0 * far.sum::<f64>() / count - beside.sum::<f64>() / (count * count)
+    };
+    let all: Vec<f64> = around.iter().enumerate().map(of_place).collect();
+    let least = 0.1 * all.iter().sum::<f64>() / all.len() as f64;
+    (least > 0.0).then(|| all.iter().map(|own| own.max(least)).collect())
+}
+
+/// γ in classes of distance.
+struct Variogram {
+    width: f64,
+    classes: Vec<f64>,
+}
+
+impl Variogram {
+    /// Of pairs of near neighbours; `None` where all places are one.
+    fn new(places: &[[f64; 2]], around: &[Vec<usize>], z: &[[f64; 2]]) -> Option<Self> {
+        /// Classes in a mean distance of nearest neighbours.
+        const IN_SPACING: f64 = 4.0;
+        const CLASSES: usize = 24;
+        let nearest = around.iter().enumerate();
+        let nearest: f64 = nearest
+            .map(|(own, others)| distance(places, own, others[0]))
+            .sum();
+        let width = nearest / (IN_SPACING * places.len() as f64);
+        if !(width > 0.0 && width.is_finite()) {
+            return None;
+        }
+        let mut sums = [(0.0, 0.0); CLASSES];
+        for (own, others) in around.iter().enumerate() {
+            for other in others {
+                let class = (distance(places, own, *other) / width).round() as usize;
+                let (sum, pairs) = &mut sums[class.min(CLASSES - 1)];
+                let squares = [0, 1].map(|axis| (z[own][axis] - z[*other][axis]).powi(2));
+                *sum += 0.5 * (squares[0] + squares[1]);
+                *pairs += 1.0;
+            }
+        }
+        // A class without pairs has the value of the one before.
+        let mut last = 0.0;
+        let classes = sums.map(|(sum, pairs)| {
+            if pairs > 0.0 {
+                last = sum / pairs;
+            }
+            last
+        });
+        Some(Self {
+            width,
+            classes: classes.to_vec(),
+        })
+    }
+
+    /// γ between two places, none of a place and itself.
+    fn between(&self, places: &[[f64; 2]], one: usize, other: usize) -> f64 {
+        if one == other {
+            return 0.0;
+        }
+        let class = (distance(places, one, other) / self.width).round() as usize;
+        self.classes[class.min(self.classes.len() - 1)]
+    }
+}
+
+fn distance(places: &[[f64; 2]], one: usize, other: usize) -> f64 {
+    let ([a, b], [c, d]) = (places[one], places[other]);
+    (a - c).hypot(b - d)
+}
+
 /// Logarithms of squares. Rounded values may have no difference to their neighbours at all.
 fn logarithms(squares: impl Iterator<Item = f64>) -> DVector<f64> {
     const LEAST: f64 = 1e-4;
-    let squares = DVector::from_iterator(squares.size_hint().0, squares);
+    let squares = DVector::from_vec(squares.collect());
     let floor = LEAST * squares.mean();
     squares.map(|own| own.max(floor).ln())
 }
 
 #[cfg(test)]
-mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
-    use super::*;
-
-    fn grid([columns, rows]: [usize; 2]) -> Vec<[f64; 2]> {
-        let places = (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j)));
-        places
-            .map(|(i, j)| [1e3 + 2.0 * i as f64, 3.0 * j as f64])
-            .collect()
-    }
-
-    fn noise(
-        seed: u64,
-        places: &[[f64; 2]],
-        size: impl Fn([f64; 2]) -> f64,
-    ) -> Vec<Option<[f64; 2]>> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-        places
-            .iter()
-            .map(|place| Some([normal(), normal()].map(|value| value * size(*place))))
-            .collect()
-    }
-
-    #[test]
-    fn even_noise_is_hardly_ever_uneven() {
-        for cells in [[8, 5], [20, 10], [40, 20]] {
-            let places = grid(cells);
-            let alarms = (0..400).filter(|seed| {
-                let z = noise(*seed, &places, |_| 0.3);
-                Unevenness::found(&places, &z).is_some()
-            });
-            let alarms = alarms.count();
-            assert!(alarms <= 1, "{cells:?}: {alarms} of 400");
-        }
-    }
-
-    /// Noise that grows fourfold along the sheet, or towards its edges, is found with its size.
-    #[test]
-    fn noise_that_grows_is_found() {
-        let places = grid([40, 20]);
-        let along = |[x, _]: [f64; 2]| 4.0_f64.powf((x - 1e3) / 78.0);
-        let outwards = |[x, y]: [f64; 2]| {
-            let [x, y] = [(x - 1039.0) / 39.0, (y - 28.5) / 28.5];
-            1.0 + x * x + y * y
-        };
-        let margin = |[_, y]: [f64; 2]| if y % 57.0 == 0.0 { 3.0 } else { 1.0 };
-        let sizes: [&dyn Fn([f64; 2]) -> f64; 3] = [&along, &outwards, &margin];
-        for size in sizes {
-            for seed in 0..20 {
-                let z = noise(seed, &places, size);
-                let found = Unevenness::found(&places, &z).expect("uneven");
-                let pairs = places.iter().zip(&found.factors);
-                let mut far: Vec<f64> = pairs.map(|(place, [x, _])| x / size(*place)).collect();
-                far.sort_by(f64::total_cmp);
-                let [low, high] = [far[40], far[760]];
-                assert!(high / low < 2.0, "{seed}: {low} {high}");
-            }
-        }
-    }
-
-    /// As of ultrasound, which sees along its beam better than across.
-    #[test]
-    fn components_of_different_noise_are_found() {
-        let places = grid([20, 10]);
-        for seed in 0..20 {
-            let mut z = noise(seed, &places, |_| 1.0);
-            z.iter_mut().flatten().for_each(|own| own[1] *= 0.2);
-            let found = Unevenness::found(&places, &z).expect("uneven");
-            let [x, y] = found.factors[0];
-            assert!((x / y / 5.0 - 1.0).abs() < 0.3, "{seed}: {x} {y}");
-        }
-    }
-
-    /// A smooth misfit much larger than the noise is not taken for noise.
-    #[test]
-    fn a_misfit_is_not_taken_for_noise() {
-        let places = grid([40, 20]);
-        for seed in 0..20 {
-            let mut z = noise(seed, &places, |_| 1.0);
-            for (own, [x, y]) in z.iter_mut().flatten().zip(&places) {
-                own[0] += 6.0 * (((x - 1e3) / 25.0).powi(2) * -1.0).exp();
-                own[1] += 3.0 * (y / 30.0).sin();
-            }
-            assert_eq!(Unevenness::found(&places, &z), None, "{seed}");
-        }
-    }
-}
+mod tests;

@@ -21,6 +21,7 @@ use crate::results::locking;
 
 mod alike;
 mod area;
+mod computed;
 mod conditions;
 mod doubts;
 mod edge_place;
@@ -146,7 +147,7 @@ impl MarkerStudy {
             // Interpolation needs all nodes.
             placed.series = field.series;
             placed.outside = 0;
-            warnings.extend(doubts::of_a_computed_field(&request.conditions));
+            warnings.extend(computed::told(&request.conditions));
         }
         force_signs::check(
             request.conditions.forces_with_frames(&placed.series),

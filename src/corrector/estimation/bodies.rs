@@ -3,7 +3,7 @@
 use super::knowledge::EdgeCondition;
 use super::outline::Segment;
 use crate::mesh::Mesh;
-use crate::problem::corner_forces::{Hold, Share, reaction_shares};
+use crate::problem::corner_forces::{Hold, Share, reaction_shares, shared_rests};
 
 /// What holds the sheet.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,9 @@ pub struct Body {
     pub edges: Vec<usize>,
     /// The reactions along x and along y that make up its force.
     pub shares: [Vec<Share>; 2],
+    /// What is left at corners and shared with others along x and along y, though it may belong to any of them: the share, and the reactions
+    /// that make it up.
+    pub rests: [Vec<(f64, Vec<Share>)>; 2],
     /// Where bodies meet, known displacements go before rigid ones and these before unknown ones.
     pub rank: usize,
 }
@@ -27,6 +30,20 @@ impl Body {
                 .map(|(node, factor)| factor * reactions[2 * node + axis])
                 .sum()
         })
+    }
+}
+
+impl Body {
+    /// The standard deviation along an axis of what may belong to others, as if each division of it were as likely.
+    pub fn division_error(&self, reactions: &[f64], axis: usize) -> f64 {
+        let square = |(share, factors): &(f64, Vec<Share>)| {
+            let parts = factors.iter();
+            let rest: f64 = parts
+                .map(|(node, factor)| factor * reactions[2 * node + axis])
+                .sum();
+            (share * rest).powi(2) / 3.0
+        };
+        self.rests[axis].iter().map(square).sum::<f64>().sqrt()
     }
 }
 
@@ -54,14 +71,21 @@ pub fn bodies<'a>(
     let members: Vec<Vec<usize>> = members.collect();
     let holds = members.iter().map(|members| hold(mesh, &edges, members));
     let holds: Vec<Hold> = holds.collect();
-    let all = reaction_shares(mesh, &holds)
-        .into_iter()
-        .zip(holds)
-        .zip(members);
-    let body = |((shares, hold), members): ((_, Hold), Vec<usize>)| Body {
+    let rests = [0, 1].map(|axis| shared_rests(mesh, &holds, axis));
+    let rests_of = |body: usize| {
+        rests.each_ref().map(|rests| {
+            let own = rests.iter().filter(|rest| rest.bodies.contains(&body));
+            own.map(|rest| (1.0 / rest.bodies.len() as f64, rest.factors.clone()))
+                .collect()
+        })
+    };
+    let shares = reaction_shares(mesh, &holds).into_iter();
+    let all = shares.zip(&holds).zip(members).enumerate();
+    let body = |(index, ((shares, hold), members)): (usize, ((_, &Hold), Vec<usize>))| Body {
         name: edges[members[0]].0.name.clone(),
         edges: members,
         shares,
+        rests: rests_of(index),
         rank: hold.rank,
     };
     all.map(body).collect()

@@ -40,11 +40,12 @@ pub struct FieldEstimate {
     pub robust: Robust,
     /// Whether the noise was given; else it is estimated from what is left of the markers.
     pub known_noise: bool,
-    /// The scatter of the markers over their stated noise, where they contradict it: the stated noise is scaled then.
+    /// The scatter of the markers over their stated noise, where they contradict it by its size or by how it differs from place to place: its
+    /// size is estimated then.
     pub noise_ratio: Option<f64>,
-    /// The least and the largest standard deviation of a marker's noise in mm, where it differs from place to place: markers are weighted
-    /// by it then.
-    pub noise_range: Option<[f64; 2]>,
+    /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where it was found to differ
+    /// from place to place or from component to component: markers are weighted by it then.
+    pub noise_range: Option<[[f64; 2]; 2]>,
     /// How many parameters the data have determined: the trace of the matrix that makes the fitted displacements of the
     /// measured ones.
     pub effective_parameters: f64,

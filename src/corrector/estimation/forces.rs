@@ -36,7 +36,9 @@ impl NearestField<'_> {
             let mesh = own.map_or(0.0, |own| {
                 own.forces[index][axis] + dot(&row, own.parameters.as_slice())
             });
-            Ok(Estimate::new(force, self.error(&row).hypot(mesh), reach))
+            let division = self.equations.bodies[index].division_error(&reactions, axis);
+            let error = self.error(&row).hypot(mesh).hypot(division);
+            Ok(Estimate::new(force, error, reach))
         };
         let force = |(index, body): (usize, &Body)| {
             Ok(EdgeForce {

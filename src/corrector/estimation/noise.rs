@@ -30,14 +30,14 @@ const ROUNDS: usize = 3;
 /// What markers show of their noise otherwise than was taken of it.
 #[derive(Clone, Debug, Default)]
 pub struct OtherNoise {
-    /// The scatter of the markers over their stated noise, where it is far from one.
+    /// The scatter of the markers over their stated noise, where they contradict it by its size or by how it differs.
     pub ratio: Option<f64>,
     /// How it differs from place to place.
     pub unevenness: Option<Unevenness>,
 }
 
-/// A search with the noise that it shows: what contradicts the stated noise keeps its proportions, and its size is estimated; markers where
-/// noise is larger have less weight. With it, the scatter over stated noise that was contradicted.
+/// A search with the noise that it shows: where data contradict the stated noise its size is estimated; markers where noise is larger have less
+/// weight. With it, the scatter over the stated noise, where that is contradicted.
 ///
 /// # Errors
 /// As the search.
@@ -53,6 +53,20 @@ pub fn with_own_noise<T>(
         }
         ratio = ratio.or(other.ratio);
     }
+}
+
+/// The scatter of markers over their stated noise.
+struct Scatter {
+    value: f64,
+    /// Whether it is farther from one than chance and coarse statements make it.
+    is_far: bool,
+}
+
+/// Whether a marker's noise tells of that of others.
+fn is_sound(marker: &Option<MarkerEstimate>) -> bool {
+    marker
+        .as_ref()
+        .is_some_and(|own| own.standardised_residual < GROSS)
 }
 
 impl OtherNoise {
@@ -88,24 +102,35 @@ impl NearestField<'_> {
         edges: &[Edge],
     ) -> OtherNoise {
         let unevenness = self.unevenness(markers);
+        let unevenness = unevenness.filter(|_| !self.is_left_by_cells(markers, edges));
+        let known = self.observations().known_noise;
+        let ratio = known.then(|| self.scatter(markers)).flatten();
         OtherNoise {
-            ratio: self.contradicted_noise(markers),
-            unevenness: unevenness.filter(|_| !self.is_left_by_cells(edges)),
+            ratio: ratio
+                .filter(|ratio| unevenness.is_some() || ratio.is_far)
+                .map(|ratio| ratio.value),
+            unevenness,
         }
     }
 
-    /// Whether the mesh's own error, which is no noise, is much of what is left of the markers.
-    fn is_left_by_cells(&self, edges: &[Edge]) -> bool {
+    /// Whether the mesh's own error or rounding, which are no noise, are much of what is left of the markers.
+    fn is_left_by_cells(&self, markers: &[Option<MarkerEstimate>], edges: &[Edge]) -> bool {
         const MUCH: f64 = 0.2;
-        let weights = &self.observations().weights;
-        let size = |values: &[f64]| {
-            let squares = values.iter().zip(0..);
-            let squares = squares.map(|(value, row): (_, usize)| weights[row] * value * value);
+        const ROUNDING: f64 = 1e-6;
+        let observations = self.observations();
+        let size = |values: &dyn Fn(usize) -> f64| {
+            let all = observations.chosen.iter().enumerate();
+            let sound = all.filter(|(_, index)| is_sound(&markers[**index]));
+            let rows = sound.flat_map(|(own, _)| [2 * own, 2 * own + 1]);
+            let squares = rows.map(|row| observations.weights[row] * values(row).powi(2));
             squares.sum::<f64>().sqrt()
         };
+        let left = size(&|row| self.fit.residual[row]);
+        if left <= ROUNDING * size(&|row| observations.displacements[row / 2][row % 2]) {
+            return true;
+        }
         let difference = self.mesh_difference(edges);
-        difference
-            .is_some_and(|own| size(own.at_markers()) > MUCH * size(self.fit.residual.as_slice()))
+        difference.is_some_and(|own| size(&|row| own.at_markers()[row]) > MUCH * left)
     }
 
     /// How the noise of markers differs from place to place; outliers tell of it too, but for those that no noise makes.
@@ -116,37 +141,41 @@ impl NearestField<'_> {
         }
         let estimates = observations.chosen.iter().map(|index| &markers[*index]);
         let left = estimates.enumerate().map(|(index, own)| {
-            own.as_ref()
-                .filter(|own| own.standardised_residual < GROSS)?;
-            Some([0, 1].map(|axis| {
-                let row = 2 * index + axis;
-                observations.weights[row].sqrt() * self.fit.residual[row]
-            }))
+            is_sound(own).then(|| {
+                [0, 1].map(|axis| {
+                    let row = 2 * index + axis;
+                    observations.weights[row].sqrt() * self.fit.residual[row]
+                })
+            })
         });
         Unevenness::found(&observations.places, &left.collect::<Vec<_>>())
     }
 
-    /// The scatter of the markers over their stated noise, from the median of the standardised residuals, where it is far from one.
-    fn contradicted_noise(&self, markers: &[Option<MarkerEstimate>]) -> Option<f64> {
+    /// The scatter of the markers over their stated noise, from the median of the standardised residuals; `None` without markers.
+    fn scatter(&self, markers: &[Option<MarkerEstimate>]) -> Option<Scatter> {
         // The standard error of ln of a deviation from the median.
         const ERROR: f64 = 0.72;
         const SURE: f64 = 4.0;
         let lengths = markers.iter().flatten();
         let lengths: Vec<f64> = lengths.map(|marker| marker.standardised_residual).collect();
-        if !self.observations().known_noise || lengths.is_empty() {
-            return None;
-        }
         let sure = SURE * ERROR / (lengths.len() as f64).sqrt();
-        let ratio = self.trade.sound.sqrt() * robust_deviation(lengths);
-        (ratio.ln().abs() > OFF.ln().max(sure)).then_some(ratio)
+        let is_some = !lengths.is_empty();
+        let value = self.trade.sound.sqrt() * robust_deviation(lengths);
+        is_some.then(|| Scatter {
+            value,
+            is_far: value.ln().abs() > OFF.ln().max(sure),
+        })
     }
 
-    /// The least and the largest standard deviation of the noise of markers in mm, where it differs from place to place.
-    pub(super) fn deviations(&self, larger: f64) -> Option<[f64; 2]> {
+    /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where they have followed what markers
+    /// show.
+    pub(super) fn deviations(&self, larger: f64) -> Option<[[f64; 2]; 2]> {
         let observations = self.observations();
-        let weights = observations.weights.iter();
-        let deviations = weights.map(|weight| (larger * self.trade.sound / weight).sqrt());
-        (observations.reweighted > 0).then(|| extremes(deviations))
+        let along = |axis: usize| {
+            let weights = observations.weights.iter().skip(axis).step_by(2);
+            extremes(weights.map(|weight| (larger * self.trade.sound / weight).sqrt()))
+        };
+        (observations.reweighted > 0).then(|| [0, 1].map(along))
     }
 
     /// The noise's standard deviation of a marker of mean weight in mm, as if it were white.

@@ -3,10 +3,9 @@
 //! A doubt stands next to the figures and makes the command end with exit code 1.
 
 use super::MarkerStudy;
-use super::conditions::Conditions;
 use super::gross_errors::has_many;
 use super::report::{outliers, used};
-use crate::corrector::estimation::{Answer, FieldEstimate, Physics, RegressedLaw};
+use crate::corrector::estimation::{Answer, FieldEstimate, RegressedLaw};
 use crate::error::Diagnostic;
 use crate::markers::Frame;
 use crate::results::{Stretches, small_strain};
@@ -127,6 +126,11 @@ type Doubt = (String, &'static str);
 /// The noise that was stated, where the data contradict it.
 fn noise(estimate: &FieldEstimate) -> Option<Doubt> {
     let ratio = estimate.noise_ratio?;
+    if estimate.noise_range.is_some() {
+        let message = "the markers' noise is not what was stated, but differs otherwise from place to place or from ux to uy: it is taken as they show it";
+        let hint = "correct the stated noise, or leave it out to have it estimated";
+        return Some((message.to_owned(), hint));
+    }
     let relation = if ratio > 1.0 { "more" } else { "less" };
     let message = format!(
         "the markers scatter {ratio:.2} times as much as their stated noise, {relation} than chance allows: it is scaled to what \
@@ -204,26 +208,4 @@ fn forces(estimate: &FieldEstimate) -> Vec<Doubt> {
         )
     };
     wrong.map(doubt).collect()
-}
-
-/// A warning about what is told of measurements, where the field is a computed one, which has none.
-pub fn of_a_computed_field(conditions: &Conditions) -> Option<Diagnostic> {
-    let told = [
-        ("noise", conditions.noise.is_some()),
-        ("robust", conditions.robust.is_some()),
-        ("scale_error", conditions.scale_deviation > 0.0),
-        ("edge_gap", conditions.edge_gap.is_some()),
-        ("physics", conditions.physics != Physics::default()),
-        ("force", !conditions.forces.is_empty()),
-        ("fit", !conditions.fit.is_empty()),
-    ];
-    let told = told.iter().filter(|(_, told)| *told);
-    let told: Vec<&str> = told.map(|(key, _)| *key).collect();
-    let message = format!(
-        "a field that is brought from its own mesh onto another one is taken as computed, without noise: what is said of {} has no \
-         part in it",
-        told.join(", ")
-    );
-    let hint = "give a measured field as a table of its markers: x, y, ux, uy";
-    (!told.is_empty()).then(|| Diagnostic::warning("", message).hint(hint))
 }

@@ -15,8 +15,12 @@ pub fn remarks(field: &MarkerStudy, estimates: &[FieldEstimate]) -> impl Iterato
 }
 
 fn unevenness(estimate: &FieldEstimate) -> Option<String> {
-    let [low, high] = estimate.noise_range?;
+    let range = |[low, high]: [f64; 2]| match high - low > 1e-6 * high {
+        true => format!("{low:.2e} to {high:.2e} mm"),
+        false => format!("{low:.2e} mm"),
+    };
+    let [x, y] = estimate.noise_range?.map(range);
     Some(format!(
-        "the noise is not the same everywhere, from {low:.2e} to {high:.2e} mm: markers have less say where it is larger"
+        "markers show noise that is not one for all, of ux {x} and of uy {y}: those with more of it have less say"
     ))
 }

@@ -93,7 +93,7 @@ fn run_words(run: &[(usize, &FieldEstimate)], answer: Answer) -> String {
 /// What is said where the cells are why data are not explained.
 fn finer_mesh(field: &MarkerStudy, verdict: &Verdict) -> Option<String> {
     let remedy = match field.cell_size {
-        Some(size) => format!("take --refine, or --cell-size below {size:.4} mm"),
+        Some(size) => format!("take smaller cells than {size:.4} mm, by --refine or --cell-size"),
         None => "take a finer one".to_owned(),
     };
     verdict.asks_for_finer_mesh().then(|| {

@@ -26,6 +26,11 @@ pub struct Refinement {
     pub most_cells: usize,
 }
 
+impl Refinement {
+    /// Cells up to which all cells of the last mesh are halved, for the error of the displacement.
+    pub(super) const MOST_HALVED: usize = 400_000;
+}
+
 /// How the springs' field is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {

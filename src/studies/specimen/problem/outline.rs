@@ -73,7 +73,11 @@ impl Outline {
                 mesh.cell_count() as f64 * 4_f64.powi(*halvings as i32)
             }
         };
-        let cells = refinement.map_or(cells, |goal| self.first_cells().max(goal.most_cells as f64));
+        let cells = refinement.map_or(cells, |goal| {
+            let last = self.first_cells().max(goal.most_cells as f64);
+            // All cells of the last mesh are halved once more, where these are not too many.
+            last.max((4.0 * last).min(Refinement::MOST_HALVED as f64))
+        });
         Need::of_states(2.0 * nodes_per_cell(*element) * cells, states as f64).on_cells(cells)
     }
 

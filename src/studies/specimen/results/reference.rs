@@ -78,6 +78,7 @@ impl Reference {
                     others[self.coarser.len()]
                 )
             }
+            1 => format!("{elements} elements on {cells}, not refined locally"),
             rounds => format!(
                 "{elements} elements on {cells}, refined locally in {} rounds",
                 rounds - 1
@@ -91,6 +92,9 @@ impl Reference {
         match (self.rounds.is_empty(), quadratic) {
             (true, false) => "take finite elements of the second degree, such as \"Q2\"",
             (true, true) => "take more cells, or `adaptive = true` with \"T2\"",
+            (false, _) if self.all_halved.is_none() => {
+                "take fewer than 100,000 cells, with a larger `finite_element.error` or fewer `most_cells`"
+            }
             (false, _) => "take a smaller `finite_element.error`",
         }
     }
@@ -138,7 +142,7 @@ impl Reference {
         self.outline.as_ref()?;
         let steps = 0..self.reached();
         let percents = steps.filter_map(|step| self.outline_percent(step));
-        let most = percents.fold(0.0, f64::max);
+        let most = percents.reduce(f64::max)?;
         Some(Block::Paragraph(format!(
             "The outline: finite elements on meshes of the file have its edges, chords or parabolas. With the smooth \
              curves that these stand for the {} would change by about {most:.2e} %; this is part of its own error.",

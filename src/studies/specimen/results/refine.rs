@@ -19,9 +19,6 @@ const SHARE: f64 = 0.5;
 /// Cells up to which the finite elements are refined once more where they are too coarse to judge.
 const MOST_CELLS: usize = 30_000;
 
-/// Cells up to which all cells of the last mesh of local refinement are halved, for the error of the displacement.
-const MOST_HALVED: usize = 400_000;
-
 /// Begin of the names of the files of the meshes, from coarse to fine.
 const FILES: [&str; 3] = ["finite_element_coarse", "finite_element_middle", FILE];
 const FILE: &str = "finite_element";
@@ -104,7 +101,7 @@ impl Reference {
             rounds,
         } = refined(specimen, goal, ends, progress)?;
         let finest = meshes.last().expect("a mesh at least");
-        let is_small = 4 * triangles.cell_count() <= MOST_HALVED;
+        let is_small = 4 * triangles.cell_count() <= Refinement::MOST_HALVED;
         let all_halved = (is_small && finest.reached() > 0).then(|| {
             let halved = specimen.outline.fitted(triangles.refined());
             let mesh = specimen.outline.elements_on(&halved);

@@ -1,0 +1,138 @@
+//! Noise of one size and of several, on grids.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::*;
+
+fn grid([columns, rows]: [usize; 2]) -> Vec<[f64; 2]> {
+    let places = (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j)));
+    places
+        .map(|(i, j)| [1e3 + 2.0 * i as f64, 3.0 * j as f64])
+        .collect()
+}
+
+fn noise(seed: u64, places: &[[f64; 2]], size: impl Fn([f64; 2]) -> f64) -> Vec<Option<[f64; 2]>> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    places
+        .iter()
+        .map(|place| Some([normal(), normal()].map(|value| value * size(*place))))
+        .collect()
+}
+
+#[test]
+fn even_noise_is_hardly_ever_uneven() {
+    for cells in [[8, 5], [20, 10], [40, 20]] {
+        let places = grid(cells);
+        let alarms = (0..400).filter(|seed| {
+            let z = noise(*seed, &places, |_| 0.3);
+            Unevenness::found(&places, &z).is_some()
+        });
+        let alarms = alarms.count();
+        assert!(alarms <= 1, "{cells:?}: {alarms} of 400");
+    }
+}
+
+/// Noise that grows fourfold along the sheet, or towards its edges, is found with its size.
+#[test]
+fn noise_that_grows_is_found() {
+    let places = grid([40, 20]);
+    let along = |[x, _]: [f64; 2]| 4.0_f64.powf((x - 1e3) / 78.0);
+    let outwards = |[x, y]: [f64; 2]| {
+        let [x, y] = [(x - 1039.0) / 39.0, (y - 28.5) / 28.5];
+        1.0 + x * x + y * y
+    };
+    let margin = |[_, y]: [f64; 2]| if y % 57.0 == 0.0 { 3.0 } else { 1.0 };
+    let sizes: [&dyn Fn([f64; 2]) -> f64; 3] = [&along, &outwards, &margin];
+    for size in sizes {
+        for seed in 0..20 {
+            let z = noise(seed, &places, size);
+            let found = Unevenness::found(&places, &z).expect("uneven");
+            let pairs = places.iter().zip(&found.factors);
+            let mut far: Vec<f64> = pairs.map(|(place, [x, _])| x / size(*place)).collect();
+            far.sort_by(f64::total_cmp);
+            let [low, high] = [far[40], far[760]];
+            assert!(high / low < 2.0, "{seed}: {low} {high}");
+        }
+    }
+}
+
+/// As of ultrasound, which sees along its beam better than across.
+#[test]
+fn components_of_different_noise_are_found() {
+    let places = grid([20, 10]);
+    for seed in 0..20 {
+        let mut z = noise(seed, &places, |_| 1.0);
+        z.iter_mut().flatten().for_each(|own| own[1] *= 0.2);
+        let found = Unevenness::found(&places, &z).expect("uneven");
+        let [x, y] = found.factors[0];
+        assert!((x / y / 5.0 - 1.0).abs() < 0.3, "{seed}: {x} {y}");
+    }
+}
+
+/// A smooth misfit much larger than the noise is not taken for noise.
+#[test]
+fn a_misfit_is_not_taken_for_noise() {
+    let places = grid([40, 20]);
+    for seed in 0..20 {
+        let mut z = noise(seed, &places, |_| 1.0);
+        for (own, [x, y]) in z.iter_mut().flatten().zip(&places) {
+            own[0] += 6.0 * (((x - 1e3) / 25.0).powi(2) * -1.0).exp();
+            own[1] += 3.0 * (y / 30.0).sin();
+        }
+        assert_eq!(Unevenness::found(&places, &z), None, "{seed}");
+    }
+}
+
+/// As where subsets of image correlation overlap: of one size everywhere, also at the margin.
+#[test]
+fn noise_that_correlates_is_not_uneven() {
+    let places = grid([40, 20]);
+    let far = |a: [f64; 2], b: [f64; 2]| ((a[0] - b[0]) / 2.0).hypot((a[1] - b[1]) / 3.0);
+    for length in [1.0, 1.5, 2.5] {
+        let alarms = (0..40).filter(|seed| {
+            let white = noise(*seed, &places, |_| 1.0);
+            let smooth = places.iter().map(|place| {
+                let sum = places.iter().zip(&white).fold([0.0; 3], |sum, (other, z)| {
+                    let weight = (-0.5 * (far(*place, *other) / length).powi(2)).exp();
+                    let [x, y] = z.unwrap();
+                    [
+                        sum[0] + weight * x,
+                        sum[1] + weight * y,
+                        sum[2] + weight * weight,
+                    ]
+                });
+                // Of one variance, at the margin too.
+                Some([sum[0], sum[1]].map(|own| own / sum[2].sqrt()))
+            });
+            let smooth: Vec<_> = smooth.collect();
+            Unevenness::found(&places, &smooth).is_some()
+        });
+        let alarms = alarms.count();
+        assert!(alarms <= 2, "{length}: {alarms} of 40");
+    }
+}
+
+#[test]
+fn places_in_a_line_at_one_place_or_without_noise_are_answered() {
+    let line: Vec<[f64; 2]> = (0..50).map(|i| [f64::from(i), 0.0]).collect();
+    let one = vec![[3.0, 4.0]; 50];
+    let repeated: Vec<[f64; 2]> = (0..100).map(|i| [f64::from(i / 10), 0.0]).collect();
+    for places in [&line, &one, &repeated] {
+        let z = noise(1, places, |_| 1.0);
+        assert_eq!(Unevenness::found(places, &z), None);
+    }
+    let grid = grid([10, 10]);
+    assert_eq!(Unevenness::found(&grid, &vec![Some([0.0; 2]); 100]), None);
+}
+
+#[test]
+fn factors_have_a_geometric_mean_of_one() {
+    let places = grid([40, 20]);
+    let z = noise(1, &places, |[x, _]| 0.1 + ((x - 1e3) / 20.0).powi(2));
+    let found = Unevenness::found(&places, &z).expect("uneven");
+    let logarithms = found.factors.iter().flatten().map(|factor| factor.ln());
+    assert!(logarithms.sum::<f64>().abs() < 1e-9);
+}
