@@ -3,14 +3,15 @@
 //! ```text
 //! dᵢ = zᵢ − ¼ Σⱼ zⱼ                       j: the four nearest neighbours of i
 //! Vᵢ = 2 meanⱼ γ(rᵢⱼ) − meanⱼₖ γ(rⱼₖ)      of noise of one size with the variogram γ
-//! ln |dᵢ|²/Vᵢ = g₀ + g·q(xᵢ) + eᵢ,         Var e = π²/6       σ(x) ∝ exp(½ g·q(x))
-//! mean of ln(dx²/dy²) = 2 ln σx/σy,        variance v π²/N
+//! ½ ln dx²dy²/V² = g₀ + g·q(xᵢ) + eᵢ,      Var e = π²/4       both components together
+//! ½ ln dx²/dy² = h₀ + h·q(xᵢ) + fᵢ,        Var f = π²/4       one beside the other
+//! σx, σy ∝ exp(½ (g·q(x) ± (h₀ + h·q(x))))
 //! ```
 //!
 //! q are the linear and quadratic terms of the place, the linear ones alone of few places, and how far a place lies out of the
 //! middle of its eight nearest neighbours along each axis, which is nothing but at the margin. What changes slowly from place to
 //! place, as a misfit or noise that correlates, is hardly left in differences to neighbours, but more at the margin, where these lie
-//! on one side: V, by the variogram of all places, holds that. The evidence is χ² = Σ (ŷ − ȳ)²/(v s²), s² = π²/6 or what is
+//! on one side: V, by the variogram of all places, holds that. The evidence is χ² = Σ (ŷ − ȳ)²/(v s²), s² = π²/4 or what is
 //! left, beside as many degrees of freedom as q has terms. v = Σᵢⱼ eᵢ eⱼ/Σᵢ eᵢ² over the 24 nearest neighbours j of i is what
 //! neighbours have in common, at least that of white noise.
 //!
@@ -22,7 +23,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{chi_squared_limit, extremes, nearest};
+use super::{chi_squared_limit, extremes, nearest, quantile};
 
 /// Fewer places tell nothing, and fewer than the second number nothing of quadratic terms.
 const FEWEST: [usize; 2] = [30, 60];
@@ -34,11 +35,11 @@ const AROUND: usize = 8;
 /// Neighbours that may have noise in common where it correlates.
 const FAR: usize = 24;
 
-/// The variance of the logarithm of half the square of a vector of white noise.
-const VARIANCE: f64 = PI * PI / 6.0;
+/// The variance of half the sum, and of half the difference, of the logarithms of the squares of two components of white noise.
+const VARIANCE: f64 = PI * PI / 4.0;
 
 /// What variances of means of neighbouring logarithms grow by: differences of neighbours on a square grid correlate by −0.4, their
-/// logarithms therefore by Li₂(0.16)/(π²/6) = 0.10.
+/// logarithms by about 0.10.
 const COMMON: f64 = 1.45;
 
 /// Probability by chance below which noise is uneven, and the least ratio of the largest deviation to the smallest that matters.
@@ -53,7 +54,7 @@ const LEAST_OF_COMPONENTS: f64 = 1.1;
 const TERMS: usize = 7;
 const FEW_TERMS: usize = 4;
 
-/// The largest logarithm of a factor; quadratic terms reach far where places are few.
+/// The largest logarithm of a ratio of deviations; quadratic terms reach far where places are few.
 const MOST: f64 = 2.5;
 
 /// How much larger or smaller noise is than elsewhere.
@@ -75,32 +76,74 @@ impl Unevenness {
         let around = nearest(&own, FAR);
         let differences = differences(&around, &z)?;
         let expected = expected(&own, &around, &z)?;
-        let squares = differences.iter().zip(expected);
-        let logarithms = logarithms(squares.map(|([x, y], expected)| (x * x + y * y) / expected));
-        let slopes = slopes(&around, &terms(&own, &own)?, &logarithms);
-        let ratio = ratio_of_components(&around, &differences);
-        if slopes.is_none() && ratio.is_none() {
+        let along = |axis: usize| {
+            let squares = differences.iter().zip(&expected);
+            logarithms(squares.map(|(own, expected)| own[axis] * own[axis] / expected))
+        };
+        let (x, y) = (along(0), along(1));
+        let (together, apart) = (0.5 * (&x + &y), 0.5 * (x - y));
+        let own_terms = terms(&own, &own)?;
+        let sizes = slopes(&around, &own_terms, &together);
+        let ratios = slopes(&around, &own_terms, &apart);
+        let ratio = mean_apart(&around, &apart);
+        if sizes.is_none() && ratios.is_none() && ratio.is_none() {
             return None;
         }
-        let slopes = slopes.unwrap_or([0.0; TERMS]);
         let sites = terms(places, &own)?;
-        let all: Vec<f64> = sites.iter().map(|site| logarithm(&slopes, site)).collect();
-        let mean = all.iter().sum::<f64>() / all.len() as f64;
-        let half = 0.5 * ratio.unwrap_or(0.0);
-        let factors = all.iter().map(|own| {
-            let own = (own - mean).clamp(-MOST, MOST);
-            [own + half, own - half].map(f64::exp)
-        });
+        let sizes = sizes.map_or_else(|| vec![0.0; sites.len()], |slopes| at(&slopes, &sites));
+        let ratios = match (ratios, ratio) {
+            (Some(slopes), _) => {
+                // The mean of the sound ones is that of their logarithms.
+                let off =
+                    apart.mean() - at(&slopes, &own_terms).iter().sum::<f64>() / own.len() as f64;
+                at(&slopes, &sites)
+                    .into_iter()
+                    .map(|own| own + off)
+                    .collect()
+            }
+            (None, ratio) => vec![ratio.unwrap_or(0.0); sites.len()],
+        };
+        let pairs = sizes.into_iter().zip(ratios);
+        let [x, y]: [Vec<f64>; 2] = {
+            let (x, y) = pairs
+                .map(|(size, ratio)| (size + ratio, size - ratio))
+                .unzip();
+            [x, y].map(bounded)
+        };
+        let mean = x.iter().chain(&y).sum::<f64>() / (2.0 * x.len() as f64);
+        let factors = x.iter().zip(&y);
         Some(Self {
-            factors: factors.collect(),
+            factors: factors
+                .map(|(x, y)| [x, y].map(|own| (0.5 * (own - mean)).exp()))
+                .collect(),
         })
     }
 }
 
-/// ½ g·q.
-fn logarithm(slopes: &[f64; TERMS], site: &[f64; TERMS]) -> f64 {
-    let terms = slopes.iter().zip(site);
-    0.5 * terms.map(|(slope, term)| slope * term).sum::<f64>()
+/// g·q at sites.
+fn at(slopes: &[f64; TERMS], sites: &[[f64; TERMS]]) -> Vec<f64> {
+    let of_site = |site: &[f64; TERMS]| {
+        slopes
+            .iter()
+            .zip(site)
+            .map(|(slope, term)| slope * term)
+            .sum()
+    };
+    sites.iter().map(of_site).collect()
+}
+
+/// Logarithms of variances that do not fall below those of nine tenths: the least ones are where few places tell of them, and would have the
+/// largest say.
+fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
+    const FEW: f64 = 0.1;
+    let mut sorted = logarithms.clone();
+    sorted.sort_by(f64::total_cmp);
+    let least = quantile(&sorted, FEW);
+    let most = least + 2.0 * MOST;
+    logarithms
+        .into_iter()
+        .map(|own| own.clamp(least, most))
+        .collect()
 }
 
 /// q of places, relative to those that are sound; `None` where it is no number.
@@ -166,20 +209,19 @@ fn slopes(
     let statistic = fitted.norm_squared() / (in_common(around, &left) * variance);
     let mut slopes = [0.0; TERMS];
     slopes[..count].copy_from_slice(found.as_slice());
-    let [low, high] = extremes(sites.iter().map(|site| logarithm(&slopes, site)));
+    let [low, high] = extremes(at(&slopes, sites));
     let is_sure = statistic > chi_squared_limit(count as f64, LEVEL);
-    (is_sure && high - low > LEAST.ln()).then_some(slopes)
+    (is_sure && high - low > 2.0 * LEAST.ln()).then_some(slopes)
 }
 
-/// ln σx/σy, where it is surely not nothing.
-fn ratio_of_components(around: &[Vec<usize>], differences: &[[f64; 2]]) -> Option<f64> {
-    let of_axis = |axis: usize| logarithms(differences.iter().map(|own| own[axis] * own[axis]));
-    let ratios = of_axis(0) - of_axis(1);
-    let mean = ratios.mean();
-    let common = in_common(around, &ratios.add_scalar(-mean));
-    let error = PI * (common / differences.len() as f64).sqrt();
-    let is_sure = mean.abs() > SURE * error && mean.abs() > 2.0 * LEAST_OF_COMPONENTS.ln();
-    is_sure.then_some(0.5 * mean)
+/// The mean of ln σx/σy, where it is surely not nothing.
+fn mean_apart(around: &[Vec<usize>], apart: &DVector<f64>) -> Option<f64> {
+    let mean = apart.mean();
+    let left = apart.add_scalar(-mean);
+    let variance = (left.norm_squared() / left.len() as f64).max(VARIANCE);
+    let error = (in_common(around, &left) * variance / apart.len() as f64).sqrt();
+    let is_sure = mean.abs() > SURE * error && mean.abs() > LEAST_OF_COMPONENTS.ln();
+    is_sure.then_some(mean)
 }
 
 /// v.

@@ -18,7 +18,7 @@ pub struct Row {
     /// What was set.
     pub settings: Vec<Setting>,
     /// Every number of every model at every step, by names such as `corrected.force_N@0.5`: model, quantity with its unit, and the
-    /// stretch, load factor, time in s or frame. Components along x and y end with `.x` and `.y`.
+    /// stretch, load factor, time in s or frame, the second time at one with `#2` behind it. Components along x and y end with `.x` and `.y`.
     pub figures: Vec<(String, f64)>,
     /// Whether all that the study requires is met.
     pub passed: bool,
@@ -33,11 +33,15 @@ impl Row {
     pub fn of(run: &Run, results: &Results) -> Self {
         let outcome = &results.outcome;
         let mut figures = Vec::new();
-        for step in &outcome.steps {
+        for (index, step) in outcome.steps.iter().enumerate() {
+            let before = outcome.steps[..index].iter();
+            let at = match before.filter(|own| own.at == step.at).count() {
+                0 => step.at.to_string(),
+                again => format!("{}#{}", step.at, again + 1),
+            };
             for (model, quantities) in &step.models {
                 let mut found = Vec::new();
                 flatten(model, quantities, &mut found);
-                let at = step.at;
                 figures.extend(
                     found
                         .into_iter()

@@ -174,6 +174,9 @@ mod tests {
         let named = parts.iter().filter(|part| part.condition.is_some());
         let pairs: Vec<_> = named.map(|part| (part, EdgeCondition::Rigid)).collect();
         assert_eq!(pairs.len(), 2);
-        assert_eq!(EdgeMotion::new(&mesh, &pairs, 0.5).parameters(), 3);
+        assert_eq!(
+            EdgeMotion::new(&mesh, &pairs, &BTreeSet::new(), 0.5).parameters(),
+            3
+        );
     }
 }

@@ -59,8 +59,14 @@ pub struct EdgeMotion {
 
 impl EdgeMotion {
     /// The motion of segments under one condition each. Where segments meet, known displacements go before rigid ones and
-    /// these before unknown ones; `spacing` is the distance of the markers in mm.
-    pub fn new(mesh: &Mesh, segments: &[(&Segment, EdgeCondition)], spacing: f64) -> Self {
+    /// these before unknown ones; at the nodes `singular` displacements may be singular, as beside a clamp. `spacing` is the distance of
+    /// the markers in mm.
+    pub fn new(
+        mesh: &Mesh,
+        segments: &[(&Segment, EdgeCondition)],
+        singular: &BTreeSet<usize>,
+        spacing: f64,
+    ) -> Self {
         let mut motion = Self {
             places: mesh.nodes.clone(),
             parts: Vec::new(),
@@ -87,14 +93,7 @@ impl EdgeMotion {
         }
         for (segment, condition) in segments {
             if *condition == EdgeCondition::Unknown {
-                let meets = |node: usize| {
-                    segments.iter().any(|(other, condition)| {
-                        *condition != EdgeCondition::Free
-                            && !std::ptr::eq(*other, *segment)
-                            && other.nodes.contains(&node)
-                    })
-                };
-                let singular = segment.ends().map(meets);
+                let singular = segment.ends().map(|node| singular.contains(&node));
                 motion.smooth((segment, singular), spacing, &mut moved);
             }
         }
@@ -135,7 +134,7 @@ impl EdgeMotion {
         });
     }
 
-    /// A smooth edge; where it meets one that is not free the displacement may be singular, as beside a clamp.
+    /// A smooth edge, whose displacement may be singular at its ends.
     fn smooth(
         &mut self,
         (segment, singular): (&Segment, [bool; 2]),

@@ -12,7 +12,7 @@ use super::knowledge::{Physics, Specimen};
 use super::regression::Roughness;
 use super::robust::Robust;
 use super::start::{DEGREE, Polynomial};
-use super::task::{Edge, Task};
+use super::task::{Edge, Task, singular_corners};
 use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::problem::sheet_energy::SheetEnergy;
@@ -70,7 +70,8 @@ impl<'a> Equations<'a> {
             .iter()
             .map(|edge| (edge.segment, edge.condition))
             .collect();
-        let motion = EdgeMotion::new(mesh, &conditions, task.observations.spacing(mesh));
+        let spacing = task.observations.spacing(mesh);
+        let motion = EdgeMotion::new(mesh, &conditions, &singular_corners(edges), spacing);
         let law = match &task.knowledge.law {
             Some(regressed) => regressed.at(&regressed.start()),
             None => Arc::clone(law),

@@ -44,7 +44,7 @@ pub struct FieldEstimate {
     /// size is estimated then.
     pub noise_ratio: Option<f64>,
     /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where it was found to differ
-    /// from place to place or from component to component: markers are weighted by it then.
+    /// from place to place or from component to component, and the data are explained: markers are weighted by it then.
     pub noise_range: Option<[[f64; 2]; 2]>,
     /// How many parameters the data have determined: the trace of the matrix that makes the fitted displacements of the
     /// measured ones.

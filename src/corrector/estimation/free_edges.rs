@@ -5,7 +5,7 @@ use super::field_estimate::EdgeForce;
 use super::knowledge::EdgeCondition;
 use super::regression::weighted_square;
 use super::search::{MOST_STEPS, NearestField};
-use super::task::{Edge, Task};
+use super::task::{Edge, Task, singular_corners};
 use crate::error::Error;
 use crate::statistics::f_tail;
 
@@ -54,7 +54,23 @@ pub fn search<'a>(
             found = trial;
         }
     }
-    Ok((found, edges))
+    settle(task, found, edges)
+}
+
+/// The nearest field where the edges that the data have left loaded are those of the body.
+fn settle<'a>(
+    task: &Task<'a>,
+    found: NearestField<'a>,
+    mut edges: Vec<Edge<'a>>,
+) -> Result<(NearestField<'a>, Vec<Edge<'a>>), Error> {
+    let before = singular_corners(&edges);
+    for edge in edges.iter_mut().filter(|edge| edge.tested) {
+        edge.of_body = true;
+    }
+    match singular_corners(&edges) == before {
+        true => Ok((found, edges)),
+        false => Ok((Equations::new(task, &edges)?.run(MOST_STEPS)?, edges)),
+    }
 }
 
 /// How probable it is that the misfit grows so much by noise, when an edge that is free is taken as such.

@@ -36,6 +36,8 @@ impl NearestField<'_> {
         let larger = judged.noise.map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+        // A misfit is no noise.
+        let is_noise = judged.verdict.answer != Answer::NotExplained;
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(own),
             cells: self.cells(own)?,
@@ -47,7 +49,7 @@ impl NearestField<'_> {
             whiteness,
             markers,
             noise: (larger * self.trade.sound / mean).sqrt(),
-            noise_range: self.deviations(larger),
+            noise_range: self.deviations(larger).filter(|_| is_noise),
             robust,
             known_noise,
             effective_parameters: self.fit.effective,

@@ -1,5 +1,7 @@
 //! What the search is for.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::knowledge::{EdgeCondition, Knowledge, Specimen, Unnamed};
 use super::observations::Observations;
 use super::outline::Segment;
@@ -13,6 +15,9 @@ pub struct Edge<'a> {
     pub tested: bool,
     /// Where they have chosen: how probable the misfit of the free edge was.
     pub probability: Option<f64>,
+    /// Whether it is an edge of the body, at whose corners fields may be singular: where a mesh ends inside of it there are none, and as long
+    /// as the data choose it is taken so.
+    pub of_body: bool,
 }
 
 impl<'a> Edge<'a> {
@@ -29,8 +34,24 @@ impl<'a> Edge<'a> {
             condition,
             tested: open && knowledge.unnamed == Unnamed::Tested,
             probability: None,
+            of_body: !open,
         }
     }
+}
+
+/// The nodes in which edges of the body meet that are not free.
+pub fn singular_corners(edges: &[Edge]) -> BTreeSet<usize> {
+    let mut ends: BTreeMap<usize, (usize, bool)> = BTreeMap::new();
+    for edge in edges.iter().filter(|edge| edge.is_loaded()) {
+        for node in edge.segment.ends() {
+            let (count, of_body) = ends.entry(node).or_insert((0, true));
+            (*count, *of_body) = (*count + 1, *of_body && edge.of_body);
+        }
+    }
+    let singular = ends
+        .into_iter()
+        .filter(|(_, (count, of_body))| *count > 1 && *of_body);
+    singular.map(|(node, _)| node).collect()
 }
 
 /// What the search is for.

@@ -89,29 +89,51 @@ fn a_misfit_is_not_taken_for_noise() {
 /// As where subsets of image correlation overlap: of one size everywhere, also at the margin.
 #[test]
 fn noise_that_correlates_is_not_uneven() {
+    const REACH: usize = 8;
     let places = grid([40, 20]);
-    let far = |a: [f64; 2], b: [f64; 2]| ((a[0] - b[0]) / 2.0).hypot((a[1] - b[1]) / 3.0);
-    for length in [1.0, 1.5, 2.5] {
+    let wide = grid([40 + 2 * REACH, 20 + 2 * REACH]);
+    let rows = 20 + 2 * REACH;
+    for length in [1.0_f64, 1.5, 2.5] {
+        let weights: Vec<f64> = (0..=2 * REACH)
+            .map(|step| (-0.5 * ((step as f64 - REACH as f64) / length).powi(2)).exp())
+            .collect();
         let alarms = (0..40).filter(|seed| {
-            let white = noise(*seed, &places, |_| 1.0);
-            let smooth = places.iter().map(|place| {
-                let sum = places.iter().zip(&white).fold([0.0; 3], |sum, (other, z)| {
-                    let weight = (-0.5 * (far(*place, *other) / length).powi(2)).exp();
-                    let [x, y] = z.unwrap();
-                    [
-                        sum[0] + weight * x,
-                        sum[1] + weight * y,
-                        sum[2] + weight * weight,
-                    ]
+            let white = noise(*seed, &wide, |_| 1.0);
+            let smooth = (0..40)
+                .flat_map(|i| (0..20).map(move |j| [i, j]))
+                .map(|[i, j]| {
+                    let mut sum = [0.0; 2];
+                    for (a, across) in weights.iter().enumerate() {
+                        for (b, along) in weights.iter().enumerate() {
+                            let z = white[(i + a) * rows + j + b].unwrap();
+                            (0..2).for_each(|axis| sum[axis] += across * along * z[axis]);
+                        }
+                    }
+                    Some(sum)
                 });
-                // Of one variance, at the margin too.
-                Some([sum[0], sum[1]].map(|own| own / sum[2].sqrt()))
-            });
             let smooth: Vec<_> = smooth.collect();
             Unevenness::found(&places, &smooth).is_some()
         });
         let alarms = alarms.count();
         assert!(alarms <= 2, "{length}: {alarms} of 40");
+    }
+}
+
+/// As of noise in proportion to each component of a displacement that grows along the sheet.
+#[test]
+fn noise_that_grows_in_one_component_alone_is_found_in_that_one() {
+    let places = grid([40, 20]);
+    let along = |[x, _]: [f64; 2]| 10.0_f64.powf((x - 1e3) / 78.0);
+    for seed in 0..20 {
+        let mut z = noise(seed, &places, |_| 1.0);
+        for (own, place) in z.iter_mut().flatten().zip(&places) {
+            own[0] *= along(*place);
+        }
+        let found = Unevenness::found(&places, &z).expect("uneven");
+        let (first, last) = (found.factors[0], found.factors[799]);
+        let [x, y] = [0, 1].map(|axis| last[axis] / first[axis]);
+        assert!(x > 4.0 && x < 20.0, "{seed}: {x}");
+        assert!((0.5..2.0).contains(&y), "{seed}: {y}");
     }
 }
 

@@ -12,7 +12,8 @@ fn motion(conditions: [EdgeCondition; 4]) -> (Mesh, EdgeMotion) {
         .iter()
         .map(|part| (part, conditions[part.condition.unwrap()]))
         .collect();
-    let motion = EdgeMotion::new(&mesh, &pairs, 0.5);
+    let corners = parts.iter().flat_map(Segment::ends).collect();
+    let motion = EdgeMotion::new(&mesh, &pairs, &corners, 0.5);
     (mesh, motion)
 }
 

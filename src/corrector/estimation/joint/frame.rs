@@ -124,8 +124,10 @@ impl<'a> Ground<'a> {
                 knowledge: &knowledge,
             };
             let (found, edges) = free_edges::search(&task, first.clone())?;
-            let settled = edges.iter().map(|edge| (edge.condition, edge.probability));
             let other = found.other_noise(&found.markers(), &edges);
+            let settled = edges
+                .iter()
+                .map(|edge| (edge.condition, edge.probability, edge.of_body));
             Ok((settled.collect::<Vec<_>>(), other))
         };
         let (settled, _) = with_own_noise(&mut observations, search)?;
@@ -133,9 +135,10 @@ impl<'a> Ground<'a> {
         Ok(Judged {
             ground: self,
             edges: edges
-                .map(|(edge, (condition, probability))| Edge {
+                .map(|(edge, (condition, probability, of_body))| Edge {
                     condition,
                     probability,
+                    of_body,
                     tested: false,
                     ..edge
                 })
