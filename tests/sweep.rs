@@ -234,7 +234,7 @@ fn few_draws_beyond_what_a_study_may_hold_are_told_and_steps_may_be_varied() {
         place.path(),
         "sweep s.toml --vary material.c10=0.01+-0.1MPa --samples 16",
     );
-    assert_ends(&done, 2, "material.c10");
+    assert_ends(&done, 2, "parameters.c10");
 }
 
 #[test]

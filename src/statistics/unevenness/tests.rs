@@ -93,7 +93,7 @@ fn noise_that_correlates_is_not_uneven() {
     let places = grid([40, 20]);
     let wide = grid([40 + 2 * REACH, 20 + 2 * REACH]);
     let rows = 20 + 2 * REACH;
-    for length in [1.0_f64, 1.5, 2.5] {
+    for length in [0.5_f64, 1.0, 1.5, 2.5] {
         let weights: Vec<f64> = (0..=2 * REACH)
             .map(|step| (-0.5 * ((step as f64 - REACH as f64) / length).powi(2)).exp())
             .collect();
