@@ -79,7 +79,7 @@ fn a_misfit_is_not_taken_for_noise() {
     for seed in 0..20 {
         let mut z = noise(seed, &places, |_| 1.0);
         for (own, [x, y]) in z.iter_mut().flatten().zip(&places) {
-            own[0] += 6.0 * (((x - 1e3) / 25.0).powi(2) * -1.0).exp();
+            own[0] += 6.0 * (-((x - 1e3) / 25.0).powi(2)).exp();
             own[1] += 3.0 * (y / 30.0).sin();
         }
         assert_eq!(Unevenness::found(&places, &z), None, "{seed}");
