@@ -128,10 +128,10 @@ fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
             Diagnostic::warning("", message).hint("say that of the file with --factor")
         })
     });
-    let [finite_elements, ..] = differences else {
-        return Vec::new();
-    };
-    let shifted = Some(finite_elements).filter(|own| doubt.is_none() && own.is_shifted());
+    // The finite elements stand first.
+    let shifted = differences
+        .first()
+        .filter(|own| doubt.is_none() && own.is_shifted());
     doubt.into_iter().chain(shifted.map(shift_doubt)).collect()
 }
 

@@ -89,39 +89,25 @@ pub struct Constraints {
     holders: Vec<Holder>,
 }
 
-/// What a support holds along some axes.
+/// What a support holds.
 struct Holder {
-    nodes: BTreeSet<usize>,
-    /// Its edges of the boundary.
-    edges: Vec<Vec<usize>>,
+    hold: Hold,
     /// Whether it holds edges, lines or cells, and not nodes alone.
     has_parts: bool,
-    axes: [bool; 2],
 }
 
 impl Holder {
-    /// Of the nodes of a group, those at which the support holds the group itself, and not another part that ends there.
-    fn on(&self, mesh: &Mesh, group: &Group) -> BTreeSet<usize> {
+    /// Of the nodes of a group, those at which the support holds the group itself along an axis, and not another part that ends there.
+    fn on(&self, mesh: &Mesh, group: &Group, axis: usize) -> BTreeSet<usize> {
+        let own = &self.hold.nodes[axis];
         if !self.has_parts || !group.has_parts() {
             let nodes = group.nodes.iter().copied();
-            return nodes.filter(|node| self.nodes.contains(node)).collect();
+            return nodes.filter(|node| own.contains(node)).collect();
         }
         let sides = group.edges.iter().chain(&group.lines).map(Vec::as_slice);
         let parts = sides.chain(group.cells.iter().map(|cell| mesh.cell(*cell)));
-        let held = parts.filter(|part| part.iter().all(|node| self.nodes.contains(node)));
+        let held = parts.filter(|part| part.iter().all(|node| own.contains(node)));
         held.flatten().copied().collect()
-    }
-
-    fn hold(&self) -> Hold {
-        let nodes = |holds: bool| match holds {
-            true => self.nodes.clone(),
-            false => BTreeSet::new(),
-        };
-        Hold {
-            rank: 0,
-            nodes: self.axes.map(nodes),
-            sides: self.edges.clone(),
-        }
     }
 }
 
@@ -171,11 +157,17 @@ impl Constraints {
 
     /// Notes that a support holds a group along some axes.
     pub fn holds(&mut self, group: &Group, axes: [bool; 2]) {
+        let nodes = |holds: bool| match holds {
+            true => group.nodes.iter().copied().collect(),
+            false => BTreeSet::new(),
+        };
         self.holders.push(Holder {
-            nodes: group.nodes.iter().copied().collect(),
-            edges: group.edges.clone(),
+            hold: Hold {
+                rank: 0,
+                nodes: axes.map(nodes),
+                sides: group.edges.clone(),
+            },
             has_parts: group.has_parts(),
-            axes,
         });
     }
 
@@ -183,10 +175,10 @@ impl Constraints {
     /// that edge alone, and what supports of both edges hold is each edge's as far as its tractions beside the corner tell, and the rest
     /// shared. Forces of groups that meet in corners therefore add up to those of all supports.
     pub fn parts_on(&self, mesh: &Mesh, group: &Group, axis: usize) -> Vec<Part> {
-        let holds: Vec<Hold> = self.holders.iter().map(Holder::hold).collect();
+        let holds: Vec<&Hold> = self.holders.iter().map(|own| &own.hold).collect();
         let parts = reaction_parts(mesh, &holds, axis);
         let on_group = |(holder, parts): (&Holder, Vec<Part>)| {
-            let own = holder.on(mesh, group);
+            let own = holder.on(mesh, group, axis);
             let parts = parts.into_iter();
             parts.filter(move |part| own.contains(&part.at))
         };

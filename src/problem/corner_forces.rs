@@ -69,7 +69,7 @@ pub struct Part {
 pub type Share = (usize, f64);
 
 /// The factors of the reactions that make up the force of each body along each axis.
-pub fn reaction_shares(mesh: &Mesh, holds: &[Hold]) -> Vec<[Vec<Share>; 2]> {
+pub fn reaction_shares(mesh: &Mesh, holds: &[&Hold]) -> Vec<[Vec<Share>; 2]> {
     let along = |axis: usize| {
         let parts = reaction_parts(mesh, holds, axis).into_iter();
         parts.map(|parts| {
@@ -93,7 +93,7 @@ pub struct SharedRest {
 }
 
 /// What bodies share along an axis.
-pub fn shared_rests(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<SharedRest> {
+pub fn shared_rests(mesh: &Mesh, holds: &[&Hold], axis: usize) -> Vec<SharedRest> {
     let mut rests = Vec::new();
     for (at, meeting) in meetings(mesh, holds, axis) {
         let own = meeting
@@ -111,7 +111,7 @@ pub fn shared_rests(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<SharedRest>
 }
 
 /// The parts of the force of each body along one axis.
-pub fn reaction_parts(mesh: &Mesh, holds: &[Hold], axis: usize) -> Vec<Vec<Part>> {
+pub fn reaction_parts(mesh: &Mesh, holds: &[&Hold], axis: usize) -> Vec<Vec<Part>> {
     let mut all: Vec<Vec<Part>> = vec![Vec::new(); holds.len()];
     for (at, Meeting { lowest, beside }) in meetings(mesh, holds, axis) {
         let share = 1.0 / lowest.len() as f64;
@@ -136,7 +136,7 @@ struct Meeting {
 }
 
 /// Every node that is held along an axis, with what holds it.
-fn meetings(mesh: &Mesh, holds: &[Hold], axis: usize) -> BTreeMap<usize, Meeting> {
+fn meetings(mesh: &Mesh, holds: &[&Hold], axis: usize) -> BTreeMap<usize, Meeting> {
     let mut holders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (body, hold) in holds.iter().enumerate() {
         for node in &hold.nodes[axis] {

@@ -137,25 +137,27 @@ impl VariedCard {
 
     /// Sets a parameter, by the name that a fit has for it; says whether the card has one of this name.
     fn set(&mut self, parameter: &[&str], value: &NewValue) -> bool {
-        let place = match *parameter {
-            [key @ ("poisson_ratio" | "bulk_modulus")] => vec!["volume".to_owned(), key.to_owned()],
-            [key] => vec!["parameters".to_owned(), key.to_owned()],
-            ["softening", key] => vec!["softening".to_owned(), key.to_owned()],
-            // Terms are counted from one.
-            ["relaxation", term, key] => match term.parse::<usize>() {
-                Ok(term @ 1..) => ["viscosity", "relaxation", &(term - 1).to_string(), key]
-                    .map(str::to_owned)
-                    .to_vec(),
-                _ => return false,
-            },
+        // Terms are counted from one.
+        let index = match *parameter {
+            ["relaxation", term, _] => term
+                .parse::<usize>()
+                .ok()
+                .and_then(|own| own.checked_sub(1)),
+            _ => None,
+        };
+        let index = index.map(|index| index.to_string());
+        let place: &[&str] = match (parameter, &index) {
+            ([key @ ("poisson_ratio" | "bulk_modulus")], _) => &["volume", key],
+            ([key], _) => &["parameters", key],
+            (["softening", key], _) => &["softening", key],
+            (["relaxation", _, key], Some(index)) => &["viscosity", "relaxation", index, key],
             _ => return false,
         };
-        let place: Vec<&str> = place.iter().map(String::as_str).collect();
         let is_known = match *parameter {
             [key] => self.card.parameter(key).is_some(),
-            _ => self.document.holds(&place),
+            _ => self.document.holds(place),
         };
-        let is_set = is_known && self.document.set(&place, value).is_ok();
+        let is_set = is_known && self.document.set(place, value).is_ok();
         self.is_varied |= is_set;
         is_set
     }

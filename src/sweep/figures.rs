@@ -1,5 +1,7 @@
 //! What is noted of a run.
 
+use std::collections::HashMap;
+
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -33,12 +35,14 @@ impl Row {
     pub fn of(run: &Run, results: &Results) -> Self {
         let outcome = &results.outcome;
         let mut figures = Vec::new();
-        for (index, step) in outcome.steps.iter().enumerate() {
-            let before = outcome.steps[..index].iter();
-            let at = match before.filter(|own| own.at == step.at).count() {
-                0 => step.at.to_string(),
-                again => format!("{}#{}", step.at, again + 1),
-            };
+        let mut times: HashMap<String, usize> = HashMap::new();
+        for step in &outcome.steps {
+            let mut at = step.at.to_string();
+            let times = times.entry(at.clone()).or_default();
+            *times += 1;
+            if *times > 1 {
+                at += &format!("#{times}");
+            }
             for (model, quantities) in &step.models {
                 let mut found = Vec::new();
                 flatten(model, quantities, &mut found);

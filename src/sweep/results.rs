@@ -80,15 +80,15 @@ impl Statistics {
     }
 }
 
-/// The step that a figure is of.
-fn step_of(name: &str) -> &str {
-    name.rsplit_once('@').map_or("", |(_, at)| at)
+/// The quantity and the step of a figure's name.
+fn parts_of(name: &str) -> (&str, &str) {
+    name.rsplit_once('@').unwrap_or((name, ""))
 }
 
 /// The figures of the last step alone. Where steps are varied, that is another one in each run: of those that reach it, under one name.
 fn at_last_step(rows: &[Row]) -> Vec<Row> {
     const OWN: &str = "the last step";
-    let last = |row: &Row| row.figures.last().map(|(name, _)| step_of(name).to_owned());
+    let last = |row: &'_ Row| Some(parts_of(&row.figures.last()?.0).1.to_owned());
     let sound = rows.iter().filter(|row| row.fault.is_empty());
     let mut steps: Vec<String> = sound.filter_map(last).collect();
     steps.sort_unstable();
@@ -98,23 +98,21 @@ fn at_last_step(rows: &[Row]) -> Vec<Row> {
         [one] => Some(one.clone()),
         _ => None,
     };
+    let named = common.as_deref().unwrap_or(OWN);
     let of_row = |row: &Row| {
         let own = last(row).filter(|_| row.fault.is_empty());
-        let (at, named) = match &common {
-            Some(step) => (Some(step.clone()), step.as_str()),
-            None => (own, OWN),
-        };
-        let figures = row.figures.iter();
-        let figures = figures.filter(|(name, _)| at.as_deref() == Some(step_of(name)));
-        let renamed = figures.map(|(name, value)| {
-            let quantity = name
-                .rsplit_once('@')
-                .map_or(&**name, |(quantity, _)| quantity);
-            (format!("{quantity}@{named}"), *value)
+        let at = common.clone().or(own);
+        let figures = row.figures.iter().filter_map(|(name, value)| {
+            let (quantity, step) = parts_of(name);
+            (at.as_deref() == Some(step)).then(|| (format!("{quantity}@{named}"), *value))
         });
         Row {
-            figures: renamed.collect(),
-            ..row.clone()
+            number: row.number,
+            settings: row.settings.clone(),
+            figures: figures.collect(),
+            passed: row.passed,
+            fault: row.fault.clone(),
+            warnings: Vec::new(),
         }
     };
     rows.iter().map(of_row).collect()
@@ -247,7 +245,7 @@ pub fn figures(keys: &[String], rows: &[Row]) -> Vec<Figure> {
     let last = statistics(&rows);
     let last = (last.iter()).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
     let over = last.into_iter().flat_map(|one| {
-        let at = step_of(&one.name);
+        let (_, at) = parts_of(&one.name);
         let rows = &rows;
         let heads = &heads;
         let axis = |index: usize| -> Option<Figure> {
@@ -276,7 +274,7 @@ pub fn figures(keys: &[String], rows: &[Row]) -> Vec<Figure> {
 
 /// Whether a figure is the force of a model as a whole: not that of a group, nor an error.
 fn is_force(name: &str) -> bool {
-    let quantity = name.split('@').next().unwrap_or(name);
+    let (quantity, _) = parts_of(name);
     matches!(
         quantity.split_once('.'),
         Some((_, "force_N" | "measured_N"))

@@ -24,27 +24,24 @@ pub struct Body {
 impl Body {
     /// Its force of some reactions, two numbers a node.
     pub fn force(&self, reactions: &[f64]) -> [f64; 2] {
-        [0, 1].map(|axis| {
-            let shares = self.shares[axis].iter();
-            shares
-                .map(|(node, factor)| factor * reactions[2 * node + axis])
-                .sum()
-        })
+        [0, 1].map(|axis| of_reactions(&self.shares[axis], reactions, axis))
     }
-}
 
-impl Body {
     /// The standard deviation along an axis of what may belong to others, as if each division of it were as likely.
     pub fn division_error(&self, reactions: &[f64], axis: usize) -> f64 {
         let square = |(share, factors): &(f64, Vec<Share>)| {
-            let parts = factors.iter();
-            let rest: f64 = parts
-                .map(|(node, factor)| factor * reactions[2 * node + axis])
-                .sum();
-            (share * rest).powi(2) / 3.0
+            (share * of_reactions(factors, reactions, axis)).powi(2) / 3.0
         };
         self.rests[axis].iter().map(square).sum::<f64>().sqrt()
     }
+}
+
+/// What some shares of reactions along an axis make up.
+fn of_reactions(shares: &[Share], reactions: &[f64], axis: usize) -> f64 {
+    let parts = shares.iter();
+    parts
+        .map(|(node, factor)| factor * reactions[2 * node + axis])
+        .sum()
 }
 
 /// The bodies behind the edges of a mesh that are not free, in the order of their first edges.
@@ -70,7 +67,8 @@ pub fn bodies<'a>(
     let members = groups.into_iter().map(|(_, members)| members);
     let members: Vec<Vec<usize>> = members.collect();
     let holds = members.iter().map(|members| hold(mesh, &edges, members));
-    let holds: Vec<Hold> = holds.collect();
+    let own: Vec<Hold> = holds.collect();
+    let holds: Vec<&Hold> = own.iter().collect();
     let rests = [0, 1].map(|axis| shared_rests(mesh, &holds, axis));
     let rests_of = |body: usize| {
         rests.each_ref().map(|rests| {
@@ -80,7 +78,7 @@ pub fn bodies<'a>(
         })
     };
     let shares = reaction_shares(mesh, &holds).into_iter();
-    let all = shares.zip(&holds).zip(members).enumerate();
+    let all = shares.zip(holds).zip(members).enumerate();
     let body = |(index, ((shares, hold), members)): (usize, ((_, &Hold), Vec<usize>))| Body {
         name: edges[members[0]].0.name.clone(),
         edges: members,

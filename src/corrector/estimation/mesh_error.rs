@@ -55,16 +55,9 @@ pub struct MeshError {
 pub struct MeshDifference {
     fine: Fine,
     /// H d, two numbers a marker.
-    markers: Vec<f64>,
+    pub markers: Vec<f64>,
     /// Of each body.
     forces: Vec<[f64; 2]>,
-}
-
-impl MeshDifference {
-    /// H (u½ − u), two numbers a marker.
-    pub fn at_markers(&self) -> &[f64] {
-        &self.markers
-    }
 }
 
 /// The equilibrium on the refined mesh.
@@ -225,6 +218,7 @@ impl NearestField<'_> {
         let reactions = self.reactions();
         let bodies = &self.equations.bodies;
         let holds: Vec<Hold> = bodies.iter().map(|body| fine.hold(body)).collect();
+        let holds: Vec<&Hold> = holds.iter().collect();
         let shares = reaction_shares(&fine.mesh, &holds).into_iter().zip(bodies);
         let difference = |(shares, own): ([Vec<Share>; 2], &Body)| {
             let there = Body {

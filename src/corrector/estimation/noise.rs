@@ -55,13 +55,6 @@ pub fn with_own_noise<T>(
     }
 }
 
-/// The scatter of markers over their stated noise.
-struct Scatter {
-    value: f64,
-    /// Whether it is farther from one than chance and coarse statements make it.
-    is_far: bool,
-}
-
 /// Whether a marker's noise tells of that of others.
 fn is_sound(marker: &Option<MarkerEstimate>) -> bool {
     marker
@@ -103,12 +96,8 @@ impl NearestField<'_> {
     ) -> OtherNoise {
         let unevenness = self.unevenness(markers);
         let unevenness = unevenness.filter(|_| !self.is_left_by_cells(markers, edges));
-        let known = self.observations().known_noise;
-        let ratio = known.then(|| self.scatter(markers)).flatten();
         OtherNoise {
-            ratio: ratio
-                .filter(|ratio| unevenness.is_some() || ratio.is_far)
-                .map(|ratio| ratio.value),
+            ratio: self.contradicted_noise(markers, unevenness.is_some()),
             unevenness,
         }
     }
@@ -130,7 +119,7 @@ impl NearestField<'_> {
             return true;
         }
         let difference = self.mesh_difference(edges);
-        difference.is_some_and(|own| size(&|row| own.at_markers()[row]) > MUCH * left)
+        difference.is_some_and(|own| size(&|row| own.markers[row]) > MUCH * left)
     }
 
     /// How the noise of markers differs from place to place; outliers tell of it too, but for those that no noise makes.
@@ -151,20 +140,20 @@ impl NearestField<'_> {
         Unevenness::found(&observations.places, &left.collect::<Vec<_>>())
     }
 
-    /// The scatter of the markers over their stated noise, from the median of the standardised residuals; `None` without markers.
-    fn scatter(&self, markers: &[Option<MarkerEstimate>]) -> Option<Scatter> {
+    /// The scatter of the markers over their stated noise, from the median of the standardised residuals, where it is far from one or the
+    /// noise is another one anyhow.
+    fn contradicted_noise(&self, markers: &[Option<MarkerEstimate>], other: bool) -> Option<f64> {
         // The standard error of ln of a deviation from the median.
         const ERROR: f64 = 0.72;
         const SURE: f64 = 4.0;
         let lengths = markers.iter().flatten();
         let lengths: Vec<f64> = lengths.map(|marker| marker.standardised_residual).collect();
+        if !self.observations().known_noise || lengths.is_empty() {
+            return None;
+        }
         let sure = SURE * ERROR / (lengths.len() as f64).sqrt();
-        let is_some = !lengths.is_empty();
-        let value = self.trade.sound.sqrt() * robust_deviation(lengths);
-        is_some.then(|| Scatter {
-            value,
-            is_far: value.ln().abs() > OFF.ln().max(sure),
-        })
+        let ratio = self.trade.sound.sqrt() * robust_deviation(lengths);
+        (other || ratio.ln().abs() > OFF.ln().max(sure)).then_some(ratio)
     }
 
     /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where they have followed what markers

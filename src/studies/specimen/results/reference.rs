@@ -23,18 +23,16 @@ pub struct Reference {
     pub(super) rounds: Vec<Round>,
     /// Of local refinement with all cells of the last mesh halved, where these are not too many.
     pub(super) all_halved: Option<Solution>,
-    /// What the curves that a file's edges stand for change; `None` where there are no such edges.
-    pub(super) outline: Option<OutlineChange>,
+    /// What the curves that a file's edges stand for change at each load factor; `None` where there are no such edges.
+    pub(super) outline: Option<Vec<OutlineChange>>,
 }
 
-/// The finite elements with the outline moved towards the curves that a file's edges stand for, beside those with its edges.
+/// What the curves that a file's edges stand for change at a load factor.
 pub struct OutlineChange {
-    /// The whole change over that between the two.
-    pub whole: f64,
-    /// On the moved outline.
-    pub rounded: Solution,
-    /// On the file's.
-    pub straight: Solution,
+    /// Of what is measured, in its unit.
+    pub measured: f64,
+    /// Of the displacement at the nodes of the lattice, in relative L2 in %.
+    pub displacement_percent: f64,
 }
 
 /// One mesh of local refinement, with its errors at the worst load factor.
@@ -120,27 +118,14 @@ impl Reference {
         if self.measures_none(step) {
             return Some(0.0);
         }
-        let outline = self.outline.as_ref()?;
-        let at = |own| self.measured.at(own, step);
-        let change = outline.whole * (at(&outline.rounded)? - at(&outline.straight)?);
-        Some(100.0 * (change / at(&self.finest)?).abs())
-    }
-
-    /// What they change in the displacement at the nodes of a lattice, in relative L2 in %.
-    fn outline_displacement_percent(&self, step: usize, lattice: &Mesh) -> Option<f64> {
-        let OutlineChange {
-            whole,
-            rounded,
-            straight,
-        } = self.outline.as_ref()?;
-        let [rounded, straight] = [rounded, straight].map(|own| on_lattice(own, step, lattice));
-        Some(whole.abs() * area_weighted_percent(lattice, &rounded?, &straight?))
+        let change = self.outline.as_ref()?.get(step)?.measured;
+        let measured = self.measured.at(&self.finest, step)?;
+        Some(100.0 * (change / measured).abs())
     }
 
     /// What is said about a file's outline.
     fn outline_told(&self) -> Option<Block> {
-        self.outline.as_ref()?;
-        let steps = 0..self.reached();
+        let steps = 0..self.outline.as_ref()?.len();
         let percents = steps.filter_map(|step| self.outline_percent(step));
         let most = percents.reduce(f64::max)?;
         Some(Block::Paragraph(format!(
@@ -191,8 +176,8 @@ impl Reference {
             true => self.displacement_by_coarser(step, lattice)?,
             false => self.displacement_by_halving(step, lattice)?,
         };
-        match self.outline {
-            Some(_) => Some(own + self.outline_displacement_percent(step, lattice)?),
+        match &self.outline {
+            Some(changes) => Some(own + changes.get(step)?.displacement_percent),
             None => Some(own),
         }
     }
@@ -292,7 +277,7 @@ impl Reference {
 }
 
 /// The displacement of a solution at the nodes of a lattice; `None` where it has not reached a load factor.
-fn on_lattice(solution: &Solution, step: usize, lattice: &Mesh) -> Option<Vec<f64>> {
+pub(super) fn on_lattice(solution: &Solution, step: usize, lattice: &Mesh) -> Option<Vec<f64>> {
     let displacement = solution.displacement(step)?;
     Some(solution.mesh.displacement_on(displacement, lattice))
 }

@@ -4,7 +4,8 @@
 use super::end::{End, last_groups};
 use super::lattice::solve;
 use super::measured::Measured;
-use super::reference::{OutlineChange, Reference, Round};
+use super::reference::{OutlineChange, Reference, Round, on_lattice};
+use crate::compare::area_weighted_percent;
 use crate::error::Error;
 use crate::finite_element::error_estimate::{ErrorEstimate, SheetSolution, bulk, side_by_side};
 use crate::finite_element::recovery::Recovery;
@@ -55,7 +56,7 @@ impl Reference {
         let once_halved = once_halved.filter(|_| rounds.is_empty());
         Ok(Self {
             estimates: estimates(specimen, &finest, &measured)?,
-            outline: outline_change(specimen, once_halved, progress)?,
+            outline: outline_changes(specimen, &measured, once_halved, progress)?,
             all_halved,
             coarser: meshes.split_off(meshes.len().saturating_sub(2)),
             finest,
@@ -242,26 +243,39 @@ fn measured(specimen: &Specimen, solution: &Solution, ends: &[End]) -> Measured 
     }
 }
 
-/// What the curves that a file's edges stand for change; `None` where there are no such edges.
-fn outline_change(
+/// What the curves that a file's edges stand for change at each load factor; `None` where there are no such edges.
+fn outline_changes(
     specimen: &Specimen,
+    what: &Measured,
     middle: Option<&Solution>,
     progress: Progress,
-) -> Result<Option<OutlineChange>, Error> {
+) -> Result<Option<Vec<OutlineChange>>, Error> {
     let Some((rounded, whole)) = specimen.outline.rounded_mesh() else {
         return Ok(None);
     };
     // Where a path ends is told of the meshes whose results are given.
     let mut untold = Vec::new();
     let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, middle, FILE, &mut untold, progress);
-    Ok(Some(OutlineChange {
-        whole,
-        rounded: on(&rounded)?,
-        straight: match middle {
-            Some(middle) => middle.clone(),
-            None => on(&specimen.outline.reference_mesh(1))?,
-        },
-    }))
+    let rounded = on(&rounded)?;
+    let halved;
+    let middle = match middle {
+        Some(middle) => middle,
+        None => {
+            halved = on(&specimen.outline.reference_mesh(1))?;
+            &halved
+        }
+    };
+    let lattice = specimen.outline.lattice();
+    let change = |step| {
+        let [curved, straight] = [&rounded, middle].map(|own| on_lattice(own, step, &lattice));
+        Some(OutlineChange {
+            measured: whole * (what.at(&rounded, step)? - what.at(middle, step)?),
+            displacement_percent: whole.abs()
+                * area_weighted_percent(&lattice, &curved?, &straight?),
+        })
+    };
+    let steps = 0..rounded.reached().min(middle.reached());
+    Ok(Some(steps.filter_map(change).collect()))
 }
 
 /// The squared relative error of each cell, summed over the load factors.
