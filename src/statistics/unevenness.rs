@@ -2,15 +2,16 @@
 //!
 //! ```text
 //! dᵢ = zᵢ − ¼ Σⱼ zⱼ                       j: the four nearest neighbours of i
-//! ½ ln dx²dy² = g₀ + g·q(xᵢ) + eᵢ,         Var e = π²/4       both components together
-//! ½ ln dx²/dy² = h₀ + h·q(xᵢ) + fᵢ,        Var f = π²/4       one beside the other
+//! ½ ln dx²/dy² = h₀ + h·q(xᵢ) + fᵢ,        Var f = π²/4       one component beside the other
+//! ½ ln dx²dy² = g₀ + g·q(xᵢ) + eᵢ,         Var e = π²/4       both together
+//! ln (dx² e⁻ʰ⁰ + dy² eʰ⁰) = g₀ + g·q(xᵢ) + eᵢ,  Var e = π²/6  the same where h is nothing, which tells more
 //! σx, σy ∝ exp(½ (g·q(x) ± (h₀ + h·q(x))))
 //! ```
 //!
 //! q are the linear and quadratic terms of the place, the linear ones alone of few places, and how far a place lies out of the
 //! middle of its eight nearest neighbours along each axis, which is nothing but at the margin. What changes slowly from place to
 //! place, as a misfit or noise that correlates, is hardly left in differences to neighbours, but at the margin, where these lie on one
-//! side: where neighbours correlate nothing is said of the margin. The evidence is χ² = Σ (ŷ − ȳ)²/(v s²), s² = π²/4 or what is left,
+//! side: where neighbours correlate nothing is said of the margin. The evidence is χ² = Σ (ŷ − ȳ)²/(v s²), s² = Var or what is left,
 //! beside as many degrees of freedom as q has terms. v = Σᵢⱼ eᵢ eⱼ/Σᵢ eᵢ² over the 24 nearest neighbours j of i is what
 //! neighbours have in common, at least that of white noise.
 //!
@@ -38,8 +39,10 @@ const MARGIN: f64 = 0.2;
 /// Neighbours that may have noise in common where it correlates.
 const FAR: usize = 24;
 
-/// The variance of half the sum, and of half the difference, of the logarithms of the squares of two components of white noise.
+/// The variance of half the sum, and of half the difference, of the logarithms of the squares of two components of white noise; that of
+/// the logarithm of the sum of their squares.
 const VARIANCE: f64 = PI * PI / 4.0;
+const VARIANCE_OF_SUM: f64 = PI * PI / 6.0;
 
 /// What variances of means of neighbouring logarithms grow by: differences of neighbours on a square grid correlate by −0.4, their
 /// logarithms by about 0.10.
@@ -77,9 +80,14 @@ impl Unevenness {
         let (own, z): (Vec<_>, Vec<_>) =
             sound.filter_map(|(place, z)| Some((*place, (*z)?))).unzip();
         let told = Told::of(&own, &z)?;
-        let sizes = told.slopes(&told.together);
-        let ratios = told.slopes(&told.apart);
-        let ratio = told.mean_apart();
+        let apart = told.apart();
+        let ratios = told.slopes(&apart);
+        let ratio = told.mean_apart(&apart);
+        let together = match ratios {
+            Some(_) => told.together(),
+            None => told.together_at(ratio.unwrap_or(0.0)),
+        };
+        let sizes = told.slopes(&together);
         if sizes.is_none() && ratios.is_none() && ratio.is_none() {
             return None;
         }
@@ -88,7 +96,7 @@ impl Unevenness {
         let sizes = at(&sizes.unwrap_or(nothing), &sites);
         // The mean of the ratios is that of their logarithms, where it is any.
         let off = match &ratios {
-            Some(slopes) => told.apart.mean() - mean(&at(slopes, &told.sites)),
+            Some(slopes) => apart.values.mean() - mean(&at(slopes, &told.sites)),
             None => ratio.unwrap_or(0.0),
         };
         let ratios = at(&ratios.unwrap_or(nothing), &sites);
@@ -118,9 +126,14 @@ struct Told {
     sites: Vec<[f64; TERMS]>,
     /// Their neighbours.
     around: Vec<Vec<usize>>,
-    /// ½ ln dx²dy² and ½ ln dx²/dy².
-    together: DVector<f64>,
-    apart: DVector<f64>,
+    /// dx² and dy².
+    squares: [DVector<f64>; 2],
+}
+
+/// Logarithms with their variance where noise is white.
+struct Logarithms {
+    values: DVector<f64>,
+    variance: f64,
 }
 
 impl Told {
@@ -141,9 +154,8 @@ impl Told {
         }
         let squares = |axis: usize| {
             let squares = chosen.iter().map(|index| differences[*index][axis].powi(2));
-            logarithms(squares.collect())
+            above_rounding(squares.collect())
         };
-        let (x, y) = (squares(0), squares(1));
         let own: Vec<[f64; 2]> = chosen.iter().map(|index| places[*index]).collect();
         Some(Self {
             margin,
@@ -152,13 +164,40 @@ impl Told {
                 .map(|index| with_margin(all[*index], margin))
                 .collect(),
             around: nearest(&own, FAR),
-            together: 0.5 * (&x + &y),
-            apart: 0.5 * (x - y),
+            squares: [0, 1].map(squares),
         })
     }
 
+    /// ½ ln dx²/dy².
+    fn apart(&self) -> Logarithms {
+        let [x, y] = &self.squares;
+        Logarithms {
+            values: x.zip_map(y, |x, y| 0.5 * (x / y).ln()),
+            variance: VARIANCE,
+        }
+    }
+
+    /// ½ ln dx²dy².
+    fn together(&self) -> Logarithms {
+        let [x, y] = &self.squares;
+        Logarithms {
+            values: x.zip_map(y, |x, y| 0.5 * (x * y).ln()),
+            variance: VARIANCE,
+        }
+    }
+
+    /// ln (dx² e⁻ʰ + dy² eʰ), of components whose ratio is the same everywhere.
+    fn together_at(&self, ratio: f64) -> Logarithms {
+        let [x, y] = &self.squares;
+        let by = ratio.exp();
+        Logarithms {
+            values: x.zip_map(y, |x, y| (x / by + y * by).ln()),
+            variance: VARIANCE_OF_SUM,
+        }
+    }
+
     /// g or h, where chance would hardly make it; quadratic terms are none where places are few.
-    fn slopes(&self, logarithms: &DVector<f64>) -> Option<[f64; TERMS]> {
+    fn slopes(&self, logarithms: &Logarithms) -> Option<[f64; TERMS]> {
         let sites = &self.sites;
         let count = match sites.len() < FEWEST[1] {
             true => FEW_TERMS,
@@ -169,10 +208,12 @@ impl Told {
         let design = DMatrix::from_fn(sites.len(), count, |site, term| {
             sites[site][term] - means[term]
         });
-        let right = logarithms.add_scalar(-logarithms.mean());
+        let values = &logarithms.values;
+        let right = values.add_scalar(-values.mean());
         let found = design.clone().svd(true, true).solve(&right, 1e-9).ok()?;
         let fitted = &design * &found;
-        let statistic = fitted.norm_squared() / self.variance(&(right - &fitted));
+        let statistic =
+            fitted.norm_squared() / self.variance(&(right - &fitted), logarithms.variance);
         let mut slopes = [0.0; TERMS];
         slopes[..count].copy_from_slice(found.as_slice());
         let [low, high] = extremes(at(&slopes, sites));
@@ -181,23 +222,23 @@ impl Told {
     }
 
     /// The mean of ln σx/σy, where it is surely not nothing.
-    fn mean_apart(&self) -> Option<f64> {
-        let mean = self.apart.mean();
-        let left = self.apart.add_scalar(-mean);
-        let error = (self.variance(&left) / left.len() as f64).sqrt();
+    fn mean_apart(&self, apart: &Logarithms) -> Option<f64> {
+        let mean = apart.values.mean();
+        let left = apart.values.add_scalar(-mean);
+        let error = (self.variance(&left, apart.variance) / left.len() as f64).sqrt();
         let is_sure = mean.abs() > SURE * error && mean.abs() > LEAST_OF_COMPONENTS.ln();
         is_sure.then_some(mean)
     }
 
     /// v s², of what is left. Gross errors spread logarithms wider than noise does.
-    fn variance(&self, left: &DVector<f64>) -> f64 {
+    fn variance(&self, left: &DVector<f64>, least: f64) -> f64 {
         let products = self.around.iter().enumerate().map(|(own, others)| {
             let beside = others.iter().map(|other| left[*other]).sum::<f64>();
             left[own] * (left[own] + beside)
         });
         let square = left.norm_squared();
         let common = share(products.sum::<f64>(), square).max(COMMON);
-        common * (square / left.len() as f64).max(VARIANCE)
+        common * (square / left.len() as f64).max(least)
     }
 }
 
@@ -301,12 +342,12 @@ fn with_margin(mut site: [f64; TERMS], margin: bool) -> [f64; TERMS] {
     site
 }
 
-/// Logarithms of squares. Rounded values may have no difference to their neighbours at all.
-fn logarithms(squares: Vec<f64>) -> DVector<f64> {
+/// Squares that have logarithms. Rounded values may have no difference to their neighbours at all.
+fn above_rounding(squares: Vec<f64>) -> DVector<f64> {
     const LEAST: f64 = 1e-4;
     let squares = DVector::from_vec(squares);
     let floor = LEAST * squares.mean();
-    squares.map(|own| own.max(floor).ln())
+    squares.map(|own| own.max(floor))
 }
 
 #[cfg(test)]

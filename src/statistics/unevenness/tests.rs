@@ -59,6 +59,19 @@ fn noise_that_grows_is_found() {
     }
 }
 
+/// Few markers tell of noise that is fourfold at both ends, most times.
+#[test]
+fn few_places_tell_of_noise_that_grows_much() {
+    let places = grid([15, 6]);
+    let outwards = |[x, _]: [f64; 2]| 1.0 + 3.0 * ((x - 1014.0) / 14.0).powi(2);
+    let found = (0..200).filter(|seed| {
+        let z = noise(*seed, &places, outwards);
+        Unevenness::found(&places, &z).is_some()
+    });
+    let found = found.count();
+    assert!(found >= 120, "{found} of 200");
+}
+
 /// As of ultrasound, which sees along its beam better than across.
 #[test]
 fn components_of_different_noise_are_found() {
