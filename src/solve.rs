@@ -5,6 +5,7 @@
 mod aggregation;
 mod approach;
 pub mod assembly;
+mod bracing;
 mod composed;
 mod connectivity;
 pub mod dissection;
@@ -22,6 +23,7 @@ mod pattern;
 pub mod potential;
 pub mod rows;
 mod scatter;
+mod skew;
 pub mod sparse;
 pub mod tangent;
 pub mod vector;

@@ -57,14 +57,23 @@ const MOST_RATIO: f64 = 1e5;
 impl Shape {
     /// A mesh with so many cells across the specimen, and along it as many as make cells about square.
     pub fn mesh(self, across: usize, kind: CellShape) -> Mesh {
+        self.mesh_halved(across, 0, kind)
+    }
+
+    /// That mesh with the sides of all cells halved so many times, and new nodes on the outline: all of one family, whose errors fall with
+    /// the size of their cells.
+    pub fn mesh_halved(self, across: usize, halvings: usize, kind: CellShape) -> Mesh {
         match self {
             Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
-                strip(size, across, kind, |x| self.half_width(x))
+                strip(size, [across, halvings], kind, |x| self.half_width(x))
             }
-            Self::StripWithHole { size, radius } => with_hole(size, radius, across, kind),
+            Self::StripWithHole { size, radius } => {
+                with_hole(size, radius, [across, halvings], kind)
+            }
             Self::RingSector { radii, angle } => {
                 let along = angle * (radii[0] + radii[1]) / 2.0;
-                let cells = [across, count(along / (radii[1] - radii[0]) * across as f64)];
+                let along = count(along / (radii[1] - radii[0]) * across as f64);
+                let cells = [across, along].map(|own| own << halvings);
                 let block = Block {
                     map: Box::new(move |[s, t]: [f64; 2]| {
                         let radius = radii[0] + s * (radii[1] - radii[0]);

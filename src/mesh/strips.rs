@@ -17,10 +17,10 @@ pub fn lengths(length: f64, half_width: &impl Fn(f64) -> f64) -> f64 {
     Lengths::new(length, half_width).total()
 }
 
-/// A strip whose half width varies along it.
+/// A strip whose half width varies along it, with so many cells across it that are halved so many times.
 pub fn strip(
     size: [f64; 2],
-    across: usize,
+    [across, halvings]: [usize; 2],
     kind: CellShape,
     half_width: impl Fn(f64) -> f64,
 ) -> Mesh {
@@ -31,7 +31,7 @@ pub fn strip(
             let x = lengths.place(s);
             [x, (2.0 * t - 1.0) * half_width(x)]
         }),
-        cells: [along, across],
+        cells: [along, across].map(|own| own << halvings),
         sides: ["bottom", "right", "top", "left"],
     };
     mesh_of_blocks(&[block], kind)
@@ -73,8 +73,14 @@ impl Lengths {
     }
 }
 
-/// A strip with a hole: four blocks between the hole and a square around it, and a block at each end.
-pub fn with_hole([length, width]: [f64; 2], radius: f64, across: usize, kind: CellShape) -> Mesh {
+/// A strip with a hole: four blocks between the hole and a square around it, and a block at each end; with so many cells across it that are
+/// halved so many times.
+pub fn with_hole(
+    [length, width]: [f64; 2],
+    radius: f64,
+    [across, halvings]: [usize; 2],
+    kind: CellShape,
+) -> Mesh {
     let half = width.min(length) / 2.0;
     let middle = length / 2.0;
     let around = count(across as f64 / 2.0) * 2;
@@ -94,7 +100,7 @@ pub fn with_hole([length, width]: [f64; 2], radius: f64, across: usize, kind: Ce
                 let (sine, cosine) = (quarter * FRAC_PI_2).sin_cos();
                 [middle + cosine * x - sine * y, sine * x + cosine * y]
             }),
-            cells: [radial, around],
+            cells: [radial, around].map(|own| own << halvings),
             sides: ["", outer, "", hole],
         }
     };
@@ -115,7 +121,7 @@ pub fn with_hole([length, width]: [f64; 2], radius: f64, across: usize, kind: Ce
                     let angle = (2.0 * t - 1.0) * FRAC_PI_4;
                     [start + s * (middle - half), half * angle.tan()]
                 }),
-                cells: [ends, around],
+                cells: [ends, around].map(|own| own << halvings),
                 sides,
             });
         }

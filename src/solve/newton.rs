@@ -169,10 +169,11 @@ impl Newton {
             let energy = linearised.map_err(|fault| inverted(fault, describe))?;
             let stiffest = self.tangent.assembly.stiffest(&stiffness);
             let mut now = self.measure(u, residual, energy, stiffest, &mut log)?;
+            self.tangent.take_skew(potential);
             if self.shifts {
                 now.shifted = self.tangent.factorise(&mut stiffness)?;
             } else {
-                self.tangent.factorise_unshifted(&stiffness)?;
+                self.tangent.factorise_unshifted(&mut stiffness)?;
             }
             if now.shifted && self.indefinite.is_none() {
                 self.indefinite = Some(u.to_vec());
@@ -195,7 +196,6 @@ impl Newton {
                 });
             }
             log.shifted_steps += usize::from(now.shifted);
-            self.tangent.take_skew(potential, 1.0);
             let step = self.tangent.step(residual)?;
             let (length, energy) = self
                 .search(potential, u, residual, now.energy, &step)

@@ -192,7 +192,8 @@ impl<'a> Path<'a> {
         let at_rest = SHORTEST_FROM_REST * factor.abs().max(begin.abs());
         let history = from.map_or_else(Vec::new, |state| self.loading.remembered(state));
         let (mut last, mut load_steps, mut halved) = (None::<Box<State>>, 0, false);
-        let mut snaps = 0;
+        // A guess that leads nowhere does not do so after shorter steps.
+        let (mut snaps, mut guesses) = (0, true);
         loop {
             let previous = last.as_deref().or(from);
             let start = previous.map_or(0.0, |state| state.factor);
@@ -211,7 +212,7 @@ impl<'a> Path<'a> {
             let shortest = 0.5 * (aim - start).abs() <= at_rest.max(least);
             // A step that would be halved after a shift anyhow is given up there.
             self.newton.shifts = shortest || self.is_rough();
-            let found = match self.solve_at(previous, aim, &history) {
+            let found = match self.solve_at(previous, aim, &history, guesses) {
                 Ok(found) if found.is_sure || shortest => found,
                 Err(fault) if shortest && self.is_guess() => return Err((fault, last)),
                 Err(fault) if shortest => {
@@ -225,7 +226,7 @@ impl<'a> Path<'a> {
                 }
                 _ => {
                     self.step = 0.5 * (aim - start).abs();
-                    halved = true;
+                    (halved, guesses) = (true, false);
                     continue;
                 }
             };
@@ -262,9 +263,11 @@ impl<'a> Path<'a> {
         previous: Option<&State>,
         factor: f64,
         history: &[f64],
+        guesses: bool,
     ) -> Result<Found, SolveFault> {
         let potential = self.loading.potential(factor, history);
-        let mut guess = match self.loading.guess(factor, previous) {
+        let known = guesses.then(|| self.loading.guess(factor, previous));
+        let mut guess = match known.flatten() {
             Some(guess) => guess,
             None => self.predict(previous, factor, &*potential)?,
         };

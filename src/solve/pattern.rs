@@ -70,6 +70,30 @@ impl SymmetricPattern {
         &self.column_starts[..self.size()]
     }
 
+    /// The rows that have entries in some columns, ascending, these columns among them.
+    pub fn around(&self, columns: &[usize]) -> Vec<usize> {
+        let mut is_own = vec![false; self.size()];
+        columns.iter().for_each(|column| is_own[*column] = true);
+        let mut found = is_own.clone();
+        for column in 0..self.size() {
+            for row in self.column(column) {
+                found[*row] |= is_own[column];
+                found[column] |= is_own[*row];
+            }
+        }
+        (0..self.size()).filter(|row| found[*row]).collect()
+    }
+
+    /// The mean size of the diagonal entries of the matrix with these `values`.
+    pub fn mean_diagonal(&self, values: &[f64]) -> f64 {
+        let sum: f64 = self
+            .diagonal()
+            .iter()
+            .map(|place| values[*place].abs())
+            .sum();
+        sum / self.size().max(1) as f64
+    }
+
     /// The stored entries with their values: (row, column, value), row ≥ column.
     fn triplets<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
         (0..self.size()).flat_map(move |column| {

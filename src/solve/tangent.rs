@@ -1,12 +1,9 @@
 //! The tangent of a potential, factorised: small changes of an equilibrium, and its softest mode.
 
-use std::collections::BTreeSet;
-
-use nalgebra::{DMatrix, DVector};
-
 use super::assembly::Assembly;
 use super::iterative::{Iterative, LinearSolver};
-use super::potential::{Inadmissible, Potential, SkewCoupling};
+use super::potential::{Inadmissible, Potential};
+use super::skew::SkewPart;
 use super::sparse::{Cholesky, FactorFault};
 use super::vector::{dot, gather, norm, scale, spread};
 use crate::error::SolveFault;
@@ -19,9 +16,9 @@ pub struct Tangent {
     /// Where there is one, and the tangent taken last has not been factorised.
     pub(super) iterative: Option<Iterative>,
     /// Whether the tangent taken last is in the factor.
-    factorised: bool,
+    pub(super) factorised: bool,
     /// The part of the tangent factorised last that is not symmetric, over the free unknowns.
-    skew: Vec<SkewCoupling>,
+    pub(super) skew: SkewPart,
 }
 
 /// Names an element of a potential for messages.
@@ -45,7 +42,7 @@ impl Tangent {
             cholesky: None,
             factorised: false,
             assembly,
-            skew: Vec::new(),
+            skew: SkewPart::default(),
         };
         if tangent.iterative.is_none() {
             tangent.analysed()?;
@@ -54,7 +51,7 @@ impl Tangent {
     }
 
     /// The factor's memory, analysed when it is first needed.
-    fn analysed(&mut self) -> Result<&mut Cholesky, FactorFault> {
+    pub(super) fn analysed(&mut self) -> Result<&mut Cholesky, FactorFault> {
         if self.cholesky.is_none() {
             self.cholesky = Some(self.assembly.analyse()?);
         }
@@ -78,7 +75,6 @@ impl Tangent {
         describe: Describe,
     ) -> Result<Vec<f64>, SolveFault> {
         let (residual, mut shifted) = self.factorise_at(potential, u, describe)?;
-        self.take_skew(potential, 1.0);
         if !self.factorised && !self.iterative.as_mut().is_some_and(Iterative::is_definite) {
             shifted = self.replace_by_factor()?;
         }
@@ -99,7 +95,7 @@ impl Tangent {
         let Some((first, others)) = residuals.split_first() else {
             return Ok(Vec::new());
         };
-        if !self.skew.is_empty() {
+        if !self.skew.is_none() {
             return residuals.iter().map(|own| self.change(own)).collect();
         }
         if residuals.len() > WORTH_FACTOR {
@@ -141,7 +137,6 @@ impl Tangent {
         describe: Describe,
     ) -> Result<Vec<f64>, SolveFault> {
         let (mut residual, _) = self.factorise_at(potential, u, describe)?;
-        self.take_skew(potential, 1.0);
         add_product(potential, 1.0, u, motion, &mut residual).map_err(|f| inverted(f, describe))?;
         self.change(&residual)
     }
@@ -160,7 +155,7 @@ impl Tangent {
         describe: Describe,
     ) -> Result<Vec<f64>, SolveFault> {
         self.at(potential, u, describe)?;
-        self.take_skew(potential, -1.0);
+        self.skew.transpose();
         let mut forces = vec![0.0; u.len()];
         add_product(potential, -1.0, u, motion, &mut forces).map_err(|f| inverted(f, describe))?;
         let change = self.change(&forces)?;
@@ -180,7 +175,7 @@ impl Tangent {
         describe: Describe,
     ) -> Result<Vec<f64>, SolveFault> {
         self.at(potential, u, describe)?;
-        self.take_skew(potential, -1.0);
+        self.skew.transpose();
         let opposed: Vec<f64> = forces.iter().map(|force| -force).collect();
         self.change(&opposed)
     }
@@ -199,7 +194,10 @@ impl Tangent {
             .linearise(potential, u, &mut residual, &mut stiffness);
         linearised.ok()?;
         let tangent = stiffness.clone();
-        self.factorise(&mut stiffness).ok()?;
+        let skew = std::mem::take(&mut self.skew);
+        let factorised = self.factorise(&mut stiffness);
+        self.skew = skew;
+        factorised.ok()?;
         // A start without any symmetry has a part of every mode.
         let count = self.free().len();
         let mut mode: Vec<f64> = (0..count).map(|i| (1.0 + i as f64).sqrt().sin()).collect();
@@ -220,6 +218,7 @@ impl Tangent {
         describe: Describe,
     ) -> Result<(Vec<f64>, bool), SolveFault> {
         let mut residual = vec![0.0; u.len()];
+        self.take_skew(potential);
         if let Some(iterative) = &mut self.iterative {
             let linearised = iterative.linearise(potential, u, &mut residual);
             linearised.map_err(|fault| inverted(fault, describe))?;
@@ -248,25 +247,19 @@ impl Tangent {
     /// Factorises the stiffness as it is.
     ///
     /// # Errors
-    /// [`SolveFault::NotPositiveDefinite`] where it is not.
-    pub(super) fn factorise_unshifted(&mut self, stiffness: &[f64]) -> Result<(), SolveFault> {
-        self.factorised = true;
-        let factorised = self.analysed()?.factorise(stiffness);
+    /// [`SolveFault::NotPositiveDefinite`] where it is not, nor stable with its skew part.
+    pub(super) fn factorise_unshifted(&mut self, stiffness: &mut [f64]) -> Result<(), SolveFault> {
+        let factorised = self.factorise_braced(stiffness);
         factorised.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))
     }
 
     /// Factorises the stiffness, shifted along its diagonal where it is not positive definite; says
     /// whether it had to be shifted.
     pub(super) fn factorise(&mut self, stiffness: &mut [f64]) -> Result<bool, SolveFault> {
-        let diagonal = self.assembly.pattern().diagonal();
-        let sum: f64 = diagonal.iter().map(|place| stiffness[*place].abs()).sum();
-        let mean = sum / diagonal.len().max(1) as f64;
+        let mean = self.assembly.pattern().mean_diagonal(stiffness);
         let mut shift = 0.0;
-        self.factorised = true;
-        self.analysed()?;
-        let cholesky = self.cholesky.as_mut().expect("analysed above");
-        let diagonal = self.assembly.pattern().diagonal();
-        while let Err(fault) = cholesky.factorise(stiffness) {
+        let mut outcome = self.factorise_braced(stiffness);
+        while let Err(fault) = outcome {
             if fault == FactorFault::OutOfMemory {
                 return Err(fault.into());
             }
@@ -278,31 +271,18 @@ impl Tangent {
             if mean.is_nan() || next >= 1e3 * mean {
                 return Err(SolveFault::Singular);
             }
-            for place in diagonal {
+            for place in self.assembly.pattern().diagonal() {
                 stiffness[*place] += next - shift;
             }
             shift = next;
+            outcome = self.analysed()?.factorise(stiffness);
         }
         Ok(shift > 0.0)
     }
 
-    /// Takes the skew part of a potential's tangent between free unknowns with a sign: −1 for the transposed tangent.
-    pub(super) fn take_skew(&mut self, potential: &dyn Potential, sign: f64) {
-        let free = |unknown| self.assembly.free_index(unknown);
-        let all = potential.skew_couplings().into_iter();
-        let couplings = all.filter_map(|coupling| {
-            Some(SkewCoupling {
-                row: free(coupling.row)?,
-                column: free(coupling.column)?,
-                stiffness: sign * coupling.stiffness,
-            })
-        });
-        self.skew = couplings.collect();
-    }
-
     /// Whether the tangent taken last was not symmetric.
     pub(super) fn has_skew_part(&self) -> bool {
-        !self.skew.is_empty()
+        !self.skew.is_none()
     }
 
     /// −K⁻¹ r at the free unknowns.
@@ -312,7 +292,7 @@ impl Tangent {
     }
 
     /// K⁻¹ b by multigrid or the factor, without the skew part.
-    fn solve(&mut self, right: &[f64]) -> Result<Vec<f64>, SolveFault> {
+    pub(super) fn solve(&mut self, right: &[f64]) -> Result<Vec<f64>, SolveFault> {
         const EXACT: f64 = 1e-12;
         if !self.factorised
             && let Some(iterative) = &mut self.iterative
@@ -330,46 +310,12 @@ impl Tangent {
         let mut negative = gather(self.assembly.free(), residual);
         scale(&mut negative, -1.0);
         let step = self.solve(&negative)?;
-        match self.skew.is_empty() {
-            true => Ok(step),
-            false => self.add_skew(step),
+        if self.skew.is_none() {
+            return Ok(step);
         }
-    }
-
-    /// x = (K + S)⁻¹ b of K⁻¹ b. The skew part S = U C Uᵀ couples a few unknowns, those of U:
-    ///
-    /// ```text
-    /// x = K⁻¹ b − K⁻¹ U y,   (1 + C G) y = C Uᵀ K⁻¹ b,   G = Uᵀ K⁻¹ U
-    /// ```
-    fn add_skew(&mut self, mut step: Vec<f64>) -> Result<Vec<f64>, SolveFault> {
-        let ends = self.skew.iter().flat_map(|own| [own.row, own.column]);
-        let coupled: Vec<usize> = ends.collect::<BTreeSet<_>>().into_iter().collect();
-        let count = coupled.len();
-        let mut columns = Vec::with_capacity(count);
-        for unknown in &coupled {
-            let mut unit = vec![0.0; step.len()];
-            unit[*unknown] = 1.0;
-            columns.push(self.solve(&unit)?);
-        }
-        let mut couplings: DMatrix<f64> = DMatrix::zeros(count, count);
-        for own in &self.skew {
-            let place = |unknown| coupled.binary_search(&unknown).expect("coupled");
-            let (row, column) = (place(own.row), place(own.column));
-            couplings[(row, column)] += own.stiffness;
-            couplings[(column, row)] -= own.stiffness;
-        }
-        let flexibility: DMatrix<f64> =
-            DMatrix::from_fn(count, count, |i, k| columns[k][coupled[i]]);
-        let there = DVector::from_iterator(count, coupled.iter().map(|unknown| step[*unknown]));
-        let system: DMatrix<f64> = DMatrix::identity(count, count) + &couplings * flexibility;
-        let parts = system.lu().solve(&(couplings * there));
-        let parts = parts.ok_or(SolveFault::Singular)?;
-        for (part, column) in parts.iter().zip(&columns) {
-            for (step, column) in step.iter_mut().zip(column) {
-                *step -= part * column;
-            }
-        }
-        Ok(step)
+        let columns = self.coupled_columns()?;
+        let complete = self.skew.complete(step, &columns);
+        complete.ok_or(SolveFault::Singular)
     }
 }
 

@@ -175,7 +175,7 @@ impl Outline {
                 } else {
                     *cells
                 };
-                shape.mesh(coarsest << level, *element)
+                shape.mesh_halved(coarsest, level, *element)
             }
             Self::File { mesh, .. } => {
                 let refined = (0..level).fold((**mesh).clone(), |mesh, _| mesh.refined());

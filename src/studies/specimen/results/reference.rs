@@ -2,7 +2,7 @@
 
 use super::measured::Measured;
 use crate::compare::area_weighted_percent;
-use crate::finite_element::convergence::richardson;
+use crate::finite_element::convergence::{of_distances, richardson};
 use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::mesh::Mesh;
 use crate::problem::Solution;
@@ -97,11 +97,12 @@ impl Reference {
         }
     }
 
-    /// The own error of what is measured at a load factor in %: by three meshes where there are three that were halved,
-    /// otherwise by recovery, with that of a file's outline; `None` where it is not known.
+    /// The own error of what is measured at a load factor in %: the larger of those by three meshes, whose differences may be small by
+    /// chance, and by recovery, with that of a file's outline; `None` where it is not known.
     pub fn measured_percent(&self, step: usize) -> Option<f64> {
         let by_meshes = self.three_meshes_percent(step);
-        let own = by_meshes.or_else(|| self.recovered_percent(step))?;
+        let known = by_meshes.into_iter().chain(self.recovered_percent(step));
+        let own = known.reduce(f64::max)?;
         match self.outline {
             Some(_) => Some(own + self.outline_percent(step)?),
             None => Some(own),
@@ -182,11 +183,7 @@ impl Reference {
         }
     }
 
-    /// By meshes that are half as fine, and a quarter, in relative L2 in %.
-    ///
-    /// ```text
-    /// e = ‖u₃ − u₂‖/(r − 1),   r = ‖u₂ − u₁‖/‖u₃ − u₂‖        ‖u₃ − u₂‖ where r ≤ 1
-    /// ```
+    /// By meshes that are half as fine, and a quarter, in relative L2 in %, see [`of_distances`].
     fn displacement_by_coarser(&self, step: usize, lattice: &Mesh) -> Option<f64> {
         let fine = on_lattice(&self.finest, step, lattice)?;
         let coarser = self.coarser.iter();
@@ -199,13 +196,7 @@ impl Reference {
             [only] => Some(distance(only, &fine)),
             [.., first, second] => {
                 let (before, last) = (distance(first, second), distance(second, &fine));
-                let ratio = before / last;
-                let converges = ratio > 1.0 && ratio.is_finite();
-                Some(if converges {
-                    last / (ratio - 1.0)
-                } else {
-                    last
-                })
+                Some(of_distances(before, last).0)
             }
         }
     }

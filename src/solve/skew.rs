@@ -1,0 +1,109 @@
+//! The part of a tangent that is not symmetric: it couples a few unknowns, such as those where a pressure ends.
+//!
+//! ```text
+//! K + S = K' + U D Uᵀ,   K' = K + σ U Uᵀ,   D = C − σ 1
+//! (K + S)⁻¹ b = x − K'⁻¹ U y,   x = K'⁻¹ b,   (1 + D G) y = D Uᵀ x,   G = Uᵀ K'⁻¹ U
+//! det (K + S) = det K' · det (1 + D G)
+//! ```
+//!
+//! U are the unit vectors of the coupled unknowns, and of some around them, and S = U C Uᵀ. The body is braced by σ where K itself is not
+//! positive definite: that says nothing of the stability of a body whose loads have no potential. It is lost, without oscillation, where det (K + S) vanishes.
+//!
+//! # References
+//! V. V. Bolotin, Nonconservative Problems of the Theory of Elastic Stability, Pergamon (1963)
+
+use std::collections::BTreeSet;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::potential::SkewCoupling;
+
+/// S, and what K is braced with.
+#[derive(Default)]
+pub struct SkewPart {
+    /// The unknowns of U.
+    coupled: Vec<usize>,
+    /// C.
+    couplings: DMatrix<f64>,
+    /// σ.
+    pub brace: f64,
+}
+
+impl SkewPart {
+    /// Of couplings between free unknowns by their positions.
+    pub fn new(all: &[SkewCoupling]) -> Self {
+        let ends = all.iter().flat_map(|own| [own.row, own.column]);
+        let coupled: Vec<usize> = ends.collect::<BTreeSet<_>>().into_iter().collect();
+        let mut couplings = DMatrix::zeros(coupled.len(), coupled.len());
+        for own in all {
+            let place = |unknown| coupled.binary_search(&unknown).expect("coupled");
+            let (row, column) = (place(own.row), place(own.column));
+            couplings[(row, column)] += own.stiffness;
+            couplings[(column, row)] -= own.stiffness;
+        }
+        Self {
+            coupled,
+            couplings,
+            brace: 0.0,
+        }
+    }
+
+    /// That of the transposed tangent.
+    pub fn transpose(&mut self) {
+        self.couplings.transpose_mut();
+    }
+
+    /// Takes more unknowns into U.
+    pub fn widen(&mut self, around: &[usize]) {
+        let more: Vec<usize> = around
+            .iter()
+            .copied()
+            .filter(|unknown| !self.coupled.contains(unknown))
+            .collect();
+        let count = self.coupled.len() + more.len();
+        self.coupled.extend(more);
+        self.couplings.resize_mut(count, count, 0.0);
+    }
+
+    /// Whether the tangent is symmetric.
+    pub fn is_none(&self) -> bool {
+        self.coupled.is_empty()
+    }
+
+    /// The unknowns of U.
+    pub fn coupled(&self) -> &[usize] {
+        &self.coupled
+    }
+
+    /// D.
+    fn beyond(&self) -> DMatrix<f64> {
+        let mut beyond = self.couplings.clone();
+        (0..self.coupled.len()).for_each(|i| beyond[(i, i)] -= self.brace);
+        beyond
+    }
+
+    /// 1 + D G of the columns K'⁻¹ U.
+    fn system(&self, columns: &[Vec<f64>]) -> DMatrix<f64> {
+        let count = self.coupled.len();
+        let flexibility = DMatrix::from_fn(count, count, |i, k| columns[k][self.coupled[i]]);
+        DMatrix::identity(count, count) + self.beyond() * flexibility
+    }
+
+    /// Whether det (K + S) is positive, as it is at rest and until stability is lost; given the columns K'⁻¹ U.
+    pub fn keeps_stability(&self, columns: &[Vec<f64>]) -> bool {
+        self.system(columns).determinant() > 0.0
+    }
+
+    /// (K + S)⁻¹ b of K'⁻¹ b and the columns K'⁻¹ U; `None` where there is none.
+    pub fn complete(&self, mut x: Vec<f64>, columns: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let there = self.coupled.iter().map(|unknown| x[*unknown]);
+        let there = DVector::from_iterator(self.coupled.len(), there);
+        let parts = self.system(columns).lu().solve(&(self.beyond() * there))?;
+        for (part, column) in parts.iter().zip(columns) {
+            for (x, column) in x.iter_mut().zip(column) {
+                *x -= part * column;
+            }
+        }
+        Some(x)
+    }
+}
