@@ -311,7 +311,7 @@ impl<'a> March<'a> {
         let mut at = start.clone();
         for _ in 0..count {
             let mut next = self.stepper.step(self.motion, &at, step, &self.held)?;
-            self.motion.account(&at, &mut next, &self.held);
+            self.motion.account(&at, &mut next, &self.held, step);
             next.memory = self.motion.memory_after(&at.memory, &next, step)?;
             at = next;
         }

@@ -226,9 +226,16 @@ impl Motion<'_> {
         }
     }
 
-    /// Brings the energy balance from the state `before` a step to the one after it, by the trapezoidal rule; the
-    /// work that moves the mass of held unknowns is the change of its kinetic energy.
-    pub(super) fn account(&self, before: &BodyState, after: &mut BodyState, held: &[bool]) {
+    /// Brings the energy balance from the state `before` a step to the one after it, by the trapezoidal rule: of powers for the viscous
+    /// forces, which take energy at every instant, of forces over their ways for the others. The work that moves the mass of held unknowns is
+    /// the change of its kinetic energy.
+    pub(super) fn account(
+        &self,
+        before: &BodyState,
+        after: &mut BodyState,
+        held: &[bool],
+        step: f64,
+    ) {
         let (mut work, mut viscous_work) = (0.0, 0.0);
         for (i, held) in held.iter().enumerate() {
             let change = after.displacement[i] - before.displacement[i];
@@ -236,7 +243,8 @@ impl Motion<'_> {
                 0.5 * (force(&before.forces)[i] + force(&after.forces)[i])
             };
             let viscous = mean(|forces| &forces.viscous);
-            viscous_work += viscous * change;
+            let power = |at: &BodyState| at.forces.viscous[i] * at.velocity[i];
+            viscous_work += 0.5 * step * (power(before) + power(after));
             work += if *held {
                 let speeds = after.velocity[i].powi(2) - before.velocity[i].powi(2);
                 (viscous + mean(|forces| &forces.elastic)) * change + 0.5 * self.mass[i] * speeds

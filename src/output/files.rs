@@ -26,11 +26,20 @@ pub trait TakesFiles {
     /// # Errors
     /// [`Error::Write`] when it would replace an input, or when it cannot be written.
     fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Error>;
+
+    /// A warning for each file that is somebody else's and in the way of one that was taken since the last time.
+    fn in_the_way(&mut self) -> Vec<Diagnostic> {
+        Vec::new()
+    }
 }
 
 impl TakesFiles for ResultFolder {
     fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Error> {
         ResultFolder::add(self, name, bytes)
+    }
+
+    fn in_the_way(&mut self) -> Vec<Diagnostic> {
+        ResultFolder::in_the_way(self)
     }
 }
 
@@ -42,7 +51,7 @@ impl TakesFiles for Vec<(String, Vec<u8>)> {
 }
 
 /// Writes everything that a study has found into a folder: grids, tables and, where it is wanted, the report for machines;
-/// then pictures and the report for people. Returns a warning for each picture that cannot be drawn.
+/// then pictures and the report for people. Returns a warning for each picture that cannot be drawn, and for each file that was in the way.
 ///
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
@@ -85,6 +94,7 @@ pub fn write(
         )?;
     }
     warnings.extend(missing);
+    warnings.extend(folder.in_the_way());
     Ok(warnings)
 }
 
@@ -191,7 +201,7 @@ pub fn write_grids(folder: &mut dyn TakesFiles, series: &GridSeries) -> Result<(
 }
 
 /// Writes a document as `NAME.md`, with its pictures beside it, and as one self-contained `NAME.html`. Returns a warning for
-/// each picture that cannot be drawn; it stands in its place too.
+/// each picture that cannot be drawn, which stands in its place too, and for each file that was in the way.
 ///
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
@@ -203,7 +213,9 @@ pub fn write_document(
 ) -> Result<Vec<Diagnostic>, Error> {
     let pictures = write_pictures(folder, figures, &PictureStyle::default())?;
     add_document(folder, name, blocks, (&pictures, None))?;
-    Ok(faults(&pictures))
+    let mut warnings = faults(&pictures);
+    warnings.extend(folder.in_the_way());
+    Ok(warnings)
 }
 
 fn add_document(

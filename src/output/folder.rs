@@ -10,7 +10,7 @@
 //! is done, and `resume` opens what a run with the same identity has left.
 //!
 //! `.gelbench-manifest.json` lists what gelbench has written into a folder, and which command wrote it. Nothing else is
-//! ever removed. It is also what a run locks, and it says whether the set of files is complete: between the first file that
+//! ever removed or replaced: a file that is in the way is kept under another name. It is also what a run locks, and it says whether the set of files is complete: between the first file that
 //! is moved and the last one it is not.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,7 +22,7 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::error::Error;
+use crate::error::{Diagnostic, Error};
 
 mod identity;
 mod inputs;
@@ -49,6 +49,10 @@ pub struct ResultFolder {
     names: Vec<String>,
     /// How many of the names belong to parts of the work that are kept.
     kept: usize,
+    /// Files that are somebody else's and in the way, with the names that they get.
+    foreign: Vec<(String, PathBuf)>,
+    /// How many of these have been told.
+    told: usize,
 }
 
 impl ResultFolder {
@@ -123,6 +127,8 @@ impl ResultFolder {
             unfinished: Arc::new(Unfinished::new(path.to_owned(), partial)),
             names: Vec::new(),
             kept: 0,
+            foreign: Vec::new(),
+            told: 0,
         })
     }
 
@@ -136,7 +142,8 @@ impl ResultFolder {
         Arc::clone(&self.unfinished)
     }
 
-    /// Writes a file aside; `name` is relative to the folder, with `/` between its parts.
+    /// Writes a file aside; `name` is relative to the folder, with `/` between its parts. A file of that name that gelbench has not
+    /// written will be kept under another one.
     ///
     /// # Errors
     /// [`Error::Write`] when it would replace an input, or when it cannot be written.
@@ -144,7 +151,30 @@ impl ResultFolder {
         refuse_input(&self.path.join(name), &self.inputs)?;
         self.write_aside(name, bytes)?;
         self.names.push(name.to_owned());
+        let is_ours = self.before.files.contains_key(name);
+        let is_known = self.foreign.iter().any(|(known, _)| known == name);
+        if !is_ours && !is_known && self.path.join(name).is_file() {
+            let free = free_name(&self.path.join(name));
+            self.foreign.push((name.to_owned(), free));
+        }
         Ok(())
+    }
+
+    /// A warning for each file that is somebody else's and in the way of one that was added since the last time.
+    pub fn in_the_way(&mut self) -> Vec<Diagnostic> {
+        let new = &self.foreign[self.told..];
+        let tell = |(name, kept): &(String, PathBuf)| {
+            let place = self.path.join(name);
+            let message = format!(
+                "{} was there and is not gelbench's: it is kept as {}",
+                place.display(),
+                kept.display()
+            );
+            Diagnostic::warning("", message).hint("name another folder for results with --output")
+        };
+        let told = new.iter().map(tell).collect();
+        self.told = self.foreign.len();
+        told
     }
 
     /// Notes that a part of the work is done: the files that were added since the part before belong to it, and a later
@@ -220,6 +250,10 @@ impl ResultFolder {
         };
         // Nobody who breaks the run off does so between the first file and the last.
         let mut stage = unfinished.growing()?;
+        for (name, kept) in &self.foreign {
+            let place = self.path.join(name);
+            fs::rename(&place, kept).map_err(|cause| Error::write(&place, cause))?;
+        }
         self.manifest.write(&files, Some(moving.clone()))?;
         // From here on the next run could finish it.
         *stage = Stage::InPlace;
@@ -252,6 +286,20 @@ pub fn refuse_file(folder: &Path) -> Result<(), Error> {
             Err(Error::write(folder, cause))
         }
     }
+}
+
+/// A name beside a file's that no file has: `report.md.kept`, `report.md.kept-2` and so on.
+fn free_name(path: &Path) -> PathBuf {
+    let name = |number: usize| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(".kept");
+        if number > 1 {
+            name.push(format!("-{number}"));
+        }
+        PathBuf::from(name)
+    };
+    let mut names = (1..).map(name);
+    names.find(|name| !name.exists()).expect("a free name")
 }
 
 /// The folder and those below it that hold files of the run before.

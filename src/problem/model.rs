@@ -101,7 +101,7 @@ impl<'a> Model<'a> {
     /// ```
     ///
     /// I interpolates on this mesh, v is its own equilibrium at the load factor s before. Where no equilibrium is found from one
-    /// of them the path goes on in shorter steps, as without them.
+    /// of them, as where cells that keep their volume take an interpolated field ill, the path goes on in shorter steps without them.
     #[must_use]
     pub fn near(self, mesh: &Mesh, states: &[State]) -> Self {
         let interpolation = mesh.interpolation_on(self.mesh);
@@ -296,15 +296,19 @@ impl Loading for Model<'_> {
             let mut known = self.near.iter();
             known.find(|(at, _)| *at == factor).map(|(_, field)| field)
         };
-        if let Some(field) = near(factor) {
-            let mut guess = field.clone();
-            let before = previous.and_then(|own| Some((own, near(own.factor)?)));
-            if let Some((own, field)) = before {
-                let ratio = factor / own.factor;
-                add_scaled(&mut guess, ratio, &own.displacement);
-                add_scaled(&mut guess, -ratio, field);
+        match (near(factor), previous) {
+            (Some(field), None) => return Some(field.clone()),
+            (Some(field), Some(own)) => {
+                // From a state on the way, at which nothing is known, no guess has led to the end.
+                if let Some(before) = near(own.factor) {
+                    let ratio = factor / own.factor;
+                    let mut guess = field.clone();
+                    add_scaled(&mut guess, ratio, &own.displacement);
+                    add_scaled(&mut guess, -ratio, before);
+                    return Some(guess);
+                }
             }
-            return Some(guess);
+            (None, _) => {}
         }
         let first = self.guess.as_ref()?;
         let (ratio, field) = match previous {

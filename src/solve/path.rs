@@ -192,8 +192,7 @@ impl<'a> Path<'a> {
         let at_rest = SHORTEST_FROM_REST * factor.abs().max(begin.abs());
         let history = from.map_or_else(Vec::new, |state| self.loading.remembered(state));
         let (mut last, mut load_steps, mut halved) = (None::<Box<State>>, 0, false);
-        // A guess that leads nowhere does not do so after shorter steps.
-        let (mut snaps, mut guesses) = (0, true);
+        let mut snaps = 0;
         loop {
             let previous = last.as_deref().or(from);
             let start = previous.map_or(0.0, |state| state.factor);
@@ -212,7 +211,7 @@ impl<'a> Path<'a> {
             let shortest = 0.5 * (aim - start).abs() <= at_rest.max(least);
             // A step that would be halved after a shift anyhow is given up there.
             self.newton.shifts = shortest || self.is_rough();
-            let found = match self.solve_at(previous, aim, &history, guesses) {
+            let found = match self.solve_at(previous, aim, &history) {
                 Ok(found) if found.is_sure || shortest => found,
                 Err(fault) if shortest && self.is_guess() => return Err((fault, last)),
                 Err(fault) if shortest => {
@@ -226,7 +225,7 @@ impl<'a> Path<'a> {
                 }
                 _ => {
                     self.step = 0.5 * (aim - start).abs();
-                    (halved, guesses) = (true, false);
+                    halved = true;
                     continue;
                 }
             };
@@ -263,11 +262,9 @@ impl<'a> Path<'a> {
         previous: Option<&State>,
         factor: f64,
         history: &[f64],
-        guesses: bool,
     ) -> Result<Found, SolveFault> {
         let potential = self.loading.potential(factor, history);
-        let known = guesses.then(|| self.loading.guess(factor, previous));
-        let mut guess = match known.flatten() {
+        let mut guess = match self.loading.guess(factor, previous) {
             Some(guess) => guess,
             None => self.predict(previous, factor, &*potential)?,
         };

@@ -30,6 +30,27 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
+fn a_file_of_somebody_else_is_kept_under_another_name() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    fs::write(path.join("report.md"), "mine").unwrap();
+    fs::write(path.join("report.md.kept"), "mine too").unwrap();
+    let mut results = ResultFolder::open(path, "run", &[]).unwrap();
+    results.add("report.md", b"1").unwrap();
+    results.add("force.png", b"1").unwrap();
+    let told = results.in_the_way();
+    assert_eq!(told.len(), 1);
+    assert!(told[0].message.ends_with("report.md.kept-2"), "{told:?}");
+    assert!(results.in_the_way().is_empty());
+    results.finish().unwrap();
+    run(path, &[], &[("report.md", "2")]).unwrap();
+    let read = |name: &str| fs::read_to_string(path.join(name)).unwrap();
+    assert_eq!(read("report.md"), "2");
+    assert_eq!(read("report.md.kept"), "mine too");
+    assert_eq!(read("report.md.kept-2"), "mine");
+}
+
+#[test]
 fn only_what_an_earlier_run_has_written_is_removed() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
