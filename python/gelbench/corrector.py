@@ -299,8 +299,6 @@ def correct(
     own = np.ones(given.size) if weights is None else finite(floats(weights, "weights", (given.size,)), "weights")
     if (own < 0.0).any():
         raise fault("weights", f"holds {own.min()}", "weights are inverse variances, or zero")
-    if not (own > 0.0).any():
-        raise fault("weights", "are all zero", "give at least one unknown that is known a positive weight")
     wanted = [whole(unknown, "estimate") for unknown in estimate]
     if any(unknown not in range(given.size) for unknown in wanted):
         raise fault("estimate", "names unknowns that the field does not have", f"it has {given.size}, counted from 0")
@@ -312,6 +310,9 @@ def correct(
         "solver": solver,
     }
     listed = [condition._given(begin) for condition in conditions]
+    if not (own > 0.0).any() and sum(one["rows"] for one in listed) < given.size:
+        hint = "give what is measured a positive weight, or as many conditions as unknowns"
+        raise fault("weights", "are all zero, and the conditions alone do not say the field", hint)
     found = _core.corrected(given, begin, own, listed, settings, wanted, callback(progress))
     u, residuals, lengths, multipliers, estimates = found
     return Corrected(

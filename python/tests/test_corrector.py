@@ -130,3 +130,8 @@ def test_matrices_whose_entries_lie_nowhere_are_refused(matrix):
 def test_what_is_wrong_is_named(wrong, named):
     with pytest.raises(gb.InputError, match=named):
         wrong()
+
+
+def test_as_many_conditions_as_unknowns_need_no_weights():
+    square = corrector.Condition("c", lambda u: u - 1.0, np.eye(2), unknowns=[0, 1])
+    assert corrector.correct([0.0, 0.0], [square], weights=[0.0, 0.0]).field == pytest.approx([1.0, 1.0])
