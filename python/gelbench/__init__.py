@@ -13,12 +13,16 @@ Plain numbers are mm, N, MPa; texts with a unit and quantities of pint are taken
 from . import corrector
 from ._core import __version__
 from ._errors import Fault, InputError, PerformanceWarning, SolveError, WriteError
+from ._law import Derivatives
 from ._markers import Correction, correct
-from ._material import Derivatives, Material, Parameter, laws, materials
+from ._material import Material, Parameter, laws, materials
+from ._plate import Plate
 from ._results import Field, Results
 from ._solution import AtPoints, GroupForce, Solution, State
-from ._study import Plate, Specimen, check, run
-from ._sweep import Band, SweepPlan, SweepTable, salib_problem, sweep
+from ._specimen import Specimen
+from ._study import check, run
+from ._sweep import SweepPlan, salib_problem, sweep
+from ._sweep_table import Band, SweepTable
 from ._tests import Estimate, Fit, Identification, fit, identify
 
 __all__ = [

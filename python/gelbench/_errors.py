@@ -64,7 +64,7 @@ class SolveError(RuntimeError):
     advice : str
         What to try.
     solution : gelbench.Solution or None
-        What was reached before.
+        What was reached before; None where the error comes from another process, since solutions cannot be pickled.
     """
 
     def __init__(
@@ -86,6 +86,10 @@ class SolveError(RuntimeError):
         self.load_factor: float | None = None
         self.solution: Any = None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Solutions stay in the process that has found them.
+        return type(self), self.args, {**self.__dict__, "solution": None}
+
 
 class WriteError(OSError):
     """A file could not be written."""
@@ -93,6 +97,18 @@ class WriteError(OSError):
 
 class PerformanceWarning(UserWarning):
     """Something works, but much slower than it could."""
+
+
+class InMemory:
+    """What the library holds in memory: it cannot be pickled, and says so."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError(
+            f"a gelbench.{type(self).__name__} cannot be pickled or copied, the library holds it in memory: "
+            "hand over the arrays and figures that are needed"
+        )
 
 
 def fault(argument: str, message: str, hint: str) -> InputError:

@@ -66,6 +66,11 @@ class Correction(Results):
         return found
 
     @property
+    def parameters(self) -> dict[str, Estimate]:
+        """Parameters of the law that were found with the field of the last frame, by key; none without ``fit=``."""
+        return {str(one["key"]): _estimate(one["found"], str(one["unit"])) for one in self._last["parameters"]}
+
+    @property
     def _last(self) -> dict[str, Any]:
         found: dict[str, Any] = self.json["steps"][-1]["corrected"]
         return found
@@ -123,7 +128,8 @@ def correct(
     ----------
     markers : path, list of paths, DataFrame, mapping or array_like
         The field: files of image correlation programs, one for each frame; a table with ``x [mm]``, ``y [mm]``, ``ux [mm]``,
-        ``uy [mm]``, and, where they are known, ``standard_deviation [mm]`` and ``frame``; or an array n × 4 of these in mm.
+        ``uy [mm]``, and, where they are known, ``standard_deviation [mm]`` and ``frame``; or an array n × 4 of these in mm. Rows with
+        NaN and masked entries are markers that were lost.
     material : Material, str or path
         The material, or its card.
     thickness : quantity
@@ -146,7 +152,7 @@ def correct(
     physics : {"exact", "weighted"}, optional
         How far the physics holds.
     fit : sequence of str
-        One or two parameters of the law that are found with the field; a force must be measured.
+        One or two parameters of the law that are found with the field, see `Correction.parameters`; a force must be measured.
     conditions : path, optional
         A file that says what is known instead of the arguments from `free` to `fit`.
     unit, array, grid, columns, ignore_columns, encoding, y_axis, places
@@ -179,7 +185,7 @@ def correct(
         "scale_error": scale_error if scale_error is None else text(scale_error, "", "scale_error"),
         "robust": robust,
         "physics": physics,
-        "fit": list(fit) or None,
+        "fit": ([fit] if isinstance(fit, str) else list(fit)) or None,
     }
     listed = _edges(free, rigid, known or {})
     measured = _forces(force or {})
@@ -216,6 +222,8 @@ def correct(
         "allow_large": allow_large,
     }
     size = number(thickness, "mm", "thickness")
+    if not 0.0 < size < np.inf:
+        raise fault("thickness", f"is {thickness!r}", "it must be positive")
     told = callback(progress)
     files = _files(markers)
     if files is not None:
@@ -254,6 +262,9 @@ def _edges(
         {"names": list(names), "condition": condition} for names, condition in ((free, "free"), (rigid, "rigid")) if names
     ]
     for name, values in known.items():
+        if not isinstance(values, Mapping):
+            hint = 'give the components that are known, such as {"ux": 0, "uy": 0}; edges that are held are given so too'
+            raise fault(f"known.{name}", f"is {values!r}", hint)
         told = {axis: text(value, "mm", f"known.{name}.{axis}") for axis, value in values.items()}
         edges.append({"names": [name], "condition": "known", **told})
     return edges
@@ -261,7 +272,15 @@ def _edges(
 
 def _forces(force: Mapping[str, Mapping[str, Quantity]]) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
+    keys = ("x", "x_deviation", "y", "y_deviation")
     for edge, values in force.items():
+        if not isinstance(values, Mapping):
+            raise fault(f"force.{edge}", f"is {values!r}", 'give its components, such as {"x": 2.88, "x_deviation": 0.05}')
+        for key in values:
+            if key not in keys:
+                raise fault(f"force.{edge}.{key}", "is no key of a force", f"keys are {', '.join(keys)}")
+            if key.endswith("_deviation") and key[0] not in values:
+                raise fault(f"force.{edge}.{key}", "belongs to no force", f"give {key[0]} too")
         for axis in ("x", "y"):
             if axis in values:
                 row = {"edge": edge, "axis": axis, "force": text(values[axis], "N", f"force.{edge}.{axis}")}

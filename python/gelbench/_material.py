@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import html
 import os
+import re
 import warnings
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._errors import PerformanceWarning, fault
-from ._quantities import Floats, PathLike, Quantity, number
+from ._errors import InputError, PerformanceWarning, WriteError, fault
+from ._law import Derivatives, Law, card_in_place, checked_range, rows_of
+from ._quantities import Floats, PathLike, Quantity, array_of, text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,30 +30,6 @@ class Parameter(NamedTuple):
     """Its value in `unit`."""
     unit: str
     """``MPa``, or ``–`` for a plain number."""
-
-
-class Derivatives(NamedTuple):
-    """Energy of a law Ψ(I₁, I₂) and its derivatives, each a number or an array like I₁.
-
-    Energy and derivatives are per volume at rest: MPa = mJ/mm³.
-    """
-
-    energy: ArrayLike
-    """Ψ, zero at rest (I₁ = I₂ = 3)."""
-    d1: ArrayLike
-    """∂Ψ/∂I₁."""
-    d2: ArrayLike = 0.0
-    """∂Ψ/∂I₂."""
-    d11: ArrayLike = 0.0
-    """∂²Ψ/∂I₁²."""
-    d12: ArrayLike = 0.0
-    """∂²Ψ/∂I₁∂I₂."""
-    d22: ArrayLike = 0.0
-    """∂²Ψ/∂I₂²."""
-
-
-Law: TypeAlias = "Callable[[Floats, Floats], Derivatives]"
-"""Arrays of I₁ and I₂ to energy and derivatives."""
 
 
 def materials() -> dict[str, str]:
@@ -80,7 +57,8 @@ def laws() -> dict[str, str]:
 class Material:
     """A hyperelastic material of a thin sheet: a law with its parameters, and where they come from.
 
-    Make one with `from_card`, `from_text` or `from_law`; `gelbench.fit` makes one of test data.
+    Make one with `from_card`, `from_text` or `from_law`; `gelbench.fit` makes one of test data. Materials are equal where the texts
+    of their cards are.
     """
 
     __slots__ = ("_card", "_reference")
@@ -96,14 +74,17 @@ class Material:
         Parameters
         ----------
         card : str or path
-            The name of a card that comes along (see `gelbench.materials`), or the path of a ``.toml`` file.
+            The name of a card that comes along (see `gelbench.materials`), or the path of a ``.toml`` file, which is read once.
 
         Raises
         ------
         gelbench.InputError
             With every fault of the card.
         """
-        name = os.fspath(card)
+        try:
+            name = os.fspath(card)
+        except TypeError:
+            raise fault("material", f"{card!r} is no card", "give a Material, the name of a card, or the path of one") from None
         own = _core.MaterialCard.load(name, ".")
         return cls(own, name if name in materials() else str(Path(name).resolve()))
 
@@ -129,8 +110,8 @@ class Material:
     ) -> Material:
         """Makes a material of a law Ψ(I₁, I₂) that is written in Python.
 
-        The sheet keeps its volume, and is in plane stress. The derivatives are compared with differences of the energy
-        before the law is taken.
+        The sheet keeps its volume, and is in plane stress. Before the law is taken, the derivatives are compared with
+        differences of the energy wherever both stretches in the plane are within `stretch_range`.
 
         Parameters
         ----------
@@ -140,7 +121,7 @@ class Material:
         name : str
             For messages.
         stretch_range : tuple of float
-            The stretches within which the law is trusted.
+            The stretches within which the law is trusted, the smallest and the largest.
         quiet : bool
             Whether to leave out the warning that such a law is slow.
 
@@ -152,28 +133,19 @@ class Material:
         Raises
         ------
         gelbench.InputError
-            Where the derivatives are not those of the energy, or have a wrong shape.
+            Where the derivatives are not those of the energy or have a wrong shape, the energy at rest is not zero, the shear
+            modulus is not positive, or `stretch_range` is none.
         """
 
-        def rows(i1: Floats, i2: Floats) -> Floats:
-            found = Derivatives(*evaluate(i1, i2))
-            table = np.empty((i1.size, 6))
-            for column, (what, values) in enumerate(zip(Derivatives._fields, found, strict=True)):
-                try:
-                    table[:, column] = values
-                except ValueError:
-                    message = f"{what} has the shape {np.shape(values)}"
-                    raise fault("evaluate", message, f"it must be a number or have {i1.size} entries") from None
-            return table
-
-        _check_derivatives(rows)
+        within = checked_range(stretch_range)
+        rows = rows_of(evaluate, within)
         if not quiet:
             warnings.warn(
                 f"{name} is evaluated in Python: models are many times slower with it than with a law of gelbench",
                 PerformanceWarning,
                 stacklevel=2,
             )
-        return cls(_core.MaterialCard.of_python(name, rows, list(stretch_range)))
+        return cls(_core.MaterialCard.of_python(name, rows, list(within)))
 
     def with_parameters(self, **values: Quantity) -> Material:
         """The same law with other values of some parameters.
@@ -181,18 +153,20 @@ class Material:
         Parameters
         ----------
         **values : quantity
-            Parameters by key; plain numbers are MPa, or plain where the parameter is.
+            Parameters by key; plain numbers are in the unit that `parameters` has.
+
+        Returns
+        -------
+        Material
+            With a card of its own, which says nothing of a fit any more.
 
         Raises
         ------
         gelbench.InputError
             Where the law has no such parameter, or is none of gelbench's.
         """
-        units = {key: own.unit for key, own in self.parameters.items()}
-        given = {
-            key: number(value, "MPa" if units.get(key, "MPa") == "MPa" else "", key) for key, value in values.items()
-        }
-        return Material(self._card.with_parameters(given))
+        units = {key: own.unit.strip("–") for key, own in self.parameters.items()}
+        return Material(self._card.with_parameters({key: text(value, units.get(key, ""), key) for key, value in values.items()}))
 
     @property
     def name(self) -> str:
@@ -269,34 +243,35 @@ class Material:
         """
         return self._card.stable_range(test)
 
-    def stress(self, stretch: ArrayLike, test: str = "uniaxial") -> Floats:
+    @overload
+    def stress(self, stretch: float, test: str = "uniaxial") -> float: ...
+    @overload
+    def stress(self, stretch: ArrayLike, test: str = "uniaxial") -> Any: ...
+    def stress(self, stretch: ArrayLike, test: str = "uniaxial") -> Any:
         """Nominal stress of a test.
 
         Parameters
         ----------
         stretch : array_like
-            λ, positive; 1 + γ for ``test="shear"``. Any shape.
+            λ, positive; 1 + γ for ``test="shear"``. Any shape; quantities of pint may be in percent.
         test : {"uniaxial", "planar", "equibiaxial", "shear"}
             The test.
 
         Returns
         -------
-        numpy.ndarray
+        numpy.ndarray or float
             P₁₁ [MPa], P₁₂ of shear, in the shape of `stretch`; NaN where `stretch` is.
 
         Raises
         ------
         gelbench.InputError
-            Where a stretch is not positive, or the test is unknown.
+            Where a stretch is not positive or is masked, or the test is unknown.
         """
-        try:
-            array = np.asarray(stretch, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise fault("stretch", "is no array of numbers", "give floats") from None
+        array = array_of(stretch, "stretch")
         if test != "shear" and (array <= 0.0).any():
             raise fault("stretch", f"holds {array.min()}", "stretches are positive; 1 is the state at rest")
         found = self._card.stress(test, np.ascontiguousarray(array).reshape(-1))
-        return found.reshape(array.shape)
+        return found.reshape(array.shape) if array.ndim else float(found[0])
 
     def plot(
         self,
@@ -325,10 +300,21 @@ class Material:
         return material_curves(self, ax, tests, stretch)
 
     def save(self, path: PathLike) -> None:
-        """Writes the card into a file."""
+        """Writes the card into a file.
+
+        Raises
+        ------
+        gelbench.InputError
+            Where there is no card: the material is a law in Python.
+        gelbench.WriteError
+            Where the file cannot be written.
+        """
         if not self.text:
             raise fault("material", "a law in Python has no card", "save its code")
-        Path(path).write_text(self.text, encoding="utf-8")
+        try:
+            Path(path).write_text(self.text, encoding="utf-8")
+        except OSError as cause:
+            raise WriteError(f"{path} cannot be written: {cause}") from cause
 
     def __repr__(self) -> str:
         numbers = ", ".join(f"{key}={own.value:g}" for key, own in self.parameters.items())
@@ -344,9 +330,17 @@ class Material:
         head = f"<b>{html.escape(self.title)}</b><br>{html.escape(self.law)}: {html.escape(self.formula)}"
         return f"{head}<table>{rows}</table>{inline(lambda ax: self.plot(ax))}"
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Material):
+            return NotImplemented
+        return self._card is other._card or (bool(self.text) and self.text == other.text)
+
+    def __hash__(self) -> int:
+        return hash(self.text or self._card)
+
     def __reduce__(self) -> tuple[Any, ...]:
         if not self.text:
-            raise TypeError("a law in Python cannot be pickled")
+            raise TypeError("a law in Python cannot be pickled: make it anew of its code")
         return (_of_text, (self.text, self.name, self._reference))
 
 
@@ -359,42 +353,44 @@ def material(value: Material | PathLike) -> Material:
     return value if isinstance(value, Material) else Material.from_card(value)
 
 
-def reference(value: Material) -> str:
-    """The card that a study's text names; the one given takes its place where it has no name of its own."""
-    return value._reference or "pva-10"
+def shipped(value: Material) -> str | None:
+    """The name of a card that comes along."""
+    return None if value._reference is None or value._reference.endswith(".toml") else value._reference
+
+
+def in_memory(value: Material) -> tuple[str, dict[str, bytes]]:
+    """The card that a study's text names where it is computed here, and the files that this name stands for."""
+    name = shipped(value)
+    if name is not None:
+        return name, {}
+    name = value._reference or re.sub(r"[^\w.-]+", "-", value.name).strip(".") + ".toml"
+    own = value.text or card_in_place(value.name, value.shear_modulus, value.stretch_range)
+    return name, {name: own.encode()}
+
+
+def on_disk(value: Material) -> str:
+    """The card that a study's text names for whoever computes it elsewhere."""
+    name = shipped(value) or value._reference
+    if name is None:
+        hint = 'take write_study("plate.toml"), which writes the card beside the study, or save the material and give its file as card='
+        raise fault("material", f"the card `{value.name}` is in no file that a study can name", needs_card(value) or hint)
+    if shipped(value) is None and not _is_as_read(value):
+        raise fault("material", f"{name} has changed since it was read", "read it again, or take write_study, which writes the card as it was")
+    return name
+
+
+def needs_card(value: Material) -> str | None:
+    """What to do where no file can hold the material."""
+    return None if value.text else "no study can name a law in Python: take a law of gelbench, or solve it here"
+
+
+def _is_as_read(value: Material) -> bool:
+    try:
+        return _core.text_of_file(value._reference or "") == value.text
+    except InputError:
+        return False
 
 
 def card(value: Material) -> _core.MaterialCard:
     """The card of a material."""
     return value._card
-
-
-def _check_derivatives(rows: Callable[[Floats, Floats], Floats]) -> None:
-    """Compares the derivatives of a law with differences, at states of uniaxial and equibiaxial stretch."""
-    stretch = np.array([0.8, 1.1, 1.3, 1.6])
-    one, two = stretch**2 + 2 / stretch, 2 * stretch + stretch**-2
-    i1, i2 = np.concatenate([one, two]), np.concatenate([two, one])
-    step = 1e-5
-    here = rows(i1, i2)
-    if not np.isfinite(here).all():
-        raise fault("evaluate", "returns values that are no numbers", "it must hold for stretches from 0.8 to 1.6")
-    along1 = (rows(i1 + step, i2) - rows(i1 - step, i2)) / (2 * step)
-    along2 = (rows(i1, i2 + step) - rows(i1, i2 - step)) / (2 * step)
-    pairs = [
-        ("d1", here[:, 1], along1[:, 0]),
-        ("d2", here[:, 2], along2[:, 0]),
-        ("d11", here[:, 3], along1[:, 1]),
-        ("d12", here[:, 4], along1[:, 2]),
-        ("d22", here[:, 5], along2[:, 2]),
-    ]
-    scale = max(float(np.abs(here[:, 1:3]).max()), np.finfo(float).tiny)
-    for name, given, difference in pairs:
-        error = np.abs(given - difference)
-        if (error > 1e-4 * scale + 1e-3 * np.abs(difference)).any():
-            worst = int(error.argmax())
-            raise fault(
-                "evaluate",
-                f"{name} is {given[worst]:g} at I₁ = {i1[worst]:.3f}, I₂ = {i2[worst]:.3f}, "
-                f"and the difference of what it derives is {difference[worst]:g}",
-                "the derivatives must be those of the energy",
-            )

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ._material import Material
     from ._solution import Solution, State
-    from ._sweep import Band
+    from ._sweep_table import Band
 
 __all__ = ["deformed", "forces", "inline", "material_curves"]
 

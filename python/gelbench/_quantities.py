@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Iterable, Mapping
 from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from . import _core
-from ._errors import fault
+from ._errors import InputError, fault
 
-__all__ = ["Floats", "PathLike", "Quantity", "SupportsUnits", "floats", "number", "text", "toml"]
+__all__ = ["Floats", "PathLike", "Quantity", "SupportsUnits", "finite", "floats", "magnitudes", "number", "text", "toml", "whole"]
 
 Floats: TypeAlias = NDArray[np.float64]
 PathLike: TypeAlias = "str | os.PathLike[str]"
@@ -37,7 +38,7 @@ def text(value: Any, unit: str, argument: str) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, SupportsUnits):
-        value = value.to(unit or "dimensionless").magnitude
+        value = converted(value, unit, argument)
     try:
         plain = float(value)
     except (TypeError, ValueError):
@@ -51,12 +52,53 @@ def number(value: Any, unit: str, argument: str) -> float:
     return _core.quantity(text(value, unit, argument), unit)
 
 
-def floats(value: ArrayLike, argument: str, shape: tuple[int | None, ...]) -> Floats:
-    """A contiguous array in the machine's byte order, of a shape in which ``None`` stands for any length."""
+def converted(value: SupportsUnits, unit: str, argument: str) -> Any:
+    """The numbers of a quantity of pint in a unit; none, or ``-``, is that of plain numbers."""
+    wanted = "dimensionless" if unit in ("", "-", "–") else unit
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+        return value.to(wanted).magnitude
+    except Exception as cause:
+        raise fault(argument, str(cause), f"give it in {wanted}, or in a unit that can be converted") from None
+
+
+def magnitudes(value: Any, argument: str, unit: str = "") -> Any:
+    """Anything array-like without units: quantities of pint, and lists of them, are converted."""
+    if hasattr(value, "magnitude") and isinstance(value, SupportsUnits):
+        return converted(value, unit, argument)
+    if isinstance(value, (list, tuple)) and any(isinstance(one, (list, tuple)) or hasattr(one, "magnitude") for one in value):
+        return [magnitudes(one, argument, unit) for one in value]
+    return value
+
+
+def refuse_masked(value: Any, argument: str) -> None:
+    """Refuses masked entries where each is needed."""
+    if np.ma.is_masked(value):
+        count = int(np.sum(np.ma.getmaskarray(value)))
+        raise fault(argument, f"has {count} masked entries", "fill them in, or leave them out")
+
+
+def array_of(value: Any, argument: str, unit: str = "", *, missing: bool = False) -> Floats:
+    """An array of floats; masked entries are NaN where some may be missing, and else refused."""
+    plain = magnitudes(value, argument, unit)
+    try:
+        if not np.ma.isMaskedArray(plain):
+            return np.asarray(plain, dtype=np.float64)
+        if not missing:
+            refuse_masked(plain, argument)
+        found: Floats = np.ma.filled(plain.astype(np.float64), np.nan)
+        return found
+    except (TypeError, ValueError) as cause:
+        if isinstance(cause, InputError):
+            raise
         raise fault(argument, "is no array of numbers", "give floats") from None
+
+
+def floats(
+    value: Any, argument: str, shape: tuple[int | None, ...], unit: str = "", *, missing: bool = False
+) -> Floats:
+    """A contiguous array in the machine's byte order, of a shape in which ``None`` stands for any length."""
+    array = array_of(value, argument, unit, missing=missing)
+    array = np.require(array, requirements="C")
     fits = len(array.shape) == len(shape) and all(
         want is None or own == want for own, want in zip(array.shape, shape, strict=True)
     )
@@ -72,6 +114,18 @@ def finite(array: Floats, argument: str) -> Floats:
         place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
         raise fault(argument, f"holds {array[place]} at {list(place)}", "every entry must be a number")
     return array
+
+
+def whole(value: Any, argument: str, least: int = 0) -> int:
+    """A whole number that is not less than `least`."""
+    try:
+        plain: Any = int(value) if isinstance(value, (float, np.floating)) and float(value).is_integer() else value
+        found = operator.index(plain)
+    except TypeError:
+        found = least - 1
+    if found < least:
+        raise fault(argument, f"is {value!r}", f"it must be a whole number, {least} or more")
+    return found
 
 
 def scalar(value: Any) -> str | None:
@@ -95,7 +149,7 @@ def _value(value: Any) -> str:
     if isinstance(value, Iterable):
         items: Iterable[Any] = value
         return "[" + ", ".join(_value(one) for one in items) + "]"
-    raise TypeError(f"{value!r} cannot stand in a study")
+    raise fault("settings", f"{value!r} cannot stand in a study", "give texts, numbers, truths, or lists of them")
 
 
 def toml(sections: Mapping[str, Any]) -> str:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _core
+from ._errors import InMemory
 from ._fields import Cells, cells_of, to_meshio, to_pyvista
 from ._quantities import Floats, PathLike
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Field", "Results"]
 
 
-class Field:
+class Field(InMemory):
     """A mesh with arrays, as a VTK file holds it: the unit is part of each array's name."""
 
     def __init__(self, core: _core.Results, series: int, number: int, time: float | None) -> None:
@@ -35,7 +36,7 @@ class Field:
 
     @property
     def points(self) -> Floats:
-        """Nodes at rest [mm], n × 2."""
+        """Nodes at rest [mm], n × 2; read-only."""
         return self._core.field_points(*self._place)
 
     @property
@@ -49,17 +50,17 @@ class Field:
 
     @property
     def point_data(self) -> dict[str, Floats]:
-        """Arrays at the nodes."""
+        """Arrays at the nodes, read-only; components as of `State.point_data`."""
         return self._arrays[0]
 
     @property
     def cell_data(self) -> dict[str, Floats]:
-        """Arrays in the cells."""
+        """Arrays in the cells, read-only."""
         return self._arrays[1]
 
     @property
     def displacement(self) -> Floats:
-        """ux, uy of every node [mm], n × 2."""
+        """ux, uy of every node [mm], n × 2; read-only."""
         return self.point_data["displacement_mm"]
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:
@@ -75,8 +76,11 @@ class Field:
         return f"<gelbench.Field{at}: {len(self.points)} nodes>"
 
 
-class Results:
-    """What a study finds: figures, requirements, warnings, fields, tables, pictures."""
+class Results(InMemory):
+    """What a study finds: figures, requirements, warnings, fields, tables, pictures.
+
+    Results cannot be pickled, the library holds them in memory; `json` can.
+    """
 
     def __init__(self, core: _core.Results) -> None:
         self._core = core
@@ -98,7 +102,7 @@ class Results:
 
     @property
     def summary(self) -> str:
-        """The headline figures, as the command prints them."""
+        """The headline figures of plates and measured fields, as the command prints them; empty for studies of other kinds."""
         return self._core.summary
 
     @property
@@ -154,7 +158,8 @@ class Results:
         return _Pictures(self._core)
 
     def write(self, folder: PathLike | None = None) -> list[Path]:
-        """Writes what the command writes: report, pictures, VTK files.
+        """Writes what the command writes: report, pictures, VTK files. As the command does, it replaces files of the same names, and
+        what it has written into the folder before.
 
         Parameters
         ----------
@@ -169,7 +174,7 @@ class Results:
         Raises
         ------
         gelbench.WriteError
-            Where a file cannot be written, or is none of gelbench's.
+            Where a file cannot be written, another process writes into the folder, or the study's own file would be replaced.
         """
         return [Path(path) for path in self._core.write(None if folder is None else os.fspath(folder))]
 

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._errors import InMemory
 from ._fields import Cells, cells_of, to_meshio, to_pyvista
-from ._quantities import Floats, finite, floats
+from ._quantities import Floats, array_of, finite, floats
 
 if TYPE_CHECKING:
     import meshio
@@ -43,7 +44,7 @@ class AtPoints(NamedTuple):
     """Principal stretches, the larger in the plane, the smaller, and that of the thickness, n × 3."""
 
 
-class State:
+class State(InMemory):
     """An equilibrium at one load factor.
 
     Arrays at nodes have the order of `Solution.points`.
@@ -63,7 +64,7 @@ class State:
 
     @property
     def displacement(self) -> Floats:
-        """ux, uy of every node [mm], n × 2; read-only, the library's own memory."""
+        """ux, uy of every node [mm], n × 2; read-only, the library's own memory: take a copy to change it."""
         return self._solution._core.displacement(self._step)
 
     @property
@@ -116,17 +117,21 @@ class State:
 
     @property
     def point_data(self) -> dict[str, Floats]:
-        """Arrays at the nodes, as in VTK files: the unit is part of each name."""
+        """Arrays at the nodes, read-only, as in VTK files: the unit is part of each name.
+
+        Vectors have the components x, y. Symmetric tensors, such as Cauchy stress and Green–Lagrange strain, have 11, 22, 33, 12
+        (n × 4); the nominal stress, which is not symmetric, has P₁₁, P₂₁, P₁₂, P₂₂, P₃₃ (n × 5).
+        """
         return self._data()[0]
 
     @property
     def cell_data(self) -> dict[str, Floats]:
-        """Arrays in the cells, as in VTK files: the unit is part of each name."""
+        """Arrays in the cells, read-only, as in VTK files: the unit is part of each name, and components are those of `point_data`."""
         return self._data()[1]
 
     @property
     def stress(self) -> Floats:
-        """Cauchy stress σ₁₁, σ₂₂, σ₃₃, σ₁₂ at every node [MPa], n × 4."""
+        """Cauchy stress σ₁₁, σ₂₂, σ₃₃, σ₁₂ at every node [MPa], n × 4; read-only."""
         return self.point_data["cauchy_stress_at_nodes_MPa"]
 
     def at(self, points: ArrayLike) -> AtPoints:
@@ -142,10 +147,10 @@ class State:
         gelbench.InputError
             Where a point is not on the sheet.
         """
-        single = np.ndim(points) == 1
-        places = finite(floats(np.atleast_2d(np.asarray(points)), "points", (None, 2)), "points")
+        own = array_of(points, "points", "mm")
+        places = finite(floats(np.atleast_2d(own), "points", (None, 2)), "points")
         found = self._solution._core.at(self._step, places)
-        return AtPoints(*(one[0] if single else one for one in found))
+        return AtPoints(*(one[0] if own.ndim == 1 else one for one in found))
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:
         """The state as a grid of PyVista; warp it by ``displacement_mm`` to see it deformed."""
@@ -199,10 +204,11 @@ class State:
         return f"{head}<br>{inline(lambda ax: self.plot(ax=ax))}"
 
 
-class Solution(Sequence[State]):
+class Solution(InMemory, Sequence[State]):
     """The equilibria of one model, one `State` for each load factor.
 
-    What a state has, a solution has too: that of its last state.
+    What a state has, a solution has too: that of its last state. An `IndexError` says where there is none. Solutions cannot be
+    pickled: the library holds them in memory.
     """
 
     def __init__(self, core: _core.Solution, model: str, errors: dict[float, dict[str, float]]) -> None:
@@ -242,6 +248,11 @@ class Solution(Sequence[State]):
         return self._core.seconds
 
     @property
+    def warnings(self) -> list[str]:
+        """What deserves attention, such as stretches beyond those of the card."""
+        return self._core.warnings
+
+    @property
     def factors(self) -> Floats:
         """Load factors that were reached; stretches of a plate."""
         return np.array(self._core.factors())
@@ -254,12 +265,54 @@ class Solution(Sequence[State]):
     @property
     def last(self) -> State:
         """The state at the last load factor."""
+        if not self._states:
+            raise IndexError("the solution has no state: no load factor was reached")
         return self._states[-1]
 
     @property
     def displacement(self) -> Floats:
         """`State.displacement` of the last state."""
         return self.last.displacement
+
+    @property
+    def residual(self) -> Floats:
+        """`State.residual` of the last state."""
+        return self.last.residual
+
+    @property
+    def residuals(self) -> Floats:
+        """`State.residuals` of the last state."""
+        return self.last.residuals
+
+    @property
+    def groups(self) -> dict[str, GroupForce]:
+        """`State.groups` of the last state."""
+        return self.last.groups
+
+    @property
+    def energy(self) -> float:
+        """`State.energy` of the last state."""
+        return self.last.energy
+
+    @property
+    def balance(self) -> float:
+        """`State.balance` of the last state."""
+        return self.last.balance
+
+    @property
+    def multipliers(self) -> dict[str, Floats]:
+        """`State.multipliers` of the last state."""
+        return self.last.multipliers
+
+    @property
+    def point_data(self) -> dict[str, Floats]:
+        """`State.point_data` of the last state."""
+        return self.last.point_data
+
+    @property
+    def cell_data(self) -> dict[str, Floats]:
+        """`State.cell_data` of the last state."""
+        return self.last.cell_data
 
     @property
     def force(self) -> float:
@@ -311,10 +364,12 @@ class Solution(Sequence[State]):
         return self._states[index]
 
     def __repr__(self) -> str:
-        return f"<gelbench.Solution {self.model}: {len(self.points)} nodes, {len(self)} states>"
+        told = f", {len(self.warnings)} warnings" if self.warnings else ""
+        return f"<gelbench.Solution {self.model}: {len(self.points)} nodes, {len(self)} states{told}>"
 
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><td>{state.factor:g}</td><td>{state.force:.6g}</td></tr>" for state in self)
         head = f"<b>{html.escape(self.model)}</b>, {len(self.points)} nodes"
         table = f"<table><tr><th>load factor</th><th>force [N]</th></tr>{rows}</table>"
-        return head + table + (self.last._repr_html_() if self._states else "")
+        told = "".join(f"<p>{html.escape(warning)}</p>" for warning in self.warnings)
+        return head + table + told + (self.last._repr_html_() if self._states else "")

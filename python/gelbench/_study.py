@@ -1,100 +1,128 @@
-"""Plates and specimens: the problem as a study, solved by one model or compared in all three."""
+"""Problems as studies, solved by one model or compared in all three; and study files."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._errors import SolveError, fault
-from ._fields import NUMBERS, read_mesh
-from ._material import Material, card, material, reference
+from ._errors import SolveError, WriteError, fault
+from ._material import Material, in_memory, needs_card, on_disk, shipped
 from ._progress import Progress, callback
-from ._quantities import PathLike, Quantity, finite, floats, number, text, toml
+from ._quantities import PathLike, finite, floats, magnitudes, number, text
 from ._results import Results
 from ._solution import Solution
 
-__all__ = ["Condition", "Factors", "Model", "Plate", "Specimen"]
+__all__ = ["Factors", "Files", "Model", "Settings", "StudyInMemory", "check", "factor_texts", "merged", "run"]
 
 Model: TypeAlias = Literal["corrected", "mass-spring", "finite-element"]
 Factors: TypeAlias = "ArrayLike | Sequence[float | str]"
-Condition: TypeAlias = "str | Mapping[str, Any]"
-"""How a group is held or loaded: a kind, or its keys, such as ``{"x": "45 mm", "y": 0}``."""
+Settings: TypeAlias = "Mapping[str, Any]"
+"""Keys of a study, by section where they have one."""
 
-IN_MEMORY = "gelbench-card-in-memory.toml"
-"""The card of a material that has no file, in the text of a study."""
+Files: TypeAlias = "dict[str, bytes]"
+"""What is in memory, by the names that a study has for it."""
 
-Settings: TypeAlias = "Mapping[str, Mapping[str, Any]]"
-
-UNITS = {
-    "x": "mm",
-    "y": "mm",
-    "displacement": "mm",
-    "x_force": "N",
-    "y_force": "N",
-    "angle": "rad",
-    "pressure": "MPa",
-}
-"""Units of plain numbers in supports and loads."""
-
-LOADS = {"traction": "MPa", "force": "N"}
-"""Those of x and y in loads."""
-
-MEASURES = (
-    "length",
-    "width",
-    "hole_diameter",
-    "notch_depth",
-    "notch_length",
-    "narrow_length",
-    "narrow_width",
-    "shoulder_length",
-    "inner_radius",
-    "outer_radius",
-    "angle",
-)
-
-
-class _Study:
+class StudyInMemory:
     """A study that is solved."""
 
     material: Material
     _sections: dict[str, Any]
     _mesh: _core.GivenMesh | None = None
 
-    def study(self, factors: Factors | None = None) -> str:
-        """The text of the study, which the command runs too.
+    def study(self, factors: Factors | None = None, *, card: PathLike | None = None) -> str:
+        """The text of the study, which ``gelbench run`` computes to the same bits.
 
         Parameters
         ----------
         factors : array_like, optional
             As in `solve`.
-        """
-        return self._text(factors, self._sections)
+        card : str or path, optional
+            The ``.toml`` file that the text names as the material's card, relative to the study, such as one of `Material.save`. By
+            default the card that the material was read from.
 
-    def _text(self, factors: Factors | None, sections: dict[str, Any]) -> str:
+        Raises
+        ------
+        gelbench.InputError
+            Where the material is in no file, or its file has changed since: `write_study` writes both. No study can name a law in
+            Python. A mesh in memory must be saved, and `specimen.file` of the text name it.
+        """
+        if card is None:
+            return self._text(factors, on_disk(self.material))
+        name = os.fspath(card)
+        if not name.endswith(".toml"):
+            raise fault("card", f"is {name!r}", "give the path of a .toml file")
+        self._refuse_laws_in_python()
+        return self._text(factors, name)
+
+    def write_study(self, path: PathLike, factors: Factors | None = None) -> list[Path]:
+        """Writes the study for the command, and the material's card beside it.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, such as ``plate.toml``; its card is then ``plate-card.toml``, and none is written where the card comes along.
+        factors : array_like, optional
+            As in `solve`.
+
+        Returns
+        -------
+        list of pathlib.Path
+            The files.
+
+        Raises
+        ------
+        gelbench.InputError
+            Where the material is a law in Python, or the mesh is in memory.
+        gelbench.WriteError
+            Where a file cannot be written.
+        """
+        self._refuse_meshes_in_memory()
+        self._refuse_laws_in_python()
+        target = Path(path)
+        name = shipped(self.material)
+        beside = target.with_name(f"{target.stem}-card.toml")
+        study = self._text(factors, name or beside.name)
+        if name is None:
+            self.material.save(beside)
+        try:
+            target.write_text(study, encoding="utf-8")
+        except OSError as cause:
+            raise WriteError(f"{target} cannot be written: {cause}") from cause
+        return [target] if name else [target, beside]
+
+    def _text(self, factors: Factors | None, card: str) -> str:
         raise NotImplementedError
 
-    def _in_memory(self, factors: Factors | None) -> tuple[str, str, dict[str, bytes]]:
+    def _here(self, factors: Factors | None) -> tuple[str, Files]:
+        """The text of the study as it is computed here, and what it names and is in memory."""
+        name, files = in_memory(self.material)
+        return self._text(factors, name), files
+
+    def _in_memory(self, factors: Factors | None) -> tuple[str, str, Files]:
         """Name and text of the study, and the files that the text names and no disk has."""
-        name, own = type(self).__name__.lower(), card(self.material)
+        self._refuse_meshes_in_memory()
+        self._refuse_laws_in_python()
+        return type(self).__name__.lower(), *self._here(factors)
+
+    def _refuse_meshes_in_memory(self) -> None:
         if self._mesh is not None:
             raise fault("study", "its mesh is on no disk", "save the mesh, and give a study that names the file")
-        if self.material._reference is not None:
-            return name, self.study(factors), {}
-        if not own.text:
-            raise fault("material", f"{own.name} is no card that a study can name", "take a card, or the material of a fit")
-        sections = {**self._sections, "material": {**self._sections["material"], "card": IN_MEMORY}}
-        return name, self._text(factors, sections), {IN_MEMORY: own.text.encode()}
 
-    def _one(self, study: str, model: str, progress: Any, allow_large: bool) -> _core.Solution:
+    def _refuse_laws_in_python(self) -> None:
+        hint = needs_card(self.material)
+        if hint is not None:
+            raise fault("material", f"{self.material.name} has no card", hint)
+
+    def _one(self, study: str, files: Files, model: str, progress: Any, allow_large: bool) -> _core.Solution:
         raise NotImplementedError
 
-    def _all(self, study: str, progress: Any, allow_large: bool) -> _core.Results:
+    def _all(self, study: str, files: Files, progress: Any, allow_large: bool) -> _core.Results:
         raise NotImplementedError
 
     def solve(
@@ -136,12 +164,14 @@ class _Study:
 
         Notes
         -----
-        Other Python threads go on meanwhile, and Ctrl-C stops the computation.
+        Other Python threads go on meanwhile, and Ctrl-C stops the computation. What deserves attention, such as a stretch beyond
+        those of the card, stands in `Solution.warnings`. A single model has no memory of loads before: a material that softens is
+        refused, take `run`.
         """
-        study = self.study(factors)
+        study, files = self._here(factors)
         told = callback(progress)
-        core = self._one(study, model, told, allow_large)
-        errors = self._errors(study, model, told, allow_large) if reference else {}
+        core = self._one(study, files, model, told, allow_large)
+        errors = self._errors(study, files, model, told, allow_large) if reference else {}
         solution = Solution(core, model, errors)
         if core.ends:
             error = core.ends[0]
@@ -170,10 +200,12 @@ class _Study:
         Results
             Figures, requirements, warnings, fields and pictures.
         """
-        return Results(self._all(self.study(factors), callback(progress), allow_large))
+        return Results(self._all(*self._here(factors), callback(progress), allow_large))
 
-    def _errors(self, study: str, model: str, told: Any, allow_large: bool) -> dict[float, dict[str, float]]:
-        results = Results(self._all(study, told, allow_large))
+    def _errors(
+        self, study: str, files: Files, model: str, told: Any, allow_large: bool
+    ) -> dict[float, dict[str, float]]:
+        results = Results(self._all(study, files, told, allow_large))
         key = model.replace("-", "_")
         steps: list[dict[str, Any]] = results.json["steps"]
         found: dict[float, dict[str, float]] = {}
@@ -189,8 +221,9 @@ class _Study:
         return [number(one.strip().strip('"'), "", "factors") for one in listed]
 
 
-def _factors(factors: Factors | None, default: Sequence[float]) -> list[str]:
-    given: Any = default if factors is None else factors
+def factor_texts(factors: Factors | None, default: Sequence[float]) -> list[str]:
+    """Load factors as a study has them."""
+    given: Any = magnitudes(default if factors is None else factors, "factors")
     if isinstance(given, str) or np.ndim(given) == 0:
         given = [given]
     if not all(isinstance(one, str) for one in given):
@@ -200,288 +233,18 @@ def _factors(factors: Factors | None, default: Sequence[float]) -> list[str]:
     return [text(one, "", "factors") for one in given]
 
 
-def _merged(sections: dict[str, Any], settings: Settings | None) -> dict[str, Any]:
+def merged(
+    sections: dict[str, Any], settings: Settings | None, arguments: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """Sections with further keys; those that `arguments` say are refused with what is told there."""
+    found = {name: dict(own) if isinstance(own, Mapping) else own for name, own in sections.items()}
     for name, own in (settings or {}).items():
-        sections[name] = {**sections.get(name, {}), **own}
-    return sections
-
-
-class Plate(_Study):
-    """A rectangular plate between two rigid grips, which clamp its short sides; the right one is moved along x.
-
-    Parameters
-    ----------
-    length, width, thickness : quantity
-        Measures at rest [mm].
-    material : Material, str or path
-        The material, or its card.
-    cells : tuple of int
-        Cells of the lattice along and across.
-    settings : mapping, optional
-        Other keys of a study by section, such as ``{"corrector": {"scheme": "gauss"}}``; ``gelbench keys`` and the guide list
-        them.
-
-    Examples
-    --------
-    >>> plate = gb.Plate(length=150, width="5 cm", thickness=2, material="pva-10")
-    >>> plate.solve(factors=["50 %"]).force
-    12.874...
-    """
-
-    STRETCHES = (0.15, 0.3, 0.5, 0.75, 1.0)
-    """Stretches where none are given."""
-
-    def __init__(
-        self,
-        length: Quantity = 150.0,
-        width: Quantity = 50.0,
-        thickness: Quantity = 2.0,
-        material: Material | PathLike = "pva-10",
-        *,
-        cells: Sequence[int] = (60, 20),
-        settings: Settings | None = None,
-    ) -> None:
-        self.material = _material(material)
-        self._sections = _merged(
-            {
-                "plate": {
-                    "length": text(length, "mm", "length"),
-                    "width": text(width, "mm", "width"),
-                    "thickness": text(thickness, "mm", "thickness"),
-                    "cells": [int(count) for count in cells],
-                },
-                "material": {"card": reference(self.material)},
-            },
-            settings,
-        )
-
-    def _text(self, factors: Factors | None, sections: dict[str, Any]) -> str:
-        load = {"stretches": _factors(factors, self.STRETCHES)}
-        return toml({"kind": "plate", **sections, "load": {**sections.get("load", {}), **load}})
-
-    def _one(self, study: str, model: str, progress: Any, allow_large: bool) -> _core.Solution:
-        return _core.solve_plate(study, card(self.material), model, progress, allow_large)
-
-    def _all(self, study: str, progress: Any, allow_large: bool) -> _core.Results:
-        return _core.run_plate(study, card(self.material), progress, allow_large)
-
-    def __repr__(self) -> str:
-        own = self._sections["plate"]
-        return f"<gelbench.Plate {own['length']} × {own['width']} × {own['thickness']}, {self.material.name}>"
-
-
-def _material(value: Material | PathLike) -> Material:
-    return material(value)
-
-
-class Specimen(_Study):
-    """A sheet of any shape, with supports and loads on its sides.
-
-    Parameters
-    ----------
-    shape : {"strip", "strip-with-hole", "notched-strip", "dog-bone", "ring-sector"}
-        The shape; `Specimen.from_mesh` takes any.
-    thickness : quantity
-        Thickness at rest [mm].
-    material : Material, str or path
-        The material, or its card.
-    supports : mapping
-        How groups are held, by name: ``"clamp"``, ``"roller"``, ``"symmetry"``, or keys such as ``{"x": 45, "y": 0}`` and
-        ``{"kind": "grip", "x_force": 3, "y": 0}``. Plain numbers are mm, N and rad. Several of one group stand in a list.
-    loads : mapping, optional
-        How groups are loaded: ``{"kind": "force", "x": 3}`` [N], ``{"kind": "traction", "y": 0.01}`` [MPa],
-        ``{"kind": "pressure", "pressure": 0.01}`` [MPa].
-    measured : str
-        The group whose force is measured.
-    cells : int
-        Cells of the lattice across.
-    lattice : {"quadrilaterals", "triangles"}
-        Cells of the lattice.
-    settings : mapping, optional
-        Other keys of a study by section, such as ``{"finite_element": {"element": "T2"}}``.
-    **measures : quantity
-        Measures of the shape [mm]: ``length``, ``width``, ``hole_diameter``, ``notch_depth``, ``notch_length``,
-        ``narrow_length``, ``narrow_width``, ``shoulder_length``, ``inner_radius``, ``outer_radius``; ``angle`` [rad].
-
-    Examples
-    --------
-    >>> strip = gb.Specimen(
-    ...     "strip-with-hole", length=90, width=30, hole_diameter=12, thickness=2, material="pva-10",
-    ...     supports={"left": "clamp", "right": {"x": 45, "y": 0}}, measured="right")
-    >>> strip.solve("finite-element").force
-    """
-
-    FACTORS = (1.0,)
-    """Load factors where none are given."""
-
-    def __init__(
-        self,
-        shape: str,
-        *,
-        thickness: Quantity,
-        material: Material | PathLike,
-        supports: Mapping[str, Condition | Sequence[Condition]],
-        measured: str,
-        loads: Mapping[str, Condition | Sequence[Condition]] | None = None,
-        cells: int = 24,
-        lattice: str = "quadrilaterals",
-        settings: Settings | None = None,
-        **measures: Quantity,
-    ) -> None:
-        unknown = [name for name in measures if name not in MEASURES]
-        if unknown:
-            raise fault(unknown[0], "is no measure of a shape", f"measures are {', '.join(MEASURES)}")
-        own = {
-            name: text(value, "rad" if name == "angle" else "mm", name) for name, value in measures.items()
-        }
-        specimen = {"shape": shape, **own, "cells": int(cells), "lattice": lattice}
-        self._set(specimen, None, thickness, material, supports, measured, loads, settings)
-
-    @classmethod
-    def from_mesh(
-        cls,
-        points: Any,
-        cells: Mapping[str, ArrayLike] | None = None,
-        groups: Mapping[str, ArrayLike] | None = None,
-        *,
-        thickness: Quantity,
-        material: Material | PathLike,
-        supports: Mapping[str, Condition | Sequence[Condition]],
-        measured: str,
-        loads: Mapping[str, Condition | Sequence[Condition]] | None = None,
-        unit: str = "mm",
-        merge_nodes: Quantity | None = None,
-        allowed: Sequence[str] = (),
-        settings: Settings | None = None,
-    ) -> Specimen:
-        """A specimen on a mesh.
-
-        Parameters
-        ----------
-        points : array_like, meshio.Mesh or pyvista.UnstructuredGrid
-            Nodes, n × 2 or n × 3 with one z; or a whole mesh, whose named sets of nodes and lines are groups.
-        cells : mapping, optional
-            Nodes of the cells, m × k, counted from 0, by kind: ``triangle``, ``triangle6``, ``quad``, ``quad8``, ``quad9``.
-        groups : mapping, optional
-            Groups by name: numbers of nodes (n), or both ends of each line (n × 2). ``left``, ``right``, ``bottom``, ``top`` and
-            ``boundary`` are there by themselves.
-        unit : str
-            Unit of the points.
-        merge_nodes : quantity, optional
-            Nodes not farther from each other become one [mm].
-        allowed : sequence of {"seams", "parts", "hinges", "polygons"}
-            What looks like a fault of the mesh but is meant.
-        thickness, material, supports, measured, loads, settings
-            As of `Specimen`.
-
-        Notes
-        -----
-        Nodes of no cell are left out: fields have the order of `Solution.points`.
-        """
-        nodes: dict[str, Any] = {}
-        lines: dict[str, Any] = {}
-        own: Any = cells
-        if cells is None:
-            points, own, nodes, lines = read_mesh(points)
-        kinds = {name: block for name, block in own.items() if name not in ("vertex", "line", "line3")}
-        unknown = [name for name in kinds if name not in NUMBERS]
-        if unknown:
-            raise fault("cells", f"cells `{unknown[0]}` are not known", f"take {', '.join(list(NUMBERS)[2:])}")
-        for name, group in (groups or {}).items():
-            array = np.asarray(group)
-            if array.ndim not in (1, 2) or (array.ndim == 2 and array.shape[1] != 2):
-                raise fault("groups", f"`{name}` has the shape {array.shape}", "it must be n, nodes, or n × 2, lines")
-            (nodes if array.ndim == 1 else lines)[name] = array
-        places = np.asarray(points, dtype=np.float64)
-        if places.ndim == 2 and places.shape[1] == 2:
-            places = np.column_stack([places, np.zeros(len(places))])
-        mesh = _core.GivenMesh(
-            floats(places, "points", (None, 3)),
-            [(NUMBERS[name], _integers(block, "cells", 2)) for name, block in kinds.items()],
-            {name: _integers(group, "groups", 1) for name, group in nodes.items()},
-            {name: _integers(group, "groups", 2) for name, group in lines.items()},
-        )
-        specimen: dict[str, Any] = {"shape": "mesh", "file": "the mesh", "file_unit": unit}
-        if merge_nodes is not None:
-            specimen["merge_nodes"] = text(merge_nodes, "mm", "merge_nodes")
-        if allowed:
-            specimen["allowed"] = list(allowed)
-        made = cls.__new__(cls)
-        made._set(specimen, mesh, thickness, material, supports, measured, loads, settings)
-        return made
-
-    def _set(
-        self,
-        specimen: dict[str, Any],
-        mesh: _core.GivenMesh | None,
-        thickness: Quantity,
-        material: Material | PathLike,
-        supports: Mapping[str, Any],
-        measured: str,
-        loads: Mapping[str, Any] | None,
-        settings: Settings | None,
-    ) -> None:
-        self.material = _material(material)
-        self._mesh = mesh
-        self._sections = _merged(
-            {
-                "material": {"card": reference(self.material)},
-                "specimen": {**specimen, "thickness": text(thickness, "mm", "thickness")},
-            },
-            settings,
-        )
-        self._conditions = {"support": _entries(supports, "supports"), "load": _entries(loads or {}, "loads")}
-        self._measured = measured
-
-    def study(self, factors: Factors | None = None) -> str:
-        """The text of the study, which the command runs too; a mesh in memory must first be saved under a name.
-
-        Parameters
-        ----------
-        factors : array_like, optional
-            As in `solve`.
-        """
-        return super().study(factors)
-
-    def _text(self, factors: Factors | None, sections: dict[str, Any]) -> str:
-        path = {"factors": _factors(factors, self.FACTORS), "measured_group": self._measured}
-        conditions = {name: own for name, own in self._conditions.items() if own}
-        return toml({"kind": "specimen", **sections, "path": path, **conditions})
-
-    def _one(self, study: str, model: str, progress: Any, allow_large: bool) -> _core.Solution:
-        return _core.solve_specimen(study, card(self.material), model, self._mesh, progress, allow_large)
-
-    def _all(self, study: str, progress: Any, allow_large: bool) -> _core.Results:
-        return _core.run_specimen(study, card(self.material), self._mesh, progress, allow_large)
-
-    def __repr__(self) -> str:
-        own = self._sections["specimen"]
-        return f"<gelbench.Specimen {own['shape']}, {own['thickness']} thick, {self.material.name}>"
-
-
-def _integers(values: Any, argument: str, dimensions: int) -> Any:
-    array = np.asarray(values)
-    if array.ndim != dimensions or not (np.issubdtype(array.dtype, np.integer) or array.size == 0):
-        raise fault(argument, f"holds an array of {array.dtype} with the shape {array.shape}", "give numbers of nodes")
-    return np.ascontiguousarray(array, dtype=np.int64)
-
-
-def _entries(groups: Mapping[str, Any], argument: str) -> list[dict[str, Any]]:
-    entries: list[dict[str, Any]] = []
-    for group, given in groups.items():
-        for one in given if isinstance(given, (list, tuple)) else [given]:
-            own: dict[str, Any] = {"kind": one} if isinstance(one, str) else dict(one)
-            kind = own.pop("kind", "displacement" if argument == "supports" else "force")
-            entry = {"group": group, "kind": kind}
-            for key, value in own.items():
-                if key == "centre":
-                    entry[key] = [text(part, "mm", f"{argument}.{key}") for part in value]
-                elif key in ("x", "y") and argument == "loads":
-                    entry[key] = text(value, LOADS.get(kind, "N"), f"{argument}.{key}")
-                else:
-                    entry[key] = text(value, UNITS.get(key, ""), f"{argument}.{key}")
-            entries.append(entry)
-    return entries
+        keys = [name, *(f"{name}.{key}" for key in own)] if isinstance(own, Mapping) else [name]
+        for key in keys:
+            if key in (arguments or {}):
+                raise fault(f"settings.{key}", "is said by an argument", (arguments or {})[key])
+        found[name] = {**found.get(name, {}), **own} if isinstance(own, Mapping) else own
+    return found
 
 
 def run(path: PathLike, *, progress: Progress | None = None, allow_large: bool = False) -> Results:

@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._errors import WriteError, fault
-from ._plots import band_over_steps, inline
+from ._errors import fault
+from ._plate import Plate
 from ._progress import Progress, callback
-from ._quantities import Floats, PathLike, SupportsUnits, scalar
-from ._study import Factors, Plate, Specimen
+from ._quantities import PathLike, SupportsUnits, converted, refuse_masked, scalar, whole
+from ._specimen import Specimen
+from ._study import Factors
+from ._sweep_table import Column, SweepTable
 from ._tests import Fit
 
 if TYPE_CHECKING:
     import pandas
-    from matplotlib.axes import Axes
 
-__all__ = ["Band", "SweepPlan", "SweepTable", "salib_problem", "sweep"]
+__all__ = ["SweepPlan", "salib_problem", "sweep"]
 
 Values: TypeAlias = "str | Sequence[Any] | NDArray[Any]"
 """A text as behind ``--vary KEY=``, or the values themselves."""
@@ -33,25 +31,7 @@ Values: TypeAlias = "str | Sequence[Any] | NDArray[Any]"
 Points: TypeAlias = "Mapping[str, ArrayLike] | pandas.DataFrame"
 """Columns by keys with their units, such as ``plate.width [mm]``."""
 
-Column: TypeAlias = "Floats | list[str]"
-"""Numbers, or texts such as names of cards."""
-
 Drawing: TypeAlias = Literal["sobol", "random"]
-
-
-class Band(NamedTuple):
-    """A figure of all runs over the steps of the study."""
-
-    at: Floats
-    """Stretches, load factors, or times [s]."""
-    low: Floats
-    """5 % of the runs lie below."""
-    median: Floats
-    """Half of them."""
-    high: Floats
-    """95 % of them."""
-    runs: NDArray[np.int64]
-    """How many runs have the figure at each step."""
 
 
 def _word(value: Any, key: str) -> str:
@@ -60,19 +40,33 @@ def _word(value: Any, key: str) -> str:
     if text is not None:
         return text
     if isinstance(value, SupportsUnits):
-        return f"{float(value.magnitude)!r} {getattr(value, 'units', ''):~}".rstrip()
+        return f"{float(value.magnitude)!r} {_unit(value)}".rstrip()
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     raise fault(f"parameters.{key}", f"{value!r} is no value of a key", "give numbers, texts or quantities")
+
+
+def _unit(value: SupportsUnits) -> str:
+    """The unit of a quantity of pint as studies have it: ``N/mm^2``."""
+    return f"{getattr(value, 'units', ''):~C}".replace("**", "^")
+
+
+def _is_single(values: Any) -> bool:
+    return not isinstance(values, Iterable) or (isinstance(values, SupportsUnits) and np.ndim(values.magnitude) == 0)
+
+
+def _refuse_masked(values: Any, key: str) -> None:
+    refuse_masked(values.magnitude if isinstance(values, SupportsUnits) else values, key)
 
 
 def _varied(parameters: Mapping[str, Values] | None) -> list[tuple[str, str | list[str]]]:
     def of(key: str, values: Any) -> str | list[str]:
         if isinstance(values, str):
             return values
-        if isinstance(values, Iterable):
-            return [_word(value, key) for value in values]
-        return [_word(values, key)]
+        if _is_single(values):
+            return [_word(values, key)]
+        _refuse_masked(values, f"parameters.{key}")
+        return [_word(value, key) for value in values]
 
     return [(key, of(key, values)) for key, values in (parameters or {}).items()]
 
@@ -82,8 +76,15 @@ def _columns(points: Points | None) -> list[tuple[str, list[str]]] | None:
         return None
     found: list[tuple[str, list[str]]] = []
     for head, column in points.items():
-        values: Iterable[Any] = np.asarray(column).ravel().tolist()
-        found.append((str(head), [_word(value, str(head)) for value in values]))
+        name, own = str(head), column
+        _refuse_masked(own, f"points.{name}")
+        if isinstance(own, SupportsUnits):
+            if not name.endswith("]"):
+                unit = _unit(own)
+                name = f"{name} [{unit}]" if unit else name
+            own = converted(own, name.rpartition("[")[2].rstrip("]") if name.endswith("]") else "", f"points.{name}")
+        values: Iterable[Any] = np.asarray(own).ravel().tolist()
+        found.append((name, [_word(value, name) for value in values]))
     return found
 
 
@@ -119,238 +120,9 @@ def salib_problem(parameters: Mapping[str, Values]) -> dict[str, Any]:
     }
 
 
-class SweepTable:
-    """What many runs of a study have found: one row for each.
-
-    ``table["corrected.force_N@0.5"]`` is a column: figures are named by model, quantity with its unit, and the step, and are
-    NaN where a run has none; what was varied is found by its key, with or without the unit. Tables can be pickled.
-    """
-
-    def __init__(self, core: _core.SweepTable) -> None:
-        self._core = core
-
-    def __len__(self) -> int:
-        return len(self._core)
-
-    @property
-    def keys(self) -> list[str]:
-        """What was varied."""
-        return self._core.keys
-
-    @cached_property
-    def settings(self) -> dict[str, Column]:
-        """What was set in each run, by keys with their units: numbers as arrays, others as lists of texts."""
-        return dict(self._core.settings())
-
-    @cached_property
-    def figures(self) -> dict[str, Floats]:
-        """All figures by their names, NaN where a run has none."""
-        return dict(self._core.figures())
-
-    @property
-    def numbers(self) -> NDArray[np.int64]:
-        """The runs' numbers, from 1."""
-        return self._core.numbers()
-
-    @property
-    def passed(self) -> NDArray[np.bool_]:
-        """Whether each run meets all that the study requires."""
-        return self._core.passed()
-
-    @property
-    def faults(self) -> list[str]:
-        """Why a run has no solution, or where a model ended early; empty texts where neither is the case."""
-        return self._core.faults()
-
-    @property
-    def run_warnings(self) -> list[str]:
-        """What deserves attention in each run, as ``sweep.csv`` has it: its warnings with `` | `` between them."""
-        return self._core.run_warnings()
-
-    @property
-    def files(self) -> list[Path]:
-        """The files that were written."""
-        return [Path(path) for path in self._core.files]
-
-    @property
-    def warnings(self) -> list[str]:
-        """What deserves attention: pictures that could not be drawn, and what is said of the runs, the same once."""
-        return self._core.warnings
-
-    def __getitem__(self, name: str) -> Column:
-        if name in self.figures:
-            return self.figures[name]
-        for (head, values), key in zip(self.settings.items(), self.keys, strict=True):
-            if name in (head, key):
-                return values
-        raise KeyError(name)
-
-    @property
-    def columns(self) -> dict[str, Any]:
-        """The whole table, column by column, as ``sweep.csv`` has it."""
-        first = {"run": self.numbers, **self.settings}
-        return {**first, **self.figures, "passed": self.passed, "fault": self.faults, "warnings": self.run_warnings}
-
-    @cached_property
-    def json(self) -> dict[str, Any]:
-        """Mean, standard deviation, quantiles and rank correlations of every figure, as ``sweep.json`` has them."""
-        found: dict[str, Any] = json.loads(self._core.json())
-        return found
-
-    @cached_property
-    def statistics(self) -> dict[str, dict[str, Any]]:
-        """The same by the figures' names."""
-        return {str(one["name"]): one for one in self.json["figures"]}
-
-    def along(self, figure: str) -> tuple[Floats, Floats]:
-        """A figure over the steps of the study.
-
-        Parameters
-        ----------
-        figure : str
-            Its name without the step, such as ``corrected.force_N``.
-
-        Returns
-        -------
-        at : ndarray
-            The n steps: stretches, load factors, or times [s].
-        values : ndarray
-            The figure, runs × n.
-        """
-        steps = self._steps(figure)
-        return np.array(list(steps)), np.column_stack([self.figures[name] for name in steps.values()])
-
-    def band(self, figure: str = "corrected.force_N") -> Band:
-        """The band of a figure over the steps of the study.
-
-        Parameters
-        ----------
-        figure : str
-            Its name without the step.
-
-        Returns
-        -------
-        Band
-            Quantiles of 5, 50 and 95 % of the runs, linear between them.
-        """
-        steps = self._steps(figure)
-        own = [self.statistics[name] for name in steps.values()]
-        low, median, high = np.array([one["quantiles_5_50_95_percent"] for one in own], dtype=np.float64).T
-        return Band(np.array(list(steps)), low, median, high, np.array([one["runs"] for one in own]))
-
-    def _steps(self, figure: str) -> dict[float, str]:
-        """The names of a figure by their steps, ascending."""
-        split = [(name, *name.rpartition("@")[::2]) for name in self.figures]
-        found = {float(at): name for name, own, at in split if own == figure}
-        if not found:
-            known = sorted({own for _, own, _ in split})
-            raise fault("figure", f"there is no figure `{figure}`", f"figures are {', '.join(known)}")
-        return dict(sorted(found.items()))
-
-    def plot(self, *figures: str, ax: Axes | None = None) -> Axes:
-        """Draws medians and bands, 5 … 95 % of the runs, over the steps of the study.
-
-        Parameters
-        ----------
-        *figures : str
-            Names without the step; by default ``corrected.force_N``.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
-        names = figures or ("corrected.force_N",)
-        return band_over_steps({name: self.band(name) for name in names}, ax)
-
-    @property
-    def pictures(self) -> dict[str, bytes]:
-        """The pictures of the report as PNG by their names."""
-        return dict(self._core.pictures())
-
-    def to_pandas(self) -> pandas.DataFrame:
-        """The table as a DataFrame."""
-        import pandas
-
-        return pandas.DataFrame(self.columns)
-
-    def to_csv(self, path: PathLike) -> None:
-        """Writes the table as the command does, which reads it back to the bit.
-
-        Raises
-        ------
-        gelbench.WriteError
-            Where it cannot be written; there is never half a file.
-        """
-        _written(path, lambda place: place.write_bytes(self._core.csv()))
-
-    def to_parquet(self, path: PathLike) -> None:
-        """Writes the table as Parquet, with pyarrow; figures that a run has not are null.
-
-        Raises
-        ------
-        gelbench.WriteError
-            Where it cannot be written; there is never half a file.
-        """
-        import pyarrow
-        from pyarrow import parquet
-
-        columns: dict[str, Any] = {
-            name: pyarrow.array(column, mask=np.isnan(column)) if name in self.figures else pyarrow.array(column)
-            for name, column in self.columns.items()
-        }
-        table = pyarrow.table(columns)
-        _written(path, lambda place: parquet.write_table(table, place))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _of_text, (self._core.name, self.keys, self._core.csv())
-
-    def __repr__(self) -> str:
-        failed = sum(bool(one) for one in self.faults)
-        told = f", {failed} without a solution somewhere" if failed else ""
-        return f"<gelbench.SweepTable of {self._core.name}: {len(self)} runs over {', '.join(self.keys)}{told}>"
-
-    def _repr_html_(self) -> str:
-        wanted = ("force_N", "measured_N")
-        last: dict[str, dict[str, Any]] = {}
-        for name, one in self.statistics.items():
-            if name.rpartition("@")[0].rpartition(".")[2] in wanted and name.count(".", 0, name.find("@")) == 1:
-                last[name.partition(".")[0]] = one
-        rows = "".join(
-            f"<tr><td>{html.escape(one['name'])}</td><td>{one['runs']}</td>"
-            + "".join(f"<td>{value:.5g}</td>" for value in [one["mean"], *one["quantiles_5_50_95_percent"]])
-            + "</tr>"
-            for one in last.values()
-        )
-        head = "<tr><th>figure</th><th>runs</th><th>mean</th><th>5 %</th><th>median</th><th>95 %</th></tr>"
-        drawn = ""
-        if "corrected" in last and len(self._steps("corrected.force_N")) > 1:
-            drawn = inline(lambda ax: self.plot(ax=ax))
-        return f"<p>{html.escape(repr(self)[1:-1])}</p><table>{head}{rows}</table>{drawn}"
-
-
 def _program() -> str:
     """The file of what computes: a sweep goes on only with the same."""
     return str(_core.__file__)
-
-
-def _of_text(name: str, keys: list[str], table: bytes) -> SweepTable:
-    return SweepTable(_core.SweepTable.parse(name, keys, table))
-
-
-def _written(path: PathLike, write: Callable[[Path], object]) -> None:
-    """Writes a file under another name, then gives it its own."""
-    import tempfile
-
-    target = Path(path)
-    try:
-        with tempfile.TemporaryDirectory(prefix=".gelbench-new-", dir=target.parent) as folder:
-            aside = Path(folder) / target.name
-            write(aside)
-            os.replace(aside, target)
-    except OSError as cause:
-        raise WriteError(f"{target} cannot be written: {cause}") from cause
 
 
 class SweepPlan:
@@ -403,6 +175,8 @@ class SweepPlan:
             fitted = (name, _core.text_of_file(name))
             read.append(name)
         varied, columns = _varied(parameters), _columns(points)
+        samples = None if samples is None else whole(samples, "samples", 1)
+        seed = whole(seed, "seed")
         self._inputs = read
         self._told = (path, text, files, varied, columns, fitted, samples, method, seed, allow_large)
         self._core = _core.Sweep(*self._told)

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._errors import fault
+from ._errors import InputError, fault
 from ._material import Material
 from ._progress import Progress, callback
-from ._quantities import Floats, PathLike, floats
+from ._quantities import Floats, PathLike, Quantity, SupportsUnits, array_of, floats, number, text, whole
 
 __all__ = ["Estimate", "Fit", "Identification", "fit", "identify"]
 
@@ -37,6 +37,35 @@ class Estimate(NamedTuple):
     """95 % interval; None where there is none."""
 
 
+UNITS_OF_COLUMNS = ("", "MPa", "mm", "N", "s")
+"""What a column of pint's quantities is converted into where its head says no unit; the first one that fits."""
+
+
+def _column(head: str, column: Any) -> tuple[str, Any]:
+    """Head and values of a column: quantities of pint in the unit of the head, masked entries as NaN."""
+    argument = f"data.{head}"
+    if not isinstance(column, SupportsUnits):
+        own = np.ma.filled(column.astype(np.float64), np.nan) if np.ma.isMaskedArray(column) else np.asarray(column)
+        return head, own
+    if head.endswith("]"):
+        return head, array_of(column, argument, head.rpartition("[")[2].rstrip("]"), missing=True)
+    for unit in UNITS_OF_COLUMNS:
+        try:
+            return f"{head} [{unit or '-'}]", array_of(column, argument, unit, missing=True)
+        except InputError:
+            continue
+    raise fault(argument, "has a unit that no column takes", f"give one of {', '.join(UNITS_OF_COLUMNS[1:])}")
+
+
+def _of_array(data: Any, columns: Sequence[str]) -> dict[str, Any]:
+    """The columns of an array; its unit, if it has one, must be that of all of them."""
+    units = {column.rpartition("[")[2].rstrip("]") for column in columns}
+    if isinstance(data, SupportsUnits) and len(units) > 1:
+        raise fault("data", "is one array with one unit", f"give a mapping of columns, such as {columns[0]} and {columns[1]}")
+    array = floats(data, "data", (None, len(columns)), units.pop(), missing=True)
+    return {column: array[:, number] for number, column in enumerate(columns)}
+
+
 def _table(data: Data, name: str, columns: Sequence[str]) -> tuple[str, str]:
     """Name and text of a table."""
     if isinstance(data, (str, os.PathLike)):
@@ -46,13 +75,12 @@ def _table(data: Data, name: str, columns: Sequence[str]) -> tuple[str, str]:
         except (OSError, UnicodeError) as cause:
             raise fault("data", f"{path} cannot be read: {cause}", "give a table in UTF-8") from None
     if hasattr(data, "items") and hasattr(data, "keys"):
-        named = {str(key): np.asarray(own) for key, own in data.items()}
+        named = dict(_column(str(key), own) for key, own in data.items())
         lengths = {key: len(own) for key, own in named.items() if own.ndim == 1}
         if len(set(lengths.values())) != 1 or len(lengths) != len(named):
             raise fault("data", f"has columns of the lengths {lengths}", "give columns of one length")
     else:
-        array = floats(data, "data", (None, len(columns)))
-        named = {column: array[:, number] for number, column in enumerate(columns)}
+        named = _of_array(data, columns)
     lines = [",".join(named)]
     for row in zip(*(own.tolist() for own in named.values()), strict=True):
         # All digits: numbers in memory do not say by how many they were rounded.
@@ -148,19 +176,19 @@ def fit(
     law: str | None,
     *,
     name: str = "fitted",
-    test: str | None = None,
-    stress: str | None = None,
-    strain: str | None = None,
-    stress_unit: str | None = None,
-    strain_unit: str | None = None,
+    test: str | Sequence[str] | None = None,
+    stress: str | Sequence[str] | None = None,
+    strain: str | Sequence[str] | None = None,
+    stress_unit: str | Sequence[str] | None = None,
+    strain_unit: str | Sequence[str] | None = None,
     weighting: str = "absolute",
-    bounds: Mapping[str, tuple[float, float]] | None = None,
+    bounds: Mapping[str, tuple[Quantity, Quantity]] | None = None,
     starts: int = 8,
     relaxation: bool | int = False,
     softening: bool = False,
     columns: tuple[str, str] = ("stretch [-]", "stress [MPa]"),
     progress: Progress | None = None,
-    **reading: str,
+    **reading: Quantity | Sequence[Quantity],
 ) -> Fit:
     """Fits a law to test data.
 
@@ -168,13 +196,15 @@ def fit(
     ----------
     data : path, DataFrame, mapping or array_like
         A test, or a list of tests that are fitted together. Heads name the columns with their units, such as
-        ``"nominal strain [-]"`` and ``"nominal stress [MPa]"``; of an array n × 2 they are `columns`.
+        ``"nominal strain [-]"`` and ``"nominal stress [MPa]"``; of an array n × 2 they are `columns`. Rows with NaN and masked
+        entries are left out; columns of pint are converted.
     law : str or None
         Name of the law (see `gelbench.laws`); None takes the best of all.
     name : str
         Name of the material.
     test : {"uniaxial", "planar", "equibiaxial", "biaxial"}, optional
-        The test, where the data do not say it.
+        The test, where the data do not say it. Of several tests this, and whatever else the data do not say, may be a list with one
+        for each: ``test=["uniaxial", "planar"]``.
     stress : {"nominal", "cauchy"}, optional
         Measure of stress, where the data do not say it.
     strain : {"stretch", "nominal", "logarithmic"}, optional
@@ -184,9 +214,9 @@ def fit(
     weighting : {"absolute", "relative"}
         What residuals are measured by.
     bounds : mapping, optional
-        Limits of parameters by key [MPa, or plain].
+        Limits of parameters by key [MPa, or plain], the lower and the upper one: ``{"c10": ("20 kPa", 0.06)}``.
     starts : int
-        Starts of the search that are improved.
+        Starts of the search that are improved, 1 or more.
     relaxation : bool or int
         A Prony series too, to tests with a column of times such as ``"time [s]"``: with as many terms as AICc asks for (True), or so
         many. The law is that of long times.
@@ -197,9 +227,9 @@ def fit(
         Heads of an array's columns.
     progress : callable or tqdm bar, optional
         Is told what is being done.
-    **reading : str
-        What else the data do not say, by the keys of ``gelbench materials fit`` with ``_``: ``direction``, ``strain_ratio``, ``area``,
-        ``length``, ``width``, ``thickness``, ``time_unit``, ``cycle``, ``zero``, ``ramp``; such as ``cycle="last"`` or
+    **reading : str or quantity
+        What else the data do not say, by the keys of ``gelbench materials fit`` with ``_``: ``direction``, ``strain_ratio``, ``area``
+        [mm²], ``length``, ``width``, ``thickness`` [mm], ``time_unit``, ``cycle``, ``zero``, ``ramp``; such as ``cycle="last"`` or
         ``area="8 mm^2"``.
 
     Returns
@@ -214,29 +244,80 @@ def fit(
     """
     several = isinstance(data, (list, tuple)) and len(data) > 0 and not np.isscalar(data[0]) and _are_tests(data)
     all_data = list(data) if several else [data]
-    tables = [_table(one, f"{name} {number}", columns) for number, one in enumerate(all_data, 1)]
-    given = {
+    given: dict[str, Any] = {
         "test": test,
         "stress measure": stress,
         "strain measure": strain,
         "stress unit": stress_unit,
         "strain unit": strain_unit,
     }
-    said = {key: value for key, value in given.items() if value is not None}
-    said |= {key.replace("_", " "): value for key, value in reading.items()}
+    given |= {key.replace("_", " "): value for key, value in reading.items()}
+    said, of_each = _statements(given, len(all_data))
+    named = [_table(one, f"{name} {place}", columns) for place, one in enumerate(all_data, 1)]
+    tables = [(own, head + table) for (own, table), head in zip(named, of_each, strict=True)]
+    history = _history(law, relaxation, softening)
+    limits = [(key, _limits(key, pair)) for key, pair in (bounds or {}).items()]
+    least = whole(starts, "starts", 1)
+    return Fit(_core.fit(tables, law, name, said, weighting, limits, least, history, callback(progress)))
+
+
+def _history(law: str | None, relaxation: bool | int, softening: bool) -> str | None:
+    """What is fitted on top of a law."""
     if softening and relaxation is not False:
         raise fault("softening", "relaxation and softening are fitted apart", "leave one of them out")
     if law is None and (softening or relaxation is not False):
-        raise fault("law", "relaxation and softening are fitted on top of a law", "name it, such as \"yeoh\"")
-    history: str | None = None
-    if softening:
-        history = "softening"
-    elif relaxation is True:
-        history = "relaxation"
-    elif relaxation is not False:
-        history = str(relaxation)
-    limits = [(key, [float(low), float(high)]) for key, (low, high) in (bounds or {}).items()]
-    return Fit(_core.fit(tables, law, name, said, weighting, limits, starts, history, callback(progress)))
+        raise fault("law", "relaxation and softening are fitted on top of a law", 'name it, such as "yeoh"')
+    if relaxation is not False:
+        return "relaxation" if relaxation is True else str(relaxation)
+    return "softening" if softening else None
+
+
+PLAIN = {"area": "mm^2", "length": "mm", "width": "mm", "thickness": "mm", "mass": "tonne"}
+"""Units of plain numbers in what is said of data."""
+
+
+def _said(key: str, value: Any) -> str:
+    """What is said of data as a text."""
+    if isinstance(value, (str, bool)) or (key not in PLAIN and not isinstance(value, SupportsUnits)):
+        return str(value)
+    return text(value, PLAIN.get(key, ""), key)
+
+
+def _statements(given: Mapping[str, Any], count: int) -> tuple[dict[str, str], list[str]]:
+    """What is said of all tests, and the lines above the table of each."""
+    said: dict[str, str] = {}
+    heads = [""] * count
+    for key, value in given.items():
+        if value is None:
+            continue
+        if not isinstance(value, (list, tuple)):
+            said[key] = _said(key, value)
+            continue
+        if len(value) != count:
+            raise fault(key, f"has {len(value)} entries for {count} tests", "give one for each test, or one for all")
+        for place, one in enumerate(value):
+            heads[place] += "" if one is None else f"# {key}: {_said(key, one)}\n"
+    return said, heads
+
+
+def _limits(key: str, pair: Any) -> list[float]:
+    """The limits of a parameter, which is a stress or a plain number."""
+    argument = f"bounds.{key}"
+    if isinstance(pair, str) or np.shape(np.asarray(pair, dtype=object)) != (2,):
+        raise fault(argument, f"is {pair!r}", 'give the lower and the upper limit, such as (0.01, 0.1) or ("20 kPa", "60 kPa")')
+    found = [_limit(one, argument) for one in pair]
+    if not found[0] < found[1]:
+        raise fault(argument, f"is {pair!r}", "the lower limit must be less than the upper one")
+    return found
+
+
+def _limit(value: Any, argument: str) -> float:
+    if not isinstance(value, (str, SupportsUnits)):
+        return float(array_of(value, argument))
+    try:
+        return number(value, "MPa", argument)
+    except InputError:
+        return number(value, "", argument)
 
 
 def _are_tests(data: Any) -> bool:
@@ -279,9 +360,9 @@ def identify(
     stiffness_shape: str = "free",
     damping_shape: str = "free",
     damping_over: str = "extension",
-    mass: str | None = None,
-    length: str | None = None,
-    area: str | None = None,
+    mass: Quantity | None = None,
+    length: Quantity | None = None,
+    area: Quantity | None = None,
     columns: tuple[str, str, str] = ("time [s]", "extension [mm]", "force [N]"),
     progress: Progress | None = None,
 ) -> Identification:
@@ -298,8 +379,9 @@ def identify(
         What is known of the functions.
     damping_over : {"extension", "rate"}
         What D is a function of.
-    mass, length, area : str, optional
-        Mass that the force moves, length and cross-section at rest, with units, where the data do not say them.
+    mass, length, area : quantity, optional
+        Mass that the force moves [tonne], length [mm] and cross-section [mm²] at rest, where the data do not say them; such as
+        ``"20 g"``.
     columns : tuple of str
         Heads of an array's columns.
     progress : callable or tqdm bar, optional
@@ -311,7 +393,7 @@ def identify(
         Where the recording does not determine the functions.
     """
     given = {"mass": mass, "length": length, "area": area}
-    said = {key: value for key, value in given.items() if value is not None}
+    said = {key: _said(key, value) for key, value in given.items() if value is not None}
     table = _table(data, "recording", columns)
     forms, shapes = [stiffness, damping], [stiffness_shape, damping_shape]
     return Identification(_core.identify(table, said, forms, shapes, damping_over, callback(progress)))

@@ -35,7 +35,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._errors import fault
 from ._progress import Progress, callback
-from ._quantities import Floats, finite, floats
+from ._quantities import Floats, array_of, finite, floats, whole
 
 __all__ = ["Condition", "Corrected", "Estimate", "Matrix", "correct", "linear", "prescribed"]
 
@@ -76,12 +76,13 @@ class Condition:
         self._values = values
         self._jacobian: Callable[[Floats], Matrix] = jacobian if callable(jacobian) else lambda _: jacobian
         self._curvature = curvature
-        self._unknowns = None if unknowns is None else np.asarray(unknowns, dtype=np.int64).reshape(-1)
+        self._unknowns = None if unknowns is None else _numbers(unknowns, f"unknowns of `{name}`")
 
     def values(self, u: ArrayLike) -> Floats:
         """The values at a field."""
         found = self._values(np.asarray(u, dtype=np.float64))
-        return floats(np.atleast_1d(np.asarray(found)), f"the values of `{self.name}`", (None,))
+        what = f"the values of `{self.name}`"
+        return floats(np.atleast_1d(array_of(found, what)), what, (None,))
 
     def jacobian(self, u: ArrayLike) -> Matrix:
         """The Jacobian at a field."""
@@ -111,7 +112,7 @@ class Condition:
         return float(np.linalg.norm(difference - derivative)) / size
 
     def _given(self, start: Floats) -> dict[str, Any]:
-        rows = self.values(start).size
+        rows = finite(self.values(start), f"the values of `{self.name}` at the start").size
         size = start.size
 
         def linearise(u: Floats) -> tuple[Floats, Csr]:
@@ -175,8 +176,8 @@ def prescribed(name: str, size: int, known: Mapping[int, float]) -> Condition:
     known : mapping
         Values by the numbers of the unknowns.
     """
-    unknowns = np.fromiter(known.keys(), dtype=np.int64, count=len(known))
-    given = finite(np.fromiter(known.values(), dtype=np.float64, count=len(known)), "known")
+    unknowns = _numbers(list(known), "known")
+    given = finite(floats(list(known.values()), "known", (None,)), "known")
     if (unknowns < 0).any() or (unknowns >= size).any():
         raise fault("known", "names unknowns that the field does not have", f"it has {size}, counted from 0")
     rows = _Selection(unknowns, size)
@@ -186,6 +187,12 @@ def prescribed(name: str, size: int, known: Mapping[int, float]) -> Condition:
         return found
 
     return Condition(name, values, rows, unknowns=unknowns)
+
+
+def _numbers(unknowns: Any, argument: str) -> NDArray[np.int64]:
+    """Numbers of unknowns."""
+    given: list[Any] = np.asarray(unknowns).reshape(-1).tolist()
+    return np.array([whole(one, argument) for one in given], dtype=np.int64)
 
 
 class _Selection:
@@ -292,11 +299,20 @@ def correct(
     own = np.ones(given.size) if weights is None else finite(floats(weights, "weights", (given.size,)), "weights")
     if (own < 0.0).any():
         raise fault("weights", f"holds {own.min()}", "weights are inverse variances, or zero")
-    wanted = [int(unknown) for unknown in estimate]
+    wanted = [whole(unknown, "estimate") for unknown in estimate]
     if any(unknown not in range(given.size) for unknown in wanted):
         raise fault("estimate", "names unknowns that the field does not have", f"it has {given.size}, counted from 0")
-    settings = {"tolerance": tolerance, "movement": movement, "max_steps": max_steps, "solver": solver}
+    _refuse_equal_names(conditions)
+    settings = {
+        "tolerance": _not_negative(tolerance, "tolerance"),
+        "movement": _not_negative(movement, "movement"),
+        "max_steps": whole(max_steps, "max_steps"),
+        "solver": solver,
+    }
     listed = [condition._given(begin) for condition in conditions]
+    if not (own > 0.0).any() and sum(one["rows"] for one in listed) < given.size:
+        hint = "give what is measured a positive weight, or as many conditions as unknowns"
+        raise fault("weights", "are all zero, and the conditions alone do not say the field", hint)
     found = _core.corrected(given, begin, own, listed, settings, wanted, callback(progress))
     u, residuals, lengths, multipliers, estimates = found
     return Corrected(
@@ -306,6 +322,21 @@ def correct(
         np.array(lengths),
         {unknown: Estimate(*one) for unknown, one in zip(wanted, estimates, strict=True)},
     )
+
+
+def _refuse_equal_names(conditions: Sequence[Condition]) -> None:
+    names = [condition.name for condition in conditions]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        message = f"two are named `{twice}`"
+        raise fault("conditions", message, "name each differently: multipliers are found by the names")
+
+
+def _not_negative(value: float, argument: str) -> float:
+    found = float(array_of(value, argument).reshape(-1)[0])
+    if not 0.0 <= found < np.inf:
+        raise fault(argument, f"is {value!r}", "it must be a number, and not negative")
+    return found
 
 
 def _csr(matrix: Matrix, shape: tuple[int, int], what: str) -> Csr:

@@ -8,7 +8,7 @@ use gelbench::solve::{Inadmissible, SparseRows};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::errors::input;
+use crate::errors::{exception, input};
 use crate::running::{Watch, run};
 
 /// A sparse matrix by rows: begins of rows, columns, values.
@@ -18,13 +18,33 @@ type Csr<'py> = (
     PyReadonlyArray1<'py, f64>,
 );
 
-/// The rows of a sparse matrix with so many columns.
-fn sparse_rows(columns: usize, (begins, places, values): &Csr<'_>) -> PyResult<SparseRows> {
+/// The rows of a sparse matrix of the condition `name` with so many columns.
+fn sparse_rows(name: &str, columns: usize, matrix: &Csr<'_>) -> PyResult<SparseRows> {
+    let (begins, places, values) = matrix;
     let (begins, places, values) = (begins.as_slice()?, places.as_slice()?, values.as_slice()?);
+    let wrong = |what: String| {
+        let message = format!("conditions: a matrix of `{name}` {what}");
+        let hint = "indptr ascends from 0 to the number of entries, indices are columns from 0 on";
+        Python::attach(|py| Err(exception(py, &input(message, hint))))
+    };
     let mut rows = SparseRows::new(columns);
     for ends in begins.windows(2) {
         let range = ends[0] as usize..ends[1] as usize;
-        let row = places[range.clone()].iter().zip(&values[range]);
+        let (Some(places), Some(values)) = (places.get(range.clone()), values.get(range)) else {
+            return wrong(format!(
+                "has a row from entry {} to {}, and {} entries",
+                ends[0],
+                ends[1],
+                values.len().min(places.len())
+            ));
+        };
+        let outside = |place: &&i64| !usize::try_from(**place).is_ok_and(|own| own < columns);
+        if let Some(place) = places.iter().find(outside) {
+            return wrong(format!(
+                "has an entry in column {place}, and {columns} columns"
+            ));
+        }
+        let row = places.iter().zip(values);
         rows.push(row.map(|(column, value)| (*column as usize, *value)));
     }
     Ok(rows)
@@ -48,7 +68,7 @@ impl PythonCondition<'_> {
             let (values, jacobian): (PyReadonlyArray1<'_, f64>, Csr<'_>) = found.extract(py)?;
             Ok(Linearisation {
                 values: values.as_slice()?.to_vec(),
-                jacobian: sparse_rows(u.len(), &jacobian)?,
+                jacobian: sparse_rows(&self.name, u.len(), &jacobian)?,
             })
         });
         found.unwrap_or_else(|error| self.watch.fail(error))
@@ -87,7 +107,7 @@ impl Condition for PythonCondition<'_> {
             let multipliers = PyArray1::from_slice(py, multipliers);
             let found = curvature.call1(py, (field, multipliers))?;
             let found: Csr<'_> = found.extract(py)?;
-            sparse_rows(u.len(), &found)
+            sparse_rows(&self.name, u.len(), &found)
         });
         Ok(Some(found.unwrap_or_else(|error| self.watch.fail(error))))
     }

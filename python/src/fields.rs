@@ -20,9 +20,19 @@ pub fn frozen<'py, T>(array: Bound<'py, T>) -> PyResult<Bound<'py, T>> {
     Ok(array)
 }
 
-/// Places in mm, one a row.
+/// Numbers, `width` a row, that Python cannot write into, nor allow itself to: what they are views of is frozen too.
+pub fn frozen_rows(
+    py: Python<'_>,
+    values: Vec<f64>,
+    width: usize,
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let count = values.len() / width;
+    frozen(frozen(PyArray1::from_vec(py, values))?.reshape([count, width])?)
+}
+
+/// Places in mm, one a row; read-only.
 pub fn places<'py>(py: Python<'py>, points: &[[f64; 2]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    rows(py, points.as_flattened().to_vec(), 2)
+    frozen_rows(py, points.as_flattened().to_vec(), 2)
 }
 
 /// Cells of one kind: its VTK number, the numbers of the cells, and their points.
@@ -82,7 +92,7 @@ pub fn mesh_blocks<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Vec<Block<'py>
     blocks(py, &kinds, &points)
 }
 
-/// Arrays by their names: one number each, or rows of components.
+/// Arrays by their names, read-only: one number each, or rows of components.
 fn named(py: Python<'_>, arrays: Vec<Array>) -> PyResult<Bound<'_, PyDict>> {
     let found = PyDict::new(py);
     for array in arrays {
@@ -92,9 +102,9 @@ fn named(py: Python<'_>, arrays: Vec<Array>) -> PyResult<Bound<'_, PyDict>> {
             Components::Scalar => IxDyn(&[count]),
             _ => IxDyn(&[count, width]),
         };
-        let values: Bound<'_, PyArrayDyn<f64>> =
-            PyArray1::from_vec(py, array.values).reshape(shape)?;
-        found.set_item(array.name, values)?;
+        let values = frozen(PyArray1::from_vec(py, array.values))?;
+        let values: Bound<'_, PyArrayDyn<f64>> = values.reshape(shape)?;
+        found.set_item(array.name, frozen(values)?)?;
     }
     Ok(found)
 }

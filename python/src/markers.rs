@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use std::time::Instant;
 
 use crate::errors::{input, refused};
-use crate::material::MaterialCard;
+use crate::material::{MaterialCard, watched};
 use crate::results::{OfFrames, Results};
 use crate::running::run;
 use crate::study::budget;
@@ -145,7 +145,7 @@ pub fn correct(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Results, String)> {
     run(py, progress, |watch| {
-        let card = material.watched(watch);
+        let card = watched((*material.card).clone(), watch);
         let request = Request {
             reading: options.reading()?,
             material: card.name.clone(),

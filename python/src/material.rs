@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use gelbench::document::name_of;
+use gelbench::document::{EditedDocument, NewValue, name_of};
 use gelbench::error::{Error, suggestion};
 use gelbench::material::curve::{Mode, simple_shear};
-use gelbench::material::registry::{CARDS, LAWS, Law};
+use gelbench::material::registry::{CARDS, LAWS};
 use gelbench::material::stability::stable_range;
-use gelbench::material::{Card, HyperelasticLaw, SoftenedLaw};
+use gelbench::material::{Card, HyperelasticLaw};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::errors::{exception, input};
+use crate::errors::{exception, input, refused};
 use crate::law::{PythonLaw, Watched};
 use crate::running::{Watch, caught};
 
@@ -33,50 +33,69 @@ impl MaterialCard {
         }
     }
 
-    fn changed(&self, mut values: BTreeMap<String, f64>) -> Result<Card, Error> {
+    /// The card with other values of some parameters, each a number or a text with a unit.
+    fn changed(&self, values: &BTreeMap<String, String>) -> Result<Card, Error> {
         let card = &self.card;
-        let law = Law::named(&card.law_name).filter(|_| card.volume.is_none());
-        let law = law.ok_or_else(|| {
-            let message = format!("the parameters of {} cannot be changed", card.name);
-            input(
+        if card.text.is_empty() {
+            let message = format!("{} is a law in Python, without parameters", card.name);
+            return Err(input(
                 message,
-                "take an incompressible card of a law that gelbench has",
-            )
-        })?;
-        let of = |own: &gelbench::material::parameters::Parameter| {
-            values.remove(own.key).unwrap_or(own.value)
-        };
-        let all: Vec<f64> = card.parameters.iter().map(of).collect();
-        if let Some(unknown) = values.keys().next() {
-            let known: Vec<_> = card.parameters.iter().map(|own| own.key).collect();
-            let hint = suggestion(unknown, &known, "its parameters are");
-            return Err(input(format!("the law has no parameter `{unknown}`"), hint));
+                "make it anew of a function with other values",
+            ));
         }
-        if let Some(wrong) = all.iter().find(|value| !value.is_finite()) {
-            return Err(input(format!("a parameter is {wrong}"), "give a number"));
+        let mut document = EditedDocument::parse(&card.text).map_err(refused)?;
+        for (key, value) in values {
+            if !card.parameters.iter().any(|own| own.key == key) {
+                let known: Vec<_> = card.parameters.iter().map(|own| own.key).collect();
+                let hint = suggestion(key, &known, "its parameters are");
+                return Err(input(format!("the law has no parameter `{key}`"), hint));
+            }
+            let value = match value.parse() {
+                Ok(number) => NewValue::Float(number),
+                Err(_) => NewValue::Text(value.clone()),
+            };
+            document
+                .set(&["parameters", key], &value)
+                .map_err(refused)?;
         }
-        let (made, entries) = law.with_values(&all, card.stress_measure, card.strain_measure);
-        let made: Arc<dyn HyperelasticLaw> = made.into();
-        let law: Arc<dyn HyperelasticLaw> = match card.law.softening() {
-            Some(softening) => Arc::new(SoftenedLaw::unloaded(made, softening)),
-            None => made,
+        let text = match values.is_empty() {
+            true => card.text.clone(),
+            false => without_fit(&document.text()),
         };
-        Ok(Card {
-            law,
-            parameters: entries.parameters,
-            text: String::new(),
-            fit: None,
-            ..(**card).clone()
-        })
+        Card::parse(&card.name, &format!("{}.toml", card.name), &text)
     }
 
-    /// The card for a computation that can be ended.
-    pub fn watched(&self, watch: &Arc<Watch>) -> Card {
-        Card {
-            law: Watched::law(&self.card.law, watch),
-            ..(*self.card).clone()
+    /// The card that a study computes with: the one that it has read, whose sheet is in the state that it asks for, or a law in
+    /// Python in place of the card that stands for it.
+    pub fn in_study(&self, read: &Card) -> Card {
+        match self.card.text.is_empty() {
+            true => (*self.card).clone(),
+            false => Card {
+                name: self.card.name.clone(),
+                ..read.clone()
+            },
         }
     }
+}
+
+/// A card for a computation that can be ended.
+pub fn watched(card: Card, watch: &Arc<Watch>) -> Card {
+    Card {
+        law: Watched::law(&card.law, watch),
+        ..card
+    }
+}
+
+/// The text of a card without how it was fitted, which holds no longer.
+fn without_fit(text: &str) -> String {
+    let mut kept = true;
+    let of_others = text.split_inclusive('\n').filter(|line| {
+        if line.starts_with('[') {
+            kept = line.trim() != "[fit]";
+        }
+        kept
+    });
+    of_others.collect()
 }
 
 #[pymethods]
@@ -99,9 +118,9 @@ impl MaterialCard {
         Self::of(Card::of_law(name, law, stretch_range))
     }
 
-    /// The same law with other values of some parameters, in internal units.
-    fn with_parameters(&self, py: Python<'_>, values: BTreeMap<String, f64>) -> PyResult<Self> {
-        let card = self.changed(values);
+    /// The same law with other values of some parameters, each a number or a text with a unit.
+    fn with_parameters(&self, py: Python<'_>, values: BTreeMap<String, String>) -> PyResult<Self> {
+        let card = self.changed(&values);
         card.map(Self::of).map_err(|error| exception(py, &error))
     }
 

@@ -4,10 +4,10 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use gelbench::corrector::Multipliers;
-use gelbench::material::{Card, HyperelasticLaw};
+use gelbench::material::HyperelasticLaw;
 use gelbench::mesh::Mesh;
 use gelbench::problem::{DeformedSheet, GroupState};
-use gelbench::results::{Grid, Sheet};
+use gelbench::results::{self, Grid};
 use gelbench::solve::Convergence;
 use gelbench::studies::OneModel;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
@@ -16,31 +16,23 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::{exception, refused};
-use crate::fields::{Arrays, arrays, frozen, mesh_blocks, places, rows};
+use crate::fields::{Arrays, arrays, frozen_rows, mesh_blocks, places, rows};
 use crate::running::caught;
 
 /// What a solution needs besides its states.
-pub struct Material {
+pub struct Sheet {
     pub law: Arc<dyn HyperelasticLaw>,
     pub thickness: f64,
-    /// The time that the library took, in s.
-    pub seconds: f64,
-}
-
-impl Material {
-    pub fn new(card: &Card, thickness: f64, took: Duration) -> Self {
-        Self {
-            law: Arc::clone(&card.law),
-            thickness,
-            seconds: took.as_secs_f64(),
-        }
-    }
+    /// What deserves attention in the study.
+    pub warnings: Vec<String>,
+    /// The time that the library took.
+    pub took: Duration,
 }
 
 /// The equilibria of one model, and the mesh that they live on.
 #[pyclass(frozen, module = "gelbench._core")]
 pub struct Solution {
-    material: Material,
+    own: Sheet,
     mesh: Arc<Mesh>,
     points: Py<PyArray2<f64>>,
     groups: Vec<String>,
@@ -62,12 +54,7 @@ struct State {
 }
 
 impl Solution {
-    pub fn new(
-        py: Python<'_>,
-        found: OneModel,
-        material: Material,
-        groups: Vec<String>,
-    ) -> PyResult<Self> {
+    pub fn new(py: Python<'_>, found: OneModel, own: Sheet, groups: Vec<String>) -> PyResult<Self> {
         let ends = found.ends.iter();
         let ends = ends.map(|end| exception(py, end).into_value(py).into_any());
         let ends = ends.collect();
@@ -79,7 +66,7 @@ impl Solution {
         let others = numbers.zip(at_groups).zip(found.multipliers);
         let states = solution.states.into_iter().zip(others);
         let states = states.map(|(state, (((balance, force), at_groups), multipliers))| {
-            let array = |values| Ok::<_, PyErr>(frozen(rows(py, values, 2)?)?.unbind());
+            let array = |values| Ok::<_, PyErr>(frozen_rows(py, values, 2)?.unbind());
             Ok(State {
                 factor: state.factor,
                 displacement: array(state.displacement)?,
@@ -94,9 +81,9 @@ impl Solution {
         });
         Ok(Self {
             states: states.collect::<PyResult<_>>()?,
-            points: frozen(places(py, &solution.mesh.nodes)?)?.unbind(),
+            points: places(py, &solution.mesh.nodes)?.unbind(),
             mesh: Arc::new(solution.mesh),
-            material,
+            own,
             groups,
             ends,
         })
@@ -117,12 +104,17 @@ impl Solution {
 
     #[getter]
     fn thickness(&self) -> f64 {
-        self.material.thickness
+        self.own.thickness
     }
 
     #[getter]
     fn seconds(&self) -> f64 {
-        self.material.seconds
+        self.own.took.as_secs_f64()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.own.warnings.clone()
     }
 
     #[getter]
@@ -196,9 +188,9 @@ impl Solution {
     fn arrays<'py>(&self, py: Python<'py>, step: usize) -> PyResult<Arrays<'py>> {
         let displacement = self.state(step)?.displacement.bind(py).readonly();
         let displacement = displacement.as_slice()?;
-        let Material { law, thickness, .. } = &self.material;
+        let Sheet { law, thickness, .. } = &self.own;
         let grid = caught(py, || {
-            let sheet = Sheet {
+            let sheet = results::Sheet {
                 law: &**law,
                 thickness: *thickness,
                 past: &[],
@@ -222,7 +214,7 @@ impl Solution {
         let field = field.as_slice()?;
         let found = caught(py, || {
             let sheet = state.sheet.get_or_init(|| {
-                let law = Arc::clone(&self.material.law);
+                let law = Arc::clone(&self.own.law);
                 DeformedSheet::new((*self.mesh).clone(), field.to_vec(), law)
             });
             let places = values.chunks_exact(2).map(|place| [place[0], place[1]]);

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use gelbench::budget::Budget;
+use gelbench::document::with_files;
 use gelbench::error::{Diagnostic, Error};
 use gelbench::material::softened_law::check_memory;
 use gelbench::mesh::{CellShape, MeshData};
@@ -19,10 +20,10 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::errors::{exception, input, refused};
-use crate::material::MaterialCard;
+use crate::material::{MaterialCard, watched};
 use crate::results::Results;
 use crate::running::{Watch, run as run_beside};
-use crate::solution::{Material, Solution};
+use crate::solution::{Sheet, Solution};
 
 /// What may be used.
 pub fn budget(allow_large: bool) -> Budget {
@@ -42,77 +43,100 @@ fn model_kind(name: &str) -> Result<ModelKind, Error> {
     })
 }
 
+/// Cards in memory, by the names that a study has for them.
+type Files = BTreeMap<PathBuf, Vec<u8>>;
+
+fn read_plate(study: String, files: Files, allow_large: bool) -> Result<Study, Error> {
+    with_files(files, || {
+        Study::of_file(Path::new("plate"), study, budget(allow_large))
+    })
+}
+
+fn told(warnings: &[Diagnostic]) -> Vec<String> {
+    warnings.iter().map(ToString::to_string).collect()
+}
+
 /// Solves one model of a plate whose study has the text `study`.
 #[pyfunction]
-#[pyo3(signature = (study, material, model, progress=None, allow_large=false))]
+#[pyo3(signature = (study, material, files, model, progress=None, allow_large=false))]
 pub fn solve_plate(
     py: Python<'_>,
     study: String,
     material: &MaterialCard,
+    files: Files,
     model: &str,
     progress: Option<Py<PyAny>>,
     allow_large: bool,
 ) -> PyResult<Solution> {
     let kind = model_kind(model).map_err(|error| exception(py, &error))?;
     let work = |watch: &Arc<Watch>| {
-        let study = Study::of_file(Path::new("plate"), study, budget(allow_large))?;
-        let study = study.with_card(material.watched(watch));
+        let study = read_plate(study, files, allow_large)?;
+        let card = material.in_study(&study.card);
+        let mut sheet = Sheet {
+            law: Arc::clone(&card.law),
+            thickness: study.problem.thickness,
+            warnings: told(&study.warnings),
+            took: Duration::ZERO,
+        };
+        let study = study.with_card(watched(card, watch));
         check_memory(&*study.problem.law, "a single model in Python")?;
         let told = |what: &str| watch.tell(what);
         let start = Instant::now();
         let found = one_model(&study, kind, Progress::to(&told));
-        Ok((found, study.problem.thickness, start.elapsed()))
+        sheet.took = start.elapsed();
+        Ok((found, sheet))
     };
-    let (found, thickness, took) = run_beside(py, progress, work)?;
+    let (found, sheet) = run_beside(py, progress, work)?;
     let groups = ["left", "right"].map(str::to_owned).to_vec();
-    let material = Material::new(&material.card, thickness, took);
-    Solution::new(py, found, material, groups)
+    Solution::new(py, found, sheet, groups)
 }
 
 /// Computes all models of a plate whose study has the text `study`, and compares them.
 #[pyfunction]
-#[pyo3(signature = (study, material, progress=None, allow_large=false))]
+#[pyo3(signature = (study, material, files, progress=None, allow_large=false))]
 pub fn run_plate(
     py: Python<'_>,
     study: String,
     material: &MaterialCard,
+    files: Files,
     progress: Option<Py<PyAny>>,
     allow_large: bool,
 ) -> PyResult<Results> {
     run_beside(py, progress, |watch| {
-        let file = Path::new("plate");
-        let study = Study::of_file(file, study, budget(allow_large))?;
-        let ready = plate::ready(study.with_card(material.watched(watch)));
+        let study = read_plate(study, files, allow_large)?;
+        let card = watched(material.in_study(&study.card), watch);
+        let ready = plate::ready(study.with_card(card));
         let told = |what: &str| watch.tell(what);
         let results = ready.compute(Progress::to(&told))?;
-        Ok(Results::new(results, file.into(), None, true))
+        Ok(Results::new(results, "plate".into(), None, true))
     })
 }
 
 /// Computes all models of a specimen whose study has the text `study`, and compares them.
 #[pyfunction]
-#[pyo3(signature = (study, material, mesh=None, progress=None, allow_large=false))]
+#[pyo3(signature = (study, material, files, mesh=None, progress=None, allow_large=false))]
 pub fn run_specimen(
     py: Python<'_>,
     study: String,
     material: &MaterialCard,
+    files: Files,
     mesh: Option<&GivenMesh>,
     progress: Option<Py<PyAny>>,
     allow_large: bool,
 ) -> PyResult<Results> {
     run_beside(py, progress, |watch| {
-        let (title, read, warnings) = read_specimen(&study, mesh, allow_large)?;
+        let (title, read, warnings) = read_specimen(&study, files, mesh, allow_large)?;
         let start = Instant::now();
-        let told = |what: &str| watch.tell(what);
-        let read = read.with_card(material.watched(watch));
-        let outcome = specimen::compute(&read, Progress::to(&told))?;
+        let progress = |what: &str| watch.tell(what);
+        let card = watched(material.in_study(&read.card), watch);
+        let outcome = specimen::compute(&read.with_card(card), Progress::to(&progress))?;
         let results = gelbench::results::Results {
             name: "specimen".into(),
             title,
             kind: specimen::KIND,
             text: study,
             defaults: Vec::new(),
-            read_warnings: warnings.iter().map(ToString::to_string).collect(),
+            read_warnings: told(&warnings),
             outcome,
             seconds: start.elapsed().as_secs_f64(),
         };
@@ -122,14 +146,15 @@ pub fn run_specimen(
 
 fn read_specimen(
     study: &str,
+    files: Files,
     mesh: Option<&GivenMesh>,
     allow_large: bool,
 ) -> Result<(String, Specimen, Vec<Diagnostic>), Error> {
     let (case, file, budget) = (specimen_kind(), Path::new("specimen"), budget(allow_large));
-    match mesh {
+    with_files(files, || match mesh {
         Some(GivenMesh(mesh)) => specimen::load_on(mesh, case, file, study, budget),
         None => specimen::load(case, file, study, budget),
-    }
+    })
 }
 
 /// A mesh of the caller's.
@@ -207,11 +232,13 @@ fn specimen_kind() -> &'static Kind {
 
 /// Solves one model of a specimen whose study has the text `study`, on the mesh given if there is one.
 #[pyfunction]
-#[pyo3(signature = (study, material, model, mesh=None, progress=None, allow_large=false))]
+#[pyo3(signature = (study, material, files, model, mesh=None, progress=None, allow_large=false))]
+#[expect(clippy::too_many_arguments, reason = "the problem's parts")]
 pub fn solve_specimen(
     py: Python<'_>,
     study: &str,
     material: &MaterialCard,
+    files: Files,
     model: &str,
     mesh: Option<&GivenMesh>,
     progress: Option<Py<PyAny>>,
@@ -219,18 +246,25 @@ pub fn solve_specimen(
 ) -> PyResult<Solution> {
     let kind = model_kind(model).map_err(|error| exception(py, &error))?;
     let work = |watch: &Arc<Watch>| {
-        let (_, read, _) = read_specimen(study, mesh, allow_large)?;
-        let read = read.with_card(material.watched(watch));
+        let (_, read, warnings) = read_specimen(study, files, mesh, allow_large)?;
+        let card = material.in_study(&read.card);
+        let mut sheet = Sheet {
+            law: Arc::clone(&card.law),
+            thickness: read.problem.thickness,
+            warnings: told(&warnings),
+            took: Duration::ZERO,
+        };
+        let read = read.with_card(watched(card, watch));
         check_memory(&*read.problem.law, "a single model in Python")?;
         let told = |what: &str| watch.tell(what);
         let start = Instant::now();
         let found = specimen::one_model(&read, kind, Progress::to(&told))?;
+        sheet.took = start.elapsed();
         let groups = read.groups().into_iter().map(str::to_owned).collect();
-        Ok((found, read.problem.thickness, start.elapsed(), groups))
+        Ok((found, sheet, groups))
     };
-    let (found, thickness, took, groups) = run_beside(py, progress, work)?;
-    let material = Material::new(&material.card, thickness, took);
-    Solution::new(py, found, material, groups)
+    let (found, sheet, groups) = run_beside(py, progress, work)?;
+    Solution::new(py, found, sheet, groups)
 }
 
 /// Computes a study file of any kind.

@@ -16,6 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::errors::{exception, input, refused};
+use crate::fields::frozen;
 use crate::running::run as run_beside;
 use crate::study::budget;
 
@@ -215,7 +216,7 @@ fn drawing(name: &str) -> Result<Method, Error> {
 fn values<'py>(py: Python<'py>, settings: &[&Setting]) -> PyResult<Bound<'py, PyAny>> {
     let numbers: Option<Vec<f64>> = settings.iter().map(|setting| setting.value()).collect();
     match numbers {
-        Some(numbers) => Ok(PyArray1::from_vec(py, numbers).into_any()),
+        Some(numbers) => Ok(frozen(PyArray1::from_vec(py, numbers))?.into_any()),
         None => {
             let words: Vec<String> = settings.iter().map(|setting| setting.words()).collect();
             Ok(words.into_pyobject(py)?.into_any())
@@ -325,7 +326,7 @@ impl SweepTable {
     }
 
     /// The figures by their names, NaN where a run has none.
-    fn figures<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyArray1<f64>>)> {
+    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyArray1<f64>>)>> {
         let columns = py.detach(|| {
             let names = sweep::names(&self.rows);
             let mut columns = vec![vec![f64::NAN; self.rows.len()]; names.len()];
@@ -340,7 +341,7 @@ impl SweepTable {
         });
         let columns = columns.into_iter();
         columns
-            .map(|(name, column)| (name, PyArray1::from_vec(py, column)))
+            .map(|(name, column)| Ok((name, frozen(PyArray1::from_vec(py, column))?)))
             .collect()
     }
 

@@ -90,3 +90,48 @@ def test_a_jacobian_is_checked_by_differences():
     assert parabola().check([1.0, 2.0]) < 1e-8
     wrong = corrector.Condition("wrong", lambda u: u[1] - u[0] ** 2, lambda u: np.array([[2 * u[0], 1.0]]))
     assert wrong.check([1.0, 2.0]) > 0.1
+
+
+def of_entries(indptr, indices):
+    matrix = sparse.csr_matrix(np.ones((2, 2)))
+    matrix.indptr, matrix.indices = np.array(indptr, dtype=np.int32), np.array(indices, dtype=np.int32)
+    return matrix
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        of_entries([0, 2, 4], [0, 1, 0, 7]),
+        of_entries([0, 2, 4], [0, -1, 0, 1]),
+        of_entries([0, 2, 9], [0, 1, 0, 1]),
+        of_entries([0, 3, 2], [0, 1, 0, 1]),
+        of_entries([-1, 2, 4], [0, 1, 0, 1]),
+    ],
+)
+def test_matrices_whose_entries_lie_nowhere_are_refused(matrix):
+    with pytest.raises(gb.InputError, match="conditions.*`c`"):
+        corrector.correct([1.0, 2.0], [corrector.Condition("c", lambda u: u, lambda u: matrix)])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        (lambda: corrector.correct([1.0, 2.0], [parabola()], weights=[0.0, 0.0]), "weights"),
+        (lambda: corrector.correct([1.0, 2.0], [parabola(), parabola()]), "conditions.*`parabola`"),
+        (lambda: corrector.correct([1.0, 2.0], [corrector.Condition("c", lambda u: [np.nan], np.ones((1, 2)))]), "`c`"),
+        (lambda: corrector.correct([1.0, 2.0], [corrector.Condition("c", lambda u: None, np.ones((1, 2)))]), "`c`"),
+        (lambda: corrector.correct([1.0, 2.0], [parabola()], estimate=[0.9]), "estimate"),
+        (lambda: corrector.correct([1.0, 2.0], [parabola()], max_steps=-1), "max_steps"),
+        (lambda: corrector.correct([1.0, 2.0], [parabola()], tolerance=np.nan), "tolerance"),
+        (lambda: corrector.Condition("c", lambda u: u, np.eye(2), unknowns=[0.9, 1.9]), "unknowns of `c`"),
+        (lambda: corrector.prescribed("c", 2, {0.7: 1.0}), "known"),
+    ],
+)
+def test_what_is_wrong_is_named(wrong, named):
+    with pytest.raises(gb.InputError, match=named):
+        wrong()
+
+
+def test_as_many_conditions_as_unknowns_need_no_weights():
+    square = corrector.Condition("c", lambda u: u - 1.0, np.eye(2), unknowns=[0, 1])
+    assert corrector.correct([0.0, 0.0], [square], weights=[0.0, 0.0]).field == pytest.approx([1.0, 1.0])

@@ -127,3 +127,44 @@ def test_what_a_law_in_python_raises_comes_out_of_the_models():
         gb.Plate(30, 10, 2, material, cells=(6, 2)).solve("finite-element", 0.4)
     with pytest.raises(LookupError, match="no such state"):
         material.stress([1.1, 1.2])
+
+
+def with_energy_at_rest(i1, i2):
+    return gb.Derivatives(0.05 * (i1 - 3) + 1.0, 0.05)
+
+
+def negative(i1, i2):
+    return gb.Derivatives(-0.05 * (i1 - 3), -0.05)
+
+
+def wrong_far_out(i1, i2):
+    """The derivative stays behind the energy from stretches of about 2 on."""
+    far = np.maximum(i1 - 6, 0)
+    return gb.Derivatives(0.05 * (i1 - 3) + 0.01 * far**2, 0.05)
+
+
+def wrong_where_both_are_stretched(i1, i2):
+    far = np.maximum(i2 - 20, 0)
+    return gb.Derivatives(0.05 * (i1 - 3) + 0.01 * far**2, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("law", "told"),
+    [
+        (with_energy_at_rest, "energy at rest"),
+        (negative, "shear modulus"),
+        (wrong_far_out, "d1 is"),
+        (wrong_where_both_are_stretched, "d2 is"),
+        (lambda i1, i2: gb.Derivatives(-0.5 * np.log(1 - (i1 - 3) / 5), 0.5 / (5 - (i1 - 3)), d11=0.5 / (8 - i1) ** 2), "stretch_range"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:invalid value")
+def test_a_law_is_checked_over_its_whole_range_and_at_rest(law, told):
+    with pytest.raises(gb.InputError, match=told):
+        gb.Material.from_law(law, quiet=True)
+
+
+@pytest.mark.parametrize("wrong", [(3.0, 0.5), (-0.5, 3.0), (0.5, np.inf), (1.0, 1.0), (1.0,), "wide", None])
+def test_a_range_that_is_none_is_refused(wrong):
+    with pytest.raises(gb.InputError, match="stretch_range"):
+        gb.Material.from_law(neo_hooke, stretch_range=wrong, quiet=True)

@@ -175,3 +175,32 @@ def test_a_history_needs_a_law_and_is_of_one_kind(root):
         gb.fit(data, "neo-hooke", softening=True, relaxation=2)
     with pytest.raises(gb.InputError, match="number of terms"):
         gb.fit(root / "examples/ramp_and_hold.csv", "neo-hooke", relaxation=9)
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"force": {"right": {"x": 2.88, "x_devation": 0.5}}}, "x_devation.*x, x_deviation, y, y_deviation"),
+        ({"force": {"right": {"x_deviation": 0.5}}}, "give x too"),
+        ({"force": {"right": 2.88}}, "force.right"),
+        ({"known": {"left": "fixed"}}, "known.left"),
+        ({"thickness": 0}, "thickness"),
+        ({"thickness": "-2 mm"}, "thickness"),
+    ],
+)
+def test_what_is_known_of_markers_is_checked_by_name(root, said, told):
+    given = {"thickness": "2 mm", "free": ["top", "bottom"], "rigid": ["left", "right"], **said}
+    with pytest.raises(gb.InputError, match=told):
+        gb.correct(root / "examples/measured_plate.csv", "pva-10", **given)
+
+
+def test_parameters_that_are_found_with_a_field_are_told(root):
+    force = {"right": {"x": 6.0, "x_deviation": 0.2}}
+    said = dict(free=["top", "bottom"], rigid=["left", "right"], edge_gap=0, force=force)
+    pandas = pytest.importorskip("pandas")
+    table = pandas.read_csv(root / "examples/measured_plate.csv", comment="#")
+    last = table[table["frame"] == table["frame"].max()][["x [mm]", "y [mm]", "ux [mm]", "uy [mm]"]].to_numpy()
+    one, listed = (gb.correct(last, "neo-hooke", 2, fit=fit, **said) for fit in ("c10", ["c10"]))
+    found = one.parameters["c10"]
+    assert found.unit == "MPa" and 0.01 < found.value < 1.0
+    assert listed.parameters["c10"] == found

@@ -341,3 +341,35 @@ def _marked_part(part, plan, marks):
     """A run, with a file that names the process that computes it."""
     with open(os.path.join(marks, f"{os.getpid()}-{part}"), "w"):
         return plan.part(part, len(plan))
+
+
+def test_names_of_columns_are_found_and_listed(table):
+    assert FORCE in table and "material.c10" in table and "material.c10 [MPa]" in table and "force" not in table
+    assert list(table) == list(table.columns) and table["fault"] == table.faults
+    assert np.array_equal(table["run"], table.numbers)
+
+
+def test_truths_are_swept():
+    plate = gb.Plate(60, 20, 2, "neo-hooke", cells=(12, 4), settings={"finite_element": {"cells": [12, 4]}})
+    table = gb.sweep(plate, {"mass_spring.area_term": [True, False]}, factors=[0.2])
+    assert table["mass_spring.area_term"] == ["true", "false"] and not any(table.faults)
+    springs = table["mass_spring.force_N@0.2"]
+    assert springs[0] != springs[1]
+
+
+def test_histories_that_come_to_a_factor_again_are_drawn(study):
+    pytest.importorskip("matplotlib").use("Agg")
+    card = gb.Material.from_card("neo-hooke").text + '\n[softening]\nr = 2.0\nm = "0.02 MPa"\nbeta = 0.1\n'
+    settings = {"finite_element": {"cells": [12, 4]}, "corrector": {"method": "direct"}}
+    plate = gb.Plate(60, 20, 2, gb.Material.from_text(card), cells=(12, 4), settings=settings)
+    table = gb.sweep(plate, {"plate.width": ["20 mm", "25 mm"]}, factors=[0.3, 0.1, 0.3])
+    at, forces = table.along("corrected.force_N")
+    assert at.tolist() == [0.3, 0.1, 0.3] == table.band().at.tolist() and forces.shape == (2, 3)
+    assert (forces[:, 1] < forces[:, 0]).all()
+    assert table.plot().lines and "<img" in table._repr_html_()
+
+
+@pytest.mark.parametrize(("wrong", "told"), [({"samples": -1}, "samples"), ({"samples": 4, "seed": -1}, "seed")])
+def test_numbers_that_cannot_be_are_named(study, wrong, told):
+    with pytest.raises(gb.InputError, match=told):
+        gb.sweep(study, {"material.c10": "0.05+-0.001 MPa"}, **wrong)

@@ -15,6 +15,8 @@ pub enum NewValue {
     Integer(i64),
     /// A number.
     Float(f64),
+    /// A truth.
+    Flag(bool),
     /// A text.
     Text(String),
 }
@@ -24,6 +26,7 @@ impl NewValue {
         match self {
             Self::Integer(whole) => Value::Integer(*whole),
             Self::Float(number) => Value::Float(*number),
+            Self::Flag(flag) => Value::Boolean(*flag),
             Self::Text(text) => Value::String(text.clone()),
         }
     }

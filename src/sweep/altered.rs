@@ -163,12 +163,15 @@ impl VariedCard {
     }
 }
 
-/// Whole numbers stay whole, numbers with a unit are texts.
+/// Whole numbers stay whole, numbers with a unit are texts; no key takes `true` or `false` as a text.
 fn new_value(setting: &Setting) -> NewValue {
     match setting {
         Setting::Integer(whole) => NewValue::Integer(*whole),
         Setting::Number(value, unit) if unit.is_empty() => NewValue::Float(*value),
         Setting::Number(value, unit) => NewValue::Text(format!("{value} {unit}")),
-        Setting::Text(text) => NewValue::Text(text.clone()),
+        Setting::Text(text) => match text.parse() {
+            Ok(flag) => NewValue::Flag(flag),
+            Err(_) => NewValue::Text(text.clone()),
+        },
     }
 }

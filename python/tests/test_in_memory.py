@@ -1,0 +1,229 @@
+"""Materials and solutions that are in memory alone: studies name them rightly, and what cannot be handed over says so."""
+
+import copy
+import pickle
+
+import gelbench as gb
+import numpy as np
+import pytest
+
+SMALL = dict(length=60, width=20, thickness=2, cells=(12, 4), settings={"finite_element": {"cells": [12, 4]}})
+FORCE = "corrected.force_N@0.2"
+
+
+@pytest.fixture
+def gel():
+    own = gb.Material.from_card("neo-hooke").text.replace("neo-Hooke, C10 = 0.05 MPa (verification)", "A gel")
+    return gb.Material.from_text(own.replace("[0.5, 3.0]", "[0.5, 1.3]"), name="gel")
+
+
+def law(i1, i2):
+    return gb.Derivatives(0.05 * (i1 - 3), 0.05)
+
+
+def test_a_study_never_names_a_card_that_is_not_the_materials(gel):
+    changed = gb.Material.from_card("pva-10-yeoh").with_parameters(c10=0.03)
+    for material in (gel, changed):
+        with pytest.raises(gb.InputError, match="write_study"):
+            gb.Plate(material=material).study()
+        assert 'card = "own.toml"' in gb.Plate(material=material).study(card="own.toml")
+    with pytest.raises(gb.InputError, match="law in Python"):
+        gb.Plate(material=gb.Material.from_law(law, quiet=True)).study(card="own.toml")
+    with pytest.raises(gb.InputError, match=r"\.toml"):
+        gb.Plate(material=gel).study(card="own")
+    assert 'card = "neo-hooke"' in gb.Plate(material="neo-hooke").study()
+
+
+def problems(material):
+    strip = gb.Specimen(
+        "strip", length=60, width=20, thickness=2, material=material, cells=4, measured="right",
+        supports={"left": "clamp", "right": {"x": 6, "y": 0}},
+    )  # fmt: skip
+    return [gb.Plate(material=material, **SMALL), strip]
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_the_study_that_is_written_is_computed_by_the_command_to_the_same_bits(gel, tmp_path, command, number):
+    problem = problems(gel)[number]
+    written = problem.write_study(tmp_path / "own.toml", [0.1, 0.2])
+    assert [path.name for path in written] == ["own.toml", "own-card.toml"]
+    code, _, told = command("run", "own.toml", "--output", "out", cwd=tmp_path)
+    assert code in (0, 1), told
+    theirs, own = gb.run(tmp_path / "own.toml").json["steps"], problem.run([0.1, 0.2]).json["steps"]
+    assert own == theirs
+    with pytest.raises(gb.WriteError, match="nowhere"):
+        problem.write_study(tmp_path / "nowhere" / "own.toml")
+
+
+def test_reports_and_warnings_are_those_of_the_material(gel):
+    results = gb.Plate(material=gel, **SMALL).run([0.2, 0.5])
+    assert results.title == "Clamped plate of A gel"
+    assert results.json["steps"][0]["corrected"] and "pva" not in (results.markdown + " ".join(results.warnings)).lower()
+    assert any("gel.toml" in warning for warning in results.warnings)
+    in_python = gb.Material.from_law(law, name="My law", stretch_range=(0.5, 1.3), quiet=True)
+    results = gb.Plate(material=in_python, **SMALL).run([0.2, 0.5])
+    assert results.title == "Clamped plate of My law"
+    assert results.warnings and "pva" not in " ".join(results.warnings)
+
+
+def test_a_solution_tells_what_deserves_attention(gel):
+    far = gb.Plate(material=gel, **SMALL).solve("mass-spring", [0.2, 0.5])
+    assert any("gel.toml" in warning for warning in far.warnings) and "warning" in repr(far)
+    assert gb.Plate(material=gel, **SMALL).solve("mass-spring", 0.2).warnings == []
+
+
+def test_a_card_in_memory_is_solved_in_plane_strain_as_from_its_file(tmp_path):
+    own = gb.Material.from_card("neo-hooke").text + "\n[volume]\npoisson_ratio = 0.4\n"
+    (tmp_path / "gel.toml").write_text(own)
+    settings = {**SMALL["settings"], "material": {"sheet": "plane-strain"}}
+    cards = [gb.Material.from_text(own), gb.Material.from_card(tmp_path / "gel.toml")]
+    plates = [gb.Plate(material=card, **{**SMALL, "settings": settings}) for card in cards]
+    (tmp_path / "plate.toml").write_text(plates[1].study([0.1]))
+    theirs = gb.run(tmp_path / "plate.toml").json["steps"]
+    for plate in plates:
+        assert plate.run([0.1]).json["steps"] == theirs
+        solution = plate.solve("corrected", 0.1)
+        assert solution.force == theirs[0]["corrected"]["force_N"]
+        stretches = solution.at([30.0, 10.0]).stretches
+        assert stretches[2] == pytest.approx(1.0)
+
+
+def test_a_material_that_softens_runs_with_its_memory_and_is_refused_by_one_model():
+    own = gb.Material.from_card("neo-hooke").text + '\n[softening]\nr = 2.0\nm = "0.02 MPa"\nbeta = 0.1\n'
+    settings = {**SMALL["settings"], "corrector": {"method": "direct"}}
+    plate = gb.Plate(material=gb.Material.from_text(own), **{**SMALL, "settings": settings})
+    found = plate.run([0.3, 0.1, 0.3]).json["steps"]
+    assert [step["at"] for step in found] == [0.3, 0.1, 0.3]
+    assert found[0]["finite_element"]["force_N"] > 0
+    with pytest.raises(gb.InputError, match="memory"):
+        plate.solve("mass-spring", 0.3)
+
+
+def test_a_card_is_read_once(tmp_path):
+    path = tmp_path / "gel.toml"
+    gb.Material.from_card("neo-hooke").save(path)
+    plate = gb.Plate(material=path, **SMALL)
+    before, study = plate.run([0.2]).json["steps"], plate.study([0.2])
+    assert str(path) in study
+    varied = {"plate.width": ["20 mm", "25 mm"]}
+    swept = gb.sweep(plate, varied, factors=[0.2])[FORCE]
+    for change in (lambda: path.write_text("changed"), path.unlink):
+        change()
+        assert plate.run([0.2]).json["steps"] == before
+        assert np.array_equal(gb.sweep(plate, varied, factors=[0.2])[FORCE], swept)
+        with pytest.raises(gb.InputError, match="changed since"):
+            plate.study()
+    with pytest.raises(gb.WriteError):
+        plate.material.save(tmp_path / "nowhere" / "gel.toml")
+
+
+@pytest.mark.parametrize(
+    ("settings", "remedy"),
+    [
+        ({"material": {"card": "neo-hooke"}}, "material="),
+        ({"load": {"stretches": ["10 %"]}}, "factors="),
+        ({"plate": {"width": "3 mm"}}, "width="),
+        ({"kind": "motion"}, "gelbench.run"),
+    ],
+)
+def test_settings_of_a_plate_that_arguments_say_are_refused(settings, remedy):
+    with pytest.raises(gb.InputError, match=remedy):
+        gb.Plate(settings=settings)
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        ({"support": [{"group": "left", "kind": "clamp"}]}, "supports="),
+        ({"load": []}, "loads="),
+        ({"path": {"factors": [1.0]}}, "factors="),
+        ({"path": {"measured_group": "left"}}, "measured="),
+        ({"path": {"foo": 3}}, "foo"),
+    ],
+)
+def test_settings_of_a_specimen_have_an_effect_or_are_refused(settings, told):
+    with pytest.raises(gb.InputError, match=told):
+        gb.Specimen(
+            "strip", length=60, width=20, thickness=2, material="neo-hooke", cells=4, measured="right",
+            supports={"left": "clamp", "right": {"x": 6, "y": 0}}, settings=settings,
+        ).solve()  # fmt: skip
+
+
+def test_keys_without_a_section_are_settings_too():
+    assert gb.Plate(**{**SMALL, "settings": {"title": "Mine"}}).run([0.1]).title == "Mine"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        (lambda: gb.Plate(material=None), "material"),
+        (lambda: gb.Plate(cells=12), "cells"),
+        (lambda: gb.Plate(cells=(12.7, 4)), "cells"),
+        (lambda: gb.Plate(settings={"title": {1, 2}.__class__}).study(), "settings"),
+        (lambda: problems("neo-hooke")[1].__class__("strip", thickness=2, material="neo-hooke", measured="right",
+                                                   supports={"left": None}, length=9, width=3), "supports.left"),
+    ],
+)  # fmt: skip
+def test_arguments_that_are_none_are_named(wrong, told):
+    with pytest.raises(gb.InputError, match=told):
+        wrong()
+
+
+def test_changed_parameters_are_a_card_that_is_saved_pickled_and_swept(tmp_path):
+    card = gb.Material.from_card("pva-10-yeoh")
+    changed = card.with_parameters(c10="40 kPa")
+    assert changed.parameters["c10"].value == pytest.approx(0.04) and "[fit]" in card.text and "[fit]" not in changed.text
+    assert changed.parameters["c20"] == card.parameters["c20"] and changed.stretch_range == card.stretch_range
+    changed.save(tmp_path / "gel.toml")
+    copies = [gb.Material.from_card(tmp_path / "gel.toml"), pickle.loads(pickle.dumps(changed)), copy.deepcopy(changed)]
+    for own in copies:
+        assert own == changed and own.stress(1.4) == changed.stress(1.4)
+    table = gb.sweep(gb.Plate(material=changed, **SMALL), {"material.c10": ["0.04 MPa", "0.05 MPa"]}, factors=[0.2])
+    assert table[FORCE][0] == gb.Plate(material=changed, **SMALL).run([0.2]).json["steps"][0]["corrected"]["force_N"]
+    with pytest.raises(gb.InputError):
+        card.with_parameters(c10=np.nan)
+    with pytest.raises(gb.InputError, match="law in Python"):
+        gb.Material.from_law(law, quiet=True).with_parameters(c10=1.0)
+
+
+def test_materials_are_equal_where_their_cards_are():
+    one, same, other = (gb.Material.from_card(name) for name in ("neo-hooke", "neo-hooke", "pva-10"))
+    assert one == same and hash(one) == hash(same) and one != other and one != "neo-hooke"
+    mine = gb.Material.from_law(law, quiet=True)
+    assert mine == mine and mine != gb.Material.from_law(law, quiet=True) and len({mine, one, same}) == 2
+
+
+def test_one_stretch_has_one_stress():
+    card = gb.Material.from_card("neo-hooke")
+    assert type(card.stress(1.5)) is float and card.stress([1.5]).shape == (1,)
+
+
+def test_what_cannot_be_pickled_says_so_and_errors_travel():
+    plate = gb.Plate(material="neo-hooke", **SMALL)
+    solution, results = plate.solve("mass-spring", 0.2), plate.run([0.2])
+    for own in (solution, solution.last, results, results.fields["corrected"][0]):
+        with pytest.raises(TypeError, match="cannot be pickled"):
+            pickle.dumps(own)
+    strip = gb.Specimen(
+        "strip", length=90, width=30, thickness=2, material="mooney-rivlin", cells=6, measured="right",
+        supports={"left": "clamp", "right": {"kind": "grip", "x_force": 1e4, "y": 0}},
+    )  # fmt: skip
+    with pytest.raises(gb.SolveError) as caught:
+        strip.solve("finite-element", 1.0)
+    error = caught.value
+    travelled = pickle.loads(pickle.dumps(error))
+    for name in ("model", "step", "cause", "cell", "advice", "load_factor"):
+        assert getattr(travelled, name) == getattr(error, name), name
+    assert str(travelled) == str(error) and travelled.solution is None and error.solution is not None
+    for what in ("displacement", "force", "last"):
+        with pytest.raises(IndexError, match="no load factor was reached"):
+            getattr(error.solution, what)
+    faults = pytest.raises(gb.InputError, gb.Plate(width="5 kg").solve).value
+    assert pickle.loads(pickle.dumps(faults)).faults == faults.faults
+
+
+def test_what_a_state_has_a_solution_has_too():
+    solution = gb.Plate(material="neo-hooke", **SMALL).solve("corrected", [0.1, 0.2])
+    own = {name for name in vars(gb.State) if not name.startswith("_")} - {"factor", "solution"}
+    assert own <= {name for name in vars(gb.Solution)}
+    assert solution.energy == solution.last.energy and set(solution.groups) == {"left", "right"}
