@@ -240,7 +240,7 @@ impl SolveFault {
                 "take smaller steps before it (stretches, load factors, or the interval of a motion), or raise the iteration limit"
             }
             Self::Explodes { .. } => {
-                "look at the supports and loads at that time; take shorter steps or generalised-α"
+                "look at the supports and loads at that time; take shorter steps or generalised-α, and `spectral_radius = 1` where that is what fails"
             }
             Self::TooManySteps { .. } => {
                 "take a shorter duration, longer steps, softer springs or less damping, or say --allow-large"

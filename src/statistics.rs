@@ -100,9 +100,13 @@ fn student(freedom: f64, value: impl Fn(StudentsT) -> f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, value)
 }
 
-/// P(F > ratio) for the ratio of two variances with so many degrees of freedom; NaN where either has none.
+/// P(F > ratio) for the ratio of two variances with so many degrees of freedom; NaN where either has none, or where both are nothing.
 pub fn f_tail(freedoms: [f64; 2], ratio: f64) -> f64 {
-    FisherSnedecor::new(freedoms[0], freedoms[1]).map_or(f64::NAN, |law| law.sf(ratio))
+    match FisherSnedecor::new(freedoms[0], freedoms[1]) {
+        Ok(law) if ratio.is_finite() => law.sf(ratio),
+        Ok(_) if ratio == f64::INFINITY => 0.0,
+        _ => f64::NAN,
+    }
 }
 
 /// The value that χ² with so many degrees of freedom exceeds with a probability; NaN where there are none.
@@ -164,6 +168,9 @@ mod tests {
         assert!((student_reach(10.0) - 2.228_139).abs() < 1e-6);
         assert!((student_tail(10.0, 2.228_139) - 0.025).abs() < 1e-6);
         assert!((f_tail([3.0, 20.0], 3.098_391) - 0.05).abs() < 1e-6);
+        assert!(
+            f_tail([3.0, 20.0], f64::NAN).is_nan() && f_tail([3.0, 20.0], f64::INFINITY) == 0.0
+        );
         assert!((chi_squared_limit(2.0, 0.05) - 5.991_465).abs() < 1e-6);
         assert!(student_reach(0.0).is_nan() && chi_squared_limit(0.0, 0.1).is_nan());
     }

@@ -195,3 +195,59 @@ fn a_motion_that_ends_before_its_time_keeps_its_instants() {
     let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
     assert!(report.contains("at time 0.007 s"), "{report}");
 }
+
+/// Steps that swing with the grip would see it at rest.
+#[test]
+fn steps_that_do_not_follow_a_swing_are_refused_and_what_does_nothing_is_told() {
+    let swing = "[grip]\nmotion = \"sine\"\namplitude = \"2 %\"\nfrequency = \"100 Hz\"\n";
+    let time = "[time]\nduration = \"0.1 s\"\ninterval = \"10 ms\"\nintegrator = \"generalised-alpha\"\nstep = \"10 ms\"\n";
+    let start = "[start]\nstretch = \"0 %\"\n";
+    let told = |rest: &str| {
+        let folder = folder_with(&motion(rest));
+        let done = gelbench(folder.path(), &["check", "small.toml"]);
+        words(&done.get_output().stderr)
+    };
+    let refused = told(&format!("{start}{swing}{time}"));
+    assert!(
+        refused.contains("time.step") && refused.contains("in which the grip swings once"),
+        "{refused}"
+    );
+    let fine = told(&format!(
+        "{start}{swing}{}",
+        time.replace("10 ms", "0.4 ms")
+    ));
+    assert!(!fine.contains("swings"), "{fine}");
+    let late = "[grip]\nmotion = \"ramp\"\nbegin = \"5 s\"\nend = \"6 s\"\nto = \"10 %\"\n";
+    let idle = told(&format!("{start}{late}{TIME}"));
+    assert!(idle.contains("does not begin in the time"), "{idle}");
+}
+
+/// Viscous forces take energy whatever high frequencies the integrator damps: 3 η ∫ (λ'/λ)² V dt, and some at the clamps.
+#[test]
+fn viscous_work_of_a_slow_ramp_is_that_of_the_closed_form() {
+    let rest = "[start]\nstretch = \"0 %\"\n[material]\ncard = \"pva-10\"\ndensity = \"1020 kg/m^3\"\n[material.viscosity]\nshear = \"1000 Pa·s\"\n\
+        [grip]\nmotion = \"ramp\"\nbegin = \"0 s\"\nend = \"1 s\"\nto = \"20 %\"\n\
+        [time]\nduration = \"1 s\"\ninterval = \"0.1 s\"\nstep = \"10 ms\"\nintegrator = \"generalised-alpha\"\nspectral_radius = 0.5\n";
+    let folder = folder_with(&motion(rest));
+    gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
+    let exact = 3.0 * 1e-3 * 0.2 * (1.0 - 1.0 / 1.2) * 300.0;
+    for model in ["mass_spring", "finite_element"] {
+        let text =
+            fs::read_to_string(folder.path().join(format!("out/motion_{model}.csv"))).unwrap();
+        let mut lines = text.lines().map(|line| line.split(','));
+        let column = lines
+            .next()
+            .unwrap()
+            .position(|head| head == "viscous work [mJ]")
+            .unwrap();
+        let work: Vec<f64> = lines
+            .map(|mut line| line.nth(column).unwrap().parse().unwrap())
+            .collect();
+        assert!(
+            work.windows(2).all(|pair| pair[1] >= pair[0]),
+            "{model}: {work:?}"
+        );
+        let ratio = work[work.len() - 1] / exact;
+        assert!(ratio > 0.95 && ratio < 1.25, "{model}: {ratio}");
+    }
+}

@@ -48,7 +48,7 @@ pub(super) struct Implicit {
     /// The step in s whose matrix is factorised.
     factorised: Option<f64>,
     factorisations: usize,
-    /// A hundredth of the slowest period in s.
+    /// A hundredth of the slowest period, or of that with which supports or forces swing, in s.
     longest: Option<f64>,
 }
 
@@ -62,7 +62,7 @@ const SLOW: f64 = 0.5;
 /// Relative residual at which an iteration that stagnates has converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-9;
 
-/// Steps in the slowest period where the step is chosen here: the period is right to 3e-4.
+/// Steps in the slowest period, and in that of what drives it, where the step is chosen here: the period is right to 3e-4.
 const STEPS_IN_PERIOD: f64 = 100.0;
 
 impl Implicit {
@@ -263,9 +263,10 @@ impl Stepper for Implicit {
         if self.longest.is_none() {
             let held = motion.held(at.time);
             let modes = frequency::slowest(motion, &held, &at.displacement, 1)?;
-            self.longest = modes
-                .first()
-                .map(|mode| 1.0 / (STEPS_IN_PERIOD * mode.frequency));
+            let own = modes.first().map(|mode| 1.0 / mode.frequency);
+            let driven = Some(motion.shortest_period()).filter(|period| period.is_finite());
+            let shortest = own.into_iter().chain(driven).reduce(f64::min);
+            self.longest = shortest.map(|period| period / STEPS_IN_PERIOD);
         }
         Ok(self.longest)
     }

@@ -27,7 +27,7 @@ pub enum Integrator {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// Half of the longest stable one for Verlet, found from the stiffness again and again; a hundredth of the slowest
-    /// period for generalised-α.
+    /// period for generalised-α, or of a shorter one with which supports or forces swing.
     Automatic,
     /// At most so many s.
     AtMost(f64),

@@ -101,6 +101,14 @@ impl Motion<'_> {
         held
     }
 
+    /// The shortest period in s with which supports or forces swing; infinite where none does.
+    pub fn shortest_period(&self) -> f64 {
+        let supports = self.supports.iter().map(|support| &support.time);
+        let forces = self.forces.iter().map(|force| &force.time);
+        let periods = supports.chain(forces).filter_map(TimeFunction::period);
+        periods.fold(f64::INFINITY, f64::min)
+    }
+
     /// Writes displacement, velocity and acceleration of the unknowns that are held after the time `within`, at a time
     /// in s that is not before it; see [`TimeFunction::at`].
     pub fn impose(&self, time: f64, within: f64, motion: [&mut [f64]; 3]) {

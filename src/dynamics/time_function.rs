@@ -56,6 +56,14 @@ impl TimeFunction {
         self.at(time, time)[0]
     }
 
+    /// The period in s; `None` of what does not swing.
+    pub fn period(&self) -> Option<f64> {
+        match self {
+            Self::Sine { frequency, .. } => Some(1.0 / frequency),
+            Self::Constant(_) | Self::Ramp { .. } | Self::Table(_) => None,
+        }
+    }
+
     /// The times in s at which the rate jumps.
     pub fn kinks(&self) -> Vec<f64> {
         match self {

@@ -22,6 +22,7 @@ mod problem;
 mod read;
 mod solution;
 mod statement;
+mod timing;
 
 pub use problem::MovingPlate;
 

@@ -10,6 +10,7 @@ mod common;
 mod ends;
 mod faults;
 mod nothing;
+mod paths;
 
 use common::{folder_with, gelbench, words};
 

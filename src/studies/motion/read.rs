@@ -3,10 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::functions::{
-    GripMotion, STRETCHES, largest, rates, read_damping, read_grip, read_stiffness,
-};
+use super::functions::{GripMotion, STRETCHES, largest, read_damping, read_grip, read_stiffness};
 use super::problem::{MovingPlate, PointForce, Probe, Tolerances};
+use super::timing::check_times;
 use crate::budget::Need;
 use crate::document::{Bound, Section};
 use crate::dynamics::{Integrator, Step, TimeFunction, TimeSettings};
@@ -15,7 +14,7 @@ use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
 use crate::material::Card;
 use crate::material::card::read_viscosity;
 use crate::material::softened_law::WITHOUT;
-use crate::material::viscosity::{Covered, ViscousMaterial};
+use crate::material::viscosity::ViscousMaterial;
 use crate::problem::ClampedPlate;
 use crate::studies::pictures::Pictures;
 use crate::studies::sections;
@@ -52,7 +51,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
     let motion = time.as_ref().zip(grip.as_ref());
-    check_times(root, &in_time, motion, &material.viscosity);
+    check_times(root, &in_time, motion, (&material.viscosity, &forces));
     let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity);
     let section = root.section("finite_element");
     let element = section.choice("element", &Element::NAMES);
@@ -163,68 +162,6 @@ fn read_stretches(root: &Section, card: Option<&Card>) -> (f64, Option<GripMotio
     }
     section.unknown_keys();
     (start, grip)
-}
-
-/// Warns where stresses that are made of the instants miss what relaxes between them.
-fn check_interval(section: &Section, time: Option<&TimeSettings>, viscosity: &ViscousMaterial) {
-    /// Of the shortest relaxation time: stresses are a few percent off then where a motion changes between two instants.
-    const SHORT: f64 = 0.25;
-    let shortest = viscosity.relaxation.iter().map(|term| term.time);
-    let shortest = shortest.fold(f64::INFINITY, f64::min);
-    if time.is_some_and(|time| time.interval > SHORT * shortest * (1.0 + 1e-9)) {
-        let message = format!(
-            "stresses in files and pictures are those of a motion that is even between two instants, and the shortest relaxation time is {shortest} s"
-        );
-        let hint = format!(
-            "forces hold the whole motion; for stresses take an interval of {} s or less",
-            SHORT * shortest
-        );
-        section.warning("interval", &message, &hint);
-    }
-}
-
-/// Warns of times that do not suit a viscous material.
-fn check_times(
-    root: &Section,
-    in_time: &Section,
-    motion: Option<(&TimeSettings, &GripMotion)>,
-    viscosity: &ViscousMaterial,
-) {
-    check_interval(in_time, motion.map(|(time, _)| time), viscosity);
-    check_covered(root, in_time, motion, &viscosity.covered);
-}
-
-/// Warns where a motion lasts longer, or is faster or slower, than the tests behind the relaxation.
-fn check_covered(
-    root: &Section,
-    in_time: &Section,
-    motion: Option<(&TimeSettings, &GripMotion)>,
-    covered: &Covered,
-) {
-    let Some((time, grip)) = motion else {
-        return;
-    };
-    if let Some([_, longest]) = covered.times
-        && time.duration > longest * (1.0 + 1e-9)
-    {
-        let message = format!("the relaxation was measured over {longest} s, and this is longer");
-        let hint = "what relaxes later than the tests lasted is not in the card: take it from a longer test";
-        in_time.warning("duration", &message, hint);
-    }
-    let (Some([low, high]), Some([slowest, fastest])) = (covered.rates, rates(&grip.stretch))
-    else {
-        return;
-    };
-    let outside = match (fastest > high * (1.0 + 1e-9), slowest < low * (1.0 - 1e-9)) {
-        (true, _) => fastest,
-        (false, true) => slowest,
-        (false, false) => return,
-    };
-    let message = format!(
-        "the grip moves at {outside:.4} 1/s, and the relaxation was measured at {low:.4} to {high:.4} 1/s"
-    );
-    let hint = "the material may be stiffer at other rates than the card knows: take it from tests at this one";
-    root.section("grip").warning("motion", &message, hint);
 }
 
 fn read_gravity(section: &Section) -> [f64; 2] {

@@ -1,0 +1,127 @@
+//! Whether the times of a motion suit what moves.
+
+use super::functions::{GripMotion, rates};
+use super::problem::PointForce;
+use crate::document::Section;
+use crate::dynamics::{Step, TimeFunction, TimeSettings};
+use crate::material::viscosity::{Covered, ViscousMaterial};
+
+/// Warns where stresses that are made of the instants miss what relaxes between them.
+fn check_interval(section: &Section, time: &TimeSettings, viscosity: &ViscousMaterial) {
+    /// Of the shortest relaxation time: stresses are a few percent off then where a motion changes between two instants.
+    const SHORT: f64 = 0.25;
+    let shortest = viscosity.relaxation.iter().map(|term| term.time);
+    let shortest = shortest.fold(f64::INFINITY, f64::min);
+    if time.interval > SHORT * shortest * (1.0 + 1e-9) {
+        let message = format!(
+            "stresses in files and pictures are those of a motion that is even between two instants, and the shortest relaxation time is {shortest} s"
+        );
+        let hint = format!(
+            "forces hold the whole motion; for stresses take an interval of {} s or less",
+            SHORT * shortest
+        );
+        section.warning("interval", &message, &hint);
+    }
+}
+
+/// Whether steps and instants follow a grip that swings; steps that do not would make another motion of it.
+fn check_swing(section: &Section, (time, grip): (&TimeSettings, &GripMotion)) {
+    const FEWEST: f64 = 8.0;
+    const FEW: f64 = 20.0;
+    let Some(period) = grip.stretch.period() else {
+        return;
+    };
+    let told = |key: &str, length: f64| {
+        let message = format!(
+            "is {:.3} of the {period} s in which the grip swings once",
+            length / period
+        );
+        let hint = format!("take a {key} of {} s or less", period / FEW);
+        (message, hint)
+    };
+    if let Step::AtMost(step) = time.step {
+        let step = step.min(time.interval);
+        let (message, hint) = told("step", step);
+        if step > period / FEWEST {
+            section.fault("step", &message, &hint);
+            return;
+        }
+        if step > period / FEW * (1.0 + 1e-9) {
+            section.warning("step", &message, &hint);
+        }
+    }
+    if time.interval > period / FEWEST * (1.0 + 1e-9) {
+        let (message, hint) = told("interval", time.interval);
+        section.warning(
+            "interval",
+            &format!("{message}: figures and pictures show little of it"),
+            &hint,
+        );
+    }
+}
+
+/// Warns where a grip or a force does nothing in the time that is computed.
+fn check_idle(root: &Section, (time, grip): (&TimeSettings, &GripMotion), forces: &[PointForce]) {
+    let late = |begin: f64| begin >= time.duration;
+    let hint = "take a longer `time.duration`, or an earlier time";
+    let kinks = grip.stretch.kinks().into_iter().take(1);
+    let begins = kinks.chain(grip.release).reduce(f64::min);
+    if begins.is_some_and(late) {
+        let message = "does not begin in the time that is computed: nothing moves";
+        root.section("grip").warning("motion", message, hint);
+    }
+    let forces = forces.iter().filter(|force| match force.time {
+        TimeFunction::Ramp { begin, .. } => late(begin),
+        _ => false,
+    });
+    for _ in forces {
+        let message = "a force does not begin in the time that is computed";
+        root.section("time").warning("duration", message, hint);
+    }
+}
+
+/// Looks whether steps, instants and the end suit what moves.
+pub fn check_times(
+    root: &Section,
+    in_time: &Section,
+    motion: Option<(&TimeSettings, &GripMotion)>,
+    (viscosity, forces): (&ViscousMaterial, &[PointForce]),
+) {
+    let Some(motion) = motion else {
+        return;
+    };
+    check_interval(in_time, motion.0, viscosity);
+    check_covered(root, in_time, motion, &viscosity.covered);
+    check_swing(in_time, motion);
+    check_idle(root, motion, forces);
+}
+
+/// Warns where a motion lasts longer, or is faster or slower, than the tests behind the relaxation.
+fn check_covered(
+    root: &Section,
+    in_time: &Section,
+    (time, grip): (&TimeSettings, &GripMotion),
+    covered: &Covered,
+) {
+    if let Some([_, longest]) = covered.times
+        && time.duration > longest * (1.0 + 1e-9)
+    {
+        let message = format!("the relaxation was measured over {longest} s, and this is longer");
+        let hint = "what relaxes later than the tests lasted is not in the card: take it from a longer test";
+        in_time.warning("duration", &message, hint);
+    }
+    let (Some([low, high]), Some([slowest, fastest])) = (covered.rates, rates(&grip.stretch))
+    else {
+        return;
+    };
+    let outside = match (fastest > high * (1.0 + 1e-9), slowest < low * (1.0 - 1e-9)) {
+        (true, _) => fastest,
+        (false, true) => slowest,
+        (false, false) => return,
+    };
+    let message = format!(
+        "the grip moves at {outside:.4} 1/s, and the relaxation was measured at {low:.4} to {high:.4} 1/s"
+    );
+    let hint = "the material may be stiffer at other rates than the card knows: take it from tests at this one";
+    root.section("grip").warning("motion", &message, hint);
+}
