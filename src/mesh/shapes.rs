@@ -57,18 +57,23 @@ const MOST_RATIO: f64 = 1e5;
 impl Shape {
     /// A mesh with so many cells across the specimen, and along it as many as make cells about square.
     pub fn mesh(self, across: usize, kind: CellShape) -> Mesh {
-        self.mesh_halved(across, 0, kind)
+        // Two cells at least between a hole and a side.
+        self.mesh_of([across, 2], 0, kind)
     }
 
-    /// That mesh with the sides of all cells halved so many times, and new nodes on the outline: all of one family, whose errors fall with
-    /// the size of their cells.
+    /// A mesh with so many cells across, one at least between a hole and a side, the sides of all of which are halved so many times, with new
+    /// nodes on the outline: all of one family, whose errors fall with the size of their cells.
     pub fn mesh_halved(self, across: usize, halvings: usize, kind: CellShape) -> Mesh {
+        self.mesh_of([across, 1], halvings, kind)
+    }
+
+    fn mesh_of(self, [across, beside]: [usize; 2], halvings: usize, kind: CellShape) -> Mesh {
         match self {
             Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
                 strip(size, [across, halvings], kind, |x| self.half_width(x))
             }
             Self::StripWithHole { size, radius } => {
-                with_hole(size, radius, [across, halvings], kind)
+                with_hole(size, radius, [across, beside, halvings], kind)
             }
             Self::RingSector { radii, angle } => {
                 let along = angle * (radii[0] + radii[1]) / 2.0;

@@ -73,18 +73,18 @@ impl Lengths {
     }
 }
 
-/// A strip with a hole: four blocks between the hole and a square around it, and a block at each end; with so many cells across it that are
-/// halved so many times.
+/// A strip with a hole: four blocks between the hole and a square around it, and a block at each end; with so many cells across it, and at
+/// least so many beside the hole, that are halved so many times.
 pub fn with_hole(
     [length, width]: [f64; 2],
     radius: f64,
-    [across, halvings]: [usize; 2],
+    [across, beside, halvings]: [usize; 3],
     kind: CellShape,
 ) -> Mesh {
     let half = width.min(length) / 2.0;
     let middle = length / 2.0;
     let around = count(across as f64 / 2.0) * 2;
-    let radial = count((half - radius) / width * across as f64 * 1.2).max(2);
+    let radial = count((half - radius) / width * across as f64 * 1.2).max(beside);
     let ends = count((middle - half) / width * across as f64);
     // The side of the square that lies in the direction `quarter` · 90°.
     let spoke = move |quarter: f64, side: [&'static str; 2]| {

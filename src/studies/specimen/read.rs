@@ -85,6 +85,7 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
         return None;
     }
     let mesh = outline.coarse();
+    check_elements(root, &outline, &mesh);
     given.check_groups(&mesh);
     check_measured(&path, &group, &mesh);
     let specimen = Specimen {
@@ -123,6 +124,25 @@ fn read_correction(section: &Section) -> Option<Correction> {
         method: method?,
         climb,
     })
+}
+
+/// Warns where a file's cells make other finite elements than the study says.
+fn check_elements(root: &Section, outline: &Outline, mesh: &Mesh) {
+    let section = root.section("finite_element");
+    let Outline::File { element, .. } = outline else {
+        return;
+    };
+    let made = outline.elements_on(mesh).element_names();
+    let is_said = CellShape::NAMES.iter().find(|(_, own)| own == element);
+    let said = is_said.map_or("", |(name, _)| *name);
+    if section.has("element") && !section.flag("adaptive") && made != said {
+        let message = format!("the cells of the file make {made} elements, not {said}");
+        section.warning(
+            "element",
+            &message,
+            "mesh with the cells that are wanted, or leave the key out",
+        );
+    }
 }
 
 /// A climb needs coarser meshes of the same shape, and has no memory.
