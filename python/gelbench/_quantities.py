@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._errors import InputError, fault
+from ._errors import fault
 
 __all__ = ["Floats", "PathLike", "Quantity", "SupportsUnits", "finite", "floats", "magnitudes", "number", "text", "toml", "whole"]
 
@@ -80,16 +80,13 @@ def refuse_masked(value: Any, argument: str) -> None:
 def array_of(value: Any, argument: str, unit: str = "", *, missing: bool = False) -> Floats:
     """An array of floats; masked entries are NaN where some may be missing, and else refused."""
     plain = magnitudes(value, argument, unit)
+    is_masked = np.ma.isMaskedArray(plain)
+    if is_masked and not missing:
+        refuse_masked(plain, argument)
     try:
-        if not np.ma.isMaskedArray(plain):
-            return np.asarray(plain, dtype=np.float64)
-        if not missing:
-            refuse_masked(plain, argument)
-        found: Floats = np.ma.filled(plain.astype(np.float64), np.nan)
+        found: Floats = np.ma.filled(plain.astype(np.float64), np.nan) if is_masked else np.asarray(plain, dtype=np.float64)
         return found
-    except (TypeError, ValueError) as cause:
-        if isinstance(cause, InputError):
-            raise
+    except (TypeError, ValueError):
         raise fault(argument, "is no array of numbers", "give floats") from None
 
 

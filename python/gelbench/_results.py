@@ -158,8 +158,8 @@ class Results(InMemory):
         return _Pictures(self._core)
 
     def write(self, folder: PathLike | None = None) -> list[Path]:
-        """Writes what the command writes: report, pictures, VTK files. As the command does, it replaces files of the same names, and
-        what it has written into the folder before.
+        """Writes what the command writes: report, pictures, VTK files. As the command does, it replaces what gelbench has written into
+        the folder before, and keeps other files of the same names as ``report.md.kept`` and the like.
 
         Parameters
         ----------

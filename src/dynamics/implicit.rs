@@ -264,8 +264,8 @@ impl Stepper for Implicit {
             let held = motion.held(at.time);
             let modes = frequency::slowest(motion, &held, &at.displacement, 1)?;
             let own = modes.first().map(|mode| 1.0 / mode.frequency);
-            let driven = Some(motion.shortest_period()).filter(|period| period.is_finite());
-            let shortest = own.into_iter().chain(driven).reduce(f64::min);
+            let periods = own.into_iter().chain(motion.shortest_period());
+            let shortest = periods.reduce(f64::min);
             self.longest = shortest.map(|period| period / STEPS_IN_PERIOD);
         }
         Ok(self.longest)

@@ -101,12 +101,12 @@ impl Motion<'_> {
         held
     }
 
-    /// The shortest period in s with which supports or forces swing; infinite where none does.
-    pub fn shortest_period(&self) -> f64 {
+    /// The shortest period in s with which supports or forces swing; `None` where none does.
+    pub fn shortest_period(&self) -> Option<f64> {
         let supports = self.supports.iter().map(|support| &support.time);
         let forces = self.forces.iter().map(|force| &force.time);
         let periods = supports.chain(forces).filter_map(TimeFunction::period);
-        periods.fold(f64::INFINITY, f64::min)
+        periods.reduce(f64::min)
     }
 
     /// Writes displacement, velocity and acceleration of the unknowns that are held after the time `within`, at a time

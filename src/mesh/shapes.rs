@@ -68,18 +68,24 @@ impl Shape {
     }
 
     fn mesh_of(self, [across, beside]: [usize; 2], halvings: usize, kind: CellShape) -> Mesh {
+        let mut blocks = self.blocks(across, beside);
+        for block in &mut blocks {
+            block.cells = block.cells.map(|own| own << halvings);
+        }
+        mesh_of_blocks(&blocks, kind)
+    }
+
+    /// The blocks that it is meshed with; so many cells lie beside a hole at least.
+    fn blocks(self, across: usize, beside: usize) -> Vec<Block<'static>> {
         match self {
             Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
-                strip(size, [across, halvings], kind, |x| self.half_width(x))
+                strip(size, across, move |x| self.half_width(x))
             }
-            Self::StripWithHole { size, radius } => {
-                with_hole(size, radius, [across, beside, halvings], kind)
-            }
+            Self::StripWithHole { size, radius } => with_hole(size, radius, across, beside),
             Self::RingSector { radii, angle } => {
                 let along = angle * (radii[0] + radii[1]) / 2.0;
-                let along = count(along / (radii[1] - radii[0]) * across as f64);
-                let cells = [across, along].map(|own| own << halvings);
-                let block = Block {
+                let cells = [across, count(along / (radii[1] - radii[0]) * across as f64)];
+                vec![Block {
                     map: Box::new(move |[s, t]: [f64; 2]| {
                         let radius = radii[0] + s * (radii[1] - radii[0]);
                         let (sine, cosine) = (t * angle).sin_cos();
@@ -87,8 +93,7 @@ impl Shape {
                     }),
                     cells,
                     sides: ["start", "outside", "end", "inside"],
-                };
-                mesh_of_blocks(&[block], kind)
+                }]
             }
         }
     }

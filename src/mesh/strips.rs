@@ -2,9 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use super::blocks::{Block, mesh_of_blocks};
-use super::cell_shape::CellShape;
-use super::cells::Mesh;
+use super::blocks::Block;
 
 /// A number of cells, one at least. Halves go up, whatever rounding has left of them in one unit or another.
 pub fn count(cells: f64) -> usize {
@@ -17,24 +15,22 @@ pub fn lengths(length: f64, half_width: &impl Fn(f64) -> f64) -> f64 {
     Lengths::new(length, half_width).total()
 }
 
-/// A strip whose half width varies along it, with so many cells across it that are halved so many times.
-pub fn strip(
+/// A strip whose half width varies along it, as one block.
+pub fn strip<'a>(
     size: [f64; 2],
-    [across, halvings]: [usize; 2],
-    kind: CellShape,
-    half_width: impl Fn(f64) -> f64,
-) -> Mesh {
+    across: usize,
+    half_width: impl Fn(f64) -> f64 + 'a,
+) -> Vec<Block<'a>> {
     let lengths = Lengths::new(size[0], &half_width);
     let along = 2 * count(lengths.total() * across as f64 / 2.0);
-    let block = Block {
+    vec![Block {
         map: Box::new(move |[s, t]| {
             let x = lengths.place(s);
             [x, (2.0 * t - 1.0) * half_width(x)]
         }),
-        cells: [along, across].map(|own| own << halvings),
+        cells: [along, across],
         sides: ["bottom", "right", "top", "left"],
-    };
-    mesh_of_blocks(&[block], kind)
+    }]
 }
 
 /// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows evenly between them.
@@ -73,14 +69,14 @@ impl Lengths {
     }
 }
 
-/// A strip with a hole: four blocks between the hole and a square around it, and a block at each end; with so many cells across it, and at
-/// least so many beside the hole, that are halved so many times.
+/// A strip with a hole: four blocks between the hole and a square around it, with so many cells between them at least, and a block at each
+/// end.
 pub fn with_hole(
     [length, width]: [f64; 2],
     radius: f64,
-    [across, beside, halvings]: [usize; 3],
-    kind: CellShape,
-) -> Mesh {
+    across: usize,
+    beside: usize,
+) -> Vec<Block<'static>> {
     let half = width.min(length) / 2.0;
     let middle = length / 2.0;
     let around = count(across as f64 / 2.0) * 2;
@@ -100,7 +96,7 @@ pub fn with_hole(
                 let (sine, cosine) = (quarter * FRAC_PI_2).sin_cos();
                 [middle + cosine * x - sine * y, sine * x + cosine * y]
             }),
-            cells: [radial, around].map(|own| own << halvings),
+            cells: [radial, around],
             sides: ["", outer, "", hole],
         }
     };
@@ -121,10 +117,10 @@ pub fn with_hole(
                     let angle = (2.0 * t - 1.0) * FRAC_PI_4;
                     [start + s * (middle - half), half * angle.tan()]
                 }),
-                cells: [ends, around].map(|own| own << halvings),
+                cells: [ends, around],
                 sides,
             });
         }
     }
-    mesh_of_blocks(&blocks, kind)
+    blocks
 }

@@ -10,8 +10,8 @@
 //! is done, and `resume` opens what a run with the same identity has left.
 //!
 //! `.gelbench-manifest.json` lists what gelbench has written into a folder, and which command wrote it. Nothing else is
-//! ever removed or replaced: a file that is in the way is kept under another name. It is also what a run locks, and it says whether the set of files is complete: between the first file that
-//! is moved and the last one it is not.
+//! ever removed or replaced: a file that is in the way is kept under another name. It is also what a run locks, and it says
+//! whether the set of files is complete: between the first file that is moved and the last one it is not.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -49,10 +49,8 @@ pub struct ResultFolder {
     names: Vec<String>,
     /// How many of the names belong to parts of the work that are kept.
     kept: usize,
-    /// Files that are somebody else's and in the way, with the names that they get.
-    foreign: Vec<(String, PathBuf)>,
-    /// How many of these have been told.
-    told: usize,
+    /// How many of the names have been looked at for files that are in their way.
+    looked_at: usize,
 }
 
 impl ResultFolder {
@@ -127,8 +125,7 @@ impl ResultFolder {
             unfinished: Arc::new(Unfinished::new(path.to_owned(), partial)),
             names: Vec::new(),
             kept: 0,
-            foreign: Vec::new(),
-            told: 0,
+            looked_at: 0,
         })
     }
 
@@ -151,29 +148,22 @@ impl ResultFolder {
         refuse_input(&self.path.join(name), &self.inputs)?;
         self.write_aside(name, bytes)?;
         self.names.push(name.to_owned());
-        let is_ours = self.before.files.contains_key(name);
-        let is_known = self.foreign.iter().any(|(known, _)| known == name);
-        if !is_ours && !is_known && self.path.join(name).is_file() {
-            let free = free_name(&self.path.join(name));
-            self.foreign.push((name.to_owned(), free));
-        }
         Ok(())
     }
 
     /// A warning for each file that is somebody else's and in the way of one that was added since the last time.
     pub fn in_the_way(&mut self) -> Vec<Diagnostic> {
-        let new = &self.foreign[self.told..];
-        let tell = |(name, kept): &(String, PathBuf)| {
-            let place = self.path.join(name);
+        let tell = |place: PathBuf| {
             let message = format!(
                 "{} was there and is not gelbench's: it is kept as {}",
                 place.display(),
-                kept.display()
+                free_name(&place).display()
             );
             Diagnostic::warning("", message).hint("name another folder for results with --output")
         };
-        let told = new.iter().map(tell).collect();
-        self.told = self.foreign.len();
+        let new = &self.names[self.looked_at..];
+        let told = foreign(&self.path, new, &self.before).map(tell).collect();
+        self.looked_at = self.names.len();
         told
     }
 
@@ -230,6 +220,8 @@ impl ResultFolder {
     pub fn finish(mut self) -> Result<Vec<PathBuf>, Error> {
         let own = self.names.iter().cloned();
         let new: BTreeMap<String, String> = own.map(|name| (name, self.writer.clone())).collect();
+        let in_the_way: BTreeSet<PathBuf> =
+            foreign(&self.path, &self.names, &self.before).collect();
         let mut files = std::mem::take(&mut self.before.files);
         let ours = |(name, writer): (&String, &String)| {
             (*writer == self.writer && !new.contains_key(name)).then(|| name.clone())
@@ -250,9 +242,8 @@ impl ResultFolder {
         };
         // Nobody who breaks the run off does so between the first file and the last.
         let mut stage = unfinished.growing()?;
-        for (name, kept) in &self.foreign {
-            let place = self.path.join(name);
-            fs::rename(&place, kept).map_err(|cause| Error::write(&place, cause))?;
+        for place in in_the_way {
+            fs::rename(&place, free_name(&place)).map_err(|cause| Error::write(&place, cause))?;
         }
         self.manifest.write(&files, Some(moving.clone()))?;
         // From here on the next run could finish it.
@@ -286,6 +277,19 @@ pub fn refuse_file(folder: &Path) -> Result<(), Error> {
             Err(Error::write(folder, cause))
         }
     }
+}
+
+/// The files in the places of some names that gelbench has not written.
+fn foreign<'a>(
+    path: &'a Path,
+    names: &'a [String],
+    before: &'a Manifest,
+) -> impl Iterator<Item = PathBuf> + 'a {
+    let others = names
+        .iter()
+        .filter(|name| !before.files.contains_key(*name));
+    let places = others.map(|name| path.join(name));
+    places.filter(|place| place.is_file())
 }
 
 /// A name beside a file's that no file has: `report.md.kept`, `report.md.kept-2` and so on.

@@ -296,19 +296,19 @@ impl Loading for Model<'_> {
             let mut known = self.near.iter();
             known.find(|(at, _)| *at == factor).map(|(_, field)| field)
         };
-        match (near(factor), previous) {
-            (Some(field), None) => return Some(field.clone()),
-            (Some(field), Some(own)) => {
+        let known = near(factor).and_then(|field| {
+            let mut guess = field.clone();
+            if let Some(own) = previous {
                 // From a state on the way, at which nothing is known, no guess has led to the end.
-                if let Some(before) = near(own.factor) {
-                    let ratio = factor / own.factor;
-                    let mut guess = field.clone();
-                    add_scaled(&mut guess, ratio, &own.displacement);
-                    add_scaled(&mut guess, -ratio, before);
-                    return Some(guess);
-                }
+                let before = near(own.factor)?;
+                let ratio = factor / own.factor;
+                add_scaled(&mut guess, ratio, &own.displacement);
+                add_scaled(&mut guess, -ratio, before);
             }
-            (None, _) => {}
+            Some(guess)
+        });
+        if known.is_some() {
+            return known;
         }
         let first = self.guess.as_ref()?;
         let (ratio, field) = match previous {

@@ -32,29 +32,30 @@ impl Tangent {
     pub(super) fn factorise_braced(&mut self, stiffness: &mut [f64]) -> Result<(), FactorFault> {
         self.factorised = true;
         self.skew.brace = 0.0;
+        self.skew.columns.clear();
         let outcome = self.analysed()?.factorise(stiffness);
         if outcome != Err(FactorFault::NotPositiveDefinite) || self.skew.is_none() {
             return outcome;
         }
+        let unbraced = self.skew.clone();
         let brace = BRACE * self.assembly.pattern().mean_diagonal(stiffness);
         for _ in 0..RINGS {
             self.brace(stiffness, brace);
             let is_braced = self.analysed()?.factorise(stiffness).is_ok();
             if is_braced {
                 self.skew.brace = brace;
-                let columns = self.coupled_columns();
-                if columns.is_ok_and(|columns| self.skew.keeps_stability(&columns)) {
+                if self.find_columns().is_ok() && self.skew.keeps_stability() {
                     return Ok(());
                 }
             }
             self.brace(stiffness, -brace);
-            self.skew.brace = 0.0;
             if is_braced {
                 break;
             }
             let around = self.assembly.pattern().around(self.skew.coupled());
             self.skew.widen(&around);
         }
+        self.skew = unbraced;
         outcome
     }
 
@@ -66,8 +67,11 @@ impl Tangent {
         }
     }
 
-    /// K⁻¹ of the unit vectors of the unknowns that the skew part couples.
-    pub(super) fn coupled_columns(&mut self) -> Result<Vec<Vec<f64>>, SolveFault> {
+    /// Finds K'⁻¹ U, once for a factor.
+    pub(super) fn find_columns(&mut self) -> Result<(), SolveFault> {
+        if !self.skew.columns.is_empty() {
+            return Ok(());
+        }
         let size = self.free().len();
         let coupled = self.skew.coupled().to_vec();
         let columns = coupled.into_iter().map(|unknown| {
@@ -75,6 +79,7 @@ impl Tangent {
             unit[unknown] = 1.0;
             self.solve(&unit)
         });
-        columns.collect()
+        self.skew.columns = columns.collect::<Result<_, _>>()?;
+        Ok(())
     }
 }

@@ -7,7 +7,8 @@
 //! ```
 //!
 //! U are the unit vectors of the coupled unknowns, and of some around them, and S = U C Uᵀ. The body is braced by σ where K itself is not
-//! positive definite: that says nothing of the stability of a body whose loads have no potential. It is lost, without oscillation, where det (K + S) vanishes.
+//! positive definite: that says nothing of the stability of a body whose loads have no potential. It is lost, without oscillation, where
+//! det (K + S) vanishes.
 //!
 //! # References
 //! V. V. Bolotin, Nonconservative Problems of the Theory of Elastic Stability, Pergamon (1963)
@@ -19,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 use super::potential::SkewCoupling;
 
 /// S, and what K is braced with.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct SkewPart {
     /// The unknowns of U.
     coupled: Vec<usize>,
@@ -27,6 +28,8 @@ pub struct SkewPart {
     couplings: DMatrix<f64>,
     /// σ.
     pub brace: f64,
+    /// K'⁻¹ U of the factor there is; empty where they are not known.
+    pub columns: Vec<Vec<f64>>,
 }
 
 impl SkewPart {
@@ -44,7 +47,7 @@ impl SkewPart {
         Self {
             coupled,
             couplings,
-            brace: 0.0,
+            ..Self::default()
         }
     }
 
@@ -82,24 +85,24 @@ impl SkewPart {
         beyond
     }
 
-    /// 1 + D G of the columns K'⁻¹ U.
-    fn system(&self, columns: &[Vec<f64>]) -> DMatrix<f64> {
+    /// 1 + D G.
+    fn system(&self) -> DMatrix<f64> {
         let count = self.coupled.len();
-        let flexibility = DMatrix::from_fn(count, count, |i, k| columns[k][self.coupled[i]]);
+        let flexibility = DMatrix::from_fn(count, count, |i, k| self.columns[k][self.coupled[i]]);
         DMatrix::identity(count, count) + self.beyond() * flexibility
     }
 
-    /// Whether det (K + S) is positive, as it is at rest and until stability is lost; given the columns K'⁻¹ U.
-    pub fn keeps_stability(&self, columns: &[Vec<f64>]) -> bool {
-        self.system(columns).determinant() > 0.0
+    /// Whether det (K + S) is positive, as it is at rest and until stability is lost; the columns must be known.
+    pub fn keeps_stability(&self) -> bool {
+        self.system().determinant() > 0.0
     }
 
-    /// (K + S)⁻¹ b of K'⁻¹ b and the columns K'⁻¹ U; `None` where there is none.
-    pub fn complete(&self, mut x: Vec<f64>, columns: &[Vec<f64>]) -> Option<Vec<f64>> {
+    /// (K + S)⁻¹ b of K'⁻¹ b; the columns must be known; `None` where there is none.
+    pub fn complete(&self, mut x: Vec<f64>) -> Option<Vec<f64>> {
         let there = self.coupled.iter().map(|unknown| x[*unknown]);
         let there = DVector::from_iterator(self.coupled.len(), there);
-        let parts = self.system(columns).lu().solve(&(self.beyond() * there))?;
-        for (part, column) in parts.iter().zip(columns) {
+        let parts = self.system().lu().solve(&(self.beyond() * there))?;
+        for (part, column) in parts.iter().zip(&self.columns) {
             for (x, column) in x.iter_mut().zip(column) {
                 *x -= part * column;
             }

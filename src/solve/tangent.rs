@@ -196,7 +196,9 @@ impl Tangent {
         let tangent = stiffness.clone();
         let skew = std::mem::take(&mut self.skew);
         let factorised = self.factorise(&mut stiffness);
+        // Its columns were those of another factor.
         self.skew = skew;
+        self.skew.columns.clear();
         factorised.ok()?;
         // A start without any symmetry has a part of every mode.
         let count = self.free().len();
@@ -313,9 +315,8 @@ impl Tangent {
         if self.skew.is_none() {
             return Ok(step);
         }
-        let columns = self.coupled_columns()?;
-        let complete = self.skew.complete(step, &columns);
-        complete.ok_or(SolveFault::Singular)
+        self.find_columns()?;
+        self.skew.complete(step).ok_or(SolveFault::Singular)
     }
 }
 

@@ -80,12 +80,13 @@ impl Unevenness {
         let (own, z): (Vec<_>, Vec<_>) =
             sound.filter_map(|(place, z)| Some((*place, (*z)?))).unzip();
         let told = Told::of(&own, &z)?;
-        let apart = told.apart();
+        let apart = told.logarithms(VARIANCE, |x, y| 0.5 * (x / y).ln());
         let ratios = told.slopes(&apart);
         let ratio = told.mean_apart(&apart);
+        let by = ratio.unwrap_or(0.0).exp();
         let together = match ratios {
-            Some(_) => told.together(),
-            None => told.together_at(ratio.unwrap_or(0.0)),
+            Some(_) => told.logarithms(VARIANCE, |x, y| 0.5 * (x * y).ln()),
+            None => told.logarithms(VARIANCE_OF_SUM, |x, y| (x / by + y * by).ln()),
         };
         let sizes = told.slopes(&together);
         if sizes.is_none() && ratios.is_none() && ratio.is_none() {
@@ -168,31 +169,12 @@ impl Told {
         })
     }
 
-    /// ½ ln dx²/dy².
-    fn apart(&self) -> Logarithms {
+    /// Logarithms that are made of dx² and dy².
+    fn logarithms(&self, variance: f64, of: impl Fn(f64, f64) -> f64) -> Logarithms {
         let [x, y] = &self.squares;
         Logarithms {
-            values: x.zip_map(y, |x, y| 0.5 * (x / y).ln()),
-            variance: VARIANCE,
-        }
-    }
-
-    /// ½ ln dx²dy².
-    fn together(&self) -> Logarithms {
-        let [x, y] = &self.squares;
-        Logarithms {
-            values: x.zip_map(y, |x, y| 0.5 * (x * y).ln()),
-            variance: VARIANCE,
-        }
-    }
-
-    /// ln (dx² e⁻ʰ + dy² eʰ), of components whose ratio is the same everywhere.
-    fn together_at(&self, ratio: f64) -> Logarithms {
-        let [x, y] = &self.squares;
-        let by = ratio.exp();
-        Logarithms {
-            values: x.zip_map(y, |x, y| (x / by + y * by).ln()),
-            variance: VARIANCE_OF_SUM,
+            values: x.zip_map(y, of),
+            variance,
         }
     }
 

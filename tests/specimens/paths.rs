@@ -1,12 +1,21 @@
 //! Paths that end nowhere but where a body does.
 
 use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
 
 use crate::common::{folder_with, gelbench, number, words};
 
 const STRIP: &str = "kind = \"specimen\"\n[finite_element]\nelement = \"Q2\"\n\
     [specimen]\nshape = \"strip\"\nlength = \"40 mm\"\nthickness = \"1 mm\"\ncells = 8\n\
     [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n";
+
+/// The report of `small.toml` in a folder.
+fn report_of(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join("output/small/report.json")).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
 
 /// The symmetric part of its tangent, which says nothing of its stability, is not positive definite beyond a fifth of the load.
 #[test]
@@ -16,8 +25,7 @@ fn a_pressure_on_an_edge_with_free_ends_is_followed_to_its_end() {
         [path]\nfactors = [0.1, 0.4, 1.0]\nmeasured_group = \"left\"\n";
     let folder = folder_with(&STRIP.replace("cells = 8\n", &format!("cells = 8\n{rest}")));
     gelbench(folder.path(), &["run", "small.toml"]);
-    let text = fs::read_to_string(folder.path().join("output/small/report.json")).unwrap();
-    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let report = report_of(folder.path());
     // By an independent code on the same mesh of 512 cells.
     for (step, pulled) in [(0, 1.33281), (2, 14.8904)] {
         let groups = &report["steps"][step]["finite_element"]["groups"];
@@ -40,8 +48,7 @@ fn a_sheet_that_hardly_changes_its_area_is_not_called_one_of_several() {
     let done = gelbench(folder.path(), &["run", "small.toml"]);
     let told = words(&done.get_output().stderr);
     assert!(!told.contains("one of several"), "{told}");
-    let text = fs::read_to_string(folder.path().join("output/small/report.json")).unwrap();
-    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let report = report_of(folder.path());
     let force = number(&report["steps"][1]["finite_element"], &["measured_N"]);
     // By an independent code.
     assert!((force / 3.192993069 - 1.0).abs() < 1e-6, "{force}");

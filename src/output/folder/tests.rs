@@ -222,6 +222,24 @@ fn work_that_was_broken_off_goes_on_where_it_was_with_the_same_identity_only() {
 }
 
 #[test]
+fn a_file_of_somebody_else_is_kept_by_work_that_goes_on_too() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    fs::write(path.join("a.csv"), "mine").unwrap();
+    let begin = || ResultFolder::resume(path, "correct", &[], "1").unwrap();
+    let mut first = begin();
+    first.add("a.csv", b"1").unwrap();
+    first.keep("1", &()).unwrap();
+    first.unfinished().break_off();
+    drop(first);
+    let mut second = begin();
+    assert!(second.kept::<()>("1").is_some());
+    assert_eq!(second.in_the_way().len(), 1);
+    second.finish().unwrap();
+    assert_eq!(fs::read_to_string(path.join("a.csv.kept")).unwrap(), "mine");
+}
+
+#[test]
 fn nothing_is_written_into_what_was_broken_off() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();

@@ -26,6 +26,7 @@ fn check_interval(section: &Section, time: &TimeSettings, viscosity: &ViscousMat
 
 /// Whether steps and instants follow a grip that swings; steps that do not would make another motion of it.
 fn check_swing(section: &Section, (time, grip): (&TimeSettings, &GripMotion)) {
+    /// Steps in a period below which it is another motion, and those below which it is a rough one.
     const FEWEST: f64 = 8.0;
     const FEW: f64 = 20.0;
     let Some(period) = grip.stretch.period() else {
