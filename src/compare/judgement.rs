@@ -8,6 +8,14 @@
 //! e ≤ d/10            judged: pass where d ≤ l, else FAIL
 //! else                cannot be judged: the reference is too coarse for what it has to judge
 //! ```
+//!
+//! Where the reference is expensive, and limits are far from what is measured ([`judge_by_margin`]):
+//!
+//! ```text
+//! d + e ≤ l           pass
+//! d − e > l           FAIL
+//! else                cannot be judged
+//! ```
 
 /// Deviations below this, in percent, are what solvers and rounding leave.
 pub const ROUNDING_PERCENT: f64 = 1e-6;
@@ -109,8 +117,26 @@ pub fn judge_correction(
     }
 }
 
+/// Judges a deviation by whether its limit is farther away than the reference's own error; both in percent of the same size.
+pub fn judge_by_margin(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgement {
+    if deviation.is_nan() || deviation - own_error > limit {
+        return Judgement::Fail;
+    }
+    if deviation + own_error <= limit {
+        return Judgement::Pass;
+    }
+    Judgement::CannotBeJudged {
+        reason: format!(
+            "the reference's own error, {} %, decides whether the deviation, {} %, is within the limit",
+            percent(own_error),
+            percent(deviation)
+        ),
+        remedy: remedy.to_owned(),
+    }
+}
+
 /// A deviation in % as a sentence shows it.
-fn percent(value: f64) -> String {
+pub fn percent(value: f64) -> String {
     if value.abs() < 1e-3 {
         format!("{value:.1e}")
     } else {

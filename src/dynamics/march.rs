@@ -1,7 +1,7 @@
 //! Steps from instant to instant, halved where they explode.
 
 use super::central::Central;
-use super::history::History;
+use super::history::{EnergyBalance, History};
 use super::implicit::Implicit;
 use super::motion::Motion;
 use super::state::BodyState;
@@ -147,6 +147,16 @@ fn stops(motion: &Motion, settings: TimeSettings) -> Vec<Stop> {
     stops
 }
 
+/// What a step's energies may tell.
+#[derive(Clone, Copy)]
+enum Trust {
+    /// All of them must balance.
+    AllEnergies,
+    /// That of viscous forces, which die out faster than the step, may be too large: an exact motion gains nothing without it but what
+    /// relaxing stresses give back.
+    ViscousWorkTooLarge,
+}
+
 /// The length of steps.
 struct Pace {
     /// The longest that the settings allow.
@@ -160,8 +170,8 @@ struct Pace {
     patience: usize,
     /// Whether it has grown since it was last halved.
     grown: bool,
-    /// The sum of the energies that gains are counted from, in mJ.
-    total: f64,
+    /// The energies that gains are counted from.
+    from: EnergyBalance,
 }
 
 impl Pace {
@@ -176,7 +186,7 @@ impl Pace {
             runs: 0,
             patience: PATIENCE,
             grown: false,
-            total: 0.0,
+            from: EnergyBalance::default(),
         }
     }
 
@@ -192,14 +202,14 @@ impl Pace {
         self.current
     }
 
-    /// Halves a step that failed from a state with so much energy.
-    fn halve(&mut self, step: f64, total: f64) {
+    /// Halves a step that failed from a state with such energies.
+    fn halve(&mut self, step: f64, from: EnergyBalance) {
         self.current = 0.5 * step;
         self.runs = 0;
         if std::mem::take(&mut self.grown) {
             self.patience *= 2;
         }
-        self.total = total;
+        self.from = from;
     }
 }
 
@@ -226,7 +236,7 @@ impl<'a> March<'a> {
         let mut at = motion.begin()?;
         self.history.instants.push(motion.instant(&at));
         self.stepper.prepare(motion, &self.held)?;
-        self.pace.total = at.energy.total();
+        self.pace.from = at.energy;
         for stop in stops(motion, self.settings) {
             let now = motion.held(at.time);
             if now != self.held {
@@ -253,7 +263,12 @@ impl<'a> March<'a> {
             let count = (rest / longest * (1.0 - 1e-9)).ceil().max(1.0);
             let step = rest / count;
             let run = (count as usize).min(RUN);
-            match self.take(&at, step, run) {
+            // After a jerk viscous forces may die out faster than any step.
+            let trust = match 0.5 * step < SHORTEST * self.pace.wanted.min(rest) {
+                true => Trust::ViscousWorkTooLarge,
+                false => Trust::AllEnergies,
+            };
+            match self.take(&at, step, run, trust) {
                 Ok(next) => {
                     self.history.steps += run;
                     at = next;
@@ -264,7 +279,7 @@ impl<'a> March<'a> {
                 }
                 Err(fault) => {
                     self.history.halved += run;
-                    self.pace.halve(step, at.energy.total());
+                    self.pace.halve(step, at.energy);
                     if self.pace.current < SHORTEST * self.pace.wanted.min(rest) {
                         return Err(fault);
                     }
@@ -301,12 +316,27 @@ impl<'a> March<'a> {
         }
     }
 
+    /// The energy in mJ that steps have made of nothing, or lost where they must not.
+    fn astray(&self, energy: &EnergyBalance, trust: Trust) -> f64 {
+        let gain = energy.total() - self.pace.from.total();
+        let viscous_work = energy.viscous_work - self.pace.from.viscous_work;
+        let made = match trust {
+            Trust::AllEnergies => gain,
+            Trust::ViscousWorkTooLarge => gain.min(gain - viscous_work),
+        };
+        match self.stepper.conserves() {
+            true => made.max(-gain),
+            false => made,
+        }
+    }
+
     /// A run of equal steps; a fault where the energy goes astray.
     fn take(
         &mut self,
         start: &BodyState,
         step: f64,
         count: usize,
+        trust: Trust,
     ) -> Result<BodyState, SolveFault> {
         let mut at = start.clone();
         for _ in 0..count {
@@ -315,11 +345,7 @@ impl<'a> March<'a> {
             next.memory = self.motion.memory_after(&at.memory, &next, step)?;
             at = next;
         }
-        let gain = at.energy.total() - self.pace.total;
-        let astray = match self.stepper.conserves() {
-            true => gain.abs(),
-            false => gain,
-        };
+        let astray = self.astray(&at.energy, trust);
         let largest = at.energy.largest().max(start.energy.largest());
         if astray.is_finite() && astray <= ASTRAY * largest {
             return Ok(at);

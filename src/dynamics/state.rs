@@ -196,8 +196,36 @@ impl Motion<'_> {
         0.5 * pairs.map(|(m, v)| m * v * v).sum::<f64>()
     }
 
-    /// The instant of a state.
-    pub(super) fn instant(&self, at: &BodyState) -> Instant {
+    /// The force of each support on the body in N along both axes at a time in s, from displacement, velocity and the acceleration that
+    /// supports impose, where stresses have no memory.
+    ///
+    /// # Errors
+    /// [`SolveFault::Inverted`].
+    pub fn support_forces(
+        &self,
+        time: f64,
+        [displacement, velocity]: [&[f64]; 2],
+    ) -> Result<Vec<[f64; 2]>, SolveFault> {
+        let zeros = || vec![0.0; displacement.len()];
+        let mut at = BodyState {
+            time,
+            displacement: displacement.to_vec(),
+            velocity: velocity.to_vec(),
+            acceleration: zeros(),
+            memory: Memory::default(),
+            forces: Forces {
+                elastic: zeros(),
+                viscous: zeros(),
+                external: Vec::new(),
+            },
+            energy: EnergyBalance::default(),
+        };
+        at.impose(self, time, time);
+        self.evaluate(&mut at, 0.0)?;
+        Ok(self.forces_of_supports(&at))
+    }
+
+    fn forces_of_supports(&self, at: &BodyState) -> Vec<[f64; 2]> {
         let Forces {
             elastic,
             viscous,
@@ -216,13 +244,18 @@ impl Motion<'_> {
             }
             sum
         };
+        self.supports.iter().map(force).collect()
+    }
+
+    /// The instant of a state.
+    pub(super) fn instant(&self, at: &BodyState) -> Instant {
         Instant {
             time: at.time,
             displacement: at.displacement.clone(),
             velocity: at.velocity.clone(),
             acceleration: at.acceleration.clone(),
             energy: at.energy,
-            support_forces: self.supports.iter().map(force).collect(),
+            support_forces: self.forces_of_supports(at),
         }
     }
 

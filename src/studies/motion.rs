@@ -4,16 +4,17 @@ use std::path::Path;
 
 use crate::budget::Budget;
 use crate::document::Section;
-use crate::dynamics::{Dashpots, SheetViscosity, Viscosity};
+use crate::dynamics::{Dashpots, SheetViscosity, TimeSettings, Viscosity};
 use crate::error::{Diagnostic, Error};
 use crate::finite_element::FiniteElements;
 use crate::mass_spring::{DashpotLaw, MassSpring};
 use crate::material::softened_law::check_memory;
-use crate::results::Outcome;
+use crate::results::{Outcome, number};
 use crate::studies::{Computation, Kind, Progress};
 
 mod between;
 mod corrected;
+mod deviations;
 mod files;
 mod functions;
 mod outcome;
@@ -24,7 +25,9 @@ mod solution;
 mod statement;
 mod timing;
 
+use deviations::OwnError;
 pub use problem::MovingPlate;
+use solution::ModelMotion;
 
 /// The `kind` of these studies.
 pub const KIND: &str = "motion";
@@ -64,22 +67,52 @@ pub fn compute(plate: &MovingPlate, progress: Progress) -> Result<Outcome, Error
         DashpotLaw::Material(material) => !material.is_none(),
         DashpotLaw::Viscosity { .. } => true,
     };
-    progress.tell("mass-spring");
     let dashpots = damped.then_some(&dashpots as &dyn Viscosity);
     let model = springs.model(&plate.problem);
-    let springs_moved = plate.moved(["mass-spring", "mass_spring"], &model, dashpots)?;
-    progress.tell("finite elements");
-    let (element, cells) = plate.element;
-    let elements = FiniteElements::new(&plate.problem, cells, element);
-    let sheet = SheetViscosity::new(elements.energy(), &plate.viscosity);
-    let sheet = (!plate.viscosity.is_none()).then_some(&sheet as &dyn Viscosity);
-    let model = elements.model(&plate.problem);
-    let elements_moved = plate.moved(["finite elements", "finite_element"], &model, sheet)?;
-    progress.tell("corrector");
-    let corrected = plate.corrected(&springs_moved)?;
+    let names = ["mass-spring", "mass_spring"];
+    let told = |time: f64| progress.tell(&plate.at(names[0], time));
+    let springs_moved = plate.moved(names, (&model, dashpots), plate.time, &told)?;
+    let (_, cells) = plate.element;
+    let elements_moved = plate.elements_moved(cells, plate.time, progress, "finite elements")?;
+    let own_error = OwnError::of(plate, &elements_moved, progress);
+    let corrected = plate.corrected(&springs_moved, progress)?;
+    let models = [springs_moved, elements_moved];
     Ok(outcome::outcome(
         plate,
-        &[springs_moved, elements_moved],
+        &models,
+        own_error.as_ref(),
         &corrected,
     ))
+}
+
+impl MovingPlate {
+    /// The motion of finite elements of the study's kind with so many cells; `what` is what progress calls it.
+    fn elements_moved(
+        &self,
+        cells: [usize; 2],
+        time: TimeSettings,
+        progress: Progress,
+        what: &str,
+    ) -> Result<ModelMotion, Error> {
+        let elements = FiniteElements::new(&self.problem, cells, self.element.0);
+        let sheet = SheetViscosity::new(elements.energy(), &self.viscosity);
+        let sheet = (!self.viscosity.is_none()).then_some(&sheet as &dyn Viscosity);
+        let model = elements.model(&self.problem);
+        let told = |now: f64| progress.tell(&self.at(what, now));
+        self.moved(
+            ["finite elements", "finite_element"],
+            (&model, sheet),
+            time,
+            &told,
+        )
+    }
+
+    /// How far a computation is.
+    fn at(&self, what: &str, time: f64) -> String {
+        format!(
+            "{what}, {} of {} s",
+            number(time),
+            number(self.time.duration)
+        )
+    }
 }

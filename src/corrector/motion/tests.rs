@@ -58,7 +58,7 @@ fn a_damped_spring_is_corrected_to_its_closed_form_with_the_second_order() {
             let step = 5.0 / count as f64;
             let equation = EquationOfMotion::new(&body, step, beta).unwrap();
             let found = equation
-                .correct(&wrong(count + 1), &body.start, windows(16))
+                .correct(&wrong(count + 1), &body.start, windows(16), &|_| ())
                 .unwrap();
             let all = found.displacement.iter().enumerate();
             all.map(|(i, u)| (u[0] - exact(step * i as f64)).abs())
@@ -83,10 +83,10 @@ fn the_result_depends_neither_on_the_data_nor_on_the_windows() {
     let body = motion(&spring, Some(&spring), 1.0);
     let equation = EquationOfMotion::new(&body, 0.05, 0.25).unwrap();
     let first = equation
-        .correct(&wrong(101), &body.start, windows(10))
+        .correct(&wrong(101), &body.start, windows(10), &|_| ())
         .unwrap();
     let still = equation
-        .correct(&vec![vec![1.0]; 101], &body.start, windows(1))
+        .correct(&vec![vec![1.0]; 101], &body.start, windows(1), &|_| ())
         .unwrap();
     for (a, b) in first.displacement.iter().zip(&still.displacement) {
         assert!((a[0] - b[0]).abs() < 1e-10, "{a:?} {b:?}");
@@ -94,7 +94,7 @@ fn the_result_depends_neither_on_the_data_nor_on_the_windows() {
     assert_eq!((first.windows, still.windows), (10, 100));
     assert!(first.factorisations < 20, "{}", first.factorisations);
     let again = equation
-        .correct(&first.displacement, &body.start, windows(10))
+        .correct(&first.displacement, &body.start, windows(10), &|_| ())
         .unwrap();
     assert!(again.multipliers.iter().all(|psi| psi[0].abs() < 1e-10));
     assert!(again.iterations <= 10, "{}", again.iterations);
@@ -112,7 +112,7 @@ fn multipliers_balance_the_correction() {
     let equation = EquationOfMotion::new(&body, h, 0.0).unwrap();
     let data = wrong(count);
     let found = equation
-        .correct(&data, &body.start, windows(count))
+        .correct(&data, &body.start, windows(count), &|_| ())
         .unwrap();
     let psi = |instant: usize| found.multipliers.get(instant).map_or(0.0, |psi| psi[0]);
     for (instant, data) in data.iter().enumerate().skip(1) {
@@ -136,7 +136,7 @@ fn noise_is_removed_from_a_recorded_motion_with_an_unknown_start() {
     let body = motion(&spring, None, 1.0);
     let equation = EquationOfMotion::new(&body, 0.05, 0.25).unwrap();
     let exact = equation
-        .correct(&wrong(121), &body.start, windows(10))
+        .correct(&wrong(121), &body.start, windows(10), &|_| ())
         .unwrap()
         .displacement;
     let noise = |i: usize| 0.1 * ((12.9898 * i as f64).sin() * 43_758.545).fract();
@@ -217,7 +217,9 @@ fn a_plate_moves_as_by_the_average_acceleration() {
         .unwrap();
     let data = vec![body.start.displacement.clone(); 101];
     let equation = EquationOfMotion::new(&body, step, 0.25).unwrap();
-    let found = equation.correct(&data, &body.start, windows(10)).unwrap();
+    let found = equation
+        .correct(&data, &body.start, windows(10), &|_| ())
+        .unwrap();
     for (instant, u) in history.instants.iter().zip(&found.displacement) {
         let pairs = instant.displacement.iter().zip(u);
         let most = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -281,7 +283,9 @@ fn a_motion_under_a_force_that_changes_in_time_is_that_of_newmarks_method() {
         .unwrap();
     let equation = EquationOfMotion::new(&body, step, 0.25).unwrap();
     let given = wrong(expected.instants.len());
-    let found = equation.correct(&given, &body.start, windows(16)).unwrap();
+    let found = equation
+        .correct(&given, &body.start, windows(16), &|_| ())
+        .unwrap();
     for (found, expected) in found.displacement.iter().zip(&expected.instants) {
         let off = (found[0] - expected.displacement[0]).abs();
         assert!(off < 1e-8, "{} s: {off:.1e}", expected.time);

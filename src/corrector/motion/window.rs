@@ -66,7 +66,8 @@ const SLOW: f64 = 0.2;
 const ROUNDING_FLOOR: f64 = 1e-8;
 
 impl EquationOfMotion<'_> {
-    /// Corrects a motion that is given at instants from time 0 on, with a known start.
+    /// Corrects a motion that is given at instants from time 0 on, with a known start; `progress` is told how many are
+    /// corrected.
     ///
     /// # Errors
     /// [`CorrectionEnd`] with the instants before it when a window of a single step fails.
@@ -75,6 +76,7 @@ impl EquationOfMotion<'_> {
         data: &[Vec<f64>],
         start: &Start,
         settings: WindowSettings,
+        progress: &dyn Fn(usize),
     ) -> Result<CorrectedMotion, CorrectionEnd> {
         let size = self.motion.energy.unknowns();
         let mut corrected = CorrectedMotion {
@@ -84,7 +86,7 @@ impl EquationOfMotion<'_> {
             factorisations: 0,
             windows: 0,
         };
-        match self.correct_onwards(data, start, settings, &mut corrected) {
+        match self.correct_onwards(data, start, (settings, progress), &mut corrected) {
             Ok(()) => Ok(corrected),
             Err(fault) => Err(CorrectionEnd {
                 fault,
@@ -98,7 +100,7 @@ impl EquationOfMotion<'_> {
         &self,
         data: &[Vec<f64>],
         start: &Start,
-        settings: WindowSettings,
+        (settings, progress): (WindowSettings, &dyn Fn(usize)),
         corrected: &mut CorrectedMotion,
     ) -> Result<(), SolveFault> {
         let mut retained = RetainedFactor {
@@ -119,6 +121,7 @@ impl EquationOfMotion<'_> {
                     self.append(&window, data, &interval, &mut retained, corrected)?;
                     corrected.iterations += iterations;
                     corrected.windows += 1;
+                    progress(corrected.displacement.len());
                     steps = (2 * steps).min(settings.steps.max(1));
                 }
                 Err(fault) if count == 1 => return Err(fault),

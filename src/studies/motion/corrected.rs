@@ -7,6 +7,7 @@ use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::dynamics::{Instant, SheetViscosity, Viscosity};
 use crate::error::Error;
 use crate::results::number;
+use crate::studies::Progress;
 
 /// The corrected motion at the instants that are written.
 pub struct CorrectedMotion {
@@ -14,10 +15,25 @@ pub struct CorrectedMotion {
     pub displacement: Vec<Vec<f64>>,
     /// In mm/s.
     pub velocity: Vec<Vec<f64>>,
+    /// Of the right grip on the plate along both axes, in N.
+    pub right_force: Vec<[f64; 2]>,
     /// What was done, or why nothing was.
     pub note: String,
     /// Why it ended before the springs' motion did, where it did.
     pub end: Option<Error>,
+}
+
+impl CorrectedMotion {
+    /// No motion, and why.
+    fn none(note: String) -> Self {
+        Self {
+            displacement: Vec::new(),
+            velocity: Vec::new(),
+            right_force: Vec::new(),
+            note,
+            end: None,
+        }
+    }
 }
 
 /// Steps in a period of the first longitudinal vibration at least.
@@ -33,7 +49,16 @@ const WINDOWS: WindowSettings = WindowSettings {
 impl MovingPlate {
     /// Corrects the motion of the springs; nothing but a note where three consecutive instants do not hold the equation
     /// of motion.
-    pub fn corrected(&self, springs: &ModelMotion) -> Result<CorrectedMotion, Error> {
+    pub fn corrected(
+        &self,
+        springs: &ModelMotion,
+        progress: Progress,
+    ) -> Result<CorrectedMotion, Error> {
+        if !self.corrected {
+            return Ok(CorrectedMotion::none(
+                "The study says that the motion is not corrected.".into(),
+            ));
+        }
         let mesh = &springs.mesh;
         let energy = self.scheme().energy(&self.problem, mesh);
         let viscosity = SheetViscosity::new(&energy, &self.viscosity);
@@ -47,16 +72,13 @@ impl MovingPlate {
         let equation = match EquationOfMotion::new(&motion, step, AVERAGE_ACCELERATION) {
             Ok(equation) => equation,
             Err(reason) => {
-                return Ok(CorrectedMotion {
-                    displacement: Vec::new(),
-                    velocity: Vec::new(),
-                    note: format!("The motion of the springs is not corrected: {reason}."),
-                    end: None,
-                });
+                let note = format!("The motion of the springs is not corrected: {reason}.");
+                return Ok(CorrectedMotion::none(note));
             }
         };
         let data = between(&springs.history.instants, within);
-        let (found, fault) = match equation.correct(&data, &motion.start, WINDOWS) {
+        let told = |count: usize| progress.tell(&self.at("corrector", step * (count - 1) as f64));
+        let (found, fault) = match equation.correct(&data, &motion.start, WINDOWS, &told) {
             Ok(found) => (found, None),
             Err(end) => (*end.corrected, Some(end.fault)),
         };
@@ -75,13 +97,25 @@ impl MovingPlate {
         });
         // The start alone is no motion.
         let count = if fine.len() > within { fine.len() } else { 0 };
-        let instants = (0..count).step_by(within);
+        let instants = || (0..count).step_by(within);
+        let velocity: Vec<_> = instants()
+            .map(|i| velocity(&fine, i, step, &motion.start.velocity))
+            .collect();
+        let forces = instants().zip(&velocity).map(|(i, velocity)| {
+            let forces = motion.support_forces(step * i as f64, [&fine[i], velocity]);
+            forces.map(|own| own[1])
+        });
+        let right_force = forces
+            .collect::<Result<_, _>>()
+            .map_err(|fault| Error::Solve {
+                model: model.name.clone(),
+                step: "the force of the right grip".into(),
+                fault,
+            })?;
         Ok(CorrectedMotion {
-            velocity: instants
-                .clone()
-                .map(|i| velocity(&fine, i, step, &motion.start.velocity))
-                .collect(),
-            displacement: instants.map(|i| fine[i].clone()).collect(),
+            displacement: instants().map(|i| fine[i].clone()).collect(),
+            velocity,
+            right_force,
             note,
             end,
         })

@@ -90,7 +90,13 @@ pub fn figures(
     ];
     figures.extend(stress_figures(plate, instants, shown));
     if plate.release != Some(0.0) {
-        let over_time = force(models, "time [s]", |_, now| now.time);
+        let mut over_time = force(models, "time [s]", |_, now| now.time);
+        let corrected = corrected.right_force.iter().zip(&springs.history.instants);
+        let points = corrected.map(|(force, now)| [now.time, force[0]]);
+        let corrected = Line::new("corrected", points, PALETTE[2], Stroke::Marked);
+        over_time
+            .lines
+            .extend((!corrected.points.is_empty()).then_some(corrected));
         let over_place = force(models, "displacement of the right side [mm]", right_side);
         figures.push(Figure::new(
             "motion_force.png",
@@ -318,7 +324,12 @@ pub fn tables(
     let mut all: Vec<_> = models.iter().map(of_model).collect();
     if !corrected.displacement.is_empty() {
         let fields = corrected.displacement.iter().zip(&corrected.velocity);
-        let columns = of_probes(plate, springs, fields.map(|(u, v)| [u, v]));
+        let forces = [("grip force x", 0), ("grip force y", 1)].map(|(name, axis)| {
+            let values = corrected.right_force.iter().map(|force| force[axis]);
+            Series::new(name, "N", values.collect())
+        });
+        let probes = of_probes(plate, springs, fields.map(|(u, v)| [u, v]));
+        let columns = forces.into_iter().chain(probes).collect();
         let times = &times[..corrected.displacement.len()];
         all.push(table("corrected", times, columns));
     }

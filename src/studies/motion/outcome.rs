@@ -3,76 +3,29 @@
 use serde_json::json;
 
 use super::corrected::CorrectedMotion;
+use super::deviations::{Deviations, OwnError, displacements_on};
 use super::files::{animation, figures, grids, tables};
 use super::plates::{compression, shown, times};
 use super::problem::MovingPlate;
 use super::solution::ModelMotion;
 use super::statement;
-use crate::dynamics::{Instant, lumped_mass};
-use crate::mesh::Mesh;
+use crate::compare::judgement::{judge_by_margin, percent};
+use crate::dynamics::Instant;
 use crate::results::{Block, Check, Content, Drawing, Material, Outcome, Step, Wanted, number};
 
 /// Instants in the table of deviations.
 const ROWS: usize = 12;
 
-/// How far a motion on the lattice is from the finite elements'.
-pub struct Deviations {
-    /// Of the displacement at each instant, in relative L2 over the largest of all instants, in %.
-    pub displacement: Vec<f64>,
-    /// Over all instants, in %.
-    pub whole: f64,
-}
-
-impl Deviations {
-    /// Of fields on the lattice, at the first instants, from the `expected` ones.
-    fn new<'a>(
-        lattice: &Mesh,
-        fields: impl Iterator<Item = &'a Vec<f64>>,
-        expected: &[Vec<f64>],
-    ) -> Self {
-        let weights = lumped_mass(lattice, 1.0, 1.0);
-        let square = |u: &[f64]| u.iter().zip(&weights).map(|(u, w)| w * u * u).sum::<f64>();
-        let errors: Vec<f64> = fields
-            .zip(expected)
-            .map(|(now, expected)| {
-                let both = now.iter().zip(expected);
-                square(&both.map(|(u, v)| u - v).collect::<Vec<_>>())
-            })
-            .collect();
-        let sizes: Vec<f64> = expected.iter().map(|u| square(u)).collect();
-        let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let displacement = errors.iter().map(|error| 100.0 * (error / largest).sqrt());
-        let [all, size] = [&errors, &sizes].map(|values| values.iter().sum::<f64>());
-        Self {
-            displacement: displacement.collect(),
-            whole: 100.0 * (all / size.max(f64::MIN_POSITIVE)).sqrt(),
-        }
-    }
-}
-
-/// The finite elements' displacements at the nodes of the lattice at all instants.
-fn expected(lattice: &Mesh, elements: &ModelMotion) -> Vec<Vec<f64>> {
-    let instants = elements.history.instants.iter();
-    instants
-        .map(|now| elements.mesh.displacement_on(&now.displacement, lattice))
-        .collect()
-}
-
 /// The outcome of both models and the corrected motion.
 pub fn outcome(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
+    own_error: Option<&OwnError>,
     corrected: &CorrectedMotion,
 ) -> Outcome {
     let [springs, elements] = models;
-    let expected = expected(&springs.mesh, elements);
-    let of_springs = springs.history.instants.iter();
-    let of_springs = of_springs.map(|now| &now.displacement);
-    let of_corrected = corrected.displacement.iter();
-    let deviations = [
-        Deviations::new(&springs.mesh, of_springs, &expected),
-        Deviations::new(&springs.mesh, of_corrected, &expected),
-    ];
+    let expected = displacements_on(&springs.mesh, elements);
+    let deviations = Deviations::both(models, corrected, &expected);
     let seconds = models
         .iter()
         .map(|model| (model.name.to_owned(), model.seconds));
@@ -80,12 +33,13 @@ pub fn outcome(
             Block::Paragraph(introduction(plate)),
             summary(models),
             Block::Paragraph(corrected.note.clone()),
+            Block::Paragraph(compared(&deviations, own_error)),
             Block::Paragraph(
                 "Deviation at some instants, over the largest displacement field of the finite elements, and the force \
                  of the right grip:"
                     .into(),
             ),
-            in_time(models, &deviations),
+            in_time(models, corrected, &deviations),
         ];
     blocks.extend(statement::blocks(plate));
     let mut files = tables(plate, models, corrected);
@@ -93,12 +47,12 @@ pub fn outcome(
     let animation = Drawing::Animation(animation(&instants, &plates));
     files.push(("motion.png".into(), Content::Picture(animation)));
     let mut outcome = Outcome {
-        checks: checks(plate, models, &deviations),
+        checks: checks(plate, models, (&deviations, own_error)),
         blocks,
-        problem: statement::json(plate),
+        problem: statement::json(plate, own_error),
         material: Some(Material::from(&plate.card)),
         along: "time",
-        steps: steps(models, &deviations),
+        steps: steps(models, corrected, &deviations),
         figures: figures(plate, models, (corrected, &plates)),
         style: plate.pictures.style.clone(),
         grids: grids(plate, &instants, &plates, &expected),
@@ -115,7 +69,11 @@ pub fn outcome(
 }
 
 /// The figures of every instant for machines.
-fn steps([springs, elements]: &[ModelMotion; 2], deviations: &[Deviations; 2]) -> Vec<Step> {
+fn steps(
+    [springs, elements]: &[ModelMotion; 2],
+    corrected: &CorrectedMotion,
+    deviations: &[Deviations; 2],
+) -> Vec<Step> {
     let quantities = |now: &Instant, deviations: Option<&Deviations>, instant: usize| {
         let deviation = deviations.map(|own| own.displacement.get(instant));
         json!({
@@ -134,16 +92,16 @@ fn steps([springs, elements]: &[ModelMotion; 2], deviations: &[Deviations; 2]) -
         .iter()
         .zip(&elements.history.instants);
     let step = |(instant, (springs, elements)): (usize, (&Instant, &Instant))| {
-        let corrected = of_corrected.displacement.get(instant);
+        let percent = of_corrected.displacement.get(instant);
+        let of_corrected = percent.zip(corrected.right_force.get(instant)).map(
+            |(percent, force)| json!({ "displacement_percent": percent, "grip_force_N": force }),
+        );
         let models = [
             (
                 "mass_spring",
                 quantities(springs, Some(of_springs), instant),
             ),
-            (
-                "corrected",
-                json!(corrected.map(|own| json!({ "displacement_percent": own }))),
-            ),
+            ("corrected", json!(of_corrected)),
             ("finite_element", quantities(elements, None, instant)),
         ];
         Step {
@@ -206,12 +164,38 @@ fn summary(models: &[ModelMotion; 2]) -> Block {
     Block::table(&head, models.iter().map(row))
 }
 
-fn in_time([springs, elements]: &[ModelMotion; 2], deviations: &[Deviations; 2]) -> Block {
+/// Deviations over all instants in a sentence, beside the finite elements' own error.
+fn compared([of_springs, of_corrected]: &[Deviations; 2], own_error: Option<&OwnError>) -> String {
+    let told = |name: &str, own: &Deviations| {
+        let force = own.force.map_or_else(String::new, |force| {
+            format!(", and its force of the right grip by {} %", percent(force))
+        });
+        format!(
+            "The displacement of the {name} deviates from the finite elements' by {} % over all instants{force}. ",
+            percent(own.whole)
+        )
+    };
+    let mut text = told("springs", of_springs);
+    if !of_corrected.displacement.is_empty() {
+        text += &told("corrected motion", of_corrected);
+    }
+    text + &own_error.map_or_else(
+        || "The finite elements' own error is not known: larger cells have no motion.".to_owned(),
+        OwnError::describe,
+    )
+}
+
+fn in_time(
+    [springs, elements]: &[ModelMotion; 2],
+    corrected: &CorrectedMotion,
+    deviations: &[Deviations; 2],
+) -> Block {
     let head = [
         "time [s]",
         "mass-spring: displacement [%]",
         "corrected: displacement [%]",
         "mass-spring: force [N]",
+        "corrected: force [N]",
         "finite elements: force [N]",
     ];
     let count = deviations[0].displacement.len();
@@ -227,30 +211,33 @@ fn in_time([springs, elements]: &[ModelMotion; 2], deviations: &[Deviations; 2])
             percent(&deviations[0], instant),
             percent(&deviations[1], instant),
             number(force(springs)),
+            corrected
+                .right_force
+                .get(instant)
+                .map_or("–".into(), |own| number(own[0])),
             number(force(elements)),
         ]
     };
     Block::table(&head, (0..count).step_by(every).map(row))
 }
 
+/// How the reference becomes a better one.
+const REMEDY: &str = "take more `finite_element.cells`, or a shorter `time.step`";
+
 fn checks(
     plate: &MovingPlate,
     models: &[ModelMotion; 2],
-    deviations: &[Deviations; 2],
+    (deviations, own_error): (&[Deviations; 2], Option<&OwnError>),
 ) -> Vec<Check> {
     let limits = plate.tolerances;
     let check = |quantity: String, limit, value| {
-        Check::new(
-            quantity,
-            "%",
-            Wanted::AtMost(limit),
-            "the study's tolerance",
-            value,
-        )
+        let wanted = Wanted::AtMost(limit);
+        Check::new(quantity, "%", wanted, "the study's tolerance", value)
     };
     let energy = |model: &ModelMotion| {
+        let quantity = format!("{}: error of the energy balance", model.name);
         check(
-            format!("{}: error of the energy balance", model.name),
+            quantity,
             limits.energy_percent,
             100.0 * model.history.energy_error(),
         )
@@ -267,10 +254,19 @@ fn checks(
         true => format!("up to {} s", number(until)),
         false => "over all instants".to_owned(),
     };
-    let deviation = check(
-        format!("{name}: displacement {over}"),
-        limits.deviation_percent,
-        last.whole,
-    );
-    models.iter().map(energy).chain([deviation]).collect()
+    let deviation = |quantity: &str, limit: f64, value: f64, own: Option<f64>| {
+        let check = check(format!("{name}: {quantity} {over}"), limit, value);
+        match own {
+            Some(own) => check.judged(judge_by_margin(value, own, limit, REMEDY), own),
+            None => check,
+        }
+    };
+    let own = own_error.map(|own| own.displacement);
+    let displacement = deviation("displacement", limits.deviation_percent, last.whole, own);
+    let force = limits.force_percent.zip(last.force).map(|(limit, value)| {
+        let own = own_error.and_then(|own| own.force);
+        deviation("force of the right grip", limit, value, own)
+    });
+    let energies = models.iter().map(energy);
+    energies.chain([displacement]).chain(force).collect()
 }

@@ -47,8 +47,10 @@ pub struct PointForce {
 pub struct Tolerances {
     /// Largest error of the energy balance.
     pub energy_percent: f64,
-    /// Largest deviation of the springs from the finite elements.
+    /// Largest deviation of the corrected motion, or of the springs where there is none, from the finite elements.
     pub deviation_percent: f64,
+    /// Largest deviation of its force of the right grip; `None` where nothing is required of it.
+    pub force_percent: Option<f64>,
 }
 
 /// A plate that moves.
@@ -79,6 +81,8 @@ pub struct MovingPlate {
     pub springs: SpringLaw,
     /// D(·).
     pub dashpots: DashpotLaw,
+    /// Whether the springs' motion is corrected.
+    pub corrected: bool,
     /// The finite element, and how many.
     pub element: (Element, [usize; 2]),
     /// Points that are watched.

@@ -53,6 +53,9 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let motion = time.as_ref().zip(grip.as_ref());
     check_times(root, &in_time, motion, (&material.viscosity, &forces));
     let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity);
+    let section = root.section("corrector");
+    let corrected = section.flag("enabled");
+    section.unknown_keys();
     let section = root.section("finite_element");
     let element = section.choice("element", &Element::NAMES);
     let element_cells = section.count_pair("cells", 1, sections::MOST_CELLS);
@@ -80,6 +83,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
         lattice: lattice.settings,
         springs: lattice.springs?,
         dashpots: lattice.dashpots?,
+        corrected,
         element: (element?, element_cells?),
         probes,
         tolerances,
@@ -194,6 +198,7 @@ fn read_tolerances(section: &Section) -> Tolerances {
     let tolerances = Tolerances {
         energy_percent: percent("energy"),
         deviation_percent: percent("deviation"),
+        force_percent: section.has("force").then(|| percent("force")),
     };
     section.unknown_keys();
     tolerances

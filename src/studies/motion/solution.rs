@@ -4,7 +4,7 @@ use web_time::Instant as Clock;
 
 use super::problem::MovingPlate;
 use crate::dynamics::frequency::{slowest, strongest};
-use crate::dynamics::{History, Viscosity, follow};
+use crate::dynamics::{History, TimeSettings, Viscosity, follow};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::Model;
@@ -28,12 +28,13 @@ pub struct ModelMotion {
 }
 
 impl MovingPlate {
-    /// Computes the motion of one model.
+    /// Computes the motion of one model; `progress` is told the instants that are reached.
     pub fn moved(
         &self,
         [name, file]: [&'static str; 2],
-        model: &Model,
-        viscosity: Option<&dyn Viscosity>,
+        (model, viscosity): (&Model, Option<&dyn Viscosity>),
+        time: TimeSettings,
+        progress: &dyn Fn(f64),
     ) -> Result<ModelMotion, Error> {
         let start = Clock::now();
         let motion = self.motion(model, viscosity)?;
@@ -42,7 +43,7 @@ impl MovingPlate {
             step: time,
             fault,
         };
-        let (history, end) = match follow(&motion, self.time, &|_| ()) {
+        let (history, end) = match follow(&motion, time, progress) {
             Ok(history) => (history, None),
             Err(end) => {
                 let error = fault(end.describe(), end.fault);
@@ -53,7 +54,7 @@ impl MovingPlate {
                 (end.history, Some(error))
             }
         };
-        let held = motion.held(self.time.duration);
+        let held = motion.held(time.duration);
         let rest = vec![0.0; motion.mass.len()];
         let modes = slowest(&motion, &held, &rest, 6);
         let modes = modes.map_err(|found| fault("rest".into(), found))?;

@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use super::deviations::OwnError;
 use super::problem::{MovingPlate, PointForce};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
@@ -20,7 +21,7 @@ pub fn blocks(plate: &MovingPlate) -> Vec<Block> {
 }
 
 /// The same for machines.
-pub fn json(plate: &MovingPlate) -> Map<String, Value> {
+pub fn json(plate: &MovingPlate, own_error: Option<&OwnError>) -> Map<String, Value> {
     let sentences = sentences(plate).into_iter();
     let says: Map<_, _> = sentences
         .map(|(what, says)| (what.to_owned(), json!(says)))
@@ -30,6 +31,10 @@ pub fn json(plate: &MovingPlate) -> Map<String, Value> {
         "thickness_mm": plate.problem.thickness,
         "density_kg_per_m3": 1e12 * plate.density,
         "says": says,
+        "finite_element_own_error": own_error.map(|own| json!({
+            "displacement_percent": own.displacement,
+            "grip_force_percent": own.force,
+        })),
     });
     all.as_object().cloned().unwrap_or_default()
 }

@@ -88,7 +88,7 @@ impl Release {
             max_iterations: 20,
         };
         let found = bodies.equation(step)?;
-        let found = found.correct(&springs, &bodies.scheme.motion.start, windows);
+        let found = found.correct(&springs, &bodies.scheme.motion.start, windows, &|_| ());
         let found = found.map_err(|end| fault(end.fault))?;
         let compared = |fields: &[Vec<f64>]| fields.iter().step_by(STRIDE).cloned().collect();
         let work = format!(
