@@ -66,7 +66,7 @@ fn a_card_that_was_changed_is_not_found_again() {
 }
 
 #[test]
-fn all_laws_are_ranked_and_the_best_stable_one_is_written() {
+fn all_laws_are_ranked_and_the_best_stable_one_that_the_data_tell_is_written() {
     let folder = TempDir::new().unwrap();
     let data = root().join("materials/data/treloar_1944_uniaxial.csv");
     let arguments = ["materials", "fit", data.to_str().unwrap(), "--all"];
@@ -83,7 +83,7 @@ fn all_laws_are_ranked_and_the_best_stable_one_is_written() {
     assert!(
         folder
             .path()
-            .join("output/materials/treloar_1944_uniaxial-ogden-3.toml")
+            .join("output/materials/treloar_1944_uniaxial-gent.toml")
             .exists()
     );
 }

@@ -163,8 +163,10 @@ class Fit:
         return f"<b>{self.law}</b>: {self.verdict}<table>{head}{rows}</table>{_image(self._picture)}"
 
 
-def _pair(values: Sequence[float] | None) -> tuple[float, float] | None:
-    return None if values is None else (float(values[0]), float(values[1]))
+def _pair(values: Sequence[float | None] | None) -> tuple[float, float] | None:
+    if values is None or values[0] is None or values[1] is None:
+        return None
+    return (float(values[0]), float(values[1]))
 
 
 def _image(png: bytes) -> str:

@@ -76,9 +76,8 @@ pub fn fit(
             None => {
                 watch.tell("all laws");
                 let (fits, _) = calibration::rank(&tests_read, &settings);
-                let stable = fits.iter().position(|fit| fit.quality.is_stable());
-                let best = fits.into_iter().nth(stable.unwrap_or(0));
-                best.ok_or_else(|| input("no law could be fitted", "look at the data"))?
+                calibration::best(fits)
+                    .ok_or_else(|| input("no law could be fitted", "look at the data"))?
             }
         };
         let provenance = Provenance {

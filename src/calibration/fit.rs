@@ -23,12 +23,13 @@ use super::search::Search;
 use super::settings::{FitSettings, MEASURE, limits};
 use super::softened::Softened;
 use super::test_data::{Observation, Test, TestData};
+use super::unlike::unlike;
 use super::warnings::warnings;
 use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::material::marlow::{Marlow, TableCurve};
 use crate::material::parameters::{Parameter, StressMeasure};
-use crate::material::registry::{Law, MARLOW_TABLE};
+use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 use crate::material::viscosity::ViscousMaterial;
 
 /// A law fitted to tests.
@@ -151,6 +152,13 @@ impl Residuals for Curve<'_> {
 pub fn fit(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
     check_measures(tests)?;
     let misfit = Misfit::new(law, tests, settings.weighting);
+    if law.name == SWELLING {
+        let message = format!(
+            "{SWELLING} is not fitted: tests do not tell how far the gel was swollen when its network was made"
+        );
+        let hint = "fit neo-hooke, whose stresses are the same at a given swelling, and put the card together by hand; see `gelbench guide materials`";
+        return Err(Error::input(message, hint));
+    }
     if law.name == MARLOW_TABLE {
         return take_curve(law, tests, settings, &misfit);
     }
@@ -249,6 +257,8 @@ fn finished(
     };
     let mut quality = assessment.quality();
     quality.warnings = warnings(&quality, &built.parameters, other.as_deref());
+    let unlike = unlike(&quality, &*fitted, assessment.tests, settings.weighting);
+    quality.warnings.extend(unlike);
     Fit {
         law,
         fitted,

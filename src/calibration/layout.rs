@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::cycles::Turns;
-use super::plausible::{check_signs, implausible};
+use super::plausible::{check_signs, implausible, stress_at_rest};
 use super::record::{Machine, Part};
 use super::roles::{DISPLACEMENT, FORCE, Kind, Role, check_columns, of_kind, roles};
 use super::rounding::WrittenColumn;
@@ -113,7 +113,12 @@ impl Layout {
         let sizes = |axis: usize| observations.iter().map(move |one| one.strains[axis].abs());
         let widest = [0, 1].map(|axis| sizes(axis).fold(0.0, f64::max));
         let implausible = implausible(head, self.strain, widest[0].max(widest[1]));
-        let warnings = turns.warning(head).into_iter().chain(implausible);
+        let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
+        let warnings = turns
+            .warning(head)
+            .into_iter()
+            .chain(implausible)
+            .chain(at_rest);
         Ok(TestData {
             name: table.source.name.clone(),
             test: self.test,

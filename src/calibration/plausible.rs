@@ -3,6 +3,7 @@
 use super::test_data::{Observation, StrainColumn, Test};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
+use crate::statistics::median;
 
 /// Strains of compression that are positive by less than this share of the largest are at rest.
 const SCATTER: f64 = 1e-3;
@@ -40,6 +41,53 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
         return Err(head.fault(head.place("test"), message, hint));
     }
     Ok(())
+}
+
+/// A stress at a strain of nothing, where nothing was taken off: a preload, or a load cell that was not set to zero.
+pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagnostic> {
+    /// Rows by whose second differences noise is estimated.
+    const ROWS: usize = 12;
+    /// Standard deviations, and a share of the largest stress, below which a stress is none.
+    const CLEARLY: f64 = 4.0;
+    const NOTHING: f64 = 0.005;
+    /// A strain below this share of the largest is none.
+    const AT_REST: f64 = 1e-3;
+    let largest = |value: fn(&Observation) -> f64| {
+        let values = observations.iter().map(|one| value(one).abs());
+        values.fold(0.0, f64::max)
+    };
+    let (strain, stress) = (
+        largest(|one| one.strains[one.axis]),
+        largest(|one| one.stress),
+    );
+    let first = observations.first()?;
+    let axis = |one: &&Observation| one.axis == first.axis;
+    let rows: Vec<f64> = observations
+        .iter()
+        .filter(axis)
+        .map(|one| one.stress)
+        .take(ROWS)
+        .collect();
+    let bends = rows
+        .windows(3)
+        .map(|own| (own[0] - 2.0 * own[1] + own[2]).abs());
+    // Of the second differences of white noise, whose variance is six times its own.
+    let noise = 1.4826 * median(bends) / 6.0_f64.sqrt();
+    let is_at_rest = first
+        .strains
+        .iter()
+        .all(|x| x.is_nan() || x.abs() <= AT_REST * strain);
+    let acts = first.stress.abs() > (CLEARLY * noise).max(NOTHING * stress);
+    (rows.len() >= 5 && is_at_rest && acts).then(|| {
+        let message = format!(
+            "{}: at the first row nothing is stretched, and the stress is {:.2} % of the largest, more than its scatter",
+            head.table.source.name,
+            100.0 * first.stress / stress
+        );
+        let hint = "if the specimen was loaded before, begin the strains there; if the load cell was not set to zero, take its reading off the forces; \
+                    parameters are wrong by it";
+        Diagnostic::warning("", message).hint(hint)
+    })
 }
 
 /// Strains that are so large that they may be in percent.

@@ -9,7 +9,7 @@ use super::test_data::{Observation, Test, TestData};
 use super::verdict::Verdict;
 use crate::material::HyperelasticLaw;
 use crate::material::curve::Mode;
-use crate::material::stability::stable_range;
+use crate::material::stability::{SEARCHED, stable_range};
 use crate::statistics::{CurveNoise, Estimate};
 
 /// Whether the interval of an estimate does not hold zero.
@@ -33,11 +33,16 @@ pub struct StableRange {
     pub needed: [f64; 2],
 }
 
+/// But for rounding.
+const BARELY: f64 = 1.0 - 1e-9;
+
 impl StableRange {
-    /// Whether the law is stable as far as it should be; pressing counts in uniaxial tests alone.
+    /// Whether the law is stable as far as it should be, or as far as is looked for; pressing counts in uniaxial tests alone.
     pub fn is_enough(&self) -> bool {
         let ([low, high], [from, to]) = (self.stretches, self.needed);
-        high >= to && (self.mode != Mode::Uniaxial || low <= from)
+        let [least, most] = SEARCHED;
+        high >= to.min(BARELY * most)
+            && (self.mode != Mode::Uniaxial || low <= from.max(least / BARELY))
     }
 }
 

@@ -7,7 +7,7 @@ use super::settings::{FitSettings, MEASURE};
 use super::test_data::TestData;
 use crate::error::Error;
 use crate::material::parameters::StressMeasure;
-use crate::material::registry::{LAWS, Law, MARLOW_TABLE};
+use crate::material::registry::{LAWS, Law, MARLOW_TABLE, SWELLING};
 
 /// All laws that keep their volume and can be fitted to some tests, the one with the smallest AICc first; laws that cannot be are
 /// left out with their reasons. All have the effective points of the law with the least variance of residuals: how
@@ -23,7 +23,7 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
     let (both_axes, measure) = (axis(0) && axis(1), StressMeasure::Nominal);
     let eligible: Vec<&'static Law> = LAWS
         .iter()
-        .filter(|law| law.name != MARLOW_TABLE)
+        .filter(|law| ![MARLOW_TABLE, SWELLING].contains(&law.name))
         .filter(|law| {
             let own = law.with_values(&[], measure, MEASURE).0;
             // How a body changes its volume is not in the stresses of the usual tests alone.
@@ -55,4 +55,16 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
     }
     fits.sort_by(|a, b| a.quality.aicc.total_cmp(&b.quality.aicc));
     (fits, reasons)
+}
+
+/// Of ranked fits the first that is stable over the data and whose parameters they all tell, else the first that is stable, else
+/// the first; `None` where there is none.
+pub fn best(fits: Vec<Fit>) -> Option<Fit> {
+    let first = |fits: &[Fit], told: bool| {
+        let wanted =
+            |fit: &Fit| fit.quality.is_stable() && (!told || fit.quality.is_identifiable());
+        fits.iter().position(wanted)
+    };
+    let chosen = first(&fits, true).or_else(|| first(&fits, false));
+    fits.into_iter().nth(chosen.unwrap_or(0))
 }

@@ -160,10 +160,19 @@ impl Part {
             Zero::AsWritten => {}
             Zero::Automatic => self.set_right(machine, Beginning::of(x, y), y),
             Zero::Displacement(_) | Zero::Force(_) => {
-                let reached = match zero {
-                    Zero::Displacement(u) => either(x, u / machine.length),
-                    Zero::Force(f) => either(y, f / machine.area),
-                    _ => None,
+                let (reached, found) = match zero {
+                    Zero::Displacement(u) => {
+                        let found = FoundZero::Stress { area: machine.area };
+                        (either(x, u / machine.length), Some(found))
+                    }
+                    Zero::Force(f) => {
+                        let length = machine.length;
+                        (
+                            either(y, f / machine.area),
+                            Some(FoundZero::Strain { length }),
+                        )
+                    }
+                    _ => (None, None),
                 };
                 let Some(place) = reached else {
                     let message = "the loading branch does not pass the stated zero";
@@ -171,6 +180,8 @@ impl Part {
                     return Err(head.fault(head.place(ZERO), message, hint));
                 };
                 (self.zero, self.offset) = (at(x, place), at(y, place));
+                // What one row reads there scatters.
+                self.found_zero = found;
                 self.remarks.push(format!(
                     "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is taken off",
                     machine.length * self.zero,
@@ -296,9 +307,10 @@ fn cycles(count: usize) -> String {
     }
 }
 
-/// Where values first pass one, or its opposite: compression may be stated without its sign.
+/// Where values first pass one, or where they fall, its opposite: compression may be stated without its sign.
 fn either(values: &[f64], wanted: f64) -> Option<(usize, f64)> {
-    passes(values, wanted).or_else(|| passes(values, -wanted))
+    let falls = values.last() < values.first();
+    passes(values, wanted).or_else(|| passes(values, -wanted).filter(|_| falls && wanted > 0.0))
 }
 
 /// Where values first pass one, as a row and the part of the step behind it.

@@ -133,7 +133,12 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     let fit = found(named, &tests, &settings, wanted)?;
     let tests = fit.fitted_tests(&tests);
     let first = arguments.data[0].file_stem().unwrap_or_default();
-    let usual = || format!("{}-{}", first.to_string_lossy(), fit.law.name);
+    let more = match (&fit.relaxed, &fit.softened) {
+        (Some(_), _) => "-relaxation",
+        (_, Some(_)) => "-softening",
+        (None, None) => "",
+    };
+    let usual = || format!("{}-{}{more}", first.to_string_lossy(), fit.law.name);
     let name = arguments.name.unwrap_or_else(usual);
     let place = arguments.output.join(&name);
     let Some(stem) = Path::new(&name).file_name().and(place.file_name()) else {
@@ -185,7 +190,8 @@ fn found(
             progress.tell("all laws");
             let (fits, reasons) = calibration::rank(tests, settings);
             print(&fit_message::ranking(&fits, &reasons))?;
-            best(fits)
+            calibration::best(fits)
+                .ok_or_else(|| Error::input("no law could be fitted", "look at the reasons above"))
         }
     }
 }
@@ -236,13 +242,6 @@ impl Written<'_> {
         tell_files(&results.finish()?);
         Ok(drawn.err())
     }
-}
-
-/// The first of the ranked fits that is stable over the data, else the first.
-fn best(fits: Vec<Fit>) -> Result<Fit, Error> {
-    let stable = fits.iter().position(|fit| fit.quality.is_stable());
-    let chosen = fits.into_iter().nth(stable.unwrap_or(0));
-    chosen.ok_or_else(|| Error::input("no law could be fitted", "look at the reasons above"))
 }
 
 /// What was not written by a fit is never replaced by one.

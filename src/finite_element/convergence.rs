@@ -5,7 +5,7 @@
 const HIGHEST_ORDER: f64 = 4.0;
 
 /// The lowest order that is extrapolated with: below, the extrapolation goes farther than the three values do.
-const LOWEST_ORDER: f64 = 0.5;
+pub const LOWEST_ORDER: f64 = 0.5;
 
 /// Richardson's extrapolation of a quantity computed with cells of size 4h, 2h and h.
 ///

@@ -100,19 +100,65 @@ pub fn samples(law: &dyn HyperelasticLaw, range: [f64; 2]) -> Vec<Sample> {
 /// The displacement gradient of a strip along the first axis with free edges: H₁₁ = `strain`, H₂₁ = 0, and
 /// H₁₂, H₂₂ such that P₁₂ = P₂₂ = 0. Nothing where there is no such state.
 ///
-/// Newton's method with halved steps from the contraction of an isotropic strip.
+/// Newton's method with halved steps from the contraction of an isotropic strip, for H₁₂ and H₂₂, or where that ends beyond the largest
+/// P₂₂, as in a pressed foam, for H₁₂ and ln (1 + H₂₂) with the residual (P₁₂, (1 + H₂₂) P₂₂).
 pub fn free_edges(
     response: &dyn Fn(&Kinematics) -> SheetResponse,
     strain: f64,
+) -> Option<Gradient> {
+    let of = |scale: Scale| free_edges_by(response, strain, scale);
+    of(Scale::Stretch).or_else(|| of(Scale::Logarithm))
+}
+
+/// What Newton's method looks for across a strip.
+#[derive(Clone, Copy)]
+enum Scale {
+    /// H₂₂ where P₂₂ is none.
+    Stretch,
+    /// ln (1 + H₂₂) where (1 + H₂₂) P₂₂ is none.
+    Logarithm,
+}
+
+impl Scale {
+    /// Residual, and its tangent by H₁₂ and the unknown.
+    fn linearised(self, h: &Gradient, state: &SheetResponse) -> (Vector2<f64>, Matrix2<f64>) {
+        let (stress, a) = (&state.first_piola_kirchhoff_stress, &state.tangent);
+        match self {
+            Self::Stretch => (
+                Vector2::new(stress[1], stress[3]),
+                Matrix2::new(a[(1, 1)], a[(1, 3)], a[(3, 1)], a[(3, 3)]),
+            ),
+            Self::Logarithm => {
+                let s = 1.0 + h[3];
+                let across = s * (s * a[(3, 3)] + stress[3]);
+                (
+                    Vector2::new(stress[1], s * stress[3]),
+                    Matrix2::new(a[(1, 1)], s * a[(1, 3)], s * a[(3, 1)], across),
+                )
+            }
+        }
+    }
+
+    /// H₂₂ after a step of the unknown.
+    fn moved(self, h: f64, step: f64) -> f64 {
+        match self {
+            Self::Stretch => h - step,
+            Self::Logarithm => (1.0 + h) * (-step).exp() - 1.0,
+        }
+    }
+}
+
+fn free_edges_by(
+    response: &dyn Fn(&Kinematics) -> SheetResponse,
+    strain: f64,
+    scale: Scale,
 ) -> Option<Gradient> {
     let lateral = -strain / ((1.0 + strain) + (1.0 + strain).sqrt()); // λ^−½ − 1
     let mut h = Vector4::new(strain, 0.0, 0.0, lateral);
     let at = |h: &Gradient| Some(response(&Kinematics::new(h).ok()?));
     let mut state = at(&h)?;
     for _ in 0..60 {
-        let (stress, a) = (&state.first_piola_kirchhoff_stress, &state.tangent);
-        let block = Matrix2::new(a[(1, 1)], a[(1, 3)], a[(3, 1)], a[(3, 3)]);
-        let residual = Vector2::new(stress[1], stress[3]);
+        let (residual, block) = scale.linearised(&h, &state);
         let step = block.try_inverse()? * residual;
         if step.norm() <= 1e-15 * h.norm() {
             return Some(h);
@@ -120,10 +166,9 @@ pub fn free_edges(
         let shorter = |length: f64| {
             let mut moved = h;
             moved[1] -= length * step[0];
-            moved[3] -= length * step[1];
+            moved[3] = scale.moved(h[3], length * step[1]);
             let tried = at(&moved)?;
-            let stress = tried.first_piola_kirchhoff_stress;
-            let smaller = stress[1].hypot(stress[3]) < residual.norm();
+            let smaller = scale.linearised(&moved, &tried).0.norm() < residual.norm();
             smaller.then_some((moved, tried))
         };
         match (0..30).find_map(|halvings| shorter(0.5_f64.powi(halvings))) {

@@ -182,7 +182,7 @@ pub const LAWS: &[Law] = &[
         read: LinearElastic::from_card,
     },
     Law {
-        name: "flory-rehner",
+        name: SWELLING,
         formula: "W/φ = G₀/(2φ₀) (λ₁² + λ₂² + λ₃² − 3 − B ln J₀) + RT/V₁ ((Q − 1) ln(1 − 1/Q) + χ (1 − 1/Q) − Q ln a)",
         read: Network::from_card,
     },
@@ -192,6 +192,9 @@ const OGDEN_HILL: &str =
     "W = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3 + (J^(−αᵢ βᵢ) − 1)/βᵢ), βᵢ = νᵢ/(1 − 2νᵢ)";
 
 const OGDEN: &str = "Ψ = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3)";
+
+/// The law of a swollen network, of which tests alone tell too little.
+pub const SWELLING: &str = "flory-rehner";
 
 /// The law that takes a measured curve as it is: there is nothing to fit.
 pub const MARLOW_TABLE: &str = "marlow-table";

@@ -29,6 +29,9 @@ pub fn stable_range(law: &dyn HyperelasticLaw, mode: Mode) -> [f64; 2] {
     SEARCHED.map(|end| stable_until(law, mode, end.ln()).exp())
 }
 
+/// What rounding leaves of a tangent with a diagonal of ones.
+const ROUNDING: f64 = 1e-13;
+
 /// A sheet's ν in its plane at small strain: that of the material in plane stress, ν/(1 − ν) in plane strain.
 pub fn in_plane_poisson_ratio(law: &dyn HyperelasticLaw) -> f64 {
     let tangent = law.response(&Kinematics::rest()).tangent;
@@ -60,9 +63,21 @@ fn stable_until(law: &dyn HyperelasticLaw, mode: Mode, end: f64) -> f64 {
     inside
 }
 
-/// Whether D is positive definite in a state.
+/// Whether D is positive definite in a state; by D with a diagonal of ones, as its own may span more than numbers have digits.
 pub fn is_stable(law: &dyn HyperelasticLaw, kinematics: &Kinematics) -> bool {
-    tangent(law, kinematics).is_some_and(|tangent| tangent.cholesky().is_some())
+    let Some(tangent) = tangent(law, kinematics) else {
+        return false;
+    };
+    let diagonal = tangent.diagonal();
+    if diagonal.iter().any(|entry| *entry <= 0.0) {
+        return false;
+    }
+    let scales = diagonal.map(f64::sqrt);
+    let scaled = tangent.component_div(&(scales * scales.transpose()));
+    // Where a thickness is far stiffer than the plane, rounding takes away what is positive.
+    (scaled + Matrix3::from_diagonal_element(ROUNDING))
+        .cholesky()
+        .is_some()
 }
 
 /// D by the components ε₁₁, ε₂₂ and √2 ε₁₂; `None` where it is not finite.

@@ -163,6 +163,8 @@ fn label(name: &str) -> String {
     let (words, unit) = found.unwrap_or((&name, String::new()));
     let words = words
         .replace('_', " ")
+        .replace("mass spring", "mass-spring")
+        .replace("finite element", "finite elements")
         .replace("mises", "Mises")
         .replace("cauchy", "Cauchy")
         .replace("green lagrange", "Green-Lagrange");

@@ -19,6 +19,19 @@ pub enum Drawing {
     Mesh(MeshFigure),
 }
 
+impl Drawing {
+    /// Whether it is of charts without a point.
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Charts(charts) => {
+                let mut lines = charts.iter().flat_map(|(chart, _)| &chart.lines);
+                lines.all(|line| line.points.is_empty())
+            }
+            Self::Field(_) | Self::Animation(_) | Self::Mesh(_) => false,
+        }
+    }
+}
+
 /// A mesh at rest by its lines, in mm.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct MeshFigure {

@@ -7,7 +7,7 @@ use crate::budget::Budget;
 use crate::document::{EditedDocument, NewValue, with_files};
 use crate::error::{Diagnostic, Error};
 use crate::material::Card;
-use crate::studies::PreparedStudy;
+use crate::studies::{PreparedStudy, motion, specimen};
 use crate::validation;
 
 /// The card of a run stands beside the study's own under this name, in memory.
@@ -30,6 +30,17 @@ pub struct BaseStudy {
 }
 
 impl BaseStudy {
+    /// What its steps run along, as an axis is called.
+    pub fn steps_run_along(&self) -> &'static str {
+        let case = validation::case_of(&self.path.display().to_string(), &self.text);
+        match case.ok().flatten().map(|case| case.kind) {
+            None => "stretch [–]",
+            Some(specimen::KIND) => "load factor [–]",
+            Some(motion::KIND) => "time [s]",
+            Some(_) => "step [–]",
+        }
+    }
+
     /// The study with some keys set.
     ///
     /// # Errors

@@ -164,8 +164,8 @@ impl<'a> SweepFolder<'a> {
         let report = format!("{:#}\n", json(&keys, rows));
         folder.add("sweep.json", report.as_bytes())?;
         let title = format!("Many runs of {}", name(&self.sweep.study.path));
-        let blocks = blocks(&title, &keys, rows);
-        let figures = figures(&keys, rows);
+        let figures = figures(&keys, rows, self.sweep.study.steps_run_along());
+        let blocks = blocks(&title, &keys, rows, &figures);
         let warnings = write_document(folder, "report", &blocks, &figures)?;
         Ok((self.results.finish()?, warnings))
     }

@@ -9,8 +9,12 @@ use super::table::{heads, names};
 use crate::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke, number};
 use crate::statistics::{quantile, rank_correlation};
 
-/// What the steps of studies are told by.
-const ALONG: &str = "stretch, load factor, or time in s";
+/// Models by the names of figures, as reports call them, with the colours of their lines.
+const MODELS: [(&str, &str, [u8; 3]); 3] = [
+    ("mass_spring", "mass-spring", PALETTE[1]),
+    ("corrected", "corrected", PALETTE[0]),
+    ("finite_element", "finite elements", [30, 30, 30]),
+];
 
 /// Below so many runs there is neither a spread nor a correlation.
 const FEWEST: usize = 10;
@@ -119,7 +123,7 @@ fn at_last_step(rows: &[Row]) -> Vec<Row> {
 }
 
 /// The report.
-pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
+pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) -> Vec<Block> {
     let all = statistics(&at_last_step(rows));
     let mut head = vec![
         "figure of the last step",
@@ -164,6 +168,8 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row]) -> Vec<Block> {
         )),
     ];
     blocks.extend(cautions(rows).into_iter().map(Block::paragraph));
+    let pictures = figures.iter().enumerate();
+    blocks.extend(pictures.map(|(index, figure)| Block::Figure(index, figure.caption.clone())));
     blocks
 }
 
@@ -231,10 +237,11 @@ pub fn json(keys: &[String], rows: &[Row]) -> Value {
 }
 
 /// Pictures: the band of every model's force over the steps, and the force of the last step over each key.
-pub fn figures(keys: &[String], rows: &[Row]) -> Vec<Figure> {
+/// `along` is what the axis of steps is called.
+pub fn figures(keys: &[String], rows: &[Row], along: &str) -> Vec<Figure> {
     let (all, heads) = (statistics(rows), heads(keys, rows));
     let forces: Vec<&Statistics> = all.iter().filter(|one| is_force(&one.name)).collect();
-    let band = band(&forces).map(|chart| {
+    let band = band(&forces, along).map(|chart| {
         Figure::new(
             "band.png",
             "The forces of all runs: medians, and the band between 5 and 95 % of the runs.",
@@ -283,24 +290,24 @@ fn is_force(name: &str) -> bool {
 
 /// The medians of all models over the steps, and the band of the corrected model, or the first one; `None` where there are fewer than
 /// two steps, or too few runs.
-fn band(forces: &[&Statistics]) -> Option<LineChart> {
-    let model = |one: &Statistics| one.name.split('.').next().unwrap_or("").to_owned();
-    let mut models: Vec<String> = forces.iter().map(|one| model(one)).collect();
-    models.sort();
-    models.dedup();
+fn band(forces: &[&Statistics], along: &str) -> Option<LineChart> {
     let mut lines = Vec::new();
-    for (name, colour) in models.iter().zip(PALETTE) {
+    // The corrected model's band is that which is filled.
+    for (name, words, colour) in [1, 0, 2].map(|model: usize| MODELS[model]) {
         let own = forces
             .iter()
-            .filter(|one| model(one) == *name && one.runs >= FEWEST);
-        let mut steps: Vec<(f64, [f64; 3])> = own
-            .filter_map(|one| Some((one.name.rsplit_once('@')?.1.parse().ok()?, one.quantiles)))
+            .filter(|one| one.name.split('.').next() == Some(name) && one.runs >= FEWEST);
+        // In the order of the path: a load factor may come again, as its second time `0.3#2`.
+        let at = |one: &Statistics| {
+            let (_, at) = one.name.rsplit_once('@')?;
+            at.split('#').next()?.parse().ok()
+        };
+        let steps: Vec<(f64, [f64; 3])> = own
+            .filter_map(|one| Some((at(one)?, one.quantiles)))
             .collect();
-        steps.sort_by(|a, b| a.0.total_cmp(&b.0));
         if steps.len() < 2 {
             continue;
         }
-        let words = name.replace('_', " ");
         let stroke = if lines.is_empty() {
             let there = steps.iter().map(|(at, [low, ..])| [*at, *low]);
             let back = steps.iter().rev().map(|(at, [.., high])| [*at, *high]);
@@ -321,7 +328,7 @@ fn band(forces: &[&Statistics]) -> Option<LineChart> {
     (!lines.is_empty()).then(|| {
         LineChart::new(
             "Forces of all runs",
-            Axis::new(ALONG, Scale::Interval),
+            Axis::new(along, Scale::Interval),
             Axis::linear("force [N]"),
             lines,
         )

@@ -23,7 +23,7 @@ impl Dimension {
     /// | length | 1 fm | 1 km |
     /// | area | 1 fm × 1 fm | 1 km × 1 km |
     /// | force | 1e-18 N | 1e12 N |
-    /// | stress | 1e-15 MPa | 1e9 MPa |
+    /// | stress | 1e-30 MPa | 1e9 MPa |
     /// | density | 1e-6 kg/m³ | 1e9 kg/m³ |
     /// | mass | 1e-24 tonne | 1e9 tonne |
     /// | time | 1 ps | 1e11 s |
@@ -40,7 +40,7 @@ impl Dimension {
             Self::Length => [1e-12, SIZES[1]],
             Self::Area => [1e-24, SIZES[1] * SIZES[1]],
             Self::Force => [1e-18, 1e12],
-            Self::Stress => [1e-15, 1e9],
+            Self::Stress => [1e-30, 1e9],
             Self::Density => [1e-18, 1e-3],
             Self::Mass => [1e-24, 1e9],
             Self::Time => [1e-12, 1e11],
@@ -76,7 +76,7 @@ mod tests {
             ("1e9 kg/m³", Dimension::Density, 1e-3),
             ("1e-6 nm", Dimension::Length, 1e-12),
             ("1 km", Dimension::Length, 1e6),
-            ("-1e-12 kPa", Dimension::Stress, -1e-15),
+            ("-1e-27 kPa", Dimension::Stress, -1e-30),
             ("1e-9 ms", Dimension::Time, 1e-12),
             ("1e-98 %", Dimension::Ratio, 1e-100),
         ] {

@@ -196,7 +196,12 @@
       table.insertRow().append(...row.map((text, index) => cell(kind, text, index)));
     });
   };
-  const COLOURS = { "mass spring": "#d55e00", corrected: "#0072b2", "finite element": "#1e1e1e" };
+  const COLOURS = { "mass-spring": "#d55e00", corrected: "#0072b2", "finite elements": "#1e1e1e" };
+  // A place on the path in words.
+  const place = (at) => {
+    if (data.along === "stretch") return "stretch " + written(100 * at) + " %";
+    return data.along + " " + written(at) + (data.along === "time" ? " s" : "");
+  };
   const colour = (name) => COLOURS[name] || "#009e73";
   const frame = (canvas) => {
     const curve = data.curves[state.curve];
@@ -205,8 +210,9 @@
     const [left, right] = [Math.min(0, ...at), Math.max(...at)];
     const [low, high] = [Math.min(0, ...all), Math.max(0, ...all)];
     const scale = window.devicePixelRatio || 1;
-    const [x0, x1, y0, y1] = [12 * scale, canvas.width - 12 * scale, canvas.height - 10 * scale, 10 * scale];
+    const [x0, x1, y0, y1] = [12 * scale, canvas.width - 12 * scale, canvas.height - 22 * scale, 20 * scale];
     return {
+      ends: { left, right, low, high },
       curve,
       x: (value) => x0 + ((value - left) / (right - left || 1)) * (x1 - x0),
       y: (value) => y0 + ((value - low) / (high - low || 1)) * (y1 - y0),
@@ -218,7 +224,7 @@
     const canvas = element("curve");
     const scale = size(canvas, 0.3);
     const context = canvas.getContext("2d");
-    const { curve, x, y } = frame(canvas);
+    const { curve, x, y, ends } = frame(canvas);
     context.clearRect(0, 0, canvas.width, canvas.height);
     context.strokeStyle = "#ccc";
     context.lineWidth = scale;
@@ -228,6 +234,19 @@
       context.lineTo(line[2], line[3]);
       context.stroke();
     }
+    // The ends of both axes, in words.
+    context.fillStyle = "#555";
+    context.font = 11 * scale + "px sans-serif";
+    const unit = (curve.label.match(/\[[^\]]*\]$/) || [""])[0].slice(1, -1);
+    const end = (value) => written(value) + (unit && unit !== "–" ? " " + unit : "");
+    const text = (words, at, height, align) => {
+      context.textAlign = align;
+      context.fillText(words, at, height);
+    };
+    text(place(ends.left), x(ends.left), canvas.height - 6 * scale, "left");
+    text(place(ends.right), x(ends.right), canvas.height - 6 * scale, "right");
+    if (ends.high !== 0) text(end(ends.high), x(ends.left) + 4 * scale, y(ends.high) - 6 * scale, "left");
+    if (ends.low !== 0) text(end(ends.low), x(ends.left) + 4 * scale, y(ends.low) - 4 * scale, "left");
     const now = x(data.steps[state.step].at);
     context.fillStyle = "#0072b222";
     context.fillRect(now - 4 * scale, 0, 8 * scale, canvas.height);
@@ -245,12 +264,12 @@
       });
     });
     const rows = Object.entries(curve.models).map(([name, points]) => [name, written(points[state.step])]);
-    fill(element("forces"), [data.along + " " + written(data.steps[state.step].at), curve.label], rows);
+    fill(element("forces"), [place(data.steps[state.step].at), curve.label], rows);
     [...element("forces").rows].slice(1).forEach((row) => (row.cells[0].style.color = colour(row.cells[0].textContent)));
   };
   const show = () => {
     element("step").value = state.step;
-    element("at").textContent = data.along + " " + written(data.steps[state.step].at);
+    element("at").textContent = place(data.steps[state.step].at);
     element("model").value = state.model;
     element("name").value = state.field;
     read();

@@ -272,7 +272,7 @@ impl<'a> Model<'a> {
     /// Where the file differs from the study, in ASCII.
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
-        let code = self.code.name();
+        let (card, code) = (self.given.card, self.code.name());
         let shapes = |shape| self.cells.iter().any(|(own, _)| *own == shape);
         let nine = (0..self.given.mesh.cell_count())
             .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
@@ -299,6 +299,12 @@ impl<'a> Model<'a> {
                     "{code} lays the pressure on the deformed thickness, gelbench on the thickness at rest: the forces differ by the stretch across the thickness at the loaded edge"
                 ),
             });
+        }
+        if !card.viscosity.is_none() {
+            remarks.push(
+                "the card's [viscosity] is left out: the file is of the law of long times alone"
+                    .into(),
+            );
         }
         if self.law == CodeLaw::TensionCurve {
             remarks.push("the law depends on the first invariant alone and goes out as Marlow's law with points of its tension curve".into());

@@ -4,7 +4,7 @@ use crate::results::{Panel, Scale, Values};
 use crate::statistics::extremes;
 
 /// What share of the area may lie beyond each end of the colour bar.
-const BEYOND: f64 = 0.01;
+const BEYOND: f64 = 0.002;
 
 /// Values beyond are shown as such if they reach so far, in lengths of the colour bar; else the bar is made longer.
 const FAR: f64 = 0.15;

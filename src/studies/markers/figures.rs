@@ -110,7 +110,7 @@ impl Pictures<'_> {
             "largest component [MPa]",
             &|cell| largest(estimate.cells[cell].stress_error),
         );
-        let residuals = residuals(estimate).map(|left| left.standardised.min(LARGEST_RESIDUAL));
+        let residuals = residuals(estimate).map(|left| left.standardised);
         let residuals = self.at_markers(
             "Standardised residuals of the markers",
             "standardised residual [–]",
@@ -182,9 +182,6 @@ fn means_at_nodes(mesh: &Mesh, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
 fn largest(components: [f64; 4]) -> f64 {
     components.iter().fold(0.0, |most, c| most.max(c.abs()))
 }
-
-/// The residual that has the lightest colour.
-const LARGEST_RESIDUAL: f64 = 5.0;
 
 /// The corners of a square and its value.
 type Square = ([[f64; 2]; 4], f64);

@@ -117,12 +117,18 @@ fn steps(
 
 fn introduction(plate: &MovingPlate) -> String {
     let [length, width] = plate.problem.size;
-    let bar = (plate.problem.law.youngs_modulus() / plate.density).sqrt() / (4.0 * length);
+    // Of a quarter of a wave, or a half.
+    let (ends, waves) = match plate.release {
+        Some(_) => ("one end", 4),
+        None => ("both ends", 2),
+    };
+    let speed = (plate.problem.law.youngs_modulus() / plate.density).sqrt();
+    let bar = speed / (f64::from(waves) * length);
     let (element, _) = plate.element;
     format!(
         "A plate of {length} × {width} × {} mm with a density of {} kg/m³ between grips, by springs with dashpots and by \
-         finite elements ({}) with the same lumped mass. A bar of its length, clamped at one end, has its first \
-         longitudinal vibration √(E₀/ρ)/(4 L) at {} Hz.",
+         finite elements ({}) with the same lumped mass. A bar of its length, clamped at {ends}, has its first \
+         longitudinal vibration √(E₀/ρ)/({waves} L) at {} Hz.",
         plate.problem.thickness,
         number(1e12 * plate.density),
         element.name(),

@@ -60,7 +60,16 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingPlate> {
     let element = section.choice("element", &Element::NAMES);
     let element_cells = section.count_pair("cells", 1, sections::MOST_CELLS);
     section.unknown_keys();
-    let probes = tables(root, "probe", |probe| read_probe(probe, &problem));
+    let mut names = Vec::new();
+    let probes = tables(root, "probe", |probe| {
+        let read = read_probe(probe, &problem);
+        if names.contains(&read.name) {
+            let hint = "columns of tables are called by it: give each probe a name of its own";
+            probe.fault("name", "is that of another probe", hint);
+        }
+        names.push(read.name.clone());
+        read
+    });
     let tolerances = read_tolerances(&root.section("tolerances"));
     let pictures = root.section("pictures");
     let pictures = Pictures::read(&pictures, ("times", Dimension::Time), &[]);

@@ -290,6 +290,20 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
         section.fault(KEY, "must not hold zero", hint);
         return stretches;
     }
+    if section.is_of_numbers(KEY)
+        && stretches
+            .iter()
+            .all(|stretch| (1.0..=3.0).contains(stretch))
+    {
+        let percent = 100.0 * stretches[0];
+        let message = format!(
+            "{} is a stretch of {percent:.0} %: the plate is {:.2} times as long",
+            stretches[0],
+            1.0 + stretches[0]
+        );
+        let lambda = 100.0 * (stretches[0] - 1.0);
+        section.warning(KEY, &message, &format!("if these are λ, write what is above 1, such as \"{lambda:.0} %\"; if not, write \"{percent:.0} %\""));
+    }
     let one_sign = stretches.iter().all(|stretch| stretch * stretches[0] > 0.0);
     let remembers = card.is_some_and(|card| card.law.softening().is_some());
     let repeated = |pair: &[f64]| pair[1] == pair[0];

@@ -104,7 +104,9 @@ impl Reference {
         let finest = meshes.last().expect("a mesh at least");
         let is_small = 4 * triangles.cell_count() <= Refinement::MOST_HALVED;
         let all_halved = (is_small && finest.reached() > 0).then(|| {
-            let halved = specimen.outline.fitted(triangles.refined());
+            // By their longest edges, as locally: cells cut into four by the middles of all would lock where these do not.
+            let all = vec![true; triangles.cell_count()];
+            let halved = specimen.outline.fitted(triangles.refined_where(&all));
             let mesh = specimen.outline.elements_on(&halved);
             // Where a path ends is told of the meshes whose results are given.
             let mut untold = Vec::new();
